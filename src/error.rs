@@ -1,0 +1,100 @@
+//! Errors, and how they read: what was wrong, what was expected, what to do.
+
+use thiserror::Error;
+
+/// A setting outside its range, or two that contradict each other.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{setting} is {found}: expected {expected}")]
+pub struct SettingsError {
+    /// Name of the setting, as in [`Settings`](crate::Settings).
+    pub setting: &'static str,
+    /// The value that was refused.
+    pub found: String,
+    /// The accepted range, with its unit.
+    pub expected: String,
+}
+
+/// A frame that cannot be processed. Nothing was changed: the history is as it was before the call.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// A pixel buffer that does not fill its image.
+    #[error("{found} pixels given for an image of {}x{}: expected {expected}", size[0], size[1])]
+    PixelCount {
+        /// Width and height asked for.
+        size: [u32; 2],
+        /// Width x height.
+        expected: usize,
+        /// Pixels given.
+        found: usize,
+    },
+    /// An input of another size than the context's.
+    #[error("{input} of view {view} is {}x{}: expected {}x{}, the size the context was made for; resize the context or the input", found[0], found[1], expected[0], expected[1])]
+    Size {
+        /// Which input.
+        input: &'static str,
+        /// Index of the view.
+        view: usize,
+        /// Its size.
+        found: [u32; 2],
+        /// The context's size.
+        expected: [u32; 2],
+    },
+    /// More or fewer views than the context was made for.
+    #[error("{found} views given: expected {expected}, as the context was made for")]
+    ViewCount {
+        /// Views in the frame.
+        found: usize,
+        /// Views of the context.
+        expected: usize,
+    },
+    /// A context or frame without a single pixel.
+    #[error("size is {}x{}: expected at least 1x1 pixels and at most {max} a side; skip frames while the window is minimised", size[0], size[1])]
+    Extent {
+        /// The size asked for.
+        size: [u32; 2],
+        /// Largest side accepted.
+        max: u32,
+    },
+    /// A number of the frame's description is not usable.
+    #[error("{what} of view {view} is {found}: expected {expected}")]
+    Value {
+        /// Which number.
+        what: &'static str,
+        /// Index of the view.
+        view: usize,
+        /// Its value.
+        found: String,
+        /// What is accepted.
+        expected: &'static str,
+    },
+}
+
+/// A file, folder or option that cannot be used. Reads as one line: `subject: problem; remedy`.
+#[cfg(feature = "lab")]
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{subject}: {problem}; {remedy}")]
+pub struct InputError {
+    /// The file, folder or option.
+    pub subject: String,
+    /// What is wrong with it.
+    pub problem: String,
+    /// What was expected or what to do.
+    pub remedy: String,
+}
+
+#[cfg(feature = "lab")]
+impl InputError {
+    /// `subject: problem; remedy`, each without a final full stop.
+    pub fn new(
+        subject: impl Into<String>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            subject: subject.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
+    }
+}

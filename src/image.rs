@@ -1,0 +1,98 @@
+//! A row-major image in memory: what the CPU executor, the simulators and the sources hand to each other.
+
+use crate::error::FrameError;
+
+/// Pixels of one type, row after row, first row at the top. Pixel centres lie at integer coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image<T> {
+    size: [u32; 2],
+    pixels: Vec<T>,
+}
+
+impl<T: Copy> Image<T> {
+    /// An image of `size` (width, height) with every pixel set to `fill`.
+    pub fn filled(size: [u32; 2], fill: T) -> Self {
+        Self {
+            size,
+            pixels: vec![fill; size[0] as usize * size[1] as usize],
+        }
+    }
+
+    /// Wraps `pixels`, which must hold exactly width x height elements.
+    ///
+    /// # Errors
+    /// [`FrameError::PixelCount`] if the length does not match the size.
+    pub fn from_pixels(size: [u32; 2], pixels: Vec<T>) -> Result<Self, FrameError> {
+        let expected = size[0] as usize * size[1] as usize;
+        if pixels.len() == expected {
+            Ok(Self { size, pixels })
+        } else {
+            Err(FrameError::PixelCount {
+                size,
+                expected,
+                found: pixels.len(),
+            })
+        }
+    }
+
+    /// An image whose pixel (x, y) is `f([x, y])`.
+    pub fn from_fn(size: [u32; 2], mut f: impl FnMut([u32; 2]) -> T) -> Self {
+        let pixels = (0..size[1])
+            .flat_map(|y| (0..size[0]).map(move |x| [x, y]))
+            .map(&mut f)
+            .collect();
+        Self { size, pixels }
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> usize {
+        self.size[0] as usize
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> usize {
+        self.size[1] as usize
+    }
+
+    /// All pixels, row after row.
+    pub fn pixels(&self) -> &[T] {
+        &self.pixels
+    }
+
+    /// All pixels, row after row, for writing.
+    pub fn pixels_mut(&mut self) -> &mut [T] {
+        &mut self.pixels
+    }
+
+    /// One row.
+    ///
+    /// # Panics
+    /// If `y` is not below the height.
+    pub fn row(&self, y: usize) -> &[T] {
+        let w = self.width();
+        &self.pixels[y * w..(y + 1) * w]
+    }
+
+    /// The pixel at column `x`, row `y`.
+    ///
+    /// # Panics
+    /// If the coordinates lie outside the image.
+    #[inline]
+    pub fn at(&self, x: usize, y: usize) -> T {
+        debug_assert!(x < self.width());
+        self.pixels[y * self.size[0] as usize + x]
+    }
+
+    /// The same image with every pixel mapped.
+    pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Image<U> {
+        Image {
+            size: self.size,
+            pixels: self.pixels.iter().copied().map(f).collect(),
+        }
+    }
+}
