@@ -5,6 +5,7 @@
 //! screen space, and every perspective depth buffer is an affine function of it.
 
 use crate::error::SettingsError;
+use crate::kernel::depth::DisparityMap;
 
 /// Unit of motion vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -141,6 +142,22 @@ impl DepthConvention {
                     )
                 }
             }
+        }
+    }
+
+    /// How a stored value becomes a disparity. Perspective buffers are affine in it: `(1 - d) / near + d / far`.
+    pub fn disparity_map(self) -> DisparityMap {
+        let (a, b, invert, clamp) = match self {
+            Self::Linear => (1.0, 0.0, true, false),
+            Self::Forward { near, far } => (1.0 / far - 1.0 / near, 1.0 / near, false, true),
+            Self::Reversed { near, far } => (1.0 / near - 1.0 / far, 1.0 / far, false, true),
+            Self::Orthographic { near, far } => (far - near, near, true, true),
+        };
+        DisparityMap {
+            a,
+            b,
+            invert,
+            clamp,
         }
     }
 }

@@ -6,3 +6,12 @@
 
 pub mod acuity;
 pub mod approx;
+pub mod color;
+pub mod depth;
+pub mod foveate;
+pub mod pack;
+pub mod reproject;
+pub mod reservoir;
+pub mod rng;
+pub mod scrub;
+pub mod wrs;

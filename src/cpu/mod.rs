@@ -1,0 +1,292 @@
+//! The CPU executor: the post-process on machines without a GPU, and the oracle of the GPU's passes.
+//!
+//! A pass is a loop over pixels plus calls into [`kernel`](crate::kernel). Rows run in parallel; the result does not depend on
+//! the number of threads.
+
+mod history;
+mod wrs_pass;
+
+pub use history::History;
+pub use wrs_pass::PixelTrace;
+
+use crate::error::{FrameError, SettingsError};
+use crate::frame::{ContextDesc, Reset, ViewFrame};
+use crate::image::Image;
+use crate::kernel::reproject::Verdict;
+use crate::kernel::scrub;
+use crate::settings::{Method, Sampler, Settings};
+use glam::Vec3;
+
+/// Inputs of one view of one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct CpuView<'a> {
+    /// Geometry, gaze and camera motion.
+    pub facts: ViewFrame,
+    /// The foveated frame: linear colour in Rec. 709 primaries. Non-finite pixels are dropped and counted.
+    pub color: &'a Image<[f32; 3]>,
+    /// Depth in the context's convention. `None` switches the depth test off.
+    pub depth: Option<&'a Image<f32>>,
+    /// Motion in the context's convention. `None`: nothing moves.
+    pub motion: Option<&'a Image<[f32; 2]>>,
+}
+
+/// One frame.
+#[derive(Clone, Copy, Debug)]
+pub struct CpuFrame<'a> {
+    /// One entry a view.
+    pub views: &'a [CpuView<'a>],
+    /// Frame counter; the random numbers follow it.
+    pub index: u64,
+    /// Whether the history still holds.
+    pub reset: Reset,
+}
+
+/// Counts of one frame over all views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// Pixels processed.
+    pub pixels: u64,
+    /// Pixels whose colour was NaN or infinite.
+    pub nonfinite: u64,
+    /// Pixels by what became of their history, indexed by [`Verdict`].
+    pub verdicts: [u64; Verdict::COUNT],
+    /// Pixels with a valid history whose sample the candidate replaced.
+    pub replaced: u64,
+}
+
+impl FrameStats {
+    /// Pixels that had a history and lost it: bad motion, off screen or disoccluded.
+    pub fn flushed(&self) -> u64 {
+        [Verdict::BadMotion, Verdict::OffScreen, Verdict::Disoccluded]
+            .iter()
+            .map(|&v| self.verdicts[v as usize])
+            .sum()
+    }
+
+    pub(crate) fn add(mut self, other: Self) -> Self {
+        self.pixels += other.pixels;
+        self.nonfinite += other.nonfinite;
+        self.replaced += other.replaced;
+        for (sum, v) in self.verdicts.iter_mut().zip(other.verdicts) {
+            *sum += v;
+        }
+        self
+    }
+}
+
+/// The post-process on the CPU. Owns nothing but settings and history.
+#[derive(Clone, Debug)]
+pub struct CpuAfterimage {
+    desc: ContextDesc,
+    settings: Settings,
+    history: History,
+}
+
+impl CpuAfterimage {
+    /// A context with an empty history.
+    ///
+    /// # Errors
+    /// If a setting or the depth convention is out of range, or the size is empty or beyond [`ContextDesc::MAX_SIDE`].
+    pub fn new(desc: ContextDesc, settings: Settings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        desc.depth.validate()?;
+        check_size(desc.size_px).map_err(|e| SettingsError {
+            setting: "size_px",
+            found: format!("{}x{}", desc.size_px[0], desc.size_px[1]),
+            expected: e.to_string(),
+        })?;
+        if desc.view_count == 0 {
+            return Err(SettingsError {
+                setting: "view_count",
+                found: "0".into(),
+                expected: "at least 1 view".into(),
+            });
+        }
+        let history = History::new(desc.size_px, desc.view_count, uses_keys(&settings));
+        Ok(Self {
+            desc,
+            settings,
+            history,
+        })
+    }
+
+    /// What it was made for.
+    pub fn desc(&self) -> &ContextDesc {
+        &self.desc
+    }
+
+    /// The tunables in force.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes the tunables from the next frame on. History survives, unless the sampler or the method changes.
+    ///
+    /// # Errors
+    /// If a setting is out of range; then the old ones stay.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
+        settings.validate()?;
+        if uses_keys(&settings) != uses_keys(&self.settings) {
+            self.history = History::new(
+                self.desc.size_px,
+                self.desc.view_count,
+                uses_keys(&settings),
+            );
+        }
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// Changes the size of the views. The history starts afresh, even if the size is the same.
+    ///
+    /// # Errors
+    /// [`FrameError::Extent`]; then nothing changes.
+    pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
+        check_size(size_px)?;
+        self.desc.size_px = size_px;
+        self.history = History::new(size_px, self.desc.view_count, uses_keys(&self.settings));
+        Ok(())
+    }
+
+    /// Forgets the history: the next frame starts afresh.
+    pub fn forget(&mut self) {
+        self.history.forget();
+    }
+
+    /// The state between frames.
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Bytes held between frames.
+    pub fn memory_bytes(&self) -> usize {
+        self.history.memory_bytes()
+    }
+
+    /// Processes one frame into `output`, one image of the context's size a view. `trace`, if given, receives what was decided
+    /// at each pixel (one image a view), for debug views.
+    ///
+    /// # Errors
+    /// If sizes or counts do not match the context; then nothing is written and the history is as before.
+    pub fn process(
+        &mut self,
+        frame: &CpuFrame<'_>,
+        output: &mut [Image<[f32; 3]>],
+        trace: Option<&mut [Image<PixelTrace>]>,
+    ) -> Result<FrameStats, FrameError> {
+        self.check(frame, output, trace.as_deref())?;
+        match self.settings.method {
+            Method::None => {
+                self.history.forget();
+                Ok(pass_through(frame, output))
+            }
+            Method::Wrs => {
+                let stats = wrs_pass::run(
+                    &self.desc,
+                    &self.settings,
+                    &mut self.history,
+                    frame,
+                    output,
+                    trace,
+                );
+                self.history.swap();
+                Ok(stats)
+            }
+        }
+    }
+
+    fn check(
+        &self,
+        frame: &CpuFrame<'_>,
+        output: &[Image<[f32; 3]>],
+        trace: Option<&[Image<PixelTrace>]>,
+    ) -> Result<(), FrameError> {
+        let expected = self.desc.view_count as usize;
+        let trace_count = trace.map_or(expected, <[_]>::len);
+        for found in [frame.views.len(), output.len(), trace_count] {
+            if found != expected {
+                return Err(FrameError::ViewCount { found, expected });
+            }
+        }
+        for (i, view) in frame.views.iter().enumerate() {
+            let sizes = [
+                ("colour", Some(view.color.size())),
+                ("depth", view.depth.map(Image::size)),
+                ("motion", view.motion.map(Image::size)),
+                ("output", Some(output[i].size())),
+                ("trace", trace.map(|t| t[i].size())),
+                ("geometry", Some(view.facts.geometry.size_px())),
+            ];
+            for (input, size) in sizes {
+                if let Some(found) = size.filter(|&s| s != self.desc.size_px) {
+                    return Err(FrameError::Size {
+                        input,
+                        view: i,
+                        found,
+                        expected: self.desc.size_px,
+                    });
+                }
+            }
+            self.check_camera(i, &view.facts)?;
+        }
+        Ok(())
+    }
+
+    fn check_camera(&self, view: usize, facts: &ViewFrame) -> Result<(), FrameError> {
+        let Some(matrix) = facts.previous_from_current else {
+            return Ok(());
+        };
+        let refuse = |found: String, expected| {
+            Err(FrameError::Value {
+                what: "previous_from_current",
+                view,
+                found,
+                expected,
+            })
+        };
+        if matches!(
+            self.desc.depth,
+            crate::convention::DepthConvention::Orthographic { .. }
+        ) {
+            return refuse(
+                "given with orthographic depth".into(),
+                "None: rays of an orthographic view are not known here",
+            );
+        }
+        match matrix.iter().flatten().find(|v| !v.is_finite()) {
+            Some(v) => refuse(
+                format!("a matrix that holds {v}"),
+                "finite numbers, or None if the camera's motion is not known",
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+fn uses_keys(settings: &Settings) -> bool {
+    settings.sampler == Sampler::AEs
+}
+
+fn check_size(size: [u32; 2]) -> Result<(), FrameError> {
+    let max = ContextDesc::MAX_SIDE;
+    if size.iter().all(|s| (1..=max).contains(s)) {
+        Ok(())
+    } else {
+        Err(FrameError::Extent { size, max })
+    }
+}
+
+/// Method `none`: what came, scrubbed.
+fn pass_through(frame: &CpuFrame<'_>, output: &mut [Image<[f32; 3]>]) -> FrameStats {
+    let mut stats = FrameStats::default();
+    for (view, out) in frame.views.iter().zip(output) {
+        for (src, dst) in view.color.pixels().iter().zip(out.pixels_mut()) {
+            let (color, valid) = scrub::color(Vec3::from(*src));
+            *dst = color.to_array();
+            stats.nonfinite += u64::from(!valid);
+        }
+        stats.pixels += view.color.pixels().len() as u64;
+    }
+    stats.verdicts[Verdict::Reset as usize] = stats.pixels;
+    stats
+}

@@ -1,0 +1,304 @@
+//! The fused pass of weighted reservoirs: scrub, reproject, flush, gate, bias, combine, store and show.
+//!
+//! Each pixel reads its colour, motion, depth and one reservoir (and four more depths where the depth test is close), and
+//! writes one reservoir and one colour: 48 bytes with half-float colour and motion.
+
+use super::history::{History, PastView};
+use super::{CpuFrame, CpuView, FrameStats};
+use crate::frame::{ContextDesc, Reset};
+use crate::image::Image;
+use crate::kernel::depth::{self, DisparityMap};
+use crate::kernel::pack::{self, Stored};
+use crate::kernel::reproject::{self, Verdict};
+use crate::kernel::rng::{self, Purpose};
+use crate::kernel::wrs::{self, Past, SamplerCode, WrsParams};
+use crate::kernel::{acuity, scrub};
+use crate::settings::{DepthTest, Settings};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// What was decided at a pixel; the material of debug views.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelTrace {
+    /// Weight of the candidate, in \[0, 1\].
+    pub weight: f32,
+    /// Weight sum after the frame.
+    pub w_sum: f32,
+    /// Frames since the shown sample was shaded, up to 255.
+    pub age: u32,
+    /// Share of the history's weight that survived, in \[0, 1\]; 0 without history.
+    pub survival: f32,
+    /// What became of the history.
+    pub verdict: Verdict,
+    /// Gate value in \[0, 1\]; 1: candidate and history look alike.
+    pub gate: f32,
+    /// The candidate was chosen.
+    pub take: bool,
+}
+
+impl Default for PixelTrace {
+    fn default() -> Self {
+        Self {
+            weight: 0.0,
+            w_sum: 0.0,
+            age: 0,
+            survival: 0.0,
+            verdict: Verdict::Reset,
+            gate: 1.0,
+            take: true,
+        }
+    }
+}
+
+/// Constants of one view of one frame.
+struct ViewPass<'a> {
+    view: &'a CpuView<'a>,
+    past: PastView<'a>,
+    size: [u32; 2],
+    params: WrsParams,
+    fovea_radius_deg: f32,
+    inv_density_at_fovea: f32,
+    gaze_ray: Vec3,
+    motion_scale: [f32; 2],
+    disparity_map: DisparityMap,
+    /// Third row of the current-to-previous view transform.
+    depth_row: [f32; 4],
+    depth_test: Option<DepthTest>,
+    reset: bool,
+    frame_low: u32,
+    key: u32,
+}
+
+struct Row<'a> {
+    words: &'a mut [[u32; 3]],
+    out: &'a mut [[f32; 3]],
+    log_keys: Option<&'a mut [f32]>,
+    trace: Option<&'a mut [PixelTrace]>,
+}
+
+pub(super) fn run(
+    desc: &ContextDesc,
+    settings: &Settings,
+    history: &mut History,
+    frame: &CpuFrame<'_>,
+    output: &mut [Image<[f32; 3]>],
+    mut trace: Option<&mut [Image<PixelTrace>]>,
+) -> FrameStats {
+    let reset = frame.reset == Reset::All || !history.is_filled();
+    let mut stats = FrameStats::default();
+    for (i, view) in frame.views.iter().enumerate() {
+        let held = history.held_gaze(i);
+        let gaze_px = view.facts.gaze.resolve(*held, desc.size_px);
+        *held = Some(gaze_px);
+        let (past, words, log_keys) = history.split(i);
+        let purpose = match settings.wrs_params().sampler {
+            SamplerCode::AChao => Purpose::Select,
+            SamplerCode::AEs => Purpose::Key,
+        };
+        let pass = ViewPass {
+            view,
+            past,
+            size: desc.size_px,
+            params: settings.wrs_params(),
+            fovea_radius_deg: 0.5 * settings.fovea_deg,
+            inv_density_at_fovea: settings.inv_density_at_fovea(),
+            gaze_ray: view.facts.geometry.ray(gaze_px),
+            motion_scale: desc.motion.to_internal(desc.size_px),
+            disparity_map: desc.depth.disparity_map(),
+            depth_row: view
+                .facts
+                .previous_from_current
+                .map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
+            depth_test: settings.depth_test.filter(|_| view.depth.is_some()),
+            reset,
+            frame_low: frame.index as u32,
+            key: rng::stream_key(settings.seed, i as u32, purpose, frame.index),
+        };
+        let trace = trace.as_mut().map(|t| t[i].pixels_mut());
+        let mut rows = split_rows(pass.size, words, output[i].pixels_mut(), log_keys, trace);
+        stats = stats.add(
+            rows.par_iter_mut()
+                .enumerate()
+                .map(|(y, row)| pass.row(y as u32, row))
+                .reduce(FrameStats::default, FrameStats::add),
+        );
+    }
+    stats
+}
+
+fn split_rows<'a>(
+    size: [u32; 2],
+    words: &'a mut [[u32; 3]],
+    out: &'a mut [[f32; 3]],
+    log_keys: &'a mut [f32],
+    trace: Option<&'a mut [PixelTrace]>,
+) -> Vec<Row<'a>> {
+    let width = size[0] as usize;
+    let mut log_keys = log_keys.chunks_mut(width);
+    let mut trace = trace.map(|t| t.chunks_mut(width));
+    words
+        .chunks_mut(width)
+        .zip(out.chunks_mut(width))
+        .map(|(words, out)| Row {
+            words,
+            out,
+            log_keys: log_keys.next(),
+            trace: trace.as_mut().and_then(Iterator::next),
+        })
+        .collect()
+}
+
+impl ViewPass<'_> {
+    fn row(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
+        let mut stats = FrameStats {
+            pixels: u64::from(self.size[0]),
+            ..FrameStats::default()
+        };
+        for x in 0..self.size[0] {
+            self.pixel(x, y, row, &mut stats);
+        }
+        stats
+    }
+
+    #[inline(always)]
+    fn pixel(&self, x: u32, y: u32, row: &mut Row<'_>, stats: &mut FrameStats) {
+        let i = x as usize;
+        let (candidate, usable) = scrub::color(Vec3::from(self.view.color.at(i, y as usize)));
+        let ray = self.view.facts.geometry.ray([x as f32, y as f32]);
+        let weight = if usable { self.weight(ray) } else { 0.0 };
+        let disparity = self.disparity(x, y);
+        let (verdict, stored, log_key) = self.history(x, y, ray, disparity);
+        let past = Past {
+            color: stored.color,
+            w_sum: if verdict == Verdict::Valid {
+                stored.w_sum
+            } else {
+                0.0
+            },
+            log_key,
+        };
+        let draw = rng::uniform(rng::bits(x, y, self.frame_low, self.key));
+        let decision = wrs::step(candidate, weight, past, &self.params, draw);
+
+        let (color, age) = if decision.take {
+            (candidate, 0)
+        } else {
+            (stored.color, (stored.age + 1).min(pack::MAX_AGE))
+        };
+        row.out[i] = color.to_array();
+        row.words[i] = pack::pack(Stored {
+            color,
+            disparity,
+            w_sum: decision.w_sum,
+            age,
+        });
+        if let Some(keys) = &mut row.log_keys {
+            keys[i] = decision.log_key;
+        }
+        if let Some(trace) = &mut row.trace {
+            trace[i] = PixelTrace {
+                weight,
+                w_sum: decision.w_sum,
+                age,
+                survival: if verdict == Verdict::Valid {
+                    decision.survival
+                } else {
+                    0.0
+                },
+                verdict,
+                gate: decision.gate,
+                take: decision.take,
+            };
+        }
+        stats.nonfinite += u64::from(!usable);
+        stats.verdicts[verdict as usize] += 1;
+        stats.replaced += u64::from(verdict == Verdict::Valid && decision.take);
+    }
+
+    #[inline(always)]
+    fn weight(&self, ray: Vec3) -> f32 {
+        let e = acuity::eccentricity_deg(ray, self.gaze_ray);
+        acuity::candidate_weight(e, self.fovea_radius_deg, self.inv_density_at_fovea)
+    }
+
+    #[inline(always)]
+    fn disparity(&self, x: u32, y: u32) -> f32 {
+        match self.view.depth {
+            Some(depth) => depth::disparity(depth.at(x as usize, y as usize), self.disparity_map),
+            None => depth::INVALID_DISPARITY,
+        }
+    }
+
+    /// The reservoir that pixel (x, y) continues, and whether it may.
+    #[inline(always)]
+    fn history(&self, x: u32, y: u32, ray: Vec3, disparity: f32) -> (Verdict, Stored, f32) {
+        let empty = pack::unpack([0; 3]);
+        if self.reset {
+            return (Verdict::Reset, empty, f32::MIN);
+        }
+        let motion = self.view.motion.map_or([0.0; 2], |m| {
+            let v = m.at(x as usize, y as usize);
+            [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
+        });
+        let [qx, qy] = match reproject::nearest(x, y, motion, self.size) {
+            Ok(q) => q,
+            Err(verdict) => return (verdict, empty, f32::MIN),
+        };
+        let at = qy as usize * self.size[0] as usize + qx as usize;
+        let stored = pack::unpack(self.past.words[at]);
+        let log_key = self.past.log_keys.get(at).copied().unwrap_or(f32::MIN);
+        if stored.w_sum == 0.0 {
+            return (Verdict::Empty, stored, log_key);
+        }
+        let same = match self.depth_test {
+            Some(test) => self.same_surface(x, y, ray, disparity, stored.disparity, test),
+            None => true,
+        };
+        let verdict = if same {
+            Verdict::Valid
+        } else {
+            Verdict::Disoccluded
+        };
+        (verdict, stored, log_key)
+    }
+
+    #[inline(always)]
+    fn same_surface(
+        &self,
+        x: u32,
+        y: u32,
+        ray: Vec3,
+        disparity: f32,
+        stored: f32,
+        test: DepthTest,
+    ) -> bool {
+        let [m20, m21, m22, shift] = self.depth_row;
+        let stretch = m20 * ray.x + m21 * ray.y + m22;
+        let expected = depth::previous_disparity(disparity, stretch, shift);
+        depth::same_surface(expected, stored, test.relative, 0.0)
+            || depth::same_surface(
+                expected,
+                stored,
+                test.relative,
+                test.slope_px * self.slope(x, y, disparity),
+            )
+    }
+
+    /// How much the surface's disparity changes from pixel to pixel, both axes together.
+    #[cold]
+    fn slope(&self, x: u32, y: u32, center: f32) -> f32 {
+        let [w, h] = self.size;
+        let tap = |inside: bool, x: u32, y: u32| {
+            if inside {
+                self.disparity(x, y)
+            } else {
+                depth::INVALID_DISPARITY
+            }
+        };
+        let left = tap(x > 0, x.wrapping_sub(1), y);
+        let right = tap(x + 1 < w, x + 1, y);
+        let up = tap(y > 0, x, y.wrapping_sub(1));
+        let down = tap(y + 1 < h, x, y + 1);
+        depth::one_sided_slope(center, left, right) + depth::one_sided_slope(center, up, down)
+    }
+}

@@ -1,0 +1,114 @@
+//! Colour: sRGB transfer, CIE Lab and the Delta E 94 difference, from linear Rec. 709.
+
+use super::scrub::MAX_HALF;
+use glam::Vec3;
+
+/// Below this, Lab's f(t) is a line (CIE 15: (6/29)^3).
+const LAB_EPSILON: f32 = 216.0 / 24389.0;
+/// Slope of that line times 116 (CIE 15: (29/3)^3).
+const LAB_KAPPA: f32 = 24389.0 / 27.0;
+
+/// Cube root, odd in `x`. At most 2 ulp off for |x| in \[1e-30, 1e30\]; exact at 0 and +-1.
+///
+/// A first guess from the bits (a third of the exponent), then two Halley steps in correction form.
+#[inline]
+pub fn cbrt(x: f32) -> f32 {
+    let a = x.abs();
+    if a < 1e-30 {
+        return 0.0;
+    }
+    let mut r = f32::from_bits(a.to_bits() / 3 + 0x2a51_4067);
+    for _ in 0..2 {
+        let r3 = r * r * r;
+        r -= r * ((r3 - a) / (r3 + r3 + a));
+    }
+    if x < 0.0 { -r } else { r }
+}
+
+/// Fifth root of `x` >= 0. Relative error below 3e-7 in \[1e-25, 1e25\].
+#[inline]
+fn fifth_root(x: f32) -> f32 {
+    if x < 1e-25 {
+        return 0.0;
+    }
+    let mut r = f32::from_bits(x.to_bits() / 5 + 0x32c9_af22);
+    for _ in 0..3 {
+        let r4 = (r * r) * (r * r);
+        r -= (r4 * r - x) / (5.0 * r4);
+    }
+    r
+}
+
+/// sRGB encoding of one linear channel (IEC 61966-2-1). Error below 5e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
+///
+/// `x^(1/2.4) = c * sqrt(sqrt(c))` with `c = cbrt(x)`.
+#[inline]
+pub fn srgb_encode(linear: f32) -> f32 {
+    let a = linear.abs();
+    let encoded = if a <= 0.003_130_8 {
+        12.92 * a
+    } else {
+        let c = cbrt(a);
+        1.055 * (c * c.sqrt().sqrt()) - 0.055
+    };
+    if linear < 0.0 { -encoded } else { encoded }
+}
+
+/// Linear value of one sRGB-encoded channel. Error below 7e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
+///
+/// `x^2.4 = x^2 * fifth_root(x)^2`.
+#[inline]
+pub fn srgb_decode(encoded: f32) -> f32 {
+    let a = encoded.abs();
+    let linear = if a <= 0.040_45 {
+        a / 12.92
+    } else {
+        let t = (a + 0.055) / 1.055;
+        let r = fifth_root(t);
+        (t * t) * (r * r)
+    };
+    if encoded < 0.0 { -linear } else { linear }
+}
+
+/// Rec. 709 luma or luminance weights of (R, G, B), for encoded or linear values.
+#[inline]
+pub fn luma(c: Vec3) -> f32 {
+    0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z
+}
+
+#[inline]
+fn lab_f(t: f32) -> f32 {
+    if t > LAB_EPSILON {
+        cbrt(t)
+    } else {
+        (LAB_KAPPA * t + 16.0) / 116.0
+    }
+}
+
+/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 colour, clamped to the half-float range. L\* passes 100 for
+/// colours above white and falls below 0 for negative ones; always finite for finite input.
+#[inline]
+pub fn lab(linear: Vec3) -> Vec3 {
+    let c = linear.clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF));
+    // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each over the white point's
+    // X, Y or Z, so that it sums to 1.
+    let fx = lab_f(0.433_887_35 * c.x + 0.376_224 * c.y + 0.189_888_65 * c.z);
+    let fy = lab_f(0.212_639 * c.x + 0.715_168_7 * c.y + 0.072_192_3 * c.z);
+    let fz = lab_f(0.017_750_04 * c.x + 0.109_447_62 * c.y + 0.872_802_34 * c.z);
+    Vec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz))
+}
+
+/// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colours; `reference` sets the weights, so
+/// the function is not symmetric. At least 0, exactly 0 for equal colours, and beyond 100 for strong ones.
+#[inline]
+pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
+    let d = reference - sample;
+    let c1 = (reference.y * reference.y + reference.z * reference.z).sqrt();
+    let c2 = (sample.y * sample.y + sample.z * sample.z).sqrt();
+    let dc = c1 - c2;
+    // Negative in half of all same-hue pairs, by rounding.
+    let dh2 = (d.y * d.y + d.z * d.z - dc * dc).max(0.0);
+    let sc = 1.0 + 0.045 * c1;
+    let sh = 1.0 + 0.015 * c1;
+    (d.x * d.x + (dc * dc) / (sc * sc) + dh2 / (sh * sh)).sqrt()
+}

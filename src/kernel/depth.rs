@@ -1,0 +1,83 @@
+//! Is this the same surface? Depth as disparity 1/z: affine in every perspective depth buffer, linear over planes, 0 for the
+//! sky.
+
+/// Turns a stored depth value into a disparity: `a * clamp(d, 0, 1) + b`, or its inverse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DisparityMap {
+    /// Factor of the stored value.
+    pub a: f32,
+    /// Offset.
+    pub b: f32,
+    /// The stored value, after factor and offset, is a distance.
+    pub invert: bool,
+    /// Clamp the stored value to \[0, 1\] first (depth buffers; not distances).
+    pub clamp: bool,
+}
+
+/// Stands for "no usable depth": never the same surface as anything.
+pub const INVALID_DISPARITY: f32 = -1.0;
+
+/// Disparity of a stored depth value: >= 0, 0 where there is nothing, or [`INVALID_DISPARITY`] for NaN and for distances
+/// that are not positive.
+#[inline]
+pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
+    let is_nan = stored.to_bits() & 0x7fff_ffff > 0x7f80_0000;
+    if is_nan {
+        return INVALID_DISPARITY;
+    }
+    if map.clamp {
+        let v = map.a * stored.clamp(0.0, 1.0) + map.b;
+        let d = if map.invert { 1.0 / v } else { v };
+        return if d > 0.0 { d } else { 0.0 };
+    }
+    if stored <= 0.0 {
+        return INVALID_DISPARITY;
+    }
+    // 1/inf is left to no device: what is far is 0.
+    if stored > 1e30 { 0.0 } else { 1.0 / stored }
+}
+
+/// Row of the current-to-previous view transform that gives the previous distance, folded with the ray of a pixel:
+/// `z_previous = z * stretch + shift`.
+///
+/// `stretch = m20 * ray.x + m21 * ray.y + m22`, `shift = m23`.
+#[inline]
+pub fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
+    if disparity < 0.0 {
+        return INVALID_DISPARITY;
+    }
+    let denominator = stretch + shift * disparity;
+    // The point was behind the previous camera.
+    if denominator <= 1e-6 {
+        return INVALID_DISPARITY;
+    }
+    disparity / denominator
+}
+
+/// Whether a stored and an expected disparity belong to one surface: they differ by at most `relative` of the larger one
+/// plus `slope`, the surface's own change over the distance that reprojection may be off.
+#[inline]
+pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
+    if expected < 0.0 || stored < 0.0 {
+        return false;
+    }
+    (expected - stored).abs() <= relative * expected.max(stored) + slope
+}
+
+/// Change of disparity over one pixel along an axis, from both neighbours: the smaller one-sided difference, so that a
+/// silhouette on one side does not count as slope. A neighbour that is missing or invalid is ignored.
+#[inline]
+pub fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
+    let back = if before < 0.0 {
+        f32::MAX
+    } else {
+        (center - before).abs()
+    };
+    let ahead = if after < 0.0 {
+        f32::MAX
+    } else {
+        (after - center).abs()
+    };
+    let slope = back.min(ahead);
+    if slope == f32::MAX { 0.0 } else { slope }
+}

@@ -1,0 +1,125 @@
+//! Storage of one reservoir in three words, by integer arithmetic, so that rounding is the same on every device.
+//!
+//! | word | low 16 bits | high 16 bits |
+//! |---|---|---|
+//! | 0 | red, half | green, half |
+//! | 1 | blue, half | disparity, [`disparity_code`] |
+//! | 2 | bits 0-7: age in frames, stays at 255 | bits 8-31: weight sum, the upper 24 bits of its float |
+//!
+//! All zero is an empty reservoir. With 16 significant bits the weight sum of a stream of constant weight w under Bernoulli
+//! survival stops growing between 256 w and 363 w, so a replacement probability never falls below 1/364 a frame; a half
+//! float would stop at 63 w, and at 33 w if the arithmetic were half, too.
+
+use super::scrub::{self, MAX_HALF};
+use glam::Vec3;
+
+/// Largest weight sum that is stored: 2^100, exact in the stored bits.
+pub const MAX_W_SUM: f32 = f32::from_bits((127 + 100) << 23);
+
+/// Largest age that is stored, in frames.
+pub const MAX_AGE: u32 = 255;
+
+/// What is remembered of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// The sample: linear colour.
+    pub color: Vec3,
+    /// Disparity of its surface in the frame it was stored; negative: unknown.
+    pub disparity: f32,
+    /// Weight sum of the reservoir; 0: empty.
+    pub w_sum: f32,
+    /// Frames since the sample was shaded.
+    pub age: u32,
+}
+
+/// Bits of the half-float nearest to `x` (ties to even), clamped to +-65504. Results below the half's normal range are exact to
+/// its denormal grid.
+#[inline]
+pub fn half_bits(x: f32) -> u32 {
+    let sign = (x.to_bits() >> 16) & 0x8000;
+    let a = x.to_bits() & 0x7fff_ffff;
+    if a >= MAX_HALF.to_bits() {
+        return sign | 0x7bff;
+    }
+    if a < 113 << 23 {
+        // Adding 0.5 shifts the mantissa to the denormals' grid and rounds it.
+        return sign | ((f32::from_bits(a) + 0.5).to_bits() - 0.5_f32.to_bits());
+    }
+    let odd = (a >> 13) & 1;
+    let rounded = (a - (112 << 23) + 0xfff + odd) >> 13;
+    sign | rounded.min(0x7bff)
+}
+
+/// Value of a finite half-float from the low 16 bits of `bits`.
+#[inline]
+pub fn half_value(bits: u32) -> f32 {
+    let magnitude = (bits & 0x7fff) << 13;
+    let sign = (bits & 0x8000) << 16;
+    let value = if bits & 0x7c00 == 0 {
+        // Never touches a 32-bit denormal, which devices may flush.
+        f32::from_bits(magnitude + (113 << 23)) - f32::from_bits(113 << 23)
+    } else {
+        f32::from_bits(magnitude + (112 << 23))
+    };
+    f32::from_bits(value.to_bits() | sign)
+}
+
+/// 16-bit code of a disparity: 6 bits of exponent (2^-32 to 2^32) and 10 of mantissa, so at most 2^-11 of the value off.
+/// Smaller ones become 0, the sky; 0xffff stands for an unknown one.
+#[inline]
+pub fn disparity_code(disparity: f32) -> u32 {
+    if disparity < 0.0 {
+        return 0xffff;
+    }
+    let bits = disparity.to_bits();
+    if bits < 95 << 23 {
+        return 0;
+    }
+    let rounded = (bits + 0x1000) >> 13;
+    rounded.saturating_sub(95 << 10).clamp(1, 0xfffe)
+}
+
+/// Disparity of a code; -1 for the unknown one.
+#[inline]
+pub fn disparity_value(code: u32) -> f32 {
+    match code {
+        0 => 0.0,
+        0xffff => -1.0,
+        code => f32::from_bits((code + (95 << 10)) << 13),
+    }
+}
+
+/// Packs a reservoir. The colour must be finite.
+#[inline]
+pub fn pack(s: Stored) -> [u32; 3] {
+    let w = s.w_sum.clamp(0.0, MAX_W_SUM).to_bits();
+    let w_upper = w + 0x7f + ((w >> 8) & 1);
+    [
+        half_bits(s.color.x) | half_bits(s.color.y) << 16,
+        half_bits(s.color.z) | disparity_code(s.disparity) << 16,
+        (w_upper & 0xffff_ff00) | s.age.min(MAX_AGE),
+    ]
+}
+
+/// Unpacks a reservoir. Whatever the words hold, the result is finite; a corrupt colour or weight sum makes it empty.
+#[inline]
+pub fn unpack(words: [u32; 3]) -> Stored {
+    let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;
+    let (r, g, b) = (words[0], words[0] >> 16, words[1]);
+    let corrupt = infinite(r) || infinite(g) || infinite(b);
+    let w_sum = scrub::weight(f32::from_bits(words[2] & 0xffff_ff00));
+    if corrupt || w_sum > MAX_W_SUM {
+        return Stored {
+            color: Vec3::ZERO,
+            disparity: -1.0,
+            w_sum: 0.0,
+            age: 0,
+        };
+    }
+    Stored {
+        color: Vec3::new(half_value(r), half_value(g), half_value(b)),
+        disparity: disparity_value(words[1] >> 16),
+        w_sum,
+        age: words[2] & 0xff,
+    }
+}

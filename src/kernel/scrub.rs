@@ -1,0 +1,33 @@
+//! Non-finite numbers, found by their bits: shading languages may assume that NaN does not exist.
+
+use glam::Vec3;
+
+/// Largest finite half-float. Colours are kept within it.
+pub const MAX_HALF: f32 = 65504.0;
+
+/// Neither NaN nor infinite.
+#[inline]
+pub fn is_finite(x: f32) -> bool {
+    x.to_bits() & 0x7f80_0000 != 0x7f80_0000
+}
+
+/// A colour clamped to +-65504, and whether it may be used: false, and black, if any component is NaN or infinite.
+#[inline]
+pub fn color(c: Vec3) -> (Vec3, bool) {
+    if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
+        let limit = Vec3::splat(MAX_HALF);
+        (c.clamp(-limit, limit), true)
+    } else {
+        (Vec3::ZERO, false)
+    }
+}
+
+/// A weight or weight sum: what is NaN, infinite, negative or so small that hardware may flush it to zero counts as 0.
+#[inline]
+pub fn weight(w: f32) -> f32 {
+    if is_finite(w) && w >= f32::MIN_POSITIVE {
+        w
+    } else {
+        0.0
+    }
+}

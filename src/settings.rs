@@ -1,0 +1,200 @@
+//! Tunables of the post-process, with units, ranges and what more and less does.
+
+use crate::error::SettingsError;
+use crate::kernel::{acuity, reservoir, wrs};
+
+/// What the post-process does with history.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Nothing: the foveated frame as it came, non-finite pixels made black.
+    None,
+    /// Weighted reservoirs (Cantory et al., MIG 2025).
+    #[default]
+    Wrs,
+}
+
+/// How a reservoir picks between its sample and the candidate. Both follow the same law; only the use of chance differs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampler {
+    /// A-Chao, the paper's choice: a fresh draw each frame against the ratio of weight sums.
+    #[default]
+    AChao,
+    /// A-ES, for comparison: each candidate draws a key once. Costs 8 more bytes of memory and traffic a pixel.
+    AEs,
+}
+
+/// How history is forgotten, so that new candidates keep a chance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Bias {
+    /// Bernoulli survival (eq. 5), the paper's choice: weight sums grow like a square root instead of linearly.
+    #[default]
+    Bernoulli,
+    /// Weight sums lose a constant share each frame. More `lambda` forgets sooner.
+    Exponential {
+        /// Per frame, >= 0; the factor is `exp(-lambda)`.
+        lambda: f32,
+    },
+    /// Never forgets: after n frames a candidate has a chance of 1/n. For comparison; ghosts under change.
+    None,
+}
+
+/// What the gate compares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GateMetric {
+    /// Delta E 94 of the whole colour.
+    #[default]
+    DeltaE94,
+    /// L\* alone: a third cheaper, blind to changes of hue.
+    Lightness,
+}
+
+/// The luminance gate of eq. 7: history whose colour differs from the candidate's loses weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gate {
+    /// What is compared.
+    pub metric: GateMetric,
+    /// Difference above the offset at which all weight is lost, in Delta E, > 0. Less follows changes of light sooner and
+    /// keeps less detail, because a sharp sample differs from the blurred candidate of the same surface. Default 100.
+    pub divisor: f32,
+    /// Difference that costs nothing, in Delta E, >= 0. Default 0.
+    pub offset: f32,
+}
+
+impl Default for Gate {
+    fn default() -> Self {
+        Self {
+            metric: GateMetric::DeltaE94,
+            divisor: 100.0,
+            offset: 0.0,
+        }
+    }
+}
+
+/// The depth test that empties reservoirs at occlusions and disocclusions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthTest {
+    /// Relative difference of distance that still is the same surface, in (0, 1). Less flushes on vector and depth noise, more
+    /// lets things at similar distance bleed into each other. Default 0.02.
+    pub relative: f32,
+    /// Pixels that reprojection may be off along each axis, >= 0: the tolerance grows by the surface's own slope over that
+    /// distance, so that grazing planes do not flush. Default 1: half for rounding to the nearest texel, half for the
+    /// position of the depth sample within its pixel.
+    pub slope_px: f32,
+}
+
+impl Default for DepthTest {
+    fn default() -> Self {
+        Self {
+            relative: 0.02,
+            slope_px: 1.0,
+        }
+    }
+}
+
+/// All tunables. The default is the paper's method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// What is done with history.
+    pub method: Method,
+    /// Diameter of the full-rate region in degrees of visual angle, in \[0, 180\]: as the foveation has it. Candidates inside
+    /// have weight 1. Default 5.
+    pub fovea_deg: f32,
+    /// Sampler.
+    pub sampler: Sampler,
+    /// How history is forgotten.
+    pub bias: Bias,
+    /// Colour gate; `None` never looks at colour: keeps more detail and ghosts under changing light.
+    pub gate: Option<Gate>,
+    /// Depth test; `None` never looks at depth.
+    pub depth_test: Option<DepthTest>,
+    /// Seed of the random numbers. Same seed, same frames: same bytes.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            fovea_deg: 5.0,
+            sampler: Sampler::default(),
+            bias: Bias::default(),
+            gate: Some(Gate::default()),
+            depth_test: Some(DepthTest::default()),
+            seed: 0,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// Names the first setting outside its range.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        check("fovea_deg", self.fovea_deg, 0.0..=180.0, "degrees")?;
+        if let Bias::Exponential { lambda } = self.bias {
+            check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
+        }
+        if let Some(gate) = self.gate {
+            check("gate divisor", gate.divisor, 1e-3..=1e6, "Delta E")?;
+            check("gate offset", gate.offset, 0.0..=1e6, "Delta E")?;
+        }
+        if let Some(test) = self.depth_test {
+            check("depth_test.relative", test.relative, 1e-4..=0.999, "")?;
+            check("depth_test.slope_px", test.slope_px, 0.0..=64.0, "pixels")?;
+        }
+        Ok(())
+    }
+
+    /// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
+    pub(crate) fn inv_density_at_fovea(&self) -> f32 {
+        1.0 / acuity::cell_density(0.5 * self.fovea_deg)
+    }
+
+    /// The kernel's form of the method's tunables.
+    pub(crate) fn wrs_params(&self) -> wrs::WrsParams {
+        let (bias, exponential_survival) = match self.bias {
+            Bias::Bernoulli => (wrs::BiasCode::Bernoulli, 1.0),
+            Bias::Exponential { lambda } => (
+                wrs::BiasCode::Exponential,
+                reservoir::exponential_survival(lambda),
+            ),
+            Bias::None => (wrs::BiasCode::None, 1.0),
+        };
+        let gate = self.gate.unwrap_or_default();
+        wrs::WrsParams {
+            sampler: match self.sampler {
+                Sampler::AChao => wrs::SamplerCode::AChao,
+                Sampler::AEs => wrs::SamplerCode::AEs,
+            },
+            bias,
+            exponential_survival,
+            gate: match (self.gate, gate.metric) {
+                (None, _) => wrs::GateCode::Off,
+                (_, GateMetric::DeltaE94) => wrs::GateCode::DeltaE94,
+                (_, GateMetric::Lightness) => wrs::GateCode::Lightness,
+            },
+            gate_offset: gate.offset,
+            inv_gate_divisor: 1.0 / gate.divisor,
+        }
+    }
+}
+
+/// Refuses a number outside `range`, NaN included.
+pub(crate) fn check(
+    setting: &'static str,
+    value: f32,
+    range: std::ops::RangeInclusive<f32>,
+    unit: &str,
+) -> Result<(), SettingsError> {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        let (low, high) = (range.start(), range.end());
+        Err(SettingsError {
+            setting,
+            found: value.to_string(),
+            expected: format!("{low} to {high} {unit}").trim_end().to_owned(),
+        })
+    }
+}
