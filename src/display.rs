@@ -1,6 +1,7 @@
 //! View geometry: from a pixel to the ray through it, and the angle between two such rays.
 
 use crate::error::SettingsError;
+use crate::image::Image;
 use crate::kernel::acuity;
 use glam::{Vec2, Vec3};
 
@@ -102,5 +103,12 @@ impl ViewGeometry {
     /// True visual angle in degrees between the rays through two pixels.
     pub fn eccentricity_deg(&self, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
         acuity::eccentricity_deg(self.ray(px), self.ray(gaze_px))
+    }
+
+    /// Eccentricity of every pixel in degrees for a gaze position in pixels.
+    pub fn eccentricity_map(&self, gaze_px: [f32; 2]) -> Image<f32> {
+        Image::from_fn_parallel(self.size_px, |[x, y]| {
+            self.eccentricity_deg([x as f32, y as f32], gaze_px)
+        })
     }
 }

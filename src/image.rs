@@ -1,6 +1,7 @@
 //! A row-major image in memory: what the CPU executor, the simulators and the sources hand to each other.
 
 use crate::error::FrameError;
+use rayon::prelude::*;
 
 /// Pixels of one type, row after row, first row at the top. Pixel centres lie at integer coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +43,24 @@ impl<T: Copy> Image<T> {
             .map(&mut f)
             .collect();
         Self { size, pixels }
+    }
+
+    /// As [`from_fn`](Self::from_fn), rows in parallel.
+    pub fn from_fn_parallel(size: [u32; 2], f: impl Fn([u32; 2]) -> T + Sync) -> Self
+    where
+        T: Default + Send,
+    {
+        let mut image = Self::filled(size, T::default());
+        image
+            .pixels
+            .par_chunks_mut(size[0].max(1) as usize)
+            .enumerate()
+            .for_each(|(y, row)| {
+                for (x, pixel) in row.iter_mut().enumerate() {
+                    *pixel = f([x as u32, y as u32]);
+                }
+            });
+        image
     }
 
     /// Width and height in pixels.

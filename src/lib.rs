@@ -4,9 +4,17 @@ pub mod convention;
 pub mod cpu;
 pub mod display;
 pub mod error;
+#[cfg(feature = "lab")]
+pub mod foveation;
 pub mod frame;
 pub mod image;
 pub mod kernel;
+#[cfg(feature = "lab")]
+pub mod metric;
+#[cfg(feature = "lab")]
+pub mod pipeline;
+#[cfg(feature = "lab")]
+pub mod report;
 #[cfg(feature = "lab")]
 pub mod scanpath;
 pub mod settings;

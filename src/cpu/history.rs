@@ -78,16 +78,12 @@ impl History {
         )
     }
 
-    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); for tests and tools.
+    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)).
     pub fn words(&self) -> &[[u32; 3]] {
         &self.previous.words
     }
 
-    /// Overwrites the past, to start from a known state; for tests and tools.
-    ///
-    /// # Panics
-    /// If `words` has another length than [`words`](Self::words).
-    pub fn restore(&mut self, words: &[[u32; 3]]) {
+    pub(super) fn restore(&mut self, words: &[[u32; 3]]) {
         self.previous.words.copy_from_slice(words);
         self.previous.log_keys.fill(f32::MIN);
         self.filled = true;

@@ -158,6 +158,14 @@ impl CpuAfterimage {
         &self.history
     }
 
+    /// Overwrites the history with packed reservoirs ([`pack`](crate::kernel::pack)), to start from a known state.
+    ///
+    /// # Panics
+    /// If `words` has another length than the history's.
+    pub fn restore_history(&mut self, words: &[[u32; 3]]) {
+        self.history.restore(words);
+    }
+
     /// Bytes held between frames.
     pub fn memory_bytes(&self) -> usize {
         self.history.memory_bytes()

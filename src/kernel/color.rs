@@ -94,7 +94,7 @@ pub fn lab(linear: Vec3) -> Vec3 {
     // X, Y or Z, so that it sums to 1.
     let fx = lab_f(0.433_887_35 * c.x + 0.376_224 * c.y + 0.189_888_65 * c.z);
     let fy = lab_f(0.212_639 * c.x + 0.715_168_7 * c.y + 0.072_192_3 * c.z);
-    let fz = lab_f(0.017_750_04 * c.x + 0.109_447_62 * c.y + 0.872_802_34 * c.z);
+    let fz = lab_f(0.017_750_04 * c.x + 0.109_447_62 * c.y + 0.872_802_3 * c.z);
     Vec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz))
 }
 

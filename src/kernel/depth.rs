@@ -1,7 +1,7 @@
 //! Is this the same surface? Depth as disparity 1/z: affine in every perspective depth buffer, linear over planes, 0 for the
 //! sky.
 
-/// Turns a stored depth value into a disparity: `a * clamp(d, 0, 1) + b`, or its inverse.
+/// Turns a stored depth value into a disparity: `a * stored + b`, or its inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisparityMap {
     /// Factor of the stored value.
@@ -25,16 +25,23 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     if is_nan {
         return INVALID_DISPARITY;
     }
-    if map.clamp {
-        let v = map.a * stored.clamp(0.0, 1.0) + map.b;
-        let d = if map.invert { 1.0 / v } else { v };
-        return if d > 0.0 { d } else { 0.0 };
+    let value = if map.clamp {
+        stored.clamp(0.0, 1.0)
+    } else {
+        stored
+    };
+    let v = map.a * value + map.b;
+    if !map.invert {
+        return if v > 0.0 { v } else { 0.0 };
     }
-    if stored <= 0.0 {
-        return INVALID_DISPARITY;
+    // Neither 1/0 nor 1/inf is left to the device.
+    if v < 1e-30 {
+        INVALID_DISPARITY
+    } else if v > 1e30 {
+        0.0
+    } else {
+        1.0 / v
     }
-    // 1/inf is left to no device: what is far is 0.
-    if stored > 1e30 { 0.0 } else { 1.0 / stored }
 }
 
 /// Row of the current-to-previous view transform that gives the previous distance, folded with the ray of a pixel:
@@ -64,10 +71,25 @@ pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bo
     (expected - stored).abs() <= relative * expected.max(stored) + slope
 }
 
+/// How much the surface at pixel (`x`, `y`) of an image of `size` changes its disparity from pixel to pixel, both axes together.
+/// `at` reads a disparity; its invalid ones are ignored. Planes give the same everywhere.
+#[inline]
+pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f32 {
+    let tap = |inside: bool, x: u32, y: u32| {
+        if inside { at(x, y) } else { INVALID_DISPARITY }
+    };
+    let left = tap(x > 0, x.wrapping_sub(1), y);
+    let right = tap(x + 1 < size[0], x + 1, y);
+    let up = tap(y > 0, x, y.wrapping_sub(1));
+    let down = tap(y + 1 < size[1], x, y + 1);
+    let center = at(x, y);
+    one_sided_slope(center, left, right) + one_sided_slope(center, up, down)
+}
+
 /// Change of disparity over one pixel along an axis, from both neighbours: the smaller one-sided difference, so that a
 /// silhouette on one side does not count as slope. A neighbour that is missing or invalid is ignored.
 #[inline]
-pub fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
+fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = if before < 0.0 {
         f32::MAX
     } else {

@@ -1,0 +1,147 @@
+//! Foveation simulators: turn a full-rate frame into what a foveating renderer would have delivered.
+//!
+//! Two independent questions: **where** the frame is how coarse (a map of levels of detail by eccentricity) and **how** coarse
+//! looks (the filter). A level of detail `l` means blocks of 2^l pixels a side.
+
+mod block;
+mod gaussian;
+mod mip;
+
+pub use mip::Pyramid;
+
+use crate::display::ViewGeometry;
+use crate::error::SettingsError;
+use crate::image::Image;
+use crate::kernel::foveate;
+use crate::settings::check;
+
+/// How coarse looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Filter {
+    /// Box mip levels of linear light, trilinear between levels: a renderer that shades fewer pixels and upscales.
+    #[default]
+    Mip,
+    /// Gaussian blur that grows linearly with eccentricity.
+    Gauss,
+    /// One point sample a block, constant over it: coarse shading hardware. Blends between regions become steps of powers of
+    /// two.
+    Block,
+    /// Full rate everywhere.
+    Off,
+}
+
+/// Regions and rates of a foveated frame. Angles are true visual angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foveation {
+    /// How coarse looks.
+    pub filter: Filter,
+    /// Diameter of the full-rate region in degrees. Default 5.
+    pub fovea_deg: f32,
+    /// Diameter of the middle region in degrees. Default 15.
+    pub mid_deg: f32,
+    /// Width in degrees of the linear blend outside each radius. Default 1.
+    pub blend_deg: f32,
+    /// Block edge in the middle region in pixels, a power of two. Default 8.
+    pub rate_mid: u32,
+    /// Block edge beyond in pixels, a power of two, at least `rate_mid`. Default 16.
+    pub rate_far: u32,
+}
+
+impl Default for Foveation {
+    fn default() -> Self {
+        Self {
+            filter: Filter::Mip,
+            fovea_deg: 5.0,
+            mid_deg: 15.0,
+            blend_deg: 1.0,
+            rate_mid: 8,
+            rate_far: 16,
+        }
+    }
+}
+
+impl Foveation {
+    /// Largest block edge.
+    pub const MAX_RATE: u32 = 256;
+
+    /// Checks ranges and order.
+    ///
+    /// # Errors
+    /// Names the first field that is out of range or contradicts another.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        check("fovea", self.fovea_deg, 0.0..=180.0, "degrees")?;
+        check("mid", self.mid_deg, 0.0..=180.0, "degrees")?;
+        check("blend", self.blend_deg, 0.0..=90.0, "degrees")?;
+        if self.fovea_deg > self.mid_deg {
+            return Err(SettingsError {
+                setting: "fovea",
+                found: format!("{} degrees", self.fovea_deg),
+                expected: format!(
+                    "at most the middle region's {} degrees; widen the middle region or narrow the fovea",
+                    self.mid_deg
+                ),
+            });
+        }
+        for (setting, rate, least) in [
+            ("rate_mid", self.rate_mid, 1),
+            ("rate_far", self.rate_far, self.rate_mid),
+        ] {
+            if !rate.is_power_of_two() || rate < least || rate > Self::MAX_RATE {
+                return Err(SettingsError {
+                    setting,
+                    found: rate.to_string(),
+                    expected: format!("a power of two from {least} to {}", Self::MAX_RATE),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Mip levels above the full-rate one that the filter may read.
+    pub fn max_level(&self) -> u32 {
+        self.rate_far.ilog2()
+    }
+
+    /// Level of detail at eccentricity `e_deg`, before the filter's own quantisation.
+    pub fn lod(&self, e_deg: f32) -> f32 {
+        match self.filter {
+            Filter::Off => 0.0,
+            Filter::Gauss => gaussian::lod(self, e_deg),
+            Filter::Mip | Filter::Block => foveate::region_lod(
+                e_deg,
+                0.5 * self.fovea_deg,
+                0.5 * self.mid_deg,
+                self.blend_deg,
+                self.rate_mid.ilog2() as f32,
+                self.rate_far.ilog2() as f32,
+            ),
+        }
+    }
+
+    /// Level of detail of every pixel, given their eccentricities for the same gaze.
+    pub fn lod_map(
+        &self,
+        geometry: &ViewGeometry,
+        gaze_px: [f32; 2],
+        ecc_deg: &Image<f32>,
+    ) -> Image<f32> {
+        if self.filter == Filter::Block {
+            return block::lod_map(self, geometry, gaze_px);
+        }
+        Image::from_fn_parallel(geometry.size_px(), |[x, y]| {
+            self.lod(ecc_deg.at(x as usize, y as usize))
+        })
+    }
+
+    /// The frame as it looks with the given level of detail at each pixel. Pixels of level 0 are copied bit for bit.
+    pub fn render(&self, pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
+        match self.filter {
+            Filter::Off => pyramid.level(0).clone(),
+            Filter::Mip => Image::from_fn_parallel(lods.size(), |[x, y]| {
+                pyramid.trilinear([x as f32, y as f32], lods.at(x as usize, y as usize))
+            }),
+            Filter::Block => block::render(pyramid, lods),
+            Filter::Gauss => gaussian::render(pyramid.level(0), lods),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
+
+use crate::cpu::{CpuAfterimage, CpuFrame, CpuView, FrameStats, PixelTrace};
+use crate::display::ViewGeometry;
+use crate::error::{FrameError, SettingsError};
+use crate::foveation::{Foveation, Pyramid};
+use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use crate::image::Image;
+use crate::metric::{Tracked, Tracker};
+use crate::report::clock::Stopwatch;
+use crate::settings::{Method, Settings};
+use crate::source::SourceFrame;
+
+/// What a lane of the pipeline does with the foveated frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LaneKind {
+    /// The post-process with these settings; their fovea is replaced by the foveation's.
+    PostProcess(Settings),
+    /// Every pixel at the best level of detail it was ever shown at: the upper bound of temporal reuse. Only right for stills.
+    Oracle,
+}
+
+/// One method's result for one frame.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// What the user sees, linear.
+    pub image: Image<[f32; 3]>,
+    /// Wall time of the pass in milliseconds.
+    pub wall_ms: f64,
+    /// CPU time of the process during the pass in milliseconds, where the system tells.
+    pub cpu_ms: Option<f64>,
+    /// What the pass counted; empty for the oracle.
+    pub stats: FrameStats,
+    /// Pixel decisions, if asked for.
+    pub trace: Option<Image<PixelTrace>>,
+}
+
+/// One frame, foveated, and what each lane made of it.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Where the eye was taken to look, in pixels.
+    pub gaze_px: [f32; 2],
+    /// Eccentricity of every pixel in degrees.
+    pub ecc_deg: Image<f32>,
+    /// Level of detail of every pixel of the foveated frame.
+    pub lods: Image<f32>,
+    /// Correspondence and retention.
+    pub tracked: Tracked,
+    /// Results in the order of the lanes.
+    pub shown: Vec<Shown>,
+    /// Wall time of the foveation simulator in milliseconds.
+    pub foveation_ms: f64,
+}
+
+enum Executor {
+    PostProcess(Box<CpuAfterimage>),
+    Oracle { best: Option<Image<f32>> },
+}
+
+/// The pipeline of a clip: state of all lanes, and of the foveation.
+pub struct Pipeline {
+    geometry: ViewGeometry,
+    foveation: Foveation,
+    lanes: Vec<Executor>,
+    tracker: Tracker,
+    held_gaze: Option<[f32; 2]>,
+    still: Option<Pyramid>,
+    is_still: bool,
+    trace: bool,
+}
+
+impl Pipeline {
+    /// A pipeline for frames of `geometry`'s size. `is_still`: all frames are the same picture, whose mip levels are then
+    /// built once. `trace`: keep pixel decisions.
+    ///
+    /// # Errors
+    /// If a setting is out of range.
+    pub fn new(
+        geometry: ViewGeometry,
+        foveation: Foveation,
+        lanes: &[LaneKind],
+        is_still: bool,
+        trace: bool,
+    ) -> Result<Self, SettingsError> {
+        foveation.validate()?;
+        let lanes = lanes
+            .iter()
+            .map(|lane| match lane {
+                LaneKind::Oracle => Ok(Executor::Oracle { best: None }),
+                LaneKind::PostProcess(settings) => {
+                    let settings = Settings {
+                        fovea_deg: foveation.fovea_deg,
+                        ..*settings
+                    };
+                    let desc = ContextDesc::new(geometry.size_px());
+                    Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(
+                        desc, settings,
+                    )?)))
+                }
+            })
+            .collect::<Result<_, SettingsError>>()?;
+        Ok(Self {
+            geometry,
+            foveation,
+            lanes,
+            tracker: Tracker::default(),
+            held_gaze: None,
+            still: None,
+            is_still,
+            trace,
+        })
+    }
+
+    /// Takes frame `index`. A lost gaze holds the last position; before the first, the middle of the view.
+    ///
+    /// # Errors
+    /// If the frame's size is not the pipeline's.
+    pub fn step(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze: Option<[f32; 2]>,
+    ) -> Result<Step, FrameError> {
+        let size = self.geometry.size_px();
+        if frame.color.size() != size {
+            return Err(FrameError::Size {
+                input: "colour",
+                view: 0,
+                found: frame.color.size(),
+                expected: size,
+            });
+        }
+        let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
+        let gaze_px = gaze.resolve(self.held_gaze, size);
+        self.held_gaze = Some(gaze_px);
+
+        let watch = Stopwatch::start();
+        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
+        let lods = self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg);
+        let pyramid = match self.still.take() {
+            Some(pyramid) => pyramid,
+            None => Pyramid::new(frame.color.clone(), self.foveation.max_level()),
+        };
+        let candidate = self.foveation.render(&pyramid, &lods);
+        let foveation_ms = watch.wall_ms();
+
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+        let facts = ViewFrame {
+            geometry: self.geometry,
+            gaze: Gaze::At { px: gaze_px },
+            previous_from_current: frame.previous_from_current,
+        };
+        let view = CpuView {
+            facts,
+            color: &candidate,
+            depth: frame.depth.as_ref(),
+            motion: frame.motion.as_ref(),
+        };
+        let cpu_frame = CpuFrame {
+            views: &[view],
+            index,
+            reset: if frame.cut { Reset::All } else { Reset::None },
+        };
+        let mut shown = vec![];
+        for lane in &mut self.lanes {
+            shown.push(match lane {
+                Executor::PostProcess(post) => post_process(post, &cpu_frame, self.trace)?,
+                Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),
+            });
+        }
+        if self.is_still {
+            self.still = Some(pyramid);
+        }
+        Ok(Step {
+            gaze_px,
+            ecc_deg,
+            lods,
+            tracked,
+            shown,
+            foveation_ms,
+        })
+    }
+
+    /// Bytes that lane `index` keeps between frames.
+    pub fn memory_bytes(&self, index: usize) -> usize {
+        match &self.lanes[index] {
+            Executor::PostProcess(post) if post.settings().method != Method::None => {
+                post.memory_bytes()
+            }
+            Executor::PostProcess(_) => 0,
+            Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
+        }
+    }
+}
+
+fn post_process(
+    post: &mut CpuAfterimage,
+    frame: &CpuFrame<'_>,
+    trace: bool,
+) -> Result<Shown, FrameError> {
+    let size = post.desc().size_px;
+    let mut output = [Image::filled(size, [0.0; 3])];
+    let mut traces = trace.then(|| [Image::filled(size, PixelTrace::default())]);
+    let watch = Stopwatch::start();
+    let stats = post.process(frame, &mut output, traces.as_mut().map(|t| &mut t[..]))?;
+    let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+    let [image] = output;
+    Ok(Shown {
+        image,
+        wall_ms,
+        cpu_ms,
+        stats,
+        trace: traces.map(|[t]| t),
+    })
+}
+
+fn oracle(
+    best: &mut Option<Image<f32>>,
+    lods: &Image<f32>,
+    foveation: &Foveation,
+    pyramid: &Pyramid,
+) -> Shown {
+    let watch = Stopwatch::start();
+    let best = best.get_or_insert_with(|| lods.clone());
+    for (b, &l) in best.pixels_mut().iter_mut().zip(lods.pixels()) {
+        *b = b.min(l);
+    }
+    let image = foveation.render(pyramid, best);
+    Shown {
+        image,
+        wall_ms: watch.wall_ms(),
+        cpu_ms: watch.cpu_ms(),
+        stats: FrameStats::default(),
+        trace: None,
+    }
+}

@@ -1,0 +1,8 @@
+//! What a run leaves behind: figures, pictures, and a sheet that shows them at a glance.
+
+mod canvas;
+pub mod clock;
+pub mod debug_view;
+mod heat;
+pub mod picture;
+pub mod sheet;
