@@ -272,6 +272,19 @@ fn a_silhouette_is_not_slope() {
     let step = |x: u32, _: u32| if x < 4 { 1.0 } else { 0.1 };
     assert_eq!(depth::slope(3, 1, [9, 3], step), 0.0);
     assert_eq!(depth::slope(4, 1, [9, 3], step), 0.0);
+    // A wire, and a single pixel, are no slope either.
+    assert_eq!(
+        depth::slope(4, 1, [9, 3], |x, _| if x == 4 { 1.0 } else { 0.1 }),
+        0.0
+    );
+    assert_eq!(
+        depth::slope(4, 1, [9, 3], |x, y| if (x, y) == (4, 1) {
+            0.1
+        } else {
+            1.0
+        }),
+        0.0
+    );
     // Invalid neighbours and borders are ignored.
     assert_eq!(depth::slope(0, 0, [1, 1], |_, _| 0.5), 0.0);
     assert_eq!(

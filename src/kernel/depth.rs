@@ -87,19 +87,16 @@ pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f3
 }
 
 /// Change of disparity over one pixel along an axis, from both neighbours: the smaller one-sided difference, so that a
-/// silhouette on one side does not count as slope. A neighbour that is missing or invalid is ignored.
+/// silhouette on one side does not count as slope, and 0 where the pixel is higher or lower than both, as a wire is. A
+/// neighbour that is missing or invalid is ignored.
 #[inline]
 fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
-    let back = if before < 0.0 {
-        f32::MAX
-    } else {
-        (center - before).abs()
-    };
-    let ahead = if after < 0.0 {
-        f32::MAX
-    } else {
-        (after - center).abs()
-    };
-    let slope = back.min(ahead);
-    if slope == f32::MAX { 0.0 } else { slope }
+    let back = center - before;
+    let ahead = after - center;
+    match (before >= 0.0, after >= 0.0) {
+        (true, true) if back * ahead > 0.0 => back.abs().min(ahead.abs()),
+        (true, false) => back.abs(),
+        (false, true) => ahead.abs(),
+        _ => 0.0,
+    }
 }
