@@ -71,10 +71,8 @@ pub trait FrameSource {
 /// # Errors
 /// If it does not exist, cannot be read, or is of a kind that is not read.
 pub fn open(input: &str, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, InputError> {
-    // Names of built-in sources carry a scheme, so that no file can hide them.
-    if let Some((scheme, _)) = input.split_once(':')
-        && scheme == "builtin"
-    {
+    // A scheme in front, `analytic:NAME` for one, names a source that is no file. Checked first, so that no file hides it.
+    if let Some(("builtin", _)) = input.split_once(':') {
         return Err(scene_error(input));
     }
     let path = Path::new(input);

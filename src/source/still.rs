@@ -7,6 +7,8 @@ use super::{FrameSource, SourceFrame, SourceInfo};
 use crate::error::InputError;
 use crate::image::Image;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use std::fs;
+use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 
 /// A still image, decoded once.
@@ -113,12 +115,29 @@ fn decode_8_or_16_bit(
     limits: &ReadLimits,
 ) -> Result<Image<[f32; 3]>, InputError> {
     let io = |e: std::io::Error| io_error(subject, &e);
-    let mut reader = ImageReader::open(path)
-        .map_err(io)?
+    // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
+    let most_bytes = limits.max_pixels.saturating_mul(24).saturating_add(1 << 24);
+    let mut allowed = Limits::no_limits();
+    allowed.max_alloc = Some(most_bytes);
+    let file_bytes = fs::metadata(path).map_err(io)?.len();
+    if file_bytes > most_bytes {
+        return Err(InputError::new(
+            subject,
+            format!(
+                "has {} MB, more than the largest allowed image",
+                file_bytes >> 20
+            ),
+            "use a smaller image, or raise the limit with --max-megapixels N",
+        ));
+    }
+    let bytes = fs::read(path).map_err(io)?;
+    let mut reader = ImageReader::new(Cursor::new(bytes.as_slice()))
         .with_guessed_format()
         .map_err(io)?;
     match reader.format() {
-        Some(ImageFormat::Png | ImageFormat::Jpeg) => {}
+        Some(ImageFormat::Png) => {}
+        Some(ImageFormat::Jpeg) if jpeg_is_whole(&bytes) => {}
+        Some(ImageFormat::Jpeg) => return Err(io_error(subject, &ErrorKind::UnexpectedEof.into())),
         _ => {
             return Err(InputError::new(
                 subject,
@@ -127,9 +146,6 @@ fn decode_8_or_16_bit(
             ));
         }
     }
-    // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
-    let mut allowed = Limits::no_limits();
-    allowed.max_alloc = Some(limits.max_pixels.saturating_mul(24).saturating_add(1 << 24));
     reader.limits(allowed.clone());
     let error = |e: ImageError| image_error(subject, e);
     let mut decoder = reader.into_decoder().map_err(error)?;
@@ -137,6 +153,32 @@ fn decode_8_or_16_bit(
     let size = limits.check(subject, u64::from(w), u64::from(h))?;
     decoder.set_limits(allowed).map_err(error)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
+    Image::from_pixels(size, linear(decoded))
+        .map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+}
+
+/// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
+fn jpeg_is_whole(bytes: &[u8]) -> bool {
+    const START_OF_SCAN: u8 = 0xDA;
+    const END: [u8; 2] = [0xFF, 0xD9];
+    let mut at = 2;
+    // Segments state their length. A thumbnail in one of them has an end marker of its own.
+    while let Some(&[0xFF, marker, high, low]) = bytes.get(at..at + 4) {
+        if marker == START_OF_SCAN {
+            // In a scan, 0xFF is never followed by a marker's second byte.
+            return bytes[at..].windows(2).any(|w| w == END);
+        }
+        // Before a marker there may be more 0xFF.
+        at += match marker {
+            0xFF => 1,
+            _ => 2 + usize::from(u16::from_be_bytes([high, low])),
+        };
+    }
+    false
+}
+
+/// Linear pixels of a decoded sRGB image.
+fn linear(decoded: DynamicImage) -> Vec<[f32; 3]> {
     let deep = matches!(
         decoded,
         DynamicImage::ImageLuma16(_)
@@ -144,13 +186,11 @@ fn decode_8_or_16_bit(
             | DynamicImage::ImageRgb16(_)
             | DynamicImage::ImageRgba16(_)
     );
-    let pixels = if deep {
+    if deep {
         linear_pixels(decoded.into_rgb16().as_raw(), u32::from(u16::MAX))
     } else {
         linear_pixels(decoded.into_rgb8().as_raw(), u32::from(u8::MAX))
-    };
-    Image::from_pixels(size, pixels)
-        .map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+    }
 }
 
 /// Linear values of encoded RGB samples from 0 to `max`.

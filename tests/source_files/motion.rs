@@ -6,6 +6,8 @@ use afterimage::source::motion_check::{Verdict, conventions, detect};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+type Picture = Image<[f32; 3]>;
+
 const SIZE: [u32; 2] = [96, 72];
 
 /// Smooth noise: a sum of waves of random direction and phase, 5 to 40 pixels long.
@@ -40,7 +42,7 @@ impl Texture {
 }
 
 /// Previous frame, current frame, vectors in the internal form: an affine motion with both components.
-fn scene(rng: &mut Pcg64) -> (Image<[f32; 3]>, Image<[f32; 3]>, Image<[f32; 2]>) {
+fn scene(rng: &mut Pcg64) -> (Picture, Picture, Image<[f32; 2]>) {
     let texture = Texture::random(rng);
     let mut part = || {
         let size: f32 = rng.random_range(0.8..6.0);

@@ -11,7 +11,8 @@ use exr::block::chunk::{
 };
 use exr::math::Vec2;
 use exr::meta::BlockDescription;
-use exr::meta::attribute::{ChannelList, SampleType};
+use exr::meta::attribute::{ChannelList, Compression, SampleType};
+use exr::meta::header::Header;
 use exr::prelude::f16;
 use rayon::prelude::*;
 use std::fs::File;
@@ -93,57 +94,40 @@ impl ExrHeader {
         tile: Vec2<usize>,
     ) -> Result<Chunk, InputError> {
         let io = |e: std::io::Error| io_error(&self.subject, &e);
-        let damaged = || {
-            InputError::new(
-                &self.subject,
-                format!(
-                    "is truncated or damaged: chunk {} is not what the table of chunks says",
-                    index + 1
-                ),
-                "copy or export it again",
-            )
-        };
+        let header = &self.meta.headers[part];
         let offset = self.chunk_offsets[part][index];
         let head_bytes = chunk_header_bytes(&self.meta, part);
         let mut head = [0u8; 24];
         let head = &mut head[..head_bytes as usize];
         file.seek(SeekFrom::Start(offset)).map_err(io)?;
         file.read_exact(head).map_err(io)?;
-        let mut fields = head
+        let fields: Vec<i32> = head
             .chunks_exact(4)
-            .map(|b| i32::from_le_bytes(b.try_into().unwrap_or_default()));
-        let mut field = || fields.next().unwrap_or(-1);
+            .map(|b| i32::from_le_bytes(b.try_into().unwrap_or_default()))
+            .collect();
 
-        if self.meta.requirements.is_multilayer() && field() != part as i32 {
-            return Err(damaged());
-        }
-        let header = &self.meta.headers[part];
-        let coordinates = TileCoordinates {
-            tile_index: tile,
-            level_index: Vec2(0, 0),
+        let (&bytes, place) = fields.split_last().unwrap_or((&-1, &[]));
+        let rest = self.file_bytes.saturating_sub(offset + head_bytes);
+        let bytes = u64::try_from(bytes).ok().filter(|&b| b <= rest);
+        let (Some(bytes), true) = (bytes, place == self.chunk_place(part, tile)) else {
+            return Err(self.damaged(index));
         };
-        let expected = match header.blocks {
-            BlockDescription::ScanLines => {
-                let lines = header.compression.scan_lines_per_block();
-                i64::from(field()) - i64::from(self.first_lines[part]) == (tile.1 * lines) as i64
-            }
-            BlockDescription::Tiles(_) => {
-                [field(), field(), field(), field()] == [tile.0 as i32, tile.1 as i32, 0, 0]
-            }
-        };
-        let bytes = u64::try_from(field()).map_err(|_| damaged())?;
-        if !expected || bytes > self.file_bytes.saturating_sub(offset + head_bytes) {
-            return Err(damaged());
-        }
         let mut data = vec![0u8; bytes as usize];
         file.read_exact(&mut data).map_err(io)?;
+        if !dwa_counters_are_sane(header, tile, &data) {
+            return Err(self.damaged(index));
+        }
         let compressed_block = match header.blocks {
             BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {
+                // Counted from the window's corner, as the header in memory says.
                 y_coordinate: (tile.1 * header.compression.scan_lines_per_block()) as i32,
                 compressed_pixels_le: data,
             }),
             BlockDescription::Tiles(_) => CompressedBlock::Tile(CompressedTileBlock {
-                coordinates,
+                coordinates: TileCoordinates {
+                    tile_index: tile,
+                    level_index: Vec2(0, 0),
+                },
                 compressed_pixels_le: data,
             }),
         };
@@ -152,6 +136,58 @@ impl ExrHeader {
             compressed_block,
         })
     }
+
+    /// What precedes the size in the head of a chunk.
+    fn chunk_place(&self, part: usize, tile: Vec2<usize>) -> Vec<i32> {
+        let header = &self.meta.headers[part];
+        let mut place = Vec::with_capacity(5);
+        if self.meta.requirements.is_multilayer() {
+            place.push(part as i32);
+        }
+        match header.blocks {
+            BlockDescription::ScanLines => {
+                let line = tile.1 * header.compression.scan_lines_per_block();
+                place.push(self.first_lines[part].wrapping_add(line as i32));
+            }
+            BlockDescription::Tiles(_) => place.extend([tile.0 as i32, tile.1 as i32, 0, 0]),
+        }
+        place
+    }
+
+    fn damaged(&self, index: usize) -> InputError {
+        InputError::new(
+            &self.subject,
+            format!(
+                "is truncated or damaged: chunk {} is not what the table of chunks says",
+                index + 1
+            ),
+            "copy or export it again",
+        )
+    }
+}
+
+/// Whether a DWA chunk promises no more than its block can hold. The `exr` crate sets aside what the counters at its start
+/// ask for, whatever that is, and a failed allocation ends the process.
+fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> bool {
+    if !matches!(
+        header.compression,
+        Compression::DWAA(_) | Compression::DWAB(_)
+    ) {
+        return true;
+    }
+    let block = header.max_block_pixel_size();
+    let w = block.0.min(header.layer_size.0 - tile.0 * block.0);
+    let h = block.1.min(header.layer_size.1 - tile.1 * block.1);
+    let pixel_bytes = header.channels.bytes_per_pixel;
+    if data.len() == w * h * pixel_bytes {
+        // Stored as it is, because compression did not make it smaller.
+        return true;
+    }
+    // Coefficients come in blocks of 8x8; run lengths can double what they hold.
+    let most = (2 * w.next_multiple_of(8) * h.next_multiple_of(8) * pixel_bytes) as u64;
+    // The first counter is the version.
+    let mut counters = data.chunks_exact(8).skip(1).take(9);
+    counters.all(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()) <= most)
 }
 
 /// Where a channel's samples go.

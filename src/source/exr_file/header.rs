@@ -60,15 +60,15 @@ impl ExrHeader {
             ));
         }
         let mut reader = Counting::new(BufReader::new(file));
-        let mut meta = exr::block::read(&mut reader, false)
-            .map_err(|e| exr_error(subject, e))?
-            .into_meta_data();
+        let invalid = |e| exr_error(subject, e);
+        let mut meta = MetaData::read_from_buffered(&mut reader, false).map_err(invalid)?;
         let header_end = reader.position;
 
         let names = channel_names(&meta);
         let shown: Vec<String> = names.iter().map(|n| n.shown.clone()).collect();
         let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &shown))?;
         let size = checked_size(subject, &meta, &roles, limits)?;
+        MetaData::validate(&meta.headers, false).map_err(invalid)?;
         let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
         let windows = meta.headers.iter();
         let first_lines = windows.map(|h| h.own_attributes.layer_position.1).collect();
@@ -277,35 +277,42 @@ fn read_tables(
         let chunk_header = chunk_header_bytes(meta, part);
         let in_file = |&o: &u64| o >= tables_end && o.saturating_add(chunk_header) <= file_bytes;
         if let Some(bad) = table.iter().position(|o| !in_file(o)) {
+            let n = table.len();
             return Err(truncated(
                 subject,
                 &format!(
-                    "chunk {} of {} lies outside the file of {file_bytes} bytes",
-                    bad + 1,
-                    table.len()
+                    "chunk {} of {n} lies outside the file of {file_bytes} bytes",
+                    bad + 1
                 ),
             ));
         }
-        if let Some(&offset) = table.iter().max() {
-            last = last.max((offset, part));
-        }
-        table.truncate(full_resolution_chunks(header).0 * full_resolution_chunks(header).1);
+        last = last.max((table.iter().copied().max().unwrap_or(0), part));
+        let (columns, rows) = full_resolution_chunks(header);
+        table.truncate(columns * rows);
         tables.push(table);
     }
-    let (offset, part) = last;
-    let size_at = offset + chunk_header_bytes(meta, part) - 4;
-    reader
-        .seek(SeekFrom::Start(size_at))
-        .map_err(|e| io_error(subject, &e))?;
+    let data_at = last.0 + chunk_header_bytes(meta, last.1);
+    check_chunk_is_whole(reader, subject, data_at, file_bytes)?;
+    Ok(tables)
+}
+
+/// Checks that the chunk whose data begin at `data_at`, after their size, does not run past the end of the file.
+fn check_chunk_is_whole(
+    reader: &mut Counting<BufReader<File>>,
+    subject: &str,
+    data_at: u64,
+    file_bytes: u64,
+) -> Result<(), InputError> {
     let mut size = [0u8; 4];
     reader
-        .read_exact(&mut size)
+        .seek(SeekFrom::Start(data_at - 4))
+        .and_then(|_| reader.read_exact(&mut size))
         .map_err(|e| io_error(subject, &e))?;
     let size = u64::try_from(i32::from_le_bytes(size)).unwrap_or(u64::MAX);
-    if size_at.saturating_add(4).saturating_add(size) > file_bytes {
+    if data_at.saturating_add(size) > file_bytes {
         return Err(truncated(subject, "its last chunk is cut off"));
     }
-    Ok(tables)
+    Ok(())
 }
 
 fn truncated(subject: &str, what: &str) -> InputError {
