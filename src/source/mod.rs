@@ -1,7 +1,19 @@
 //! Where frames come from: stills, EXR sequences, analytic scenes. All hand out frames in one form.
 
+pub mod cameras;
+pub mod exr_file;
+pub mod limits;
+pub mod motion_check;
+pub mod sequence;
+pub mod still;
+
+pub use limits::ReadLimits;
+pub use sequence::SequenceSource;
+pub use still::StillSource;
+
 use crate::error::InputError;
 use crate::image::Image;
+use std::path::Path;
 
 /// One full-rate frame with what a temporal method needs to know about it.
 #[derive(Clone, Debug)]
@@ -52,4 +64,48 @@ pub trait FrameSource {
     /// # Errors
     /// If the file behind it cannot be read or is not what its header promised.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
+}
+
+/// Opens what the user named: a folder of EXR frames, or a still (`.exr`, `.png`, `.jpg`, `.jpeg`).
+///
+/// # Errors
+/// If it does not exist, cannot be read, or is of a kind that is not read.
+pub fn open(input: &str, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, InputError> {
+    // A scheme in front, `analytic:NAME` for one, names a source that is no file. Checked first, so that no file hides it.
+    if let Some(("builtin", _)) = input.split_once(':') {
+        return Err(scene_error(input));
+    }
+    let path = Path::new(input);
+    if path.is_dir() {
+        return Ok(Box::new(SequenceSource::open(path, limits)?));
+    }
+    match extension(path).as_str() {
+        "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
+        "gltf" | "glb" => Err(scene_error(input)),
+        _ if !path.exists() => Err(InputError::new(
+            input,
+            "does not exist",
+            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
+        )),
+        _ => Err(InputError::new(
+            input,
+            "is not of a kind that is read",
+            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
+        )),
+    }
+}
+
+fn scene_error(input: &str) -> InputError {
+    InputError::new(
+        input,
+        "is a scene, and scenes need a renderer that this version does not have yet",
+        "render it elsewhere to EXR frames with motion vectors and give their folder",
+    )
+}
+
+/// The ending of a file name in lower case, without the dot; empty if there is none.
+fn extension(path: &Path) -> String {
+    path.extension()
+        .map(|e| e.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
 }

@@ -1,0 +1,153 @@
+//! Writing a frame as EXR: all of it, or nothing.
+
+use crate::image::Image;
+use exr::prelude::{
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder,
+    SmallVec, WritableImage, f16,
+};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Largest finite half float.
+const HALF_MAX: f32 = 65504.0;
+
+/// How colour is stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorFormat {
+    /// 16 bit, values clamped to +-65504.
+    #[default]
+    Half,
+    /// 32 bit.
+    Float,
+}
+
+/// What to write. All images must have the size of the colour.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameToWrite<'a> {
+    /// Linear colour, written to `R`, `G`, `B`.
+    pub color: &'a Image<[f32; 3]>,
+    /// How colour is stored.
+    pub format: ColorFormat,
+    /// Distance along the view axis, written to `Z` as float.
+    pub depth: Option<&'a Image<f32>>,
+    /// Pixels, y down, previous minus current, written to `motion.X/Y` as float.
+    pub motion: Option<&'a Image<[f32; 2]>>,
+    /// Pixels, y down, next minus current, written to `motion.Z/W` as float.
+    pub motion_to_next: Option<&'a Image<[f32; 2]>>,
+}
+
+impl<'a> FrameToWrite<'a> {
+    /// Colour alone, as half float.
+    pub fn color(color: &'a Image<[f32; 3]>) -> Self {
+        Self {
+            color,
+            format: ColorFormat::Half,
+            depth: None,
+            motion: None,
+            motion_to_next: None,
+        }
+    }
+}
+
+/// Writes a scan-line EXR with ZIP compression, under a temporary name that is then changed to `path`: a reader never sees
+/// half a file, and an old one stays if anything fails. The same frame gives the same bytes.
+///
+/// # Errors
+/// If the images differ in size or are empty, or the file cannot be written. The message names the file.
+pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
+    write_unnamed(path, frame).map_err(|e| {
+        io::Error::new(
+            e.kind(),
+            format!("{}: cannot be written: {e}", path.display()),
+        )
+    })
+}
+
+fn write_unnamed(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
+    let size = frame.color.size();
+    let others = [
+        frame.depth.map(Image::size),
+        frame.motion.map(Image::size),
+        frame.motion_to_next.map(Image::size),
+    ];
+    if size.contains(&0) || others.into_iter().flatten().any(|s| s != size) {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "colour, depth and motion must have one size of at least 1x1 pixels",
+        ));
+    }
+    let temporary = temporary_name(path)?;
+    let written = write_file(&temporary, frame).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The first error is the one worth telling.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// A name beside `path` that no other write of this machine uses.
+fn temporary_name(path: &Path) -> io::Result<PathBuf> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let name = path
+        .file_name()
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name"))?;
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let pid = std::process::id();
+    let temporary = format!(".{}.{pid}.{count}.part", name.to_string_lossy());
+    Ok(path.with_file_name(temporary))
+}
+
+fn write_file(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
+    let [w, h] = frame.color.size().map(|s| s as usize);
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: exr::image::Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let channels = AnyChannels::sort(SmallVec::from_vec(channels(frame)));
+    let layer = Layer::new((w, h), LayerAttributes::default(), encoding, channels);
+    let mut out = BufWriter::new(File::create(path)?);
+    exr::image::Image::from_layer(layer)
+        .write()
+        .to_buffered(&mut out)
+        .map_err(|e| match e {
+            exr::error::Error::Io(e) => e,
+            other => io::Error::other(other.to_string()),
+        })?;
+    out.flush()
+}
+
+fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
+    let mut channels = Vec::new();
+    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
+        let values = frame.color.pixels().iter().map(|p| p[i]);
+        let samples = match frame.format {
+            ColorFormat::Half => FlatSamples::F16(
+                values
+                    .map(|v| f16::from_f32(v.clamp(-HALF_MAX, HALF_MAX)))
+                    .collect(),
+            ),
+            ColorFormat::Float => FlatSamples::F32(values.collect()),
+        };
+        channels.push(AnyChannel::new(name, samples));
+    }
+    if let Some(depth) = frame.depth {
+        let samples = FlatSamples::F32(depth.pixels().to_vec());
+        channels.push(AnyChannel::new("Z", samples));
+    }
+    let pairs = [
+        (frame.motion, ["motion.X", "motion.Y"]),
+        (frame.motion_to_next, ["motion.Z", "motion.W"]),
+    ];
+    for (image, names) in pairs {
+        for (i, name) in names.into_iter().enumerate() {
+            if let Some(image) = image {
+                let values = image.pixels().iter().map(|m| m[i]);
+                channels.push(AnyChannel::new(name, FlatSamples::F32(values.collect())));
+            }
+        }
+    }
+    channels
+}
