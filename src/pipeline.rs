@@ -31,6 +31,8 @@ pub struct Shown {
     pub cpu_ms: Option<f64>,
     /// What the pass counted; empty for the oracle.
     pub stats: FrameStats,
+    /// Bytes that the pass reads and writes a pixel; `None` for the oracle.
+    pub traffic_bytes_per_pixel: Option<u32>,
     /// Pixel decisions, if asked for.
     pub trace: Option<Image<PixelTrace>>,
 }
@@ -210,6 +212,7 @@ fn post_process(
         wall_ms,
         cpu_ms,
         stats,
+        traffic_bytes_per_pixel: Some(post.traffic_bytes_per_pixel(&frame.views[0])),
         trace: traces.map(|[t]| t),
     })
 }
@@ -231,6 +234,7 @@ fn oracle(
         wall_ms: watch.wall_ms(),
         cpu_ms: watch.cpu_ms(),
         stats: FrameStats::default(),
+        traffic_bytes_per_pixel: None,
         trace: None,
     }
 }

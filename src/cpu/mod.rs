@@ -63,6 +63,11 @@ impl FrameStats {
             .sum()
     }
 
+    /// Pixels that kept their history, to combine it with the candidate.
+    pub fn valid(&self) -> u64 {
+        self.verdicts[Verdict::Valid as usize]
+    }
+
     pub(crate) fn add(mut self, other: Self) -> Self {
         self.pixels += other.pixels;
         self.nonfinite += other.nonfinite;
@@ -164,6 +169,19 @@ impl CpuAfterimage {
     /// If `words` has another length than the history's.
     pub fn restore_history(&mut self, words: &[[u32; 3]]) {
         self.history.restore(words);
+    }
+
+    /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float colour
+    /// (8), half-float motion (4), depth (4). The depth test's extra taps are not counted: they are neighbours', and few.
+    pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
+        let (color, output) = (8, 8);
+        if self.settings.method == Method::None {
+            return color + output;
+        }
+        let history = 2 * if uses_keys(&self.settings) { 16 } else { 12 };
+        let depth = if view.depth.is_some() { 4 } else { 0 };
+        let motion = if view.motion.is_some() { 4 } else { 0 };
+        color + depth + motion + history + output
     }
 
     /// Bytes held between frames.

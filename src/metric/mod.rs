@@ -7,7 +7,7 @@ mod score;
 mod ssim;
 mod track;
 
-pub use score::{BandScores, Scorer, Scores};
+pub use score::{BandScores, FrameErrors, Scorer, Scores};
 pub use ssim::ssim_map;
 pub use track::{NO_PAST, Tracked, Tracker};
 

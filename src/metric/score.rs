@@ -78,25 +78,41 @@ fn named_bands<S: serde::Serializer>(bands: &[BandScores; 3], s: S) -> Result<S:
     map.end()
 }
 
+/// Mean squared errors of one frame, on a scale of 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameErrors {
+    /// Over all pixels.
+    pub mse: f64,
+    /// Over retained pixels; `None` if there are none.
+    pub retained_mse: Option<f64>,
+}
+
 impl Scorer {
-    /// Takes one frame: sRGB-encoded reference and shown image, what is known of the frame, eccentricities in degrees.
+    /// Takes one frame: sRGB-encoded reference and shown image, what is known of the frame, eccentricities in degrees. Gives
+    /// the frame's own errors.
     pub fn push(
         &mut self,
         reference: &Image<[f32; 3]>,
         shown: &Image<[f32; 3]>,
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
-    ) {
+    ) -> FrameErrors {
+        let mut squared = [Mean::default(); 3];
+        let mut retained = Mean::default();
         let mut luma_error = Image::filled(shown.size(), 0.0);
         for (i, (r, s)) in reference.pixels().iter().zip(shown.pixels()).enumerate() {
             let d = Vec3::from(*s) - Vec3::from(*r);
             luma_error.pixels_mut()[i] = color::luma(d);
-            let squared = f64::from(d.length_squared()) / 3.0;
-            self.squared[Band::of(ecc_deg.pixels()[i]) as usize].add(squared);
+            let error = f64::from(d.length_squared()) / 3.0;
+            squared[Band::of(ecc_deg.pixels()[i]) as usize].add(error);
             if tracked.retained.pixels()[i] {
-                self.retained.add(squared);
+                retained.add(error);
             }
         }
+        for (sum, &frame) in self.squared.iter_mut().zip(&squared) {
+            sum.merge(frame);
+        }
+        self.retained.merge(retained);
         if let Some(before) = &self.luma_error {
             for (now, &from) in luma_error.pixels().iter().zip(tracked.past.pixels()) {
                 if from != NO_PAST {
@@ -115,16 +131,14 @@ impl Scorer {
                 }
             }
         }
+        FrameErrors {
+            mse: total(squared).value().unwrap_or(0.0),
+            retained_mse: retained.value(),
+        }
     }
 
     /// The figures so far.
     pub fn scores(&self) -> Scores {
-        let total = |parts: [Mean; 3]| {
-            parts.into_iter().fold(Mean::default(), |mut sum, m| {
-                sum.merge(m);
-                sum
-            })
-        };
         let figures = |squared: Mean, ssim: Mean| BandScores {
             psnr_db: squared.value().and_then(psnr_db),
             mse: squared.value(),
@@ -140,4 +154,11 @@ impl Scorer {
             flicker: self.flicker.value().map(|v| 1000.0 * v),
         }
     }
+}
+
+fn total(parts: [Mean; 3]) -> Mean {
+    parts.into_iter().fold(Mean::default(), |mut sum, m| {
+        sum.merge(m);
+        sum
+    })
 }

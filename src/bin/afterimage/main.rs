@@ -1,2 +1,71 @@
-//! The `afterimage` command-line tool.
-fn main() {}
+//! The `afterimage` command-line tool: one file a subcommand.
+
+mod args;
+mod clip;
+mod demo;
+mod failure;
+mod gaze;
+mod info;
+mod output;
+mod run;
+mod scanpath;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::process::ExitCode;
+
+/// Temporal post-process for foveated rendering: keep the sharp samples that earlier gaze positions paid for.
+#[derive(Parser)]
+#[command(version, about, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Show the method at work on a built-in scene; needs no file and no GPU
+    Demo(demo::DemoArgs),
+    /// Foveate a frame stream, enhance it, score it
+    Run(Box<run::RunArgs>),
+    /// Write a synthetic scanpath
+    Scanpath(scanpath::ScanpathArgs),
+    /// Say what an input holds, or which adapters there are
+    Info(info::InfoArgs),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    let result = match cli.command {
+        Command::Demo(args) => demo::demo(&args),
+        Command::Run(args) => run::run(&args),
+        Command::Scanpath(args) => scanpath::scanpath(&args),
+        Command::Info(args) => info::info(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Help and version as they are; an error of usage as one line.
+fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        // Nothing is lost if the reader has gone.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = error.render().to_string();
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|l| !l.starts_with("Usage:"))
+        .filter(|l| !l.is_empty() && !l.starts_with("For more information"))
+        .collect();
+    let line = lines.join(" ");
+    let line = line.strip_prefix("error: ").unwrap_or(&line);
+    Failure::Input(format!("{line}; see --help")).report()
+}

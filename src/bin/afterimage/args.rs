@@ -1,0 +1,234 @@
+//! Options that several subcommands share, and how their values are read.
+
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::report::debug_view::DebugView;
+use afterimage::settings::{Bias, DepthTest, Gate, Method, Sampler, Settings};
+use clap::{Args, ValueEnum};
+
+/// Where a frame is how coarse.
+#[derive(Args, Clone, Debug)]
+pub struct FoveationArgs {
+    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, or none
+    #[arg(long = "foveation", value_enum, default_value = "mip")]
+    pub filter: FilterName,
+    /// Diameter of the full-rate region, degrees
+    #[arg(long, default_value_t = 5.0, value_name = "DEG")]
+    pub fovea: f32,
+    /// Diameter of the middle region, degrees
+    #[arg(long, default_value_t = 15.0, value_name = "DEG")]
+    pub mid: f32,
+    /// Width of the linear blend outside each radius, degrees
+    #[arg(long, default_value_t = 1.0, value_name = "DEG")]
+    pub blend: f32,
+    /// Block edge in the middle region, pixels, a power of two
+    #[arg(long, default_value_t = 8, value_name = "N")]
+    pub rate_mid: u32,
+    /// Block edge beyond, pixels, a power of two
+    #[arg(long, default_value_t = 16, value_name = "N")]
+    pub rate_far: u32,
+}
+
+impl FoveationArgs {
+    /// The library's form.
+    pub fn foveation(&self) -> Foveation {
+        Foveation {
+            filter: match self.filter {
+                FilterName::Mip => Filter::Mip,
+                FilterName::Gauss => Filter::Gauss,
+                FilterName::Block => Filter::Block,
+                FilterName::Off => Filter::Off,
+            },
+            fovea_deg: self.fovea,
+            mid_deg: self.mid,
+            blend_deg: self.blend,
+            rate_mid: self.rate_mid,
+            rate_far: self.rate_far,
+        }
+    }
+}
+
+/// Names of foveation simulators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    /// Box mip levels, trilinear
+    Mip,
+    /// Gaussian blur growing with eccentricity
+    Gauss,
+    /// One point sample a block
+    Block,
+    /// Full rate everywhere
+    Off,
+}
+
+impl FilterName {
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mip => "mip",
+            Self::Gauss => "gauss",
+            Self::Block => "block",
+            Self::Off => "off",
+        }
+    }
+}
+
+/// Names of methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// The foveated frame alone
+    None,
+    /// Weighted reservoirs: A-Chao with Bernoulli bias
+    Wrs,
+    /// Best level of detail ever shown; stills only
+    Oracle,
+}
+
+impl MethodName {
+    /// As typed, and as folders are named.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Wrs => "wrs",
+            Self::Oracle => "oracle",
+        }
+    }
+}
+
+/// Ablations of the reservoir method.
+#[derive(Args, Clone, Debug)]
+pub struct WrsArgs {
+    /// How a reservoir picks its sample
+    #[arg(long, value_enum, default_value = "a-chao")]
+    pub wrs_sampler: SamplerName,
+    /// How history is forgotten: bernoulli, exponential:LAMBDA (per frame), or none
+    #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS")]
+    pub wrs_bias: Bias,
+    /// Colour difference at which the gate is shut, Delta E 94 above the offset
+    #[arg(long, default_value_t = 100.0, value_name = "X")]
+    pub gate_divisor: f32,
+    /// Colour difference that costs nothing, Delta E 94
+    #[arg(long, default_value_t = 0.0, value_name = "X")]
+    pub gate_offset: f32,
+    /// Never look at colour
+    #[arg(long)]
+    pub no_gate: bool,
+    /// Never look at depth
+    #[arg(long)]
+    pub no_flush: bool,
+}
+
+impl WrsArgs {
+    /// The library's form of a method.
+    pub fn settings(&self, method: Method, seed: u64) -> Settings {
+        Settings {
+            method,
+            sampler: match self.wrs_sampler {
+                SamplerName::AChao => Sampler::AChao,
+                SamplerName::AEs => Sampler::AEs,
+            },
+            bias: self.wrs_bias,
+            gate: (!self.no_gate).then(|| Gate {
+                divisor: self.gate_divisor,
+                offset: self.gate_offset,
+                ..Gate::default()
+            }),
+            depth_test: (!self.no_flush).then(DepthTest::default),
+            seed,
+            ..Settings::default()
+        }
+    }
+}
+
+/// Names of samplers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SamplerName {
+    /// By the ratio of weight sums
+    AChao,
+    /// By the larger key
+    AEs,
+}
+
+fn parse_bias(text: &str) -> Result<Bias, String> {
+    let expected = "expected bernoulli, exponential:LAMBDA with LAMBDA >= 0, or none";
+    match text.split_once(':') {
+        None if text == "bernoulli" => Ok(Bias::Bernoulli),
+        None if text == "none" => Ok(Bias::None),
+        Some(("exponential", lambda)) => lambda
+            .parse()
+            .map(|lambda| Bias::Exponential { lambda })
+            .map_err(|_| format!("lambda '{lambda}' is not a number: {expected}")),
+        _ => Err(expected.into()),
+    }
+}
+
+/// Names of debug views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum DebugName {
+    /// Weight sum of the reservoir
+    Weight,
+    /// Frames since the shown sample was shaded
+    Age,
+    /// Share of the history's weight that survived
+    Survival,
+    /// What became of the history
+    Flush,
+    /// Gate value
+    Gate,
+    /// Motion
+    Motion,
+}
+
+impl DebugName {
+    /// As typed, and as folders are named.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Weight => "weight",
+            Self::Age => "age",
+            Self::Survival => "survival",
+            Self::Flush => "flush",
+            Self::Gate => "gate",
+            Self::Motion => "motion",
+        }
+    }
+
+    /// The library's form.
+    pub fn view(self) -> DebugView {
+        match self {
+            Self::Weight => DebugView::Weight,
+            Self::Age => DebugView::Age,
+            Self::Survival => DebugView::Survival,
+            Self::Flush => DebugView::Flush,
+            Self::Gate => DebugView::Gate,
+            Self::Motion => DebugView::Motion,
+        }
+    }
+}
+
+/// File format of frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatName {
+    /// sRGB, 8 bit
+    Png,
+    /// Linear half float
+    Exr,
+}
+
+impl FormatName {
+    /// File ending.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Exr => "exr",
+        }
+    }
+}
+
+/// `WxH` in pixels.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let expected = "expected WxH in pixels, such as 1280x720";
+    let (w, h) = text.split_once('x').ok_or(expected)?;
+    match (w.parse(), h.parse()) {
+        (Ok(w), Ok(h)) if w > 0 && h > 0 => Ok([w, h]),
+        _ => Err(expected.into()),
+    }
+}

@@ -1,0 +1,249 @@
+//! A clip through the pipeline, frame by frame, onto disk: what `run` and `demo` share.
+
+use crate::args::{DebugName, FormatName};
+use crate::failure::Failure;
+use crate::output::Output;
+use afterimage::display::ViewGeometry;
+use afterimage::foveation::Foveation;
+use afterimage::image::Image;
+use afterimage::metric::{self, FrameErrors, Scorer, Scores, psnr_db};
+use afterimage::pipeline::{LaneKind, Pipeline, Shown, Step};
+use afterimage::report::clock::Quartiles;
+use afterimage::report::debug_view;
+use afterimage::report::picture::to_rgb8;
+use afterimage::report::sheet::{Column, Sheet};
+use afterimage::source::{FrameSource, SourceFrame};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::io::IsTerminal;
+
+/// What is to be done with a clip.
+pub struct Clip {
+    /// Shown in the sheet's first line.
+    pub title: String,
+    pub geometry: ViewGeometry,
+    pub foveation: Foveation,
+    /// Name of each lane, which is also its folder, and what it does.
+    pub lanes: Vec<(&'static str, LaneKind)>,
+    /// One position a frame, in frame pixels; `None`: lost.
+    pub gaze: Vec<Option<[f32; 2]>>,
+    pub exposure_ev: f32,
+    pub format: FormatName,
+    pub write_reference: bool,
+    pub debug: Vec<DebugName>,
+}
+
+/// Figures of a lane, as `report.json` has them.
+#[derive(Serialize)]
+pub struct MethodReport {
+    /// Wall time of the pass a frame.
+    pub ms: Option<Quartiles>,
+    /// Mean CPU time of the pass a frame.
+    pub cpu_ms: Option<f64>,
+    #[serde(flatten)]
+    pub scores: Scores,
+    pub psnr_last_frame_db: Option<f64>,
+    pub nonfinite_in: u64,
+    pub nonfinite_out: u64,
+    /// Share of pixels that lost their history to occlusion, the border or bad vectors, after the first frame.
+    pub flushed: Option<f64>,
+    /// Share of pixels with a history whose sample was replaced.
+    pub replaced: Option<f64>,
+    /// Bytes that the pass reads and writes a pixel and frame, half-float inputs assumed.
+    pub bytes_per_pixel: Option<u32>,
+    /// Bytes kept between frames a pixel.
+    pub persistent_bytes_per_pixel: f64,
+}
+
+/// What a clip came to.
+pub struct ClipReport {
+    pub methods: Vec<(&'static str, MethodReport)>,
+    pub foveation_ms: Option<Quartiles>,
+    /// Where the eye was taken to look.
+    pub gaze_px: Vec<[f32; 2]>,
+}
+
+#[derive(Default)]
+struct Lane {
+    scorer: Scorer,
+    wall_ms: Vec<f64>,
+    cpu_ms: Vec<Option<f64>>,
+    nonfinite_in: u64,
+    nonfinite_out: u64,
+    pixels: u64,
+    flushed: u64,
+    with_history: u64,
+    replaced: u64,
+    last: Option<FrameErrors>,
+    traffic: Option<u32>,
+}
+
+impl Clip {
+    /// Runs the clip and writes everything but `report.json`.
+    pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
+        let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
+        let is_still = source.info().still;
+        let trace = !self.debug.is_empty();
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, trace)?;
+        let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
+        let mut foveation_ms = vec![];
+        let mut gaze_px = vec![];
+        let bar = progress(self.gaze.len() as u64);
+        let mut table = out.table("frames.csv", "frame,method,psnr_db,retained_psnr_db,ms")?;
+        for (index, &gaze) in self.gaze.iter().enumerate() {
+            let frame = source.frame(index as u64)?;
+            let step = pipeline.step(index as u64, &frame, gaze)?;
+            let reference = metric::encode(&frame.color, self.exposure_ev);
+            let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
+            for ((name, _), lane) in self.lanes.iter().zip(&lanes) {
+                table.row(&lane.row(index, name))?;
+            }
+            foveation_ms.push(step.foveation_ms);
+            gaze_px.push(step.gaze_px);
+            if index + 1 == self.gaze.len() {
+                self.write_sheet(&reference, &encoded, &lanes, &gaze_px, out)?;
+            }
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        table.finish()?;
+        out.gaze("gaze.csv", &gaze_px)?;
+        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
+        let methods = lanes.iter().enumerate().map(|(i, lane)| {
+            (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels))
+        });
+        Ok(ClipReport {
+            methods: methods.collect(),
+            foveation_ms: Quartiles::of(&foveation_ms),
+            gaze_px,
+        })
+    }
+
+    /// Scores and writes all lanes of a frame side by side; gives their encoded images.
+    fn score_and_write(
+        &self,
+        index: usize,
+        frame: &SourceFrame,
+        reference: &Image<[f32; 3]>,
+        step: &Step,
+        lanes: &mut [Lane],
+        out: &Output,
+    ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
+        if self.write_reference {
+            out.frame("reference", index, &frame.color, reference, self.format)?;
+        }
+        lanes
+            .par_iter_mut()
+            .zip(&self.lanes)
+            .zip(&step.shown)
+            .map(|((lane, (name, kind)), shown)| {
+                let encoded = metric::encode(&shown.image, self.exposure_ev);
+                lane.push(frame, reference, &encoded, shown, step);
+                out.frame(name, index, &shown.image, &encoded, self.format)?;
+                if let (Some(trace), LaneKind::PostProcess(_)) = (&shown.trace, kind) {
+                    for debug in &self.debug {
+                        let picture = debug_view::picture(debug.view(), trace, frame.motion.as_ref());
+                        let folder = format!("debug/{name}/{}", debug.name());
+                        out.picture(&folder, index, &to_rgb8(&picture))?;
+                    }
+                }
+                Ok(encoded)
+            })
+            .collect()
+    }
+
+    fn write_sheet(
+        &self,
+        reference: &Image<[f32; 3]>,
+        encoded: &[Image<[f32; 3]>],
+        lanes: &[Lane],
+        gaze_px: &[[f32; 2]],
+        out: &Output,
+    ) -> Result<(), Failure> {
+        let mut columns = vec![Column {
+            name: "reference",
+            shown: reference,
+            scores: None,
+        }];
+        for (((name, _), shown), lane) in self.lanes.iter().zip(encoded).zip(lanes) {
+            let name = if *name == "none" { "none (foveated only)" } else { name };
+            columns.push(Column {
+                name,
+                shown,
+                scores: Some(lane.scorer.scores()),
+            });
+        }
+        let sheet = Sheet {
+            title: self.title.clone(),
+            columns: &columns,
+            geometry: self.geometry,
+            gaze_px,
+            fovea_deg: self.foveation.fovea_deg,
+        };
+        out.sheet("sheet.png", &sheet.draw())
+    }
+}
+
+impl Lane {
+    fn push(
+        &mut self,
+        frame: &SourceFrame,
+        reference: &Image<[f32; 3]>,
+        encoded: &Image<[f32; 3]>,
+        shown: &Shown,
+        step: &Step,
+    ) {
+        let errors = self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg);
+        self.last = Some(errors);
+        self.traffic = shown.traffic_bytes_per_pixel;
+        self.wall_ms.push(shown.wall_ms);
+        self.cpu_ms.push(shown.cpu_ms);
+        self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
+        let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
+        self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
+        if !frame.cut {
+            self.pixels += shown.stats.pixels;
+            self.flushed += shown.stats.flushed();
+            self.with_history += shown.stats.valid();
+            self.replaced += shown.stats.replaced;
+        }
+    }
+
+    /// A line of `frames.csv`.
+    fn row(&self, index: usize, name: &str) -> String {
+        let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
+        let (psnr, retained) = self
+            .last
+            .map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
+        let ms = self.wall_ms.last().copied().unwrap_or_default();
+        format!("{index},{name},{psnr},{retained},{ms:.3}")
+    }
+
+    fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
+        let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
+        let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();
+        MethodReport {
+            ms: Quartiles::of(&self.wall_ms),
+            cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
+            scores: self.scorer.scores(),
+            psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
+            nonfinite_in: self.nonfinite_in,
+            nonfinite_out: self.nonfinite_out,
+            flushed: share(self.flushed, self.pixels),
+            replaced: share(self.replaced, self.with_history),
+            bytes_per_pixel: self.traffic,
+            persistent_bytes_per_pixel,
+        }
+    }
+}
+
+/// A bar on a terminal, nothing elsewhere.
+fn progress(frames: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {eta} left")
+        .expect("the template is a constant");
+    ProgressBar::new(frames).with_style(style)
+}

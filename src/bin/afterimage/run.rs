@@ -1,0 +1,312 @@
+//! `afterimage run`: foveate a frame stream, enhance it, score it.
+
+use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
+use crate::clip::{Clip, ClipReport, MethodReport};
+use crate::failure::Failure;
+use crate::gaze::{self, GazeMapName};
+use crate::output::Output;
+use afterimage::display::ViewGeometry;
+use afterimage::pipeline::LaneKind;
+use afterimage::report::clock::Quartiles;
+use afterimage::settings::Method;
+use afterimage::source::{self, FrameSource, ReadLimits, SourceInfo};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Foveate a frame stream, enhance it, score it
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
+    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json.")]
+pub struct RunArgs {
+    /// A still (.png, .jpg, .exr), a folder of .exr frames, or analytic:NAME with NAME one of still, lateral, occluder,
+    /// light-step, scroll
+    pub input: String,
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
+    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
+    pub gaze: String,
+    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    #[arg(long, value_enum)]
+    pub gaze_map: Option<GazeMapName>,
+    /// Start in the scanpath, seconds
+    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    pub start: f64,
+    /// Frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u64>,
+    /// Frames per second; default: the input's, else 60
+    #[arg(long, value_name = "F")]
+    pub fps: Option<f32>,
+    /// Horizontal field of view of the flat view, degrees; default: the input's, else 70
+    #[arg(long, value_name = "DEG")]
+    pub hfov: Option<f32>,
+    /// Size of analytic scenes, pixels; default 640x360
+    #[arg(long, value_parser = parse_size, value_name = "WxH")]
+    pub size: Option<[u32; 2]>,
+    #[command(flatten)]
+    pub foveation: FoveationArgs,
+    /// Methods, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
+    pub method: Vec<MethodName>,
+    #[command(flatten)]
+    pub wrs: WrsArgs,
+    /// What computes; this version has the CPU only
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: BackendName,
+    /// Seed of the random numbers: same seed, same bytes
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// File format of frames: 8-bit sRGB PNG, or linear half-float EXR
+    #[arg(long, value_enum, default_value = "png")]
+    pub format: FormatName,
+    /// Exposure before sRGB encoding, stops
+    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Also write the full-rate frames
+    #[arg(long)]
+    pub reference: bool,
+    /// Pixel decisions to write as images, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    pub debug: Vec<DebugName>,
+    /// Largest image that is read, million pixels
+    #[arg(long, default_value_t = 64, value_name = "N")]
+    pub max_megapixels: u32,
+}
+
+/// Names of backends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendName {
+    /// A GPU adapter if there is one, else the CPU
+    Auto,
+    /// The CPU
+    Cpu,
+    /// A GPU adapter
+    Gpu,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    tool: &'static str,
+    version: &'static str,
+    input: &'a str,
+    size: [u32; 2],
+    frames: usize,
+    fps: f32,
+    hfov_deg: f32,
+    seed: u64,
+    exposure_ev: f32,
+    backend: Backend,
+    foveation: FoveationReport,
+    gaze: &'a str,
+    gaze_map: &'a str,
+    start_s: f64,
+    methods: Methods<'a>,
+}
+
+#[derive(Serialize)]
+struct Backend {
+    kind: &'static str,
+    name: String,
+    driver: String,
+}
+
+#[derive(Serialize)]
+struct FoveationReport {
+    simulator: &'static str,
+    fovea_deg: f32,
+    mid_deg: f32,
+    blend_deg: f32,
+    rate_mid: u32,
+    rate_far: u32,
+    ms: Option<Quartiles>,
+}
+
+/// Methods in the order they were asked for.
+struct Methods<'a>(&'a [(&'static str, MethodReport)]);
+
+impl Serialize for Methods<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, report)| (name, report)))
+    }
+}
+
+/// Everything about a run that is known before its first frame.
+struct Plan {
+    fps: f32,
+    clip: Clip,
+    gaze_map: &'static str,
+}
+
+/// The subcommand.
+pub fn run(args: &RunArgs) -> Result<(), Failure> {
+    let report = execute(args)?;
+    print_summary(args, &report);
+    Ok(())
+}
+
+/// Runs and writes, without a word.
+pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
+    let limits = ReadLimits::from_megapixels(args.max_megapixels);
+    let mut source = open(args, &limits)?;
+    let plan = plan(args, source.info())?;
+    // Proof that the input can be read, before anything is written.
+    source.frame(0)?;
+    let out = Output::create(&args.out, &folders(args))?;
+    let report = plan.clip.run(source.as_mut(), &out)?;
+    let json = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        input: &args.input,
+        size: plan.clip.geometry.size_px(),
+        frames: report.gaze_px.len(),
+        fps: plan.fps,
+        hfov_deg: plan.clip.geometry.hfov_deg(),
+        seed: args.seed,
+        exposure_ev: args.exposure,
+        backend: Backend {
+            kind: "cpu",
+            name: format!("{} threads", rayon::current_num_threads()),
+            driver: "none".into(),
+        },
+        foveation: FoveationReport {
+            simulator: args.foveation.filter.name(),
+            fovea_deg: args.foveation.fovea,
+            mid_deg: args.foveation.mid,
+            blend_deg: args.foveation.blend,
+            rate_mid: args.foveation.rate_mid,
+            rate_far: args.foveation.rate_far,
+            ms: report.foveation_ms,
+        },
+        gaze: &args.gaze,
+        gaze_map: plan.gaze_map,
+        start_s: args.start,
+        methods: Methods(&report.methods),
+    };
+    let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
+    out.text("report.json", &(text + "\n"))?;
+    Ok(report)
+}
+
+fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    if args.backend == BackendName::Gpu {
+        return Err(Failure::Input(
+            "--backend gpu: this version computes on the CPU only; use --backend auto or cpu".into(),
+        ));
+    }
+    let scene = source::SceneOptions {
+        size: args.size,
+        hfov_deg: args.hfov,
+        fps: args.fps,
+    };
+    Ok(source::open(&args.input, limits, &scene)?)
+}
+
+fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    let fps = args.fps.or(info.fps).unwrap_or(60.0);
+    if !(fps > 0.0 && fps <= 10_000.0) {
+        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
+    }
+    if !(args.start >= 0.0 && args.start.is_finite()) {
+        return refuse(format!("--start {}: expected seconds, 0 or more", args.start));
+    }
+    if !(args.exposure.abs() <= 32.0) {
+        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
+    }
+    if args.frames == Some(0) {
+        return refuse("--frames 0: expected at least 1 frame".into());
+    }
+    let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
+    let foveation = args.foveation.foveation();
+    foveation.validate()?;
+    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
+    for &method in &args.method {
+        if lanes.iter().any(|l| l.0 == method.name()) {
+            return refuse(format!("--method: {} is named twice", method.name()));
+        }
+        let kind = match method {
+            MethodName::None => LaneKind::PostProcess(args.wrs.settings(Method::None, args.seed)),
+            MethodName::Wrs => LaneKind::PostProcess(args.wrs.settings(Method::Wrs, args.seed)),
+            MethodName::Oracle if info.still => LaneKind::Oracle,
+            MethodName::Oracle => {
+                return refuse(format!(
+                    "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
+                    args.input
+                ));
+            }
+        };
+        if let LaneKind::PostProcess(settings) = kind {
+            settings.validate()?;
+        }
+        lanes.push((method.name(), kind));
+    }
+    // Stills and endless scenes last as long as the eye looks.
+    let frames = args.frames.or(if info.still { None } else { info.frames });
+    let track = gaze::resolve(args, &geometry, fps, frames)?;
+    Ok(Plan {
+        fps,
+        gaze_map: track.map,
+        clip: Clip {
+            title: format!(
+                "{}   {}x{}, {} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {}",
+                info.name,
+                info.size[0],
+                info.size[1],
+                track.px.len(),
+                foveation.fovea_deg,
+                foveation.rate_mid,
+                foveation.rate_far,
+                args.foveation.filter.name()
+            ),
+            geometry,
+            foveation,
+            lanes,
+            gaze: track.px,
+            exposure_ev: args.exposure,
+            format: args.format,
+            write_reference: args.reference,
+            debug: args.debug.clone(),
+        },
+    })
+}
+
+/// Folders that the run writes frames to.
+fn folders(args: &RunArgs) -> Vec<String> {
+    let mut folders: Vec<String> = args.method.iter().map(|m| m.name().to_owned()).collect();
+    for method in args.method.iter().filter(|&&m| m != MethodName::Oracle) {
+        folders.extend(args.debug.iter().map(|d| format!("debug/{}/{}", method.name(), d.name())));
+    }
+    if args.reference {
+        folders.push("reference".into());
+    }
+    folders
+}
+
+fn print_summary(args: &RunArgs, report: &ClipReport) {
+    let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
+    println!(
+        "{} frames on the CPU ({} threads); the last figures are dB of pixels seen sharp before, and flicker:",
+        report.gaze_px.len(),
+        rayon::current_num_threads()
+    );
+    println!("method    PSNR dB   SSIM   fovea    mid  periph  retained  flicker  ms/frame");
+    for (name, m) in &report.methods {
+        let s = &m.scores;
+        let bands = s.bands.map(|b| db(b.psnr_db));
+        println!(
+            "{name:8} {:>8} {:>7} {:>6} {:>6} {:>7} {:>9} {:>8} {:>9}",
+            db(s.whole.psnr_db),
+            s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
+            bands[0],
+            bands[1],
+            bands[2],
+            db(s.retained_psnr_db),
+            s.flicker.map_or("-".into(), |v| format!("{v:.2}")),
+            m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
+        );
+    }
+    println!("sheet: {}", args.out.join("sheet.png").display());
+}
