@@ -1,5 +1,7 @@
 //! Where frames come from: stills, EXR sequences, analytic scenes. All hand out frames in one form.
 
+pub mod analytic;
+
 use crate::error::InputError;
 use crate::image::Image;
 
