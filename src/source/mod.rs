@@ -1,5 +1,6 @@
 //! Where frames come from: stills, EXR sequences, analytic scenes. All hand out frames in one form.
 
+pub mod analytic;
 pub mod cameras;
 pub mod exr_file;
 pub mod limits;
@@ -7,6 +8,7 @@ pub mod motion_check;
 pub mod sequence;
 pub mod still;
 
+pub use analytic::AnalyticSource;
 pub use limits::ReadLimits;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
@@ -66,14 +68,38 @@ pub trait FrameSource {
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
 }
 
-/// Opens what the user named: a folder of EXR frames, or a still (`.exr`, `.png`, `.jpg`, `.jpeg`).
+/// What a scene needs to be told; files know it themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneOptions {
+    /// Width and height in pixels; default 640x360. Refused for files.
+    pub size: Option<[u32; 2]>,
+    /// Horizontal field of view in degrees; default 70. Files keep their own.
+    pub hfov_deg: Option<f32>,
+    /// Frames per second; default 60. Files keep their own.
+    pub fps: Option<f32>,
+}
+
+/// Opens what the user named: a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
 ///
 /// # Errors
 /// If it does not exist, cannot be read, or is of a kind that is not read.
-pub fn open(input: &str, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, InputError> {
-    // A scheme in front, `analytic:NAME` for one, names a source that is no file. Checked first, so that no file hides it.
-    if let Some(("builtin", _)) = input.split_once(':') {
-        return Err(scene_error(input));
+pub fn open(
+    input: &str,
+    limits: &ReadLimits,
+    scene: &SceneOptions,
+) -> Result<Box<dyn FrameSource + Send>, InputError> {
+    // A scheme in front names a source that is no file. Checked first, so that no file hides it.
+    match input.split_once(':') {
+        Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
+        Some(("builtin", _)) => return Err(scene_error(input)),
+        _ => {}
+    }
+    if let Some([w, h]) = scene.size {
+        return Err(InputError::new(
+            input,
+            format!("has a size of its own, and {w}x{h} was asked for"),
+            "give a size for scenes only",
+        ));
     }
     let path = Path::new(input);
     if path.is_dir() {
@@ -93,6 +119,17 @@ pub fn open(input: &str, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Se
             "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
         )),
     }
+}
+
+fn open_analytic(
+    name: &str,
+    limits: &ReadLimits,
+    scene: &SceneOptions,
+) -> Result<AnalyticSource, InputError> {
+    let size = scene.size.unwrap_or([640, 360]);
+    limits.check(&format!("analytic:{name}"), size[0].into(), size[1].into())?;
+    let hfov_deg = scene.hfov_deg.unwrap_or(70.0);
+    AnalyticSource::new(name, size, hfov_deg, scene.fps.unwrap_or(60.0))
 }
 
 fn scene_error(input: &str) -> InputError {

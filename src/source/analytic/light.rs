@@ -1,0 +1,122 @@
+//! Light on surfaces: a sun through a roof of slats, and a sky that corners and feet see less of.
+
+use super::courtyard::{BACK, FLOOR, LEFT, RIGHT};
+use super::noise::{fbm, pulse, smoothstep};
+use super::scene::{Stage, TO_SUN};
+use super::shape::{Ray, Shape};
+use super::tile::Tile;
+use glam::{Vec2, Vec3};
+
+/// Nearest distance of what throws a shadow, in metres: below it a surface would shade itself.
+const NEAR: f32 = 1e-3;
+/// Chosen so that the palest surface in full sun is a little above 1.
+const SUN: Vec3 = Vec3::new(1.30, 1.16, 0.96);
+const SKY: Vec3 = Vec3::new(0.34, 0.41, 0.52);
+const BOUNCE: Vec3 = Vec3::new(0.26, 0.21, 0.16);
+/// How far the darkening around a foot reaches, in radii.
+const REACH: f32 = 4.0;
+
+/// Light that arrives at a point with normal `n` of object `index`: what its albedo is multiplied with.
+pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n: Vec3) -> Vec3 {
+    let facing = n.dot(TO_SUN);
+    let sun = if facing > 0.0 {
+        facing * sunlight(stage, &tile.casters[index], point + n * NEAR)
+    } else {
+        0.0
+    };
+    let upward = 0.5 - 0.5 * n.y;
+    let open = if index == stage.floor {
+        open_floor(stage, &tile.standing, point)
+    } else {
+        corner(FLOOR - point.y)
+    };
+    BOUNCE.lerp(SKY, upward) * open + SUN * sun
+}
+
+/// Share of the sun seen from a point behind the objects `casters`.
+fn sunlight(stage: &Stage, casters: &[u16], point: Vec3) -> f32 {
+    let open = slats(point);
+    if open <= 0.0 {
+        return 0.0;
+    }
+    let ray = Ray {
+        origin: point,
+        direction: TO_SUN,
+    };
+    let shaded = casters.iter().any(|&caster| {
+        let shape = &stage.objects[caster as usize].shape;
+        shape.hit(&ray, NEAR, f32::INFINITY).is_some()
+    });
+    if shaded { 0.0 } else { open }
+}
+
+/// Share of the sky seen this far from a corner.
+fn corner(distance: f32) -> f32 {
+    0.55 + 0.45 * smoothstep(-0.1, 0.9, distance)
+}
+
+/// Share of the sky seen from the floor, between the walls and the objects `standing` around.
+fn open_floor(stage: &Stage, standing: &[u16], point: Vec3) -> f32 {
+    let mut open = corner(BACK - point.z) * corner(point.x - LEFT) * corner(RIGHT - point.x);
+    for &object in standing {
+        let Some((centre, radius)) = foot(&stage.objects[object as usize].shape) else {
+            continue;
+        };
+        // Cosine-weighted share of the hemisphere that a ball hides, cut off smoothly.
+        let to_centre = centre - point;
+        let squares = to_centre.length_squared() / (radius * radius);
+        let near = (1.0 - squares / (REACH * REACH)).max(0.0);
+        let cosine = (-to_centre.y / radius).max(0.0) / squares.sqrt();
+        open *= 1.0 - near * cosine / squares.max(1.0);
+    }
+    open
+}
+
+/// The ball that stands for the foot of an object on the floor; `None` for what does not stand there.
+fn foot(shape: &Shape) -> Option<(Vec3, f32)> {
+    match *shape {
+        Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => {
+            Some((centre, radius))
+        }
+        Shape::Post { centre, radius, .. } => Some((centre.with_y(FLOOR - radius), radius)),
+        Shape::Block { centre, half } if centre.y + half.y > FLOOR - 0.1 => {
+            let radius = half.x.max(half.z);
+            Some((centre.with_y(FLOOR - radius), radius))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the foot of `shape` darkens the floor somewhere in a ball.
+pub(super) fn darkens(shape: &Shape, (centre, radius): (Vec3, f32)) -> bool {
+    foot(shape).is_some_and(|(foot, size)| foot.distance(centre) < REACH * size + radius)
+}
+
+/// Share of the sun that passes a roof of slats above and behind the camera: it stripes the floor and the walls.
+fn slats(point: Vec3) -> f32 {
+    const HEIGHT: f32 = -3.4;
+    /// The sun's diameter as a slope.
+    const BLUR: f32 = 0.0093;
+    let t = (HEIGHT - point.y) / TO_SUN.y;
+    let above = point + TO_SUN * t;
+    if t < 0.0 || !(-6.0..3.2).contains(&above.z) || above.x > 1.4 {
+        return 1.0;
+    }
+    let w = BLUR * t;
+    let across = pulse(above.z / 0.42, 0.55, w / 0.42);
+    let along = pulse(above.x / 1.6, 0.92, w / 1.6);
+    across * along
+}
+
+/// Sky with fair-weather clouds; a function of direction alone.
+pub(super) fn sky(direction: Vec3) -> Vec3 {
+    let d = direction.normalize();
+    let up = (-d.y).max(0.0);
+    let blue =
+        Vec3::new(0.66, 0.80, 0.95).lerp(Vec3::new(0.16, 0.36, 0.74), smoothstep(0.0, 0.75, up));
+    let p = Vec2::new(d.x, d.y * 2.0) * (11.0 / (0.6 + d.z.abs()));
+    let cover = fbm(p, 0.02, 5, 407);
+    let cloud = smoothstep(0.50, 0.68, cover);
+    let lit = Vec3::splat(0.72).lerp(Vec3::splat(1.12), smoothstep(0.45, 0.8, cover));
+    blue.lerp(lit, 0.85 * cloud)
+}
