@@ -62,10 +62,10 @@ fn still_camera(_: f64) -> Camera {
     Camera::looking(Vec3::ZERO, 0.0, 0.0)
 }
 
-/// What all scenes share: floor, walls, pictures, a bench, balls, columns and the trees behind. The floor comes first.
-fn courtyard() -> Vec<Object> {
-    const STONE: Material = Material::Plaster([0.62, 0.57, 0.48]);
-    const OAK: [f32; 3] = [0.40, 0.24, 0.12];
+const STONE: Material = Material::Plaster([0.62, 0.57, 0.48]);
+
+/// Floor, walls and what hangs on them, columns and the trees behind. The floor comes first.
+fn walls() -> Vec<Object> {
     vec![
         rect(
             [0.0, FLOOR, 5.0],
@@ -119,6 +119,13 @@ fn courtyard() -> Vec<Object> {
             [0.9, 0.62],
             Material::Rug,
         ),
+    ]
+}
+
+/// What stands around: a bench, a globe on its pedestal, balls.
+fn things() -> Vec<Object> {
+    const OAK: [f32; 3] = [0.40, 0.24, 0.12];
+    vec![
         post(-2.45, 7.2, 0.17, -1.8, STONE),
         post(3.1, 7.2, 0.17, -1.8, STONE),
         ball([-3.0, -2.5, 12.0], 1.6, Material::Foliage),
@@ -154,7 +161,8 @@ fn notice() -> Vec<Object> {
 }
 
 fn scene(extra: Vec<Object>, camera: fn(f64) -> Camera) -> Scene {
-    let mut objects = courtyard();
+    let mut objects = walls();
+    objects.extend(things());
     objects.extend(extra);
     Scene {
         objects,
@@ -174,7 +182,7 @@ pub(super) fn still() -> Scene {
 /// `lateral`: half a metre to either side, 1 m/s at the middle, past posts a good metre away.
 pub(super) fn lateral() -> Scene {
     let mut extra = notice();
-    for (x, z) in [(-0.72, 1.2), (0.36, 1.4), (1.25, 1.9), (-1.6, 2.4)] {
+    for (x, z) in [(-0.6, 1.0), (0.36, 1.4), (1.25, 1.9), (-1.6, 2.4)] {
         extra.push(post(x, z, 0.05, -3.0, Material::Spiral));
     }
     scene(extra, |t| {
@@ -200,7 +208,7 @@ pub(super) fn occluder() -> Scene {
             spin: Mat3::IDENTITY,
         }),
     });
-    const ROLLING: f32 = 0.3;
+    const ROLLING: f32 = 0.5;
     extra.push(Object {
         path: Some(|t| {
             let x = 1.5 * (TAU * t / 5.0).cos();
@@ -210,12 +218,12 @@ pub(super) fn occluder() -> Scene {
                     * Mat3::from_rotation_x(1.2),
             }
         }),
-        ..ball([0.0, FLOOR - ROLLING, 2.6], ROLLING, Material::BeachBall)
+        ..ball([0.0, FLOOR - ROLLING, 3.3], ROLLING, Material::BeachBall)
     });
     let mut scene = scene(extra, |t| {
-        let swing = (TAU * t / 8.0).sin();
+        let swing = (TAU * t / 6.0).sin();
         Camera::looking(
-            Vec3::new((0.25 * swing) as f32, 0.0, 0.0),
+            Vec3::new((0.35 * swing) as f32, 0.0, 0.0),
             (-0.03 * swing) as f32,
             0.0,
         )

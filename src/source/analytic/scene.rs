@@ -5,7 +5,7 @@ use super::texture::Material;
 use glam::{Mat3, Vec3};
 
 /// Direction towards the sun: behind the first camera, to its left and above.
-pub(super) const TO_SUN: Vec3 = Vec3::new(-0.529_807_98, -0.739_731_9, -0.414_849_64);
+pub(super) const TO_SUN: Vec3 = Vec3::new(-0.529_808, -0.739_731_9, -0.414_849_64);
 
 /// Where an object is: points of its own frame are turned by `spin` and moved by `offset`, about the shape's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -120,7 +120,7 @@ fn bricks(uv: Vec2, w: Vec2) -> Vec3 {
     let mut clay = Vec3::new(0.46, 0.20, 0.125) * (1.0 + 1.0 * pick * kept);
     clay += Vec3::new(0.06, 0.05, 0.05) * hue * kept;
     let wide = w.max_element();
-    let rough = 0.6 + 0.8 * fbm(uv * Vec2::new(14.0, 22.0), 18.0 * wide, 3, 43);
+    let rough = 0.6 + 0.8 * fbm(uv * Vec2::new(14.0, 22.0), 18.0 * wide, 2, 43);
     let stain = 0.75 + 0.5 * fbm(uv * 0.9, 0.9 * wide, 2, 47);
     let face = pulse(p.x, 0.95, w_cell.x) * pulse(p.y, 0.86, w_cell.y);
     let mortar = Vec3::new(0.50, 0.46, 0.40);
@@ -217,7 +217,7 @@ fn rug(uv: Vec2, w: Vec2) -> Vec3 {
 fn plaster(uv: Vec2, w: Vec2, tint: Vec3) -> Vec3 {
     let wide = w.max_element();
     let coarse = fbm(uv * 1.3, 1.3 * wide, 2, 61);
-    let fine = fbm(uv * 28.0, 28.0 * wide, 3, 67);
+    let fine = fbm(uv * 28.0, 28.0 * wide, 2, 67);
     tint * (0.6 + 0.45 * coarse + 0.5 * fine)
 }
 
