@@ -126,10 +126,29 @@ fn open_analytic(
     limits: &ReadLimits,
     scene: &SceneOptions,
 ) -> Result<AnalyticSource, InputError> {
-    let size = scene.size.unwrap_or([640, 360]);
-    limits.check(&format!("analytic:{name}"), size[0].into(), size[1].into())?;
-    let hfov_deg = scene.hfov_deg.unwrap_or(70.0);
-    AnalyticSource::new(name, size, hfov_deg, scene.fps.unwrap_or(60.0))
+    let size = scene.size.unwrap_or(analytic::DEFAULT_SIZE);
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if pixels > limits.max_pixels {
+        return Err(InputError::new(
+            format!("analytic:{name}"),
+            format!(
+                "{}x{} pixels are above the limit of {} million",
+                size[0],
+                size[1],
+                limits.max_pixels / 1_000_000
+            ),
+            format!(
+                "choose a smaller size, or raise the limit with --max-megapixels {}",
+                pixels.div_ceil(1_000_000)
+            ),
+        ));
+    }
+    AnalyticSource::new(
+        name,
+        size,
+        scene.hfov_deg.unwrap_or(analytic::DEFAULT_HFOV_DEG),
+        scene.fps.unwrap_or(analytic::DEFAULT_FPS),
+    )
 }
 
 fn scene_error(input: &str) -> InputError {

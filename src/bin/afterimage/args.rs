@@ -213,16 +213,6 @@ pub enum FormatName {
     Exr,
 }
 
-impl FormatName {
-    /// File ending.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Exr => "exr",
-        }
-    }
-}
-
 /// `WxH` in pixels.
 pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let expected = "expected WxH in pixels, such as 1280x720";

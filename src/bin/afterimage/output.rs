@@ -47,15 +47,22 @@ impl Output {
         }
         // A file that can be made is the proof that the folder can be written.
         let probe = root.join(".afterimage.partial");
-        File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
-        for path in stale.into_iter().chain(ours.then(|| root.join("report.json"))) {
+        File::create(&probe)
+            .and_then(|_| fs::remove_file(&probe))
+            .map_err(|e| refuse(root, &e))?;
+        for path in stale
+            .into_iter()
+            .chain(ours.then(|| root.join("report.json")))
+        {
             fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
         }
         for part in parts {
             let folder = root.join(part);
             fs::create_dir_all(&folder).map_err(|e| refuse(&folder, &e))?;
         }
-        Ok(Self { root: root.to_owned() })
+        Ok(Self {
+            root: root.to_owned(),
+        })
     }
 
     /// Frame `index` of `folder`, from its linear or its encoded image.
@@ -142,10 +149,16 @@ fn numbered_frames(folder: &Path) -> Vec<PathBuf> {
     };
     let is_frame = |path: &PathBuf| {
         let ending = path.extension().and_then(|e| e.to_str());
-        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+        let stem = path
+            .file_stem()
+            .and_then(|s| s.to_str())
+            .unwrap_or_default();
         matches!(ending, Some("png" | "exr"))
             && stem.len() == 6
             && stem.bytes().all(|b| b.is_ascii_digit())
     };
-    entries.filter_map(|e| Some(e.ok()?.path())).filter(is_frame).collect()
+    entries
+        .filter_map(|e| Some(e.ok()?.path()))
+        .filter(is_frame)
+        .collect()
 }

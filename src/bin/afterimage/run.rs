@@ -16,8 +16,10 @@ use std::path::PathBuf;
 
 /// Foveate a frame stream, enhance it, score it
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
-    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json.")]
+#[command(
+    after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
+    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+)]
 pub struct RunArgs {
     /// A still (.png, .jpg, .exr), a folder of .exr frames, or analytic:NAME with NAME one of still, lateral, occluder,
     /// light-step, scroll
@@ -26,7 +28,12 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
-    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        default_value = "synthetic:0",
+        value_name = "GAZE",
+        allow_hyphen_values = true
+    )]
     pub gaze: String,
     /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
     #[arg(long, value_enum)]
@@ -49,7 +56,13 @@ pub struct RunArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        default_value = "none,wrs",
+        value_name = "LIST"
+    )]
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
@@ -63,7 +76,12 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value = "png")]
     pub format: FormatName,
     /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "EV",
+        allow_negative_numbers = true
+    )]
     pub exposure: f32,
     /// Also write the full-rate frames
     #[arg(long)]
@@ -149,6 +167,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// Runs and writes, without a word.
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
+    check(args)?;
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let mut source = open(args, &limits)?;
     let plan = plan(args, source.info())?;
@@ -191,11 +210,6 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
 }
 
 fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    if args.backend == BackendName::Gpu {
-        return Err(Failure::Input(
-            "--backend gpu: this version computes on the CPU only; use --backend auto or cpu".into(),
-        ));
-    }
     let scene = source::SceneOptions {
         size: args.size,
         hfov_deg: args.hfov,
@@ -204,21 +218,46 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
     Ok(source::open(&args.input, limits, &scene)?)
 }
 
-fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+/// What can be wrong before anything is opened.
+fn check(args: &RunArgs) -> Result<(), Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    let fps = args.fps.or(info.fps).unwrap_or(60.0);
-    if !(fps > 0.0 && fps <= 10_000.0) {
-        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
+    if args.backend == BackendName::Gpu {
+        return refuse(
+            "--backend gpu: this version computes on the CPU only; use --backend auto or cpu"
+                .into(),
+        );
+    }
+    if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
+        return refuse(format!(
+            "--fps {fps}: expected above 0 and at most 10000 frames per second"
+        ));
+    }
+    if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
+        return refuse(format!(
+            "--hfov {hfov}: expected above 0 and below 180 degrees"
+        ));
     }
     if !(args.start >= 0.0 && args.start.is_finite()) {
-        return refuse(format!("--start {}: expected seconds, 0 or more", args.start));
+        return refuse(format!(
+            "--start {}: expected seconds, 0 or more",
+            args.start
+        ));
     }
-    if !(args.exposure.abs() <= 32.0) {
-        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
+    if !(-32.0..=32.0).contains(&args.exposure) {
+        return refuse(format!(
+            "--exposure {}: expected -32 to 32 stops",
+            args.exposure
+        ));
     }
     if args.frames == Some(0) {
         return refuse("--frames 0: expected at least 1 frame".into());
     }
+    Ok(())
+}
+
+fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    let fps = args.fps.or(info.fps).unwrap_or(60.0);
     let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
     let foveation = args.foveation.foveation();
     foveation.validate()?;
@@ -277,7 +316,11 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
 fn folders(args: &RunArgs) -> Vec<String> {
     let mut folders: Vec<String> = args.method.iter().map(|m| m.name().to_owned()).collect();
     for method in args.method.iter().filter(|&&m| m != MethodName::Oracle) {
-        folders.extend(args.debug.iter().map(|d| format!("debug/{}/{}", method.name(), d.name())));
+        folders.extend(
+            args.debug
+                .iter()
+                .map(|d| format!("debug/{}/{}", method.name(), d.name())),
+        );
     }
     if args.reference {
         folders.push("reference".into());

@@ -93,31 +93,32 @@ impl AnalyticSource {
     /// If there is no such scene, a side is 0 or above [`MAX_SIDE`], the field of view is not in (0, 180) degrees, or the
     /// frame rate is not above 0 and finite.
     pub fn new(name: &str, size: [u32; 2], hfov_deg: f32, fps: f32) -> Result<Self, InputError> {
+        let subject = format!("analytic:{name}");
         let Some(&(_, kind)) = KINDS.iter().find(|(known, _)| *known == name) else {
             let names: Vec<_> = Self::names().collect();
             return Err(InputError::new(
-                name,
+                &subject,
                 "there is no analytic scene of this name",
                 format!("expected one of {}", names.join(", ")),
             ));
         };
         if size.iter().any(|&s| s == 0 || s > MAX_SIDE) {
             return Err(InputError::new(
-                name,
+                &subject,
                 format!("the size is {}x{}", size[0], size[1]),
                 format!("expected 1 to {MAX_SIDE} pixels a side"),
             ));
         }
         if !(fps.is_finite() && fps > 0.0) {
             return Err(InputError::new(
-                name,
+                &subject,
                 format!("the frame rate is {fps}"),
                 "expected frames per second above 0",
             ));
         }
         let view = ViewGeometry::flat(size, hfov_deg).map_err(|error| {
             InputError::new(
-                name,
+                &subject,
                 format!("{} is {}", error.setting, error.found),
                 format!("expected {}", error.expected),
             )
@@ -130,7 +131,7 @@ impl AnalyticSource {
         };
         Ok(Self {
             info: SourceInfo {
-                name: name.to_owned(),
+                name: subject,
                 size,
                 frames: None,
                 fps: Some(fps),

@@ -1,0 +1,130 @@
+//! `afterimage info`: what an input holds, or which adapters there are.
+
+use crate::failure::Failure;
+use afterimage::error::InputError;
+use afterimage::scanpath::{GazeMap, read_csv};
+use afterimage::source::motion_check::{self, Verdict};
+use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions};
+use clap::Args;
+use std::path::Path;
+
+/// Say what an input holds, or which adapters there are
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Examples:\n  afterimage info frames/\n  afterimage info viewing.csv\n  afterimage info adapters"
+)]
+pub struct InfoArgs {
+    /// An input of `run`, a scanpath (.csv), or the word adapters
+    pub input: String,
+    /// Largest image that is read, million pixels
+    #[arg(long, default_value_t = 64, value_name = "N")]
+    pub max_megapixels: u32,
+}
+
+/// The subcommand.
+pub fn info(args: &InfoArgs) -> Result<(), Failure> {
+    if args.input == "adapters" {
+        println!("no GPU adapters: this version computes on the CPU only");
+        println!("CPU: {} threads", rayon::current_num_threads());
+        return Ok(());
+    }
+    if Path::new(&args.input)
+        .extension()
+        .is_some_and(|e| e == "csv")
+    {
+        return Ok(scanpath_info(&args.input)?);
+    }
+    let limits = ReadLimits::from_megapixels(args.max_megapixels);
+    let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;
+    Ok(frames_info(source.as_mut())?)
+}
+
+fn scanpath_info(path: &str) -> Result<(), InputError> {
+    let scanpath = read_csv(Path::new(path))?;
+    let screen = scanpath.screen();
+    let lost = scanpath.samples().iter().filter(|s| s.px.is_none()).count();
+    println!("scanpath of {:.3} s", scanpath.duration_s());
+    println!("samples: {} ({lost} lost)", scanpath.samples().len());
+    println!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
+    match (screen.size_cm, screen.distance_cm) {
+        (Some([w, h]), Some(d)) => println!("geometry: {w}x{h} cm seen from {d} cm"),
+        _ => println!("geometry: not known"),
+    }
+    let map = match GazeMap::default_for(screen) {
+        GazeMap::Angle => "angle",
+        GazeMap::Fit => "fit",
+    };
+    println!("default --gaze-map: {map}");
+    if let Some(task) = &scanpath.about().task {
+        println!("task: {task}");
+    }
+    for (key, value) in &scanpath.about().notes {
+        println!("{key}: {value}");
+    }
+    Ok(())
+}
+
+fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
+    let info = source.info().clone();
+    let known = |v: Option<f32>| v.map_or("not stated".to_owned(), |v| v.to_string());
+    println!("{}", info.name);
+    println!("size: {}x{} px", info.size[0], info.size[1]);
+    match info.frames {
+        Some(n) => println!("frames: {n}"),
+        None => println!("frames: without end"),
+    }
+    println!("still: {}", if info.still { "yes" } else { "no" });
+    println!("frames per second: {}", known(info.fps));
+    println!(
+        "horizontal field of view, degrees: {}",
+        known(info.hfov_deg)
+    );
+    let first = source.frame(0)?;
+    println!("non-finite pixels in frame 0: {}", first.nonfinite);
+    let brightest = first
+        .color
+        .pixels()
+        .iter()
+        .flatten()
+        .fold(0.0_f32, |a, &b| a.max(b));
+    println!("brightest channel in frame 0, linear: {brightest}");
+    match &first.depth {
+        None => println!("depth: none"),
+        Some(depth) => {
+            let finite = depth.pixels().iter().filter(|z| z.is_finite() && **z < 1e9);
+            let (near, far) =
+                finite.fold((f32::INFINITY, 0.0_f32), |(a, b), &z| (a.min(z), b.max(z)));
+            println!("depth in frame 0: {near} to {far}");
+        }
+    }
+    if info.still || info.frames == Some(1) {
+        println!("motion: none, it is a still");
+        return Ok(());
+    }
+    let second = source.frame(1)?;
+    let Some(motion) = &second.motion else {
+        println!("motion: none");
+        return Ok(());
+    };
+    let largest = motion
+        .pixels()
+        .iter()
+        .map(|m| m[0].hypot(m[1]))
+        .fold(0.0_f32, f32::max);
+    println!("motion in frame 1: up to {largest:.2} px");
+    let check = motion_check::detect(&first.color, &second.color, motion)?;
+    let explains = |db: f64| format!("frame 0 moved by it explains frame 1 to {db:.1} dB");
+    let best = check.psnr_db.first().map_or(f64::NAN, |p| p.1);
+    match check.verdict {
+        Verdict::Undecidable => println!("motion convention: cannot be told, too little moves"),
+        _ if check.best == Default::default() => {
+            println!("motion convention: as read ({})", explains(best));
+        }
+        verdict => println!(
+            "motion convention: WRONG? Read as {:?}, {} ({verdict:?}); check the channels",
+            check.best,
+            explains(best)
+        ),
+    }
+    Ok(())
+}
