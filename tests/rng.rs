@@ -104,10 +104,11 @@ fn h24_h25_neighbours_and_shifted_frames_are_independent() {
 fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
     let pixels = || (0..512).flat_map(|y| (0..512).map(move |x| (x, y)));
     let wrap = u64::from(u32::MAX);
-    let cases: [(&str, Box<dyn Fn(u32, u32) -> (f32, f32)>); 4] = [
+    type Pair<'a> = &'a dyn Fn(u32, u32) -> (f32, f32);
+    let cases: [(&str, Pair<'_>); 4] = [
         (
             "views",
-            Box::new(|x, y| {
+            &(|x, y| {
                 (
                     draw(x, y, 0, 3, Purpose::Select),
                     draw(x, y, 1, 3, Purpose::Select),
@@ -116,7 +117,7 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
         ),
         (
             "purposes",
-            Box::new(|x, y| {
+            &(|x, y| {
                 (
                     draw(x, y, 0, 3, Purpose::Select),
                     draw(x, y, 0, 3, Purpose::Key),
@@ -125,7 +126,7 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
         ),
         (
             "2^32 frames apart",
-            Box::new(move |x, y| {
+            &(move |x, y| {
                 (
                     draw(x, y, 0, 3, Purpose::Select),
                     draw(x, y, 0, wrap + 4, Purpose::Select),
@@ -134,7 +135,7 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
         ),
         (
             "frames around the wrap",
-            Box::new(move |x, y| {
+            &(move |x, y| {
                 (
                     draw(x, y, 0, wrap, Purpose::Select),
                     draw(x, y, 0, wrap + 1, Purpose::Select),
@@ -171,7 +172,7 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
 #[test]
 fn h26_no_period_at_the_row_length() {
     for width in [1_u32, 3, 4095, 4097] {
-        let rows = (400_000 / width).max(64).min(65_536);
+        let rows = (400_000 / width).clamp(64, 65_536);
         let p = p_of_correlation((0..rows).flat_map(|y| (0..width).map(move |x| (x, y))).map(
             |(x, y)| {
                 (

@@ -1,6 +1,6 @@
-#![cfg(feature = "lab")]
 //! Analytic scenes: their depth and motion against closed forms in f64 that share no code with them, their promises about
 //! what stays the same, and the page of text among the fixtures.
+#![cfg(feature = "lab")]
 
 use afterimage::image::Image;
 use afterimage::source::analytic::{AnalyticSource, LIGHT_STEP};

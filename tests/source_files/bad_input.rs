@@ -3,13 +3,19 @@
 use crate::{ALL, Extras, assert_says, error_of, folder_of, limits, picture, write_frame};
 use afterimage::error::InputError;
 use afterimage::source::exr_file::{ExrHeader, FrameToWrite, write};
-use afterimage::source::{FrameSource, ReadLimits, SequenceSource, StillSource, open};
+use afterimage::source::{
+    FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open,
+};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use std::path::Path;
 
 fn refused(path: &Path) -> InputError {
-    error_of(open(path.to_str().unwrap(), &limits()))
+    error_of(open(
+        path.to_str().unwrap(),
+        &limits(),
+        &SceneOptions::default(),
+    ))
 }
 
 #[test]
@@ -26,7 +32,7 @@ fn paths_and_kinds() {
         &["clip.mp4", ".exr", ".png", ".jpg", ".jpeg"],
     );
     for scene in ["builtin:cornell", "scene.gltf", "scene.GLB"] {
-        let e = error_of(open(scene, &limits()));
+        let e = error_of(open(scene, &limits(), &SceneOptions::default()));
         assert_says(&e, &[scene, "renderer", "EXR frames"]);
     }
     std::fs::write(at("empty.exr"), b"").unwrap();

@@ -5,7 +5,7 @@ use afterimage::display::ViewGeometry;
 use afterimage::image::Image;
 use afterimage::source::exr_file::{ExrHeader, Vectors};
 use afterimage::source::motion_check::{Verdict, detect};
-use afterimage::source::{FrameSource, SequenceSource, SourceFrame, open};
+use afterimage::source::{FrameSource, SceneOptions, SequenceSource, SourceFrame, open};
 use glam::{Mat4, Vec3};
 
 fn tone(x: f32) -> f32 {
@@ -99,7 +99,12 @@ fn counts_sizes_and_channels() {
         ("blender_raw", [480, 270], 1),
     ] {
         let Some(folder) = recorded(name) else { return };
-        let mut source = open(folder.to_str().unwrap(), &limits()).unwrap();
+        let mut source = open(
+            folder.to_str().unwrap(),
+            &limits(),
+            &SceneOptions::default(),
+        )
+        .unwrap();
         let info = source.info().clone();
         assert_eq!((info.size, info.frames), (size, Some(frames)), "{name}");
         assert_eq!(info.still, frames == 1, "{name}");

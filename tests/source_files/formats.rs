@@ -3,7 +3,7 @@
 use crate::{ALL, Extras, folder_of, limits, picture, vectors};
 use afterimage::image::Image;
 use afterimage::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
-use afterimage::source::{FrameSource, SequenceSource, StillSource, open};
+use afterimage::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 use std::path::Path;
@@ -18,7 +18,7 @@ fn srgb(v: f64) -> f32 {
 }
 
 fn still(path: &Path) -> afterimage::source::SourceFrame {
-    let mut source = open(path.to_str().unwrap(), &limits()).unwrap();
+    let mut source = open(path.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
     assert!(source.info().still);
     assert_eq!(source.info().frames, Some(1));
     let first = source.frame(0).unwrap();
@@ -134,11 +134,11 @@ fn half_output_clamps_and_a_failed_write_leaves_the_old_file() {
         ..FrameToWrite::color(&color)
     };
     let e = write(&path, &frame).unwrap_err().to_string();
-    assert!(e.contains("f.exr") && e.contains("size"), "{e}");
+    assert!(e.contains("size"), "{e}");
     assert_eq!(still(&path).color, read.color);
     let nowhere = folder.path().join("none/f.exr");
     let e = write(&nowhere, &FrameToWrite::color(&color)).unwrap_err();
-    assert!(e.to_string().contains("none"), "{e}");
+    assert_eq!(e.kind(), std::io::ErrorKind::NotFound, "{e}");
 }
 
 #[test]
@@ -322,7 +322,7 @@ fn one_frame_in_a_folder_is_a_still_and_depth_is_optional() {
     std::fs::write(folder.path().join(".frame_0001.exr"), b"hidden").unwrap();
     let cameras = r#"{"fps": 24, "horizontal_fov_deg": 50.5, "width": 8, "height": 4}"#;
     std::fs::write(folder.path().join("cameras.json"), cameras).unwrap();
-    let mut source = open(name, &limits()).unwrap();
+    let mut source = open(name, &limits(), &SceneOptions::default()).unwrap();
     let frame = source.frame(7).unwrap();
     assert!(frame.depth.is_none() && frame.motion.is_none());
     let info = source.info();

@@ -2,7 +2,7 @@
 
 use crate::{picture, vectors};
 use afterimage::source::exr_file::{ColorFormat, FrameToWrite, write};
-use afterimage::source::{ReadLimits, open};
+use afterimage::source::{ReadLimits, SceneOptions, open};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use proptest::prelude::*;
@@ -122,7 +122,7 @@ fn the_samples_are_sound() {
     for (name, bytes) in samples() {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        let mut source = open(path.to_str().unwrap(), &LIMITS).unwrap();
+        let mut source = open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()).unwrap();
         assert_eq!(source.frame(0).unwrap().color.size(), [24, 20], "{name}");
     }
 }
@@ -143,7 +143,11 @@ fn dwa_counters_do_not_set_memory_aside() {
         let at = chunk + 8 + 8 * counter;
         bytes[at..at + 8].copy_from_slice(&(1u64 << 35).to_le_bytes());
         std::fs::write(&path, &bytes).unwrap();
-        let e = crate::error_of(open(path.to_str().unwrap(), &LIMITS));
+        let e = crate::error_of(open(
+            path.to_str().unwrap(),
+            &LIMITS,
+            &SceneOptions::default(),
+        ));
         crate::assert_says(&e, &["dwaa_lines.exr", "damaged"]);
     }
 }
@@ -175,7 +179,7 @@ proptest! {
         let path = folder.path().join(name);
         std::fs::write(&path, &bytes).unwrap();
         let before = peak_mb();
-        match open(path.to_str().unwrap(), &LIMITS) {
+        match open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()) {
             Err(e) => {
                 let text = e.to_string();
                 prop_assert!(text.contains(name.as_str()), "{}", text);

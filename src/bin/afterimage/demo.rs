@@ -45,11 +45,11 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
         .chain(DEMO.iter().copied())
         .chain(["--out", &out]);
     let run = Run::try_parse_from(command).map_err(|e| Failure::Work(e.to_string()))?;
-    println!("afterimage demo: a built-in scene, looked at for 2.5 s by a synthetic eye.");
-    println!(
+    say!("afterimage demo: a built-in scene, looked at for 2.5 s by a synthetic eye.");
+    say!(
         "It is shown at full rate only within 2.5 degrees of the gaze (the fovea), in 4-pixel blocks to 7.5 degrees and"
     );
-    println!(
+    say!(
         "in 8-pixel blocks beyond, as a foveating renderer would. Each method gets the same foveated frames.\n"
     );
     let report = execute(&run.args)?;
@@ -58,21 +58,21 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
         explain(none, wrs, oracle);
     }
     let sheet = args.out.join("sheet.png");
-    println!("Look at {}:", sheet.display());
-    println!(
+    say!("Look at {}:", sheet.display());
+    say!(
         "  top row      the last frame; the yellow circle is where the eye looks, the blue line where it has been"
     );
-    println!(
+    say!(
         "  middle row   the error: black is none. Dark trails along the blue line are detail that was kept"
     );
-    println!(
+    say!(
         "  bottom row   a close look at the green square, which the eye has left: sharp is kept, blurred is lost"
     );
-    println!(
+    say!(
         "Frames: {0}/none, {0}/wrs, {0}/oracle, {0}/reference; figures: {0}/report.json",
         args.out.display()
     );
-    println!(
+    say!(
         "The same by hand: afterimage run {} --out {}",
         DEMO.join(" "),
         args.out.display()
@@ -84,13 +84,13 @@ fn explain(none: &MethodReport, wrs: &MethodReport, oracle: &MethodReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.1} dB"));
     let row = |what: &str, m: &MethodReport| {
         let (whole, retained) = (m.scores.whole.psnr_db, m.scores.retained_psnr_db);
-        println!("  {what:46} {:>9} {:>12}", db(whole), db(retained));
+        say!("  {what:46} {:>9} {:>12}", db(whole), db(retained));
     };
-    println!("  {:46} {:>9} {:>12}", "", "all", "seen before");
+    say!("  {:46} {:>9} {:>12}", "", "all", "seen before");
     row("none: the foveated frame alone", none);
     row("wrs: weighted reservoirs keep earlier samples", wrs);
     row("oracle: the best that any reuse could show", oracle);
-    println!(
+    say!(
         "\"seen before\" is the part outside the fovea that the eye has already seen sharp: what reuse is for.\n"
     );
 }

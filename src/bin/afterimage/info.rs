@@ -24,8 +24,8 @@ pub struct InfoArgs {
 /// The subcommand.
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.input == "adapters" {
-        println!("no GPU adapters: this version computes on the CPU only");
-        println!("CPU: {} threads", rayon::current_num_threads());
+        say!("no GPU adapters: this version computes on the CPU only");
+        say!("CPU: {} threads", rayon::current_num_threads());
         return Ok(());
     }
     if Path::new(&args.input)
@@ -43,23 +43,23 @@ fn scanpath_info(path: &str) -> Result<(), InputError> {
     let scanpath = read_csv(Path::new(path))?;
     let screen = scanpath.screen();
     let lost = scanpath.samples().iter().filter(|s| s.px.is_none()).count();
-    println!("scanpath of {:.3} s", scanpath.duration_s());
-    println!("samples: {} ({lost} lost)", scanpath.samples().len());
-    println!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
+    say!("scanpath of {:.3} s", scanpath.duration_s());
+    say!("samples: {} ({lost} lost)", scanpath.samples().len());
+    say!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
     match (screen.size_cm, screen.distance_cm) {
-        (Some([w, h]), Some(d)) => println!("geometry: {w}x{h} cm seen from {d} cm"),
-        _ => println!("geometry: not known"),
+        (Some([w, h]), Some(d)) => say!("geometry: {w}x{h} cm seen from {d} cm"),
+        _ => say!("geometry: not known"),
     }
     let map = match GazeMap::default_for(screen) {
         GazeMap::Angle => "angle",
         GazeMap::Fit => "fit",
     };
-    println!("default --gaze-map: {map}");
+    say!("default --gaze-map: {map}");
     if let Some(task) = &scanpath.about().task {
-        println!("task: {task}");
+        say!("task: {task}");
     }
     for (key, value) in &scanpath.about().notes {
-        println!("{key}: {value}");
+        say!("{key}: {value}");
     }
     Ok(())
 }
@@ -67,43 +67,43 @@ fn scanpath_info(path: &str) -> Result<(), InputError> {
 fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     let info = source.info().clone();
     let known = |v: Option<f32>| v.map_or("not stated".to_owned(), |v| v.to_string());
-    println!("{}", info.name);
-    println!("size: {}x{} px", info.size[0], info.size[1]);
+    say!("{}", info.name);
+    say!("size: {}x{} px", info.size[0], info.size[1]);
     match info.frames {
-        Some(n) => println!("frames: {n}"),
-        None => println!("frames: without end"),
+        Some(n) => say!("frames: {n}"),
+        None => say!("frames: without end"),
     }
-    println!("still: {}", if info.still { "yes" } else { "no" });
-    println!("frames per second: {}", known(info.fps));
-    println!(
+    say!("still: {}", if info.still { "yes" } else { "no" });
+    say!("frames per second: {}", known(info.fps));
+    say!(
         "horizontal field of view, degrees: {}",
         known(info.hfov_deg)
     );
     let first = source.frame(0)?;
-    println!("non-finite pixels in frame 0: {}", first.nonfinite);
+    say!("non-finite pixels in frame 0: {}", first.nonfinite);
     let brightest = first
         .color
         .pixels()
         .iter()
         .flatten()
         .fold(0.0_f32, |a, &b| a.max(b));
-    println!("brightest channel in frame 0, linear: {brightest}");
+    say!("brightest channel in frame 0, linear: {brightest}");
     match &first.depth {
-        None => println!("depth: none"),
+        None => say!("depth: none"),
         Some(depth) => {
             let finite = depth.pixels().iter().filter(|z| z.is_finite() && **z < 1e9);
             let (near, far) =
                 finite.fold((f32::INFINITY, 0.0_f32), |(a, b), &z| (a.min(z), b.max(z)));
-            println!("depth in frame 0: {near} to {far}");
+            say!("depth in frame 0: {near} to {far}");
         }
     }
     if info.still || info.frames == Some(1) {
-        println!("motion: none, it is a still");
+        say!("motion: none, it is a still");
         return Ok(());
     }
     let second = source.frame(1)?;
     let Some(motion) = &second.motion else {
-        println!("motion: none");
+        say!("motion: none");
         return Ok(());
     };
     let largest = motion
@@ -111,16 +111,16 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
         .iter()
         .map(|m| m[0].hypot(m[1]))
         .fold(0.0_f32, f32::max);
-    println!("motion in frame 1: up to {largest:.2} px");
+    say!("motion in frame 1: up to {largest:.2} px");
     let check = motion_check::detect(&first.color, &second.color, motion)?;
     let explains = |db: f64| format!("frame 0 moved by it explains frame 1 to {db:.1} dB");
     let best = check.psnr_db.first().map_or(f64::NAN, |p| p.1);
     match check.verdict {
-        Verdict::Undecidable => println!("motion convention: cannot be told, too little moves"),
+        Verdict::Undecidable => say!("motion convention: cannot be told, too little moves"),
         _ if check.best == Default::default() => {
-            println!("motion convention: as read ({})", explains(best));
+            say!("motion convention: as read ({})", explains(best));
         }
-        verdict => println!(
+        verdict => say!(
             "motion convention: WRONG? Read as {:?}, {} ({verdict:?}); check the channels",
             check.best,
             explains(best)

@@ -1,5 +1,13 @@
 //! The `afterimage` command-line tool: one file a subcommand.
 
+/// Prints a line. A reader that has gone (a closed pipe) is no reason to stop working, let alone to panic.
+macro_rules! say {
+    ($($arg:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($arg)*);
+    }};
+}
+
 mod args;
 mod clip;
 mod demo;

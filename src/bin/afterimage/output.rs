@@ -3,8 +3,9 @@
 use crate::args::FormatName;
 use crate::failure::Failure;
 use afterimage::image::Image;
-use afterimage::report::picture::{to_rgb8, write_png, write_whole};
+use afterimage::report::picture::{to_rgb8, write_png};
 use afterimage::source::exr_file::{self, FrameToWrite};
+use afterimage::whole_file::write_whole;
 use image::RgbImage;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};

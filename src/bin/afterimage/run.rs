@@ -330,16 +330,16 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
-    println!(
+    say!(
         "{} frames on the CPU ({} threads); the last figures are dB of pixels seen sharp before, and flicker:",
         report.gaze_px.len(),
         rayon::current_num_threads()
     );
-    println!("method    PSNR dB   SSIM   fovea    mid  periph  retained  flicker  ms/frame");
+    say!("method    PSNR dB   SSIM   fovea    mid  periph  retained  flicker  ms/frame");
     for (name, m) in &report.methods {
         let s = &m.scores;
         let bands = s.bands.map(|b| db(b.psnr_db));
-        println!(
+        say!(
             "{name:8} {:>8} {:>7} {:>6} {:>6} {:>7} {:>9} {:>8} {:>9}",
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
@@ -351,5 +351,5 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
         );
     }
-    println!("sheet: {}", args.out.join("sheet.png").display());
+    say!("sheet: {}", args.out.join("sheet.png").display());
 }

@@ -2,8 +2,8 @@
 
 use crate::args::parse_size;
 use crate::failure::Failure;
-use afterimage::report::picture::write_whole;
 use afterimage::scanpath::{EventKind, Screen, SyntheticOptions, generate, write_csv};
+use afterimage::whole_file::write_whole;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -48,7 +48,7 @@ pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
         ))
     })?;
     let count = |kind| synthetic.events.iter().filter(|e| e.kind == kind).count();
-    println!(
+    say!(
         "{}: {} s, {} fixations, {} saccades, {} microsaccades",
         args.out.display(),
         args.seconds,

@@ -1,14 +1,14 @@
 //! Writing a frame as EXR: all of it, or nothing.
 
 use crate::image::Image;
+use crate::whole_file::write_whole;
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder,
     SmallVec, WritableImage, f16,
 };
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::Path;
 
 /// Largest finite half float.
 const HALF_MAX: f32 = 65504.0;
@@ -51,21 +51,11 @@ impl<'a> FrameToWrite<'a> {
     }
 }
 
-/// Writes a scan-line EXR with ZIP compression, under a temporary name that is then changed to `path`: a reader never sees
-/// half a file, and an old one stays if anything fails. The same frame gives the same bytes.
+/// Writes a scan-line EXR with ZIP compression, whole or not at all. The same frame gives the same bytes.
 ///
 /// # Errors
-/// If the images differ in size or are empty, or the file cannot be written. The message names the file.
+/// If the images differ in size or are empty, or the file cannot be written.
 pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
-    write_unnamed(path, frame).map_err(|e| {
-        io::Error::new(
-            e.kind(),
-            format!("{}: cannot be written: {e}", path.display()),
-        )
-    })
-}
-
-fn write_unnamed(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     let size = frame.color.size();
     let others = [
         frame.depth.map(Image::size),
@@ -78,28 +68,10 @@ fn write_unnamed(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
             "colour, depth and motion must have one size of at least 1x1 pixels",
         ));
     }
-    let temporary = temporary_name(path)?;
-    let written = write_file(&temporary, frame).and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        // The first error is the one worth telling.
-        let _ = fs::remove_file(&temporary);
-    }
-    written
+    write_whole(path, |out| write_to(out, frame))
 }
 
-/// A name beside `path` that no other write of this machine uses.
-fn temporary_name(path: &Path) -> io::Result<PathBuf> {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name"))?;
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let pid = std::process::id();
-    let temporary = format!(".{}.{pid}.{count}.part", name.to_string_lossy());
-    Ok(path.with_file_name(temporary))
-}
-
-fn write_file(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
+fn write_to(out: &mut BufWriter<File>, frame: &FrameToWrite) -> io::Result<()> {
     let [w, h] = frame.color.size().map(|s| s as usize);
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -108,15 +80,13 @@ fn write_file(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     };
     let channels = AnyChannels::sort(SmallVec::from_vec(channels(frame)));
     let layer = Layer::new((w, h), LayerAttributes::default(), encoding, channels);
-    let mut out = BufWriter::new(File::create(path)?);
     exr::image::Image::from_layer(layer)
         .write()
-        .to_buffered(&mut out)
+        .to_buffered(out)
         .map_err(|e| match e {
             exr::error::Error::Io(e) => e,
             other => io::Error::other(other.to_string()),
-        })?;
-    out.flush()
+        })
 }
 
 fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
