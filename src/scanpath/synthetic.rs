@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Angles are true visual angles. A saccade turns the eye along a great circle, which is a straight line on a flat screen.
-//! The numbers below give about 2.4 saccades and 1.1 correctives a second on the default screen; either count, with or without
+//! The numbers below give about 2.5 saccades and 1.1 correctives a second on the default screen; either count, with or without
 //! the correctives, is within the 2 to 4 a second of ordinary viewing.
 
 use super::walk::Walk;

@@ -189,8 +189,8 @@ fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     (2.0 * (0.5 * chord).asin()).to_degrees()
 }
 
-/// From the samples alone: the time for the middle 80 % of the way follows the main sequence. A minimum-jerk profile covers
-/// 10 to 90 % of its way in 0.50523 of its time, so time against amplitude has the slope 0.50523 x 2.2 ms/deg.
+/// From the samples alone: the time for the middle 80 % of the way follows the main sequence. A minimum-jerk profile spends a
+/// fixed share of its time there, so time against amplitude has that share of the main sequence's slope and intercept.
 #[test]
 fn the_main_sequence_is_in_the_samples() {
     let mut points = Vec::new();
@@ -332,69 +332,6 @@ fn gaze_stays_on_the_screen_and_visits_all_of_it() {
         assert!(
             quarters.iter().all(|n| n * 10 > made.path.samples().len()),
             "{quarters:?}"
-        );
-    }
-}
-
-#[test]
-fn a_seed_is_a_scanpath() {
-    let make = |seed| {
-        generate(&SyntheticOptions {
-            seed,
-            duration_s: 3.0,
-            ..Default::default()
-        })
-        .unwrap()
-    };
-    assert_eq!(make(3), make(3));
-    let starts: Vec<_> = (0..20)
-        .map(|seed| make(seed).path.samples()[0].px.unwrap())
-        .collect();
-    for (i, a) in starts.iter().enumerate() {
-        assert!(starts[..i].iter().all(|b| a != b));
-    }
-    let lengths = [
-        (1.1, 10.0, 11),
-        (6.0, 250.0, 1500),
-        (0.001, 1.0, 1),
-        (2.0, 0.5 + 0.5, 2),
-    ];
-    for (duration_s, rate_hz, samples) in lengths {
-        let made = generate(&SyntheticOptions {
-            duration_s,
-            rate_hz,
-            ..Default::default()
-        })
-        .unwrap();
-        assert_eq!(made.path.samples().len(), samples);
-        assert_eq!((made.path.lost(), made.path.samples()[0].t_s), (0, 0.0));
-    }
-}
-
-#[test]
-fn options_out_of_range_are_named() {
-    let with = |change: fn(&mut SyntheticOptions)| {
-        let mut options = SyntheticOptions::default();
-        change(&mut options);
-        generate(&options).unwrap_err().to_string()
-    };
-    for (error, expected) in [
-        (with(|o| o.rate_hz = 0.0), "rate: 0 Hz"),
-        (with(|o| o.rate_hz = f64::NAN), "rate: NaN Hz"),
-        (with(|o| o.duration_s = -1.0), "duration: -1 s"),
-        (with(|o| o.duration_s = f64::NAN), "duration: NaN s"),
-        (with(|o| o.duration_s = 1e9), "at most ten million"),
-        (with(|o| o.screen.size_px = [0, 4]), "0x4 pixels"),
-        (with(|o| o.screen.size_cm = None), "not known"),
-        (with(|o| o.screen.distance_cm = Some(-3.0)), "from -3 cm"),
-        (
-            with(|o| o.screen.distance_cm = Some(3e3)),
-            "at least 9 degrees",
-        ),
-    ] {
-        assert!(
-            error.starts_with("synthetic scanpath, ") && error.contains(expected),
-            "{error}"
         );
     }
 }
