@@ -1,0 +1,331 @@
+//! Scanpath files: `# key: value` lines, the column names, then one row per sample.
+//!
+//! ```text
+//! # task: free viewing of a photograph
+//! # rate_hz: 500
+//! # screen_px: 1024x768
+//! # screen_cm: 38.0x30.0
+//! # distance_cm: 67
+//! t_s,x_px,y_px,valid
+//! 0.000,nan,nan,0
+//! 0.002,511.09,375.05,1
+//! ```
+
+use super::{About, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
+use crate::error::InputError;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::Path;
+
+/// Largest file that is read: 256 MiB, about three hours at 1250 Hz. Bounds the memory that a wrong path can take.
+pub const MAX_FILE_BYTES: u64 = 256 << 20;
+
+const COLUMNS: &str = "t_s,x_px,y_px,valid";
+
+/// Reads a scanpath file; its path becomes the scanpath's name.
+///
+/// # Errors
+/// If the file is missing, a folder, larger than [`MAX_FILE_BYTES`] or unreadable, and as [`parse_csv`] does.
+pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let unreadable = |e: std::io::Error| {
+        InputError::new(
+            &name,
+            format!("cannot be read ({e})"),
+            "give the path of a scanpath CSV file",
+        )
+    };
+    let too_large = || {
+        InputError::new(
+            &name,
+            format!("larger than {} MiB", MAX_FILE_BYTES >> 20),
+            "cut the recording to the time window that is needed",
+        )
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let meta = file.metadata().map_err(unreadable)?;
+    if meta.is_dir() {
+        return Err(InputError::new(
+            name,
+            "is a folder",
+            "give the path of a scanpath CSV file",
+        ));
+    }
+    if meta.len() > MAX_FILE_BYTES {
+        return Err(too_large());
+    }
+    // Devices and pipes report no length, so the read is bounded as well.
+    let mut bytes = Vec::new();
+    file.take(MAX_FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(too_large());
+    }
+    parse_csv(&name, &bytes)
+}
+
+/// Parses the contents of a scanpath file; `name` is what errors call it.
+///
+/// Columns are `t_s,x_px,y_px,valid`: seconds, screen pixels from the top left corner (y down), 1 or 0. A sample is lost if
+/// `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept as they are. A measure in the
+/// header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`, or be `unknown`; only
+/// `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
+///
+/// # Errors
+/// With the line number: bytes that are not UTF-8, a header line or row that cannot be understood, a row without exactly four
+/// columns, times that do not increase. Without: no column names, and all that [`Scanpath::new`] refuses.
+pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
+    let text = utf8(name, bytes)?;
+    let mut header = Header::default();
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut columns_seen = false;
+    for (index, line) in text.lines().enumerate() {
+        let line = line.trim();
+        let parsed = if line.is_empty() {
+            Ok(())
+        } else if let Some(comment) = line.strip_prefix('#') {
+            header.line(comment)
+        } else if columns_seen {
+            row(line, samples.last()).map(|s| samples.push(s))
+        } else if line.split(',').map(str::trim).eq(COLUMNS.split(',')) {
+            columns_seen = true;
+            Ok(())
+        } else {
+            Err(bad(
+                format!("{} where the column names belong", quote(line)),
+                format!("the first line without # must be {COLUMNS}"),
+            ))
+        };
+        parsed.map_err(|(problem, remedy)| {
+            InputError::new(format!("{name}, line {}", index + 1), problem, remedy)
+        })?;
+    }
+    if !columns_seen {
+        return Err(InputError::new(
+            name,
+            "there are no column names",
+            format!("the first line without # must be {COLUMNS}"),
+        ));
+    }
+    let Some(size_px) = header.size_px else {
+        return Err(InputError::new(
+            name,
+            "the screen's size is not known",
+            "state it in the header as `# screen_px: WIDTHxHEIGHT`",
+        ));
+    };
+    let screen = Screen {
+        size_px,
+        size_cm: header.size_cm,
+        distance_cm: header.distance_cm,
+    };
+    Scanpath::new(name, screen, header.about, samples)
+}
+
+/// Writes the format that [`read_csv`] reads. Numbers take as many digits as bring back the same value, lost samples are
+/// `nan,nan,0`, and the name is not written; reading the result under the same name gives an equal scanpath.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_csv(path: &Scanpath, out: &mut impl Write) -> std::io::Result<()> {
+    let about = path.about();
+    let screen = path.screen();
+    let known = |text: Option<String>| text.unwrap_or_else(|| UNKNOWN.into());
+    let values = [
+        known(about.task.clone()),
+        known(about.rate_hz.map(|r| r.to_string())),
+        format!("{}x{}", screen.size_px[0], screen.size_px[1]),
+        known(screen.size_cm.map(|[w, h]| format!("{w}x{h}"))),
+        known(screen.distance_cm.map(|d| d.to_string())),
+    ];
+    let mut out = std::io::BufWriter::new(out);
+    for (key, value) in RESERVED_KEYS.iter().zip(&values) {
+        writeln!(out, "# {key}: {value}")?;
+    }
+    for (key, value) in &about.notes {
+        writeln!(out, "# {key}: {value}")?;
+    }
+    writeln!(out, "{COLUMNS}")?;
+    for sample in path.samples() {
+        match sample.px {
+            Some([x, y]) => writeln!(out, "{},{x},{y},1", sample.t_s)?,
+            None => writeln!(out, "{},nan,nan,0", sample.t_s)?,
+        }
+    }
+    out.flush()
+}
+
+/// What is wrong with a line, and the remedy.
+type LineError = (String, String);
+
+fn bad(problem: impl Into<String>, remedy: impl Into<String>) -> LineError {
+    (problem.into(), remedy.into())
+}
+
+/// A piece of the file as it may appear in a one-line message: escaped and short.
+fn quote(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let cut: String = text.chars().take(LONGEST).collect();
+    let dots = if cut.len() < text.len() { "..." } else { "" };
+    format!("{cut:?}{dots}")
+}
+
+fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|e| {
+        let before = &bytes[..e.valid_up_to()];
+        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
+        InputError::new(
+            format!("{name}, line {line}"),
+            "not UTF-8 text",
+            "give a scanpath as CSV text",
+        )
+    })
+}
+
+/// The header as far as it has been read.
+#[derive(Default)]
+struct Header {
+    size_px: Option<[u32; 2]>,
+    size_cm: Option<[f32; 2]>,
+    distance_cm: Option<f32>,
+    about: About,
+    keys: std::collections::HashSet<String>,
+}
+
+impl Header {
+    /// One line without its leading `#`. Without a colon it is a comment.
+    fn line(&mut self, line: &str) -> Result<(), LineError> {
+        let Some((key, value)) = line.split_once(':') else {
+            return Ok(());
+        };
+        let (key, value) = (key.trim(), value.trim());
+        if key.is_empty() || key.starts_with('#') {
+            return Ok(());
+        }
+        if !self.keys.insert(key.to_owned()) {
+            return Err(bad(
+                format!("{} is given a second time", quote(key)),
+                "keep one of the two lines",
+            ));
+        }
+        match key {
+            "task" => self.about.task = Some(value.to_owned()),
+            "rate_hz" => self.about.rate_hz = self.measure(key, value, "500", positive)?,
+            "screen_px" => self.size_px = self.measure(key, value, "1024x768", pair)?,
+            "screen_cm" => self.size_cm = self.measure(key, value, "38.0x30.0", pair)?,
+            "distance_cm" => self.distance_cm = self.measure(key, value, "67", positive)?,
+            "origin" if value != UNKNOWN && !value.starts_with("top left") => {
+                return Err(bad(
+                    format!("the origin is {}", quote(value)),
+                    "convert the coordinates to pixels from the top left corner, y down",
+                ));
+            }
+            _ => self.about.notes.push((key.to_owned(), value.to_owned())),
+        }
+        Ok(())
+    }
+
+    /// The first word of `value`; the rest is a remark and is kept as a note. `None` for `unknown`.
+    fn measure<T>(
+        &mut self,
+        key: &str,
+        value: &str,
+        example: &str,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, LineError> {
+        let (word, remark) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
+        if !remark.trim().is_empty() {
+            let note = format!("{key}_note");
+            if self.keys.insert(note.clone()) {
+                self.about.notes.push((note, remark.trim().to_owned()));
+            }
+        }
+        if word == UNKNOWN {
+            return Ok(None);
+        }
+        parse(word).map(Some).ok_or_else(|| {
+            bad(
+                format!("{key} is {}", quote(word)),
+                format!("expected a measure above 0 such as {example}, or {UNKNOWN}"),
+            )
+        })
+    }
+}
+
+fn positive<T: std::str::FromStr + Into<f64> + Copy>(text: &str) -> Option<T> {
+    let value: T = text.parse().ok()?;
+    let size: f64 = value.into();
+    (size.is_finite() && size > 0.0).then_some(value)
+}
+
+fn pair<T: std::str::FromStr + Into<f64> + Copy>(text: &str) -> Option<[T; 2]> {
+    let (a, b) = text.split_once('x')?;
+    Some([positive(a)?, positive(b)?])
+}
+
+fn row(line: &str, previous: Option<&Sample>) -> Result<Sample, LineError> {
+    let mut fields = [""; 4];
+    let mut count = 0;
+    for field in line.split(',') {
+        if let Some(slot) = fields.get_mut(count) {
+            *slot = field.trim();
+        }
+        count += 1;
+    }
+    if count != fields.len() {
+        return Err(bad(
+            format!("{count} columns in {}", quote(line)),
+            format!("expected the {} columns {COLUMNS}", fields.len()),
+        ));
+    }
+    let t_s: f64 = number(fields[0])
+        .filter(|t: &f64| t.is_finite())
+        .ok_or_else(|| {
+            bad(
+                format!("t_s is {}", quote(fields[0])),
+                "expected a time in seconds",
+            )
+        })?;
+    if let Some(previous) = previous.filter(|p| t_s <= p.t_s) {
+        return Err(bad(
+            format!("t_s is {t_s} after {}", previous.t_s),
+            "times must increase from row to row",
+        ));
+    }
+    let coordinate = |column: &str, text: &str| {
+        if text.is_empty() {
+            return Ok(f32::NAN);
+        }
+        number(text).ok_or_else(|| {
+            bad(
+                format!("{column} is {}", quote(text)),
+                "expected a number of pixels, or nan where the gaze was lost",
+            )
+        })
+    };
+    let px = [
+        coordinate("x_px", fields[1])?,
+        coordinate("y_px", fields[2])?,
+    ];
+    let valid = match fields[3] {
+        "1" => px.iter().all(|v| v.is_finite()),
+        "0" => false,
+        other => {
+            return Err(bad(
+                format!("valid is {}", quote(other)),
+                "expected 1, or 0 where the gaze was lost",
+            ));
+        }
+    };
+    Ok(Sample {
+        t_s,
+        px: valid.then_some(px),
+    })
+}
+
+fn number<T: std::str::FromStr>(text: &str) -> Option<T> {
+    text.parse().ok()
+}

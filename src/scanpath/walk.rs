@@ -1,0 +1,242 @@
+//! The eye of the synthetic scanpath: moves along its events and writes down where it is at the sample times.
+
+use super::synthetic::{
+    AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event,
+    EventKind, FIXATION_S, LANDING_S, MAIN_SEQUENCE_S, MICROSACCADE_DEG, MICROSACCADE_HZ,
+    SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
+};
+use glam::{DVec2, DVec3};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use std::f64::consts::TAU;
+
+/// Draws of a direction (and amplitude) that stays on the screen before the eye simply turns towards the middle. Fewer would skew
+/// amplitudes in the corners of small screens to short ones.
+const AIM_TRIES: usize = 64;
+
+/// Rectangle of tangents around straight ahead.
+#[derive(Clone, Copy)]
+struct Field(DVec2);
+
+impl Field {
+    fn inset(half_deg: [f64; 2], margin_deg: f64) -> Self {
+        Self(half_deg.map(|h| (h - margin_deg).to_radians().tan()).into())
+    }
+
+    fn contains(self, gaze: DVec3) -> bool {
+        (gaze.truncate() / gaze.z).abs().cmple(self.0).all() && gaze.z > 0.0
+    }
+}
+
+/// State of the eye. Gaze is a unit vector, x right, y down, z forward.
+pub(super) struct Walk<T: Iterator<Item = f64>> {
+    rng: Pcg64,
+    /// Where saccades may aim, and what the gaze never leaves.
+    aim: Field,
+    edge: Field,
+    times: std::iter::Peekable<T>,
+    now_s: f64,
+    gaze: DVec3,
+    samples: Vec<(f64, [f64; 2])>,
+    events: Vec<Event>,
+}
+
+impl<T: Iterator<Item = f64>> Walk<T> {
+    pub(super) fn new(seed: u64, half_deg: [f64; 2], times: T) -> Self {
+        let mut rng = Pcg64::seed_from_u64(seed);
+        let aim = Field::inset(half_deg, AIM_MARGIN_DEG);
+        let mut anywhere = |half: f64| uniform(&mut rng, [-half, half]);
+        let gaze = DVec3::new(anywhere(aim.0.x), anywhere(aim.0.y), 1.0).normalize();
+        Self {
+            rng,
+            aim,
+            edge: Field::inset(half_deg, EDGE_MARGIN_DEG),
+            times: times.peekable(),
+            now_s: 0.0,
+            gaze,
+            samples: Vec::new(),
+            events: Vec::new(),
+        }
+    }
+
+    /// All samples are written.
+    pub(super) fn done(&mut self) -> bool {
+        self.times.peek().is_none()
+    }
+
+    /// Samples as (seconds, tangents), and the events by begin.
+    pub(super) fn finish(mut self) -> (Vec<(f64, [f64; 2])>, Vec<Event>) {
+        self.events.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+        (self.samples, self.events)
+    }
+
+    /// Rests on the target, with at most one microsaccade.
+    pub(super) fn fixate(&mut self) {
+        let rest_s = uniform(&mut self.rng, FIXATION_S);
+        let end_s = self.now_s + rest_s;
+        let (start_s, start) = (self.now_s, self.gaze);
+        if unit(&mut self.rng) < MICROSACCADE_HZ * rest_s {
+            let amplitude_deg = uniform(&mut self.rng, MICROSACCADE_DEG);
+            let free_s = rest_s - main_sequence_s(amplitude_deg);
+            let onset_s = start_s + uniform(&mut self.rng, [0.0, free_s]);
+            self.drift_until(onset_s);
+            let (mut towards, mut tries) = (self.any_direction(), 0);
+            while !self.edge.contains(turn(self.gaze, towards, amplitude_deg)) {
+                // The edge field is convex and wider than a microsaccade, so the middle always fits.
+                tries += 1;
+                towards = if tries < AIM_TRIES {
+                    self.any_direction()
+                } else {
+                    tangent_towards(self.gaze, DVec3::Z)
+                };
+            }
+            self.turn_by(
+                EventKind::Microsaccade,
+                towards,
+                amplitude_deg,
+                amplitude_deg,
+            );
+        }
+        self.drift_until(end_s);
+        self.note_rest(EventKind::Fixation, start_s, start);
+    }
+
+    /// A saccade to a new target, and its corrective where it falls too short.
+    pub(super) fn look_elsewhere(&mut self) {
+        let (towards, intended_deg) = self.choose_target();
+        let target = turn(self.gaze, towards, intended_deg);
+        let reached_deg = intended_deg * (1.0 - uniform(&mut self.rng, UNDERSHOOT));
+        self.turn_by(EventKind::Saccade, towards, reached_deg, intended_deg);
+        if intended_deg - reached_deg <= CORRECT_ABOVE_DEG {
+            return;
+        }
+        let (start_s, start) = (self.now_s, self.gaze);
+        let end_s = start_s + uniform(&mut self.rng, LANDING_S);
+        self.drift_until(end_s);
+        self.note_rest(EventKind::Landing, start_s, start);
+        let left_deg = angle_deg(self.gaze, target);
+        let towards = tangent_towards(self.gaze, target);
+        self.turn_by(EventKind::Corrective, towards, left_deg, left_deg);
+    }
+
+    /// Direction and amplitude in degrees of a turn that ends in the aim field.
+    fn choose_target(&mut self) -> (DVec3, f64) {
+        for _ in 0..AIM_TRIES {
+            let amplitude_deg = saccade_amplitude_deg(unit(&mut self.rng));
+            let towards = self.any_direction();
+            if self.aim.contains(turn(self.gaze, towards, amplitude_deg)) {
+                return (towards, amplitude_deg);
+            }
+        }
+        // The shortest saccade towards the middle ends in the field, because a circle of that radius around the middle does
+        // (`SyntheticOptions::validate`).
+        (tangent_towards(self.gaze, DVec3::Z), SACCADE_DEG[0])
+    }
+
+    fn any_direction(&mut self) -> DVec3 {
+        let (sin, cos) = (TAU * unit(&mut self.rng)).sin_cos();
+        let (right, down) = axes(self.gaze);
+        right * cos + down * sin
+    }
+
+    /// Brownian drift up to `until_s`. Steps that would cross the edge are not taken.
+    fn drift_until(&mut self, until_s: f64) {
+        while let Some(t_s) = self.times.next_if(|t| *t < until_s) {
+            self.drift_by(t_s - self.now_s);
+            self.now_s = t_s;
+            self.write(t_s, self.gaze);
+        }
+        self.drift_by(until_s - self.now_s);
+        self.now_s = until_s;
+    }
+
+    fn drift_by(&mut self, step_s: f64) {
+        let variance_deg2 = DRIFT_RMS_DEG * DRIFT_RMS_DEG * (step_s / DRIFT_STEP_S).max(0.0);
+        // A two-dimensional normal displacement: uniform direction, Rayleigh length with this mean square.
+        let length_deg = (variance_deg2 * -(1.0 - unit(&mut self.rng)).ln()).sqrt();
+        let moved = turn(self.gaze, self.any_direction(), length_deg);
+        if self.edge.contains(moved) {
+            self.gaze = moved;
+        }
+    }
+
+    /// Turns the eye by `amplitude_deg` with the minimum-jerk profile (Flash & Hogan 1985).
+    fn turn_by(&mut self, kind: EventKind, towards: DVec3, amplitude_deg: f64, intended_deg: f64) {
+        let (start_s, start) = (self.now_s, self.gaze);
+        let duration_s = main_sequence_s(amplitude_deg);
+        let end_s = start_s + duration_s;
+        while let Some(t_s) = self.times.next_if(|t| *t < end_s) {
+            let u = (t_s - start_s) / duration_s;
+            let progress = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+            self.write(t_s, turn(start, towards, amplitude_deg * progress));
+        }
+        self.now_s = end_s;
+        self.gaze = turn(start, towards, amplitude_deg);
+        self.events.push(Event {
+            kind,
+            start_s,
+            end_s,
+            amplitude_deg,
+            intended_deg,
+        });
+    }
+
+    fn note_rest(&mut self, kind: EventKind, start_s: f64, start: DVec3) {
+        let moved_deg = angle_deg(start, self.gaze);
+        self.events.push(Event {
+            kind,
+            start_s,
+            end_s: self.now_s,
+            amplitude_deg: moved_deg,
+            intended_deg: moved_deg,
+        });
+    }
+
+    fn write(&mut self, t_s: f64, gaze: DVec3) {
+        self.samples.push((t_s, (gaze.truncate() / gaze.z).into()));
+    }
+}
+
+fn main_sequence_s(amplitude_deg: f64) -> f64 {
+    MAIN_SEQUENCE_S[0] + MAIN_SEQUENCE_S[1] * amplitude_deg
+}
+
+/// Inverse of the cut exponential distribution function.
+fn saccade_amplitude_deg(u: f64) -> f64 {
+    let [least, most] = SACCADE_DEG;
+    let share = 1.0 - (-(most - least) / SACCADE_SCALE_DEG).exp();
+    least - SACCADE_SCALE_DEG * (1.0 - u * share).ln()
+}
+
+/// In \[0, 1). Written out because the crate's own conversion may change its values between versions.
+fn unit(rng: &mut Pcg64) -> f64 {
+    (rng.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+}
+
+fn uniform(rng: &mut Pcg64, [low, high]: [f64; 2]) -> f64 {
+    low + (high - low) * unit(rng)
+}
+
+/// Unit vector `from` turned by `angle_deg` in the direction `towards`, a unit vector at right angles to it.
+fn turn(from: DVec3, towards: DVec3, angle_deg: f64) -> DVec3 {
+    let (sin, cos) = angle_deg.to_radians().sin_cos();
+    // Normalised so that rounding does not add up over millions of steps.
+    (from * cos + towards * sin).normalize()
+}
+
+/// Two unit vectors at right angles to `gaze` and to each other; `gaze` looks forward, so it is never the y axis.
+fn axes(gaze: DVec3) -> (DVec3, DVec3) {
+    let right = DVec3::Y.cross(gaze).normalize();
+    (right, gaze.cross(right))
+}
+
+/// Direction at `from` of the shortest turn to `to`; any direction if they coincide.
+fn tangent_towards(from: DVec3, to: DVec3) -> DVec3 {
+    (to - from * from.dot(to))
+        .try_normalize()
+        .unwrap_or_else(|| axes(from).0)
+}
+
+fn angle_deg(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}
