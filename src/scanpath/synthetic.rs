@@ -51,8 +51,8 @@ pub(super) const CORRECT_ABOVE_DEG: f64 = 0.5;
 /// Rest between a saccade and its corrective, seconds: uniform (Becker & Fuchs 1969: 130 ms; 120 to 180 in later work).
 pub(super) const LANDING_S: [f64; 2] = [0.12, 0.18];
 
-/// Saccades aim no closer than this to the edge, degrees, so that drift and microsaccades stay inside.
-pub(super) const AIM_MARGIN_DEG: f64 = 2.0;
+/// Saccades aim no closer than this to the edge, degrees, so that the longest microsaccade and drift seldom meet the edge.
+pub(super) const AIM_MARGIN_DEG: f64 = 1.5;
 
 /// The gaze never comes closer than this to the edge, degrees.
 pub(super) const EDGE_MARGIN_DEG: f64 = 0.5;
@@ -69,7 +69,7 @@ pub struct SyntheticOptions {
     pub duration_s: f64,
     /// Samples per second, 1 to 10,000; default 500.
     pub rate_hz: f64,
-    /// Where the eye looks; default [`Screen::default`]. Needs its size in centimetres and its distance, and at least 9 degrees
+    /// Where the eye looks; default [`Screen::default`]. Needs its size in centimetres and its distance, and at least 8 degrees
     /// a side.
     pub screen: Screen,
 }
@@ -147,7 +147,7 @@ impl SyntheticOptions {
                     2.0 * half_deg[0],
                     2.0 * half_deg[1]
                 ),
-                "expected at least 9 degrees a side, or no saccade would fit",
+                "expected at least 8 degrees a side, or no saccade would fit",
             );
         }
         Ok((slope, half_deg))

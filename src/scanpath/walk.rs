@@ -80,16 +80,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
             let free_s = rest_s - main_sequence_s(amplitude_deg);
             let onset_s = start_s + uniform(&mut self.rng, [0.0, free_s]);
             self.drift_until(onset_s);
-            let (mut towards, mut tries) = (self.any_direction(), 0);
-            while !self.edge.contains(turn(self.gaze, towards, amplitude_deg)) {
-                // The edge field is convex and wider than a microsaccade, so the middle always fits.
-                tries += 1;
-                towards = if tries < AIM_TRIES {
-                    self.any_direction()
-                } else {
-                    tangent_towards(self.gaze, DVec3::Z)
-                };
-            }
+            let towards = self.direction_inside(amplitude_deg);
             self.turn_by(
                 EventKind::Microsaccade,
                 towards,
@@ -131,6 +122,18 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         // The shortest saccade towards the middle ends in the field, because a circle of that radius around the middle does
         // (`SyntheticOptions::validate`).
         (tangent_towards(self.gaze, DVec3::Z), SACCADE_DEG[0])
+    }
+
+    /// A direction in which a turn stays clear of the edge. The field is convex and wider than a microsaccade, so towards the
+    /// middle always does.
+    fn direction_inside(&mut self, amplitude_deg: f64) -> DVec3 {
+        for _ in 0..AIM_TRIES {
+            let towards = self.any_direction();
+            if self.edge.contains(turn(self.gaze, towards, amplitude_deg)) {
+                return towards;
+            }
+        }
+        tangent_towards(self.gaze, DVec3::Z)
     }
 
     fn any_direction(&mut self) -> DVec3 {
