@@ -22,34 +22,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             gaze: Gaze::At { px: [gaze_x, 90.0] },
             previous_from_current: None,
         };
-        let view = CpuView {
-            facts,
-            color,
-            depth: None,
-            motion: None,
-        };
-        let frame = CpuFrame {
-            views: &[view],
-            index: index as u64,
-            reset: Reset::None,
-        };
+        let view = CpuView { facts, color, depth: None, motion: None };
+        let frame = CpuFrame { views: &[view], index: index as u64, reset: Reset::None };
         post.process(&frame, &mut output, None)?;
     }
 
     let stripes = |x: std::ops::Range<usize>| {
-        let kept = x
-            .clone()
-            .filter(|&x| output[0].at(x, 90) == sharp.at(x, 90))
-            .count();
+        let kept = x.clone().filter(|&x| output[0].at(x, 90) == sharp.at(x, 90)).count();
         100 * kept / x.len()
     };
-    println!(
-        "stripes still seen on the left, where the eye was: {} %",
-        stripes(40..80)
-    );
-    println!(
-        "and in the middle, where it never was: {} %",
-        stripes(140..180)
-    );
+    println!("stripes still seen on the left, where the eye was: {} %", stripes(40..80));
+    println!("and in the middle, where it never was: {} %", stripes(140..180));
     Ok(())
 }

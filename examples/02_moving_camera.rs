@@ -3,9 +3,7 @@
 //! `cargo run --features lab --example 02_moving_camera`
 
 use afterimage::Settings;
-use afterimage::convention::{
-    DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis,
-};
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use afterimage::image::Image;
@@ -24,10 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             direction: MotionDirection::CurrentMinusPrevious,
             y_axis: YAxis::Up,
         },
-        depth: DepthConvention::Reversed {
-            near,
-            far: f32::INFINITY,
-        },
+        depth: DepthConvention::Reversed { near, far: f32::INFINITY },
         ..ContextDesc::new(size)
     };
     let mut post = CpuAfterimage::new(desc, Settings::default())?;
@@ -37,32 +32,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = source.frame(index)?;
         // What that engine's G-buffer would hold.
         let scale = desc.motion.to_internal(size);
-        let motion = frame
-            .motion
-            .map(|m| m.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
+        let motion = frame.motion.map(|m| m.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
         let depth = frame.depth.map(|d| d.map(|z| near / z));
         let facts = ViewFrame {
             geometry: *source.view(),
             gaze: Gaze::At { px: [160.0, 90.0] },
             previous_from_current: frame.previous_from_current,
         };
-        let view = CpuView {
-            facts,
-            color: &frame.color,
-            depth: depth.as_ref(),
-            motion: motion.as_ref(),
-        };
+        let view = CpuView { facts, color: &frame.color, depth: depth.as_ref(), motion: motion.as_ref() };
         // A cut at frame 20: nothing of the frames before is true any more.
         let reset = if index == 20 { Reset::All } else { Reset::None };
-        let stats = post.process(
-            &CpuFrame {
-                views: &[view],
-                index,
-                reset,
-            },
-            &mut output,
-            None,
-        )?;
+        let stats = post.process(&CpuFrame { views: &[view], index, reset }, &mut output, None)?;
         let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
         println!(
             "frame {index:2}: history valid {:5.1} %, disoccluded {:4.1} %, from outside {:4.1} %, reset {:5.1} %",

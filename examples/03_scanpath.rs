@@ -14,9 +14,7 @@ use afterimage::source::{self, ReadLimits, SceneOptions};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let input = args.next().unwrap_or("fixtures/text_page.png".into());
-    let scanpath = args
-        .next()
-        .unwrap_or("fixtures/scanpath_viewing.csv".into());
+    let scanpath = args.next().unwrap_or("fixtures/scanpath_viewing.csv".into());
 
     let mut source = source::open(&input, &ReadLimits::default(), &SceneOptions::default())?;
     let info = source.info().clone();
@@ -25,15 +23,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let map = GazeMap::default_for(path.screen());
     let gaze = FrameGaze::new(&path, &geometry, map, 0.0, 60.0)?;
 
-    let foveation = Foveation {
-        rate_mid: 4,
-        rate_far: 8,
-        ..Foveation::default()
-    };
-    let none = Settings {
-        method: Method::None,
-        ..Settings::default()
-    };
+    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    let none = Settings { method: Method::None, ..Settings::default() };
     let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
     let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, false)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
@@ -42,12 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let step = pipeline.step(index, &frame, gaze.px(index))?;
         let reference = encode(&frame.color, 0.0);
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
-            scorer.push(
-                &reference,
-                &encode(&shown.image, 0.0),
-                &step.tracked,
-                &step.ecc_deg,
-            );
+            scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }
     }
     for (name, scorer) in ["none", "wrs"].iter().zip(&scorers) {

@@ -10,51 +10,26 @@ use afterimage::image::Image;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [256, 256];
-    let desc = ContextDesc {
-        view_count: 2,
-        ..ContextDesc::new(size)
-    };
+    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
     let mut post = CpuAfterimage::new(desc, Settings::default())?;
     let mut output = [Image::filled(size, [0.0; 3]), Image::filled(size, [0.0; 3])];
 
     // Each eye of a headset sees more towards its temple; both look at one point 0.6 m ahead, 64 mm apart.
     let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
-    let (left, right) = (
-        Image::filled(size, [0.8, 0.3, 0.3]),
-        Image::filled(size, [0.3, 0.3, 0.8]),
-    );
+    let (left, right) = (Image::filled(size, [0.8, 0.3, 0.3]), Image::filled(size, [0.3, 0.3, 0.8]));
     for index in 0..10 {
         let mut views = vec![];
         for ((tan_x, offset_m), color) in eyes.into_iter().zip([&left, &right]) {
             let geometry = ViewGeometry::off_axis(size, tan_x, [-1.1, 1.1])?;
             let target = glam::Vec3::new(offset_m, 0.0, 0.6);
-            let gaze = geometry
-                .project(target)
-                .map_or(Gaze::Lost, |px| Gaze::At { px });
-            let facts = ViewFrame {
-                geometry,
-                gaze,
-                previous_from_current: None,
-            };
-            views.push(CpuView {
-                facts,
-                color,
-                depth: None,
-                motion: None,
-            });
+            let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
+            let facts = ViewFrame { geometry, gaze, previous_from_current: None };
+            views.push(CpuView { facts, color, depth: None, motion: None });
         }
-        let frame = CpuFrame {
-            views: &views,
-            index,
-            reset: Reset::None,
-        };
+        let frame = CpuFrame { views: &views, index, reset: Reset::None };
         post.process(&frame, &mut output, None)?;
     }
-    println!(
-        "left eye shows {:?}, right eye {:?}",
-        output[0].at(128, 128),
-        output[1].at(128, 128)
-    );
+    println!("left eye shows {:?}, right eye {:?}", output[0].at(128, 128), output[1].at(128, 128));
     println!("{} KiB of history for both", post.memory_bytes() / 1024);
     Ok(())
 }

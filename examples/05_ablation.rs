@@ -15,90 +15,22 @@ use afterimage::source::{self, ReadLimits, SceneOptions};
 
 fn variants() -> Vec<(&'static str, LaneKind)> {
     let paper = Settings::default();
-    let gate = |divisor, offset| {
-        Some(Gate {
-            divisor,
-            offset,
-            ..Gate::default()
-        })
-    };
-    let ungated = Settings {
-        gate: None,
-        ..paper
-    };
+    let gate = |divisor, offset| Some(Gate { divisor, offset, ..Gate::default() });
+    let ungated = Settings { gate: None, ..paper };
     let list = [
-        (
-            "none",
-            Settings {
-                method: Method::None,
-                ..paper
-            },
-        ),
+        ("none", Settings { method: Method::None, ..paper }),
         ("paper: gate dE/100, Bernoulli, A-Chao", paper),
-        (
-            "gate dE/20",
-            Settings {
-                gate: gate(20.0, 0.0),
-                ..paper
-            },
-        ),
-        (
-            "gate dE/500",
-            Settings {
-                gate: gate(500.0, 0.0),
-                ..paper
-            },
-        ),
-        (
-            "gate (dE - 5)/30",
-            Settings {
-                gate: gate(30.0, 5.0),
-                ..paper
-            },
-        ),
-        (
-            "gate L*/100",
-            Settings {
-                gate: Some(Gate {
-                    metric: GateMetric::Lightness,
-                    ..Gate::default()
-                }),
-                ..paper
-            },
-        ),
+        ("gate dE/20", Settings { gate: gate(20.0, 0.0), ..paper }),
+        ("gate dE/500", Settings { gate: gate(500.0, 0.0), ..paper }),
+        ("gate (dE - 5)/30", Settings { gate: gate(30.0, 5.0), ..paper }),
+        ("gate L*/100", Settings { gate: Some(Gate { metric: GateMetric::Lightness, ..Gate::default() }), ..paper }),
         ("no gate", ungated),
-        (
-            "no gate, exponential 0.02",
-            Settings {
-                bias: Bias::Exponential { lambda: 0.02 },
-                ..ungated
-            },
-        ),
-        (
-            "no gate, exponential 0.005",
-            Settings {
-                bias: Bias::Exponential { lambda: 0.005 },
-                ..ungated
-            },
-        ),
-        (
-            "no gate, no bias",
-            Settings {
-                bias: Bias::None,
-                ..ungated
-            },
-        ),
-        (
-            "paper with A-ES",
-            Settings {
-                sampler: Sampler::AEs,
-                ..paper
-            },
-        ),
+        ("no gate, exponential 0.02", Settings { bias: Bias::Exponential { lambda: 0.02 }, ..ungated }),
+        ("no gate, exponential 0.005", Settings { bias: Bias::Exponential { lambda: 0.005 }, ..ungated }),
+        ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
+        ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
     ];
-    let mut lanes: Vec<_> = list
-        .map(|(name, s)| (name, LaneKind::PostProcess(s)))
-        .into();
+    let mut lanes: Vec<_> = list.map(|(name, s)| (name, LaneKind::PostProcess(s))).into();
     lanes.push(("oracle: upper bound of any reuse", LaneKind::Oracle));
     lanes
 }
@@ -106,9 +38,7 @@ fn variants() -> Vec<(&'static str, LaneKind)> {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [input, scanpath, ..] = &args[..] else {
-        return Err(
-            "usage: 05_ablation INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into(),
-        );
+        return Err("usage: 05_ablation INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
     };
     let frames: u64 = args.get(3).map_or(Ok(300), |n| n.parse())?;
     let fovea_deg: f32 = args.get(4).map_or(Ok(5.0), |n| n.parse())?;
@@ -116,16 +46,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut source = source::open(input, &ReadLimits::default(), &SceneOptions::default())?;
     let info = source.info().clone();
     let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
-    let map = if args.get(2).is_some_and(|m| m == "fit") {
-        GazeMap::Fit
-    } else {
-        GazeMap::Angle
-    };
+    let map = if args.get(2).is_some_and(|m| m == "fit") { GazeMap::Fit } else { GazeMap::Angle };
     let gaze = FrameGaze::new(&read_csv(scanpath)?, &geometry, map, 1.0, 60.0)?;
-    let foveation = Foveation {
-        fovea_deg,
-        ..Foveation::default()
-    };
+    let foveation = Foveation { fovea_deg, ..Foveation::default() };
 
     let mut lanes = variants();
     if !info.still {
@@ -141,19 +64,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let reference = encode(&frame.color, 0.0);
         let mut last = vec![];
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
-            let errors = scorer.push(
-                &reference,
-                &encode(&shown.image, 0.0),
-                &step.tracked,
-                &step.ecc_deg,
-            );
+            let errors = scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
             last.push(-10.0 * errors.mse.log10());
         }
         if [60, 150, 300, 540].contains(&(index + 1)) || index + 1 == frames {
-            println!(
-                "\nafter {} frames            PSNR dB   gain  last frame's gain  retained dB",
-                index + 1
-            );
+            println!("\nafter {} frames            PSNR dB   gain  last frame's gain  retained dB", index + 1);
             let base = scorers[0].scores().whole.psnr_db.unwrap_or(f64::NAN);
             for (i, (name, _)) in lanes.iter().enumerate() {
                 let s = scorers[i].scores();

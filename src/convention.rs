@@ -52,11 +52,8 @@ pub struct MotionConvention {
 
 impl MotionConvention {
     /// Blender's `Vector.X`, `Vector.Y`: previous minus current in pixels, y up.
-    pub const BLENDER: Self = Self {
-        unit: MotionUnit::Pixels,
-        direction: MotionDirection::PreviousMinusCurrent,
-        y_axis: YAxis::Up,
-    };
+    pub const BLENDER: Self =
+        Self { unit: MotionUnit::Pixels, direction: MotionDirection::PreviousMinusCurrent, y_axis: YAxis::Up };
 
     /// Factors that bring a vector of this convention to the internal form, for a frame of `size_px`.
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
@@ -114,11 +111,7 @@ impl DepthConvention {
     /// If near is not above zero (orthographic: not finite), or far not above near.
     pub fn validate(self) -> Result<(), SettingsError> {
         let refuse = |found: String, expected: &str| {
-            Err(SettingsError {
-                setting: "depth convention",
-                found,
-                expected: expected.into(),
-            })
+            Err(SettingsError { setting: "depth convention", found, expected: expected.into() })
         };
         match self {
             Self::Linear => Ok(()),
@@ -126,20 +119,14 @@ impl DepthConvention {
                 if near.is_finite() && near > 0.0 && far > near {
                     Ok(())
                 } else {
-                    refuse(
-                        format!("near {near}, far {far}"),
-                        "0 < near < far, near finite, far finite or infinite",
-                    )
+                    refuse(format!("near {near}, far {far}"), "0 < near < far, near finite, far finite or infinite")
                 }
             }
             Self::Orthographic { near, far } => {
                 if near.is_finite() && far.is_finite() && far > near && far > 0.0 {
                     Ok(())
                 } else {
-                    refuse(
-                        format!("near {near}, far {far}"),
-                        "finite planes, near below far, far above 0",
-                    )
+                    refuse(format!("near {near}, far {far}"), "finite planes, near below far, far above 0")
                 }
             }
         }
@@ -153,11 +140,6 @@ impl DepthConvention {
             Self::Reversed { near, far } => (1.0 / near - 1.0 / far, 1.0 / far, false, true),
             Self::Orthographic { near, far } => (far - near, near, true, true),
         };
-        DisparityMap {
-            a,
-            b,
-            invert,
-            clamp,
-        }
+        DisparityMap { a, b, invert, clamp }
     }
 }

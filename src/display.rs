@@ -31,11 +31,7 @@ impl ViewGeometry {
         }
         let half_width = (hfov_deg.to_radians() * 0.5).tan();
         let half_height = half_width * size_px[1].max(1) as f32 / size_px[0].max(1) as f32;
-        Self::off_axis(
-            size_px,
-            [-half_width, half_width],
-            [-half_height, half_height],
-        )
+        Self::off_axis(size_px, [-half_width, half_width], [-half_height, half_height])
     }
 
     /// A view that spans the given tangents: `tan_x` from the left to the right edge, `tan_y` from the top to the bottom
@@ -43,11 +39,7 @@ impl ViewGeometry {
     ///
     /// # Errors
     /// If a range is empty, reversed or not finite.
-    pub fn off_axis(
-        size_px: [u32; 2],
-        tan_x: [f32; 2],
-        tan_y: [f32; 2],
-    ) -> Result<Self, SettingsError> {
+    pub fn off_axis(size_px: [u32; 2], tan_x: [f32; 2], tan_y: [f32; 2]) -> Result<Self, SettingsError> {
         let span = |name, t: [f32; 2]| {
             if t[0].is_finite() && t[1].is_finite() && t[0] < t[1] {
                 Ok(t[1] - t[0])
@@ -62,11 +54,7 @@ impl ViewGeometry {
         let size = Vec2::new(size_px[0].max(1) as f32, size_px[1].max(1) as f32);
         let scale = Vec2::new(span("tan_x", tan_x)?, span("tan_y", tan_y)?) / size;
         let offset = Vec2::new(tan_x[0], tan_y[0]) + 0.5 * scale;
-        Ok(Self {
-            size_px,
-            scale,
-            offset,
-        })
+        Ok(Self { size_px, scale, offset })
     }
 
     /// Width and height in pixels.
@@ -107,8 +95,6 @@ impl ViewGeometry {
 
     /// Eccentricity of every pixel in degrees for a gaze position in pixels.
     pub fn eccentricity_map(&self, gaze_px: [f32; 2]) -> Image<f32> {
-        Image::from_fn_parallel(self.size_px, |[x, y]| {
-            self.eccentricity_deg([x as f32, y as f32], gaze_px)
-        })
+        Image::from_fn_parallel(self.size_px, |[x, y]| self.eccentricity_deg([x as f32, y as f32], gaze_px))
     }
 }

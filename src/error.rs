@@ -86,15 +86,7 @@ pub struct InputError {
 #[cfg(feature = "lab")]
 impl InputError {
     /// `subject: problem; remedy`, each without a final full stop.
-    pub fn new(
-        subject: impl Into<String>,
-        problem: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
-        Self {
-            subject: subject.into(),
-            problem: problem.into(),
-            remedy: remedy.into(),
-        }
+    pub fn new(subject: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { subject: subject.into(), problem: problem.into(), remedy: remedy.into() }
     }
 }

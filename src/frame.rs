@@ -22,9 +22,7 @@ impl Gaze {
     pub fn resolve(self, held: Option<[f32; 2]>, size_px: [u32; 2]) -> [f32; 2] {
         let middle = size_px.map(|s| 0.5 * s as f32 - 0.5);
         match self {
-            Self::At { px } if px[0].is_finite() && px[1].is_finite() => {
-                px.map(|v| v.clamp(-1e6, 1e6))
-            }
+            Self::At { px } if px[0].is_finite() && px[1].is_finite() => px.map(|v| v.clamp(-1e6, 1e6)),
             _ => held.unwrap_or(middle),
         }
     }
@@ -73,11 +71,6 @@ impl ContextDesc {
     /// One view of `size_px` with the default conventions: motion as previous minus current in pixels with y down, depth as
     /// linear distance.
     pub fn new(size_px: [u32; 2]) -> Self {
-        Self {
-            size_px,
-            view_count: 1,
-            motion: Default::default(),
-            depth: Default::default(),
-        }
+        Self { size_px, view_count: 1, motion: Default::default(), depth: Default::default() }
     }
 }

@@ -13,10 +13,7 @@ pub struct Image<T> {
 impl<T: Copy> Image<T> {
     /// An image of `size` (width, height) with every pixel set to `fill`.
     pub fn filled(size: [u32; 2], fill: T) -> Self {
-        Self {
-            size,
-            pixels: vec![fill; size[0] as usize * size[1] as usize],
-        }
+        Self { size, pixels: vec![fill; size[0] as usize * size[1] as usize] }
     }
 
     /// Wraps `pixels`, which must hold exactly width x height elements.
@@ -28,20 +25,13 @@ impl<T: Copy> Image<T> {
         if pixels.len() == expected {
             Ok(Self { size, pixels })
         } else {
-            Err(FrameError::PixelCount {
-                size,
-                expected,
-                found: pixels.len(),
-            })
+            Err(FrameError::PixelCount { size, expected, found: pixels.len() })
         }
     }
 
     /// An image whose pixel (x, y) is `f([x, y])`.
     pub fn from_fn(size: [u32; 2], mut f: impl FnMut([u32; 2]) -> T) -> Self {
-        let pixels = (0..size[1])
-            .flat_map(|y| (0..size[0]).map(move |x| [x, y]))
-            .map(&mut f)
-            .collect();
+        let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y])).map(&mut f).collect();
         Self { size, pixels }
     }
 
@@ -51,15 +41,11 @@ impl<T: Copy> Image<T> {
         T: Default + Send,
     {
         let mut image = Self::filled(size, T::default());
-        image
-            .pixels
-            .par_chunks_mut(size[0].max(1) as usize)
-            .enumerate()
-            .for_each(|(y, row)| {
-                for (x, pixel) in row.iter_mut().enumerate() {
-                    *pixel = f([x as u32, y as u32]);
-                }
-            });
+        image.pixels.par_chunks_mut(size[0].max(1) as usize).enumerate().for_each(|(y, row)| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = f([x as u32, y as u32]);
+            }
+        });
         image
     }
 
@@ -109,9 +95,6 @@ impl<T: Copy> Image<T> {
 
     /// The same image with every pixel mapped.
     pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Image<U> {
-        Image {
-            size: self.size,
-            pixels: self.pixels.iter().copied().map(f).collect(),
-        }
+        Image { size: self.size, pixels: self.pixels.iter().copied().map(f).collect() }
     }
 }

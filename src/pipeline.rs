@@ -90,14 +90,9 @@ impl Pipeline {
             .map(|lane| match lane {
                 LaneKind::Oracle => Ok(Executor::Oracle { best: None }),
                 LaneKind::PostProcess(settings) => {
-                    let settings = Settings {
-                        fovea_deg: foveation.fovea_deg,
-                        ..*settings
-                    };
+                    let settings = Settings { fovea_deg: foveation.fovea_deg, ..*settings };
                     let desc = ContextDesc::new(geometry.size_px());
-                    Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(
-                        desc, settings,
-                    )?)))
+                    Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?)))
                 }
             })
             .collect::<Result<_, SettingsError>>()?;
@@ -117,20 +112,10 @@ impl Pipeline {
     ///
     /// # Errors
     /// If the frame's size is not the pipeline's.
-    pub fn step(
-        &mut self,
-        index: u64,
-        frame: &SourceFrame,
-        gaze: Option<[f32; 2]>,
-    ) -> Result<Step, FrameError> {
+    pub fn step(&mut self, index: u64, frame: &SourceFrame, gaze: Option<[f32; 2]>) -> Result<Step, FrameError> {
         let size = self.geometry.size_px();
         if frame.color.size() != size {
-            return Err(FrameError::Size {
-                input: "colour",
-                view: 0,
-                found: frame.color.size(),
-                expected: size,
-            });
+            return Err(FrameError::Size { input: "colour", view: 0, found: frame.color.size(), expected: size });
         }
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.held_gaze, size);
@@ -152,17 +137,8 @@ impl Pipeline {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: frame.previous_from_current,
         };
-        let view = CpuView {
-            facts,
-            color: &candidate,
-            depth: frame.depth.as_ref(),
-            motion: frame.motion.as_ref(),
-        };
-        let cpu_frame = CpuFrame {
-            views: &[view],
-            index,
-            reset: if frame.cut { Reset::All } else { Reset::None },
-        };
+        let view = CpuView { facts, color: &candidate, depth: frame.depth.as_ref(), motion: frame.motion.as_ref() };
+        let cpu_frame = CpuFrame { views: &[view], index, reset: if frame.cut { Reset::All } else { Reset::None } };
         let mut shown = vec![];
         for lane in &mut self.lanes {
             shown.push(match lane {
@@ -173,33 +149,20 @@ impl Pipeline {
         if self.is_still {
             self.still = Some(pyramid);
         }
-        Ok(Step {
-            gaze_px,
-            ecc_deg,
-            lods,
-            tracked,
-            shown,
-            foveation_ms,
-        })
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, shown, foveation_ms })
     }
 
     /// Bytes that lane `index` keeps between frames.
     pub fn memory_bytes(&self, index: usize) -> usize {
         match &self.lanes[index] {
-            Executor::PostProcess(post) if post.settings().method != Method::None => {
-                post.memory_bytes()
-            }
+            Executor::PostProcess(post) if post.settings().method != Method::None => post.memory_bytes(),
             Executor::PostProcess(_) => 0,
             Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
         }
     }
 }
 
-fn post_process(
-    post: &mut CpuAfterimage,
-    frame: &CpuFrame<'_>,
-    trace: bool,
-) -> Result<Shown, FrameError> {
+fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, trace: bool) -> Result<Shown, FrameError> {
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = trace.then(|| [Image::filled(size, PixelTrace::default())]);
@@ -217,12 +180,7 @@ fn post_process(
     })
 }
 
-fn oracle(
-    best: &mut Option<Image<f32>>,
-    lods: &Image<f32>,
-    foveation: &Foveation,
-    pyramid: &Pyramid,
-) -> Shown {
+fn oracle(best: &mut Option<Image<f32>>, lods: &Image<f32>, foveation: &Foveation, pyramid: &Pyramid) -> Shown {
     let watch = Stopwatch::start();
     let best = best.get_or_insert_with(|| lods.clone());
     for (b, &l) in best.pixels_mut().iter_mut().zip(lods.pixels()) {

@@ -62,11 +62,7 @@ pub struct Gate {
 
 impl Default for Gate {
     fn default() -> Self {
-        Self {
-            metric: GateMetric::DeltaE94,
-            divisor: 100.0,
-            offset: 0.0,
-        }
+        Self { metric: GateMetric::DeltaE94, divisor: 100.0, offset: 0.0 }
     }
 }
 
@@ -84,10 +80,7 @@ pub struct DepthTest {
 
 impl Default for DepthTest {
     fn default() -> Self {
-        Self {
-            relative: 0.02,
-            slope_px: 1.0,
-        }
+        Self { relative: 0.02, slope_px: 1.0 }
     }
 }
 
@@ -155,10 +148,7 @@ impl Settings {
     pub(crate) fn wrs_params(&self) -> wrs::WrsParams {
         let (bias, exponential_survival) = match self.bias {
             Bias::Bernoulli => (wrs::BiasCode::Bernoulli, 1.0),
-            Bias::Exponential { lambda } => (
-                wrs::BiasCode::Exponential,
-                reservoir::exponential_survival(lambda),
-            ),
+            Bias::Exponential { lambda } => (wrs::BiasCode::Exponential, reservoir::exponential_survival(lambda)),
             Bias::None => (wrs::BiasCode::None, 1.0),
         };
         let gate = self.gate.unwrap_or_default();

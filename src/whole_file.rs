@@ -10,10 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// # Errors
 /// Those of the file system and of `fill`; the temporary file is then removed.
-pub fn write_whole(
-    path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> io::Result<()> {
+pub fn write_whole(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     let temporary = temporary_name(path)?;
     let write = || {
         let mut file = BufWriter::new(File::create(&temporary)?);
@@ -30,14 +27,9 @@ pub fn write_whole(
 /// A name beside `path` that no other write of this machine uses.
 fn temporary_name(path: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name"))?;
+    let name =
+        path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name"))?;
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let temporary = format!(
-        ".{}.{}.{count}.part",
-        name.to_string_lossy(),
-        std::process::id()
-    );
+    let temporary = format!(".{}.{}.{count}.part", name.to_string_lossy(), std::process::id());
     Ok(path.with_file_name(temporary))
 }

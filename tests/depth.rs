@@ -11,55 +11,13 @@ use proptest::prelude::*;
 
 const CONVENTIONS: [(&str, Depth); 8] = [
     ("linear", Depth::Linear),
-    (
-        "forward",
-        Depth::Forward {
-            near: 0.1,
-            far: 1000.0,
-        },
-    ),
-    (
-        "forward, infinite",
-        Depth::Forward {
-            near: 0.1,
-            far: f32::INFINITY,
-        },
-    ),
-    (
-        "reversed",
-        Depth::Reversed {
-            near: 0.1,
-            far: 1000.0,
-        },
-    ),
-    (
-        "reversed, infinite",
-        Depth::Reversed {
-            near: 0.1,
-            far: f32::INFINITY,
-        },
-    ),
-    (
-        "reversed, close near plane",
-        Depth::Reversed {
-            near: 0.01,
-            far: 1e5,
-        },
-    ),
-    (
-        "orthographic",
-        Depth::Orthographic {
-            near: 0.5,
-            far: 1000.0,
-        },
-    ),
-    (
-        "orthographic from behind",
-        Depth::Orthographic {
-            near: -10.0,
-            far: 1000.0,
-        },
-    ),
+    ("forward", Depth::Forward { near: 0.1, far: 1000.0 }),
+    ("forward, infinite", Depth::Forward { near: 0.1, far: f32::INFINITY }),
+    ("reversed", Depth::Reversed { near: 0.1, far: 1000.0 }),
+    ("reversed, infinite", Depth::Reversed { near: 0.1, far: f32::INFINITY }),
+    ("reversed, close near plane", Depth::Reversed { near: 0.01, far: 1e5 }),
+    ("orthographic", Depth::Orthographic { near: 0.5, far: 1000.0 }),
+    ("orthographic from behind", Depth::Orthographic { near: -10.0, far: 1000.0 }),
 ];
 
 /// What a depth buffer of the convention stores for distance `z`, in f64.
@@ -68,11 +26,7 @@ fn stored(convention: Depth, z: f64) -> f64 {
         Depth::Linear => z,
         Depth::Forward { near, far } => {
             let (n, f) = (f64::from(near), f64::from(far));
-            if f.is_infinite() {
-                1.0 - n / z
-            } else {
-                f / (f - n) * (1.0 - n / z)
-            }
+            if f.is_infinite() { 1.0 - n / z } else { f / (f - n) * (1.0 - n / z) }
         }
         Depth::Reversed { near, far } => 1.0 - stored(Depth::Forward { near, far }, z),
         Depth::Orthographic { near, far } => (z - f64::from(near)) / f64::from(far - near),
@@ -82,9 +36,7 @@ fn stored(convention: Depth, z: f64) -> f64 {
 /// Distance that a stored value stands for, in conventions that store distances.
 fn stored64(convention: Depth, value: f32) -> f64 {
     match convention {
-        Depth::Orthographic { near, far } => {
-            f64::from(near) + f64::from(value.clamp(0.0, 1.0)) * f64::from(far - near)
-        }
+        Depth::Orthographic { near, far } => f64::from(near) + f64::from(value.clamp(0.0, 1.0)) * f64::from(far - near),
         _ => f64::from(value),
     }
 }
@@ -105,15 +57,8 @@ fn every_convention_gives_the_disparity() {
         for z in [1.0, 2.5, 10.0, 80.0, 400.0] {
             let got = f64::from(depth::disparity(stored(convention, z) as f32, map));
             // A forward buffer holds 24 bits of 1 - near / z: far away little is left of them.
-            let rounding = if name.starts_with("forward") {
-                1e-6 * z
-            } else {
-                1e-5
-            };
-            assert!(
-                (got * z - 1.0).abs() < rounding.max(2e-6),
-                "{name}, z = {z}: {got}"
-            );
+            let rounding = if name.starts_with("forward") { 1e-6 * z } else { 1e-5 };
+            assert!((got * z - 1.0).abs() < rounding.max(2e-6), "{name}, z = {z}: {got}");
         }
     }
 }
@@ -123,20 +68,8 @@ fn h41_the_sky_is_the_same_sky_and_never_an_object() {
     let sky = [
         (Depth::Linear, f32::INFINITY),
         (Depth::Linear, 1e38),
-        (
-            Depth::Forward {
-                near: 0.1,
-                far: f32::INFINITY,
-            },
-            1.0,
-        ),
-        (
-            Depth::Reversed {
-                near: 0.1,
-                far: f32::INFINITY,
-            },
-            0.0,
-        ),
+        (Depth::Forward { near: 0.1, far: f32::INFINITY }, 1.0),
+        (Depth::Reversed { near: 0.1, far: f32::INFINITY }, 0.0),
     ];
     for (convention, value) in sky {
         let d = depth::disparity(value, convention.disparity_map());
@@ -146,23 +79,12 @@ fn h41_the_sky_is_the_same_sky_and_never_an_object() {
         for z in [0.1, 1.0, 1e3, 1e6] {
             let object = depth::disparity(stored(convention, z) as f32, convention.disparity_map());
             if object > 0.0 {
-                assert!(
-                    !same(object, remembered) && !same(d, disparity_value(disparity_code(object)))
-                );
+                assert!(!same(object, remembered) && !same(d, disparity_value(disparity_code(object))));
             }
         }
     }
     // With a finite far plane the sky is a surface at the far plane: the same as itself.
-    for convention in [
-        Depth::Forward {
-            near: 0.1,
-            far: 1000.0,
-        },
-        Depth::Orthographic {
-            near: 0.0,
-            far: 10.0,
-        },
-    ] {
+    for convention in [Depth::Forward { near: 0.1, far: 1000.0 }, Depth::Orthographic { near: 0.0, far: 10.0 }] {
         let d = depth::disparity(1.0, convention.disparity_map());
         assert!(d > 0.0 && same(d, disparity_value(disparity_code(d))));
     }
@@ -221,15 +143,8 @@ proptest! {
 
 #[test]
 fn h42_values_just_outside_the_buffer_s_range_are_clamped() {
-    let map = Depth::Reversed {
-        near: 0.1,
-        far: 1000.0,
-    }
-    .disparity_map();
-    assert_eq!(
-        depth::disparity(1.0 + 1e-6, map),
-        depth::disparity(1.0, map)
-    );
+    let map = Depth::Reversed { near: 0.1, far: 1000.0 }.disparity_map();
+    assert_eq!(depth::disparity(1.0 + 1e-6, map), depth::disparity(1.0, map));
     assert_eq!(depth::disparity(-1e-6, map), depth::disparity(0.0, map));
     assert!((depth::disparity(1.0, map) - 10.0).abs() < 1e-5);
 }
@@ -247,23 +162,13 @@ fn h44_a_grazing_plane_is_never_flushed_by_jitter() {
             let d = |y: f32| (0.01 + per_row * y).max(0.0);
             let slope = depth::slope(5, 1, [9, 3], |_, y| d(row + y as f32 - 1.0));
             let (now, before) = (d(row), d(row + draws.range(-1.0, 1.0)));
-            assert!(depth::same_surface(
-                now,
-                disparity_value(disparity_code(before)),
-                0.02,
-                slope
-            ));
+            assert!(depth::same_surface(now, disparity_value(disparity_code(before)), 0.02, slope));
         }
     }
     // The planted error: without the slope a steep floor flushes.
     let d = |y: f32| 1e-3 * y;
     assert!(!depth::same_surface(d(5.0), d(6.0), 0.02, 0.0));
-    assert!(depth::same_surface(
-        d(5.0),
-        d(6.0),
-        0.02,
-        depth::slope(5, 1, [9, 3], |_, y| d(4.0 + y as f32))
-    ));
+    assert!(depth::same_surface(d(5.0), d(6.0), 0.02, depth::slope(5, 1, [9, 3], |_, y| d(4.0 + y as f32))));
 }
 
 #[test]
@@ -273,37 +178,18 @@ fn a_silhouette_is_not_slope() {
     assert_eq!(depth::slope(3, 1, [9, 3], step), 0.0);
     assert_eq!(depth::slope(4, 1, [9, 3], step), 0.0);
     // A wire, and a single pixel, are no slope either.
-    assert_eq!(
-        depth::slope(4, 1, [9, 3], |x, _| if x == 4 { 1.0 } else { 0.1 }),
-        0.0
-    );
-    assert_eq!(
-        depth::slope(4, 1, [9, 3], |x, y| if (x, y) == (4, 1) {
-            0.1
-        } else {
-            1.0
-        }),
-        0.0
-    );
+    assert_eq!(depth::slope(4, 1, [9, 3], |x, _| if x == 4 { 1.0 } else { 0.1 }), 0.0);
+    assert_eq!(depth::slope(4, 1, [9, 3], |x, y| if (x, y) == (4, 1) { 0.1 } else { 1.0 }), 0.0);
     // Invalid neighbours and borders are ignored.
     assert_eq!(depth::slope(0, 0, [1, 1], |_, _| 0.5), 0.0);
-    assert_eq!(
-        depth::slope(1, 0, [3, 1], |x, _| if x == 1 { 0.5 } else { -1.0 }),
-        0.0
-    );
+    assert_eq!(depth::slope(1, 0, [3, 1], |x, _| if x == 1 { 0.5 } else { -1.0 }), 0.0);
 }
 
 #[test]
 fn h48_moving_planes_do_not_change_the_disparity() {
     for z in [0.5, 3.0, 40.0] {
-        let a = Depth::Reversed {
-            near: 0.1,
-            far: 1000.0,
-        };
-        let b = Depth::Reversed {
-            near: 0.3,
-            far: 5000.0,
-        };
+        let a = Depth::Reversed { near: 0.1, far: 1000.0 };
+        let b = Depth::Reversed { near: 0.3, far: 5000.0 };
         let read = |c: Depth| depth::disparity(stored(c, z) as f32, c.disparity_map());
         assert!((read(a) / read(b) - 1.0).abs() < 1e-3);
         assert!(same(read(a), disparity_value(disparity_code(read(b)))));
@@ -313,26 +199,11 @@ fn h48_moving_planes_do_not_change_the_disparity() {
 #[test]
 fn bad_planes_are_refused() {
     for bad in [
-        Depth::Forward {
-            near: 0.0,
-            far: 1.0,
-        },
-        Depth::Reversed {
-            near: 1.0,
-            far: 0.5,
-        },
-        Depth::Reversed {
-            near: f32::NAN,
-            far: 1.0,
-        },
-        Depth::Forward {
-            near: 1.0,
-            far: f32::NAN,
-        },
-        Depth::Orthographic {
-            near: 0.0,
-            far: f32::INFINITY,
-        },
+        Depth::Forward { near: 0.0, far: 1.0 },
+        Depth::Reversed { near: 1.0, far: 0.5 },
+        Depth::Reversed { near: f32::NAN, far: 1.0 },
+        Depth::Forward { near: 1.0, far: f32::NAN },
+        Depth::Orthographic { near: 0.0, far: f32::INFINITY },
     ] {
         let message = bad.validate().unwrap_err().to_string();
         assert!(message.contains("near"), "{message}");
@@ -343,17 +214,9 @@ fn bad_planes_are_refused() {
 fn h57_the_border_is_where_it_should_be() {
     let size = [100, 50];
     let at = |x, y, mx: f32, my: f32| reproject::nearest(x, y, [mx, my], size);
-    assert_eq!(
-        at(0, 0, 99.0, 49.0),
-        Ok([99, 49]),
-        "the last texel's centre"
-    );
+    assert_eq!(at(0, 0, 99.0, 49.0), Ok([99, 49]), "the last texel's centre");
     assert_eq!(at(0, 0, 99.49, 0.0), Ok([99, 0]));
-    assert_eq!(
-        at(0, 0, 99.51, 0.0),
-        Err(Verdict::OffScreen),
-        "0.01 px outside"
-    );
+    assert_eq!(at(0, 0, 99.51, 0.0), Err(Verdict::OffScreen), "0.01 px outside");
     assert_eq!(at(0, 0, -0.5, 0.0), Ok([0, 0]));
     assert_eq!(at(0, 0, -0.51, 0.0), Err(Verdict::OffScreen));
     assert_eq!(at(0, 49, 0.0, 0.51), Err(Verdict::OffScreen));
@@ -391,8 +254,5 @@ fn h55_half_float_motion_drifts_by_its_quantum() {
     let quantum = |v: f32| half_value(half_bits(v) + 1) - half_value(half_bits(v));
     assert_eq!(quantum(0.5) * 3840.0, 1.875);
     assert_eq!(quantum(1000.0), 0.5);
-    assert!(
-        quantum(60.0) < 0.04,
-        "motion of 60 px in pixels: a thirtieth of a pixel"
-    );
+    assert!(quantum(60.0) < 0.04, "motion of 60 px in pixels: a thirtieth of a pixel");
 }

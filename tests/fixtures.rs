@@ -35,11 +35,7 @@ fn write_sequences() {
     let view = *scene.view();
     for index in 0..FRAMES {
         let frame = scene.frame(index).unwrap();
-        let rows = scene
-            .frame(index + 1)
-            .unwrap()
-            .previous_from_current
-            .unwrap();
+        let rows = scene.frame(index + 1).unwrap().previous_from_current.unwrap();
         let next_from_current = Mat4::from_cols_array_2d(&rows).transpose().inverse();
         let depth = frame.depth.unwrap();
         exr_file::write(
@@ -53,15 +49,13 @@ fn write_sequences() {
         )
         .unwrap();
     }
-    let cameras =
-        "{ \"width\": 160, \"height\": 90, \"fps\": 60.0, \"horizontal_fov_deg\": 70.0 }\n";
+    let cameras = "{ \"width\": 160, \"height\": 90, \"fps\": 60.0, \"horizontal_fov_deg\": 70.0 }\n";
     std::fs::write(Path::new(FOLDER).join("cameras.json"), cameras).unwrap();
 }
 
 #[test]
 fn the_sequence_is_what_the_scene_gives() {
-    let mut fixture =
-        source::open(FOLDER, &ReadLimits::default(), &SceneOptions::default()).unwrap();
+    let mut fixture = source::open(FOLDER, &ReadLimits::default(), &SceneOptions::default()).unwrap();
     let info = fixture.info().clone();
     assert_eq!(
         (info.size, info.frames, info.fps, info.hfov_deg, info.still),
@@ -70,37 +64,22 @@ fn the_sequence_is_what_the_scene_gives() {
     let mut scene = scene();
     for index in 0..FRAMES {
         let (read, made) = (fixture.frame(index).unwrap(), scene.frame(index).unwrap());
-        for (a, b) in read
-            .color
-            .pixels()
-            .as_flattened()
-            .iter()
-            .zip(made.color.pixels().as_flattened())
-        {
+        for (a, b) in read.color.pixels().as_flattened().iter().zip(made.color.pixels().as_flattened()) {
             assert!((a - b).abs() <= b.abs() / 2048.0 + 1e-7);
         }
         assert_eq!(read.depth, made.depth);
         assert_eq!(read.motion, made.motion);
     }
     // Backwards, the vectors to the next frame take over: the fifth frame after the sixth.
-    let (back, forth) = (
-        fixture.frame(FRAMES).unwrap(),
-        scene.frame(FRAMES - 1).unwrap(),
-    );
+    let (back, forth) = (fixture.frame(FRAMES).unwrap(), scene.frame(FRAMES - 1).unwrap());
     let (back, forth) = (back.motion.unwrap(), forth.motion.unwrap());
     let opposite = |x: usize, y: usize| {
         let m = back.at(x, y);
-        let (qx, qy) = (
-            (x as f32 + m[0]).round() as usize,
-            (y as f32 + m[1]).round() as usize,
-        );
+        let (qx, qy) = ((x as f32 + m[0]).round() as usize, (y as f32 + m[1]).round() as usize);
         let f = forth.at(qx.min(159), qy.min(89));
         (m[0] + f[0]).abs() < 0.1
     };
-    let agree = (0..90)
-        .flat_map(|y| (0..160).map(move |x| (x, y)))
-        .filter(|&(x, y)| opposite(x, y))
-        .count();
+    let agree = (0..90).flat_map(|y| (0..160).map(move |x| (x, y))).filter(|&(x, y)| opposite(x, y)).count();
     println!("backward and forward vectors cancel at {agree} of 14400 pixels");
     assert!(agree > 13_500);
 }
@@ -114,11 +93,7 @@ fn no_fixture_is_large() {
             if path.is_dir() {
                 folders.push(path);
             } else {
-                assert!(
-                    path.metadata().unwrap().len() < 400_000,
-                    "{}",
-                    path.display()
-                );
+                assert!(path.metadata().unwrap().len() < 400_000, "{}", path.display());
             }
         }
     }

@@ -25,19 +25,11 @@ fn sweep(low: f64, high: f64, n: usize) -> impl Iterator<Item = f32> {
 // ---- f64 oracles -------------------------------------------------------------------------------------------------------
 
 fn srgb_encode64(x: f64) -> f64 {
-    if x <= 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * x.powf(1.0 / 2.4) - 0.055
-    }
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
 fn srgb_decode64(x: f64) -> f64 {
-    if x <= 0.040_45 {
-        x / 12.92
-    } else {
-        ((x + 0.055) / 1.055).powf(2.4)
-    }
+    if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }
 
 fn lab64(c: DVec3) -> DVec3 {
@@ -46,11 +38,7 @@ fn lab64(c: DVec3) -> DVec3 {
     let y = 0.212_639_005_9 * c.x + 0.715_168_678_8 * c.y + 0.072_192_315_4 * c.z;
     let z = 0.019_330_818_7 * c.x + 0.119_194_779_8 * c.y + 0.950_532_152_2 * c.z;
     let f = |t: f64| {
-        if t > 216.0 / 24389.0 {
-            t.cbrt()
-        } else {
-            (24389.0 / 27.0 * t + 16.0) / 116.0
-        }
+        if t > 216.0 / 24389.0 { t.cbrt() } else { (24389.0 / 27.0 * t + 16.0) / 116.0 }
     };
     let (fx, fy, fz) = (f(x / 0.950_455_927_1), f(y), f(z / 1.089_057_750_8));
     DVec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz))
@@ -73,9 +61,7 @@ fn h38_cbrt_is_within_4_ulp_and_exact_at_0_and_1() {
     assert_eq!(color::cbrt(0.0).to_bits(), 0);
     assert_eq!(color::cbrt(1.0), 1.0);
     assert_eq!(color::cbrt(-1.0), -1.0);
-    let worst = sweep(1e-30, 1e30, 400_000)
-        .map(|x| ulps(color::cbrt(x), f64::from(x).cbrt()))
-        .fold(0.0, f64::max);
+    let worst = sweep(1e-30, 1e30, 400_000).map(|x| ulps(color::cbrt(x), f64::from(x).cbrt())).fold(0.0, f64::max);
     println!("cbrt: worst error {worst:.2} ulp");
     assert!(worst <= 2.0);
     // The planted error: one Halley step is not enough.
@@ -132,10 +118,7 @@ fn srgb_transfer_holds_its_stated_accuracy_and_inverts() {
         }
         worst[2] = worst[2].max(f64::from((color::srgb_decode(encoded) - x).abs()));
     }
-    println!(
-        "srgb encode {:.2e}, decode {:.2e}, round trip {:.2e}",
-        worst[0], worst[1], worst[2]
-    );
+    println!("srgb encode {:.2e}, decode {:.2e}, round trip {:.2e}", worst[0], worst[1], worst[2]);
     assert!(worst[0] < 5e-7 && worst[1] < 7e-7 && worst[2] < 1e-6);
     // All 256 codes survive the round trip.
     for code in 0..=255_u32 {
@@ -162,17 +145,11 @@ fn h40_delta_e94_matches_f64_on_published_pairs() {
     ];
     for (a, b) in pairs {
         let exact = delta_e94_64(a.into(), b.into());
-        let got = color::delta_e94(
-            Vec3::from(a.map(|v| v as f32)),
-            Vec3::from(b.map(|v| v as f32)),
-        );
+        let got = color::delta_e94(Vec3::from(a.map(|v| v as f32)), Vec3::from(b.map(|v| v as f32)));
         assert_abs_diff_eq!(f64::from(got), exact, epsilon = 1e-4);
     }
     // Hand calculation: dL = 3, dC = 4 at C1 = 0, so both weights are 1.
-    assert_eq!(
-        color::delta_e94(Vec3::new(50.0, 0.0, 0.0), Vec3::new(53.0, 4.0, 0.0)),
-        5.0
-    );
+    assert_eq!(color::delta_e94(Vec3::new(50.0, 0.0, 0.0), Vec3::new(53.0, 4.0, 0.0)), 5.0);
 }
 
 #[test]
@@ -195,11 +172,7 @@ fn h30_hue_term_never_makes_nan() {
     let mut draws = Draws::new("same hue");
     let mut negative = 0;
     for _ in 0..100_000 {
-        let (l, a, b) = (
-            draws.range(0.0, 100.0),
-            draws.range(-80.0, 80.0),
-            draws.range(-80.0, 80.0),
-        );
+        let (l, a, b) = (draws.range(0.0, 100.0), draws.range(-80.0, 80.0), draws.range(-80.0, 80.0));
         let s = draws.range(0.1, 2.0);
         let (x, y) = (Vec3::new(l, a, b), Vec3::new(l, a * s, b * s));
         let d = x - y;
@@ -207,19 +180,13 @@ fn h30_hue_term_never_makes_nan() {
         negative += usize::from(d.y * d.y + d.z * d.z - dc * dc < 0.0);
         assert!(color::delta_e94(x, y).is_finite());
     }
-    println!(
-        "hue term negative in {:.0} % of same-hue pairs before the clamp",
-        negative as f64 / 1e3
-    );
+    println!("hue term negative in {:.0} % of same-hue pairs before the clamp", negative as f64 / 1e3);
     assert!(negative > 10_000, "the case must really occur");
 }
 
 #[test]
 fn h31_greys_differ_by_lightness_alone() {
-    assert_eq!(
-        color::delta_e94(Vec3::new(40.0, 0.0, 0.0), Vec3::new(65.0, 0.0, 0.0)),
-        25.0
-    );
+    assert_eq!(color::delta_e94(Vec3::new(40.0, 0.0, 0.0), Vec3::new(65.0, 0.0, 0.0)), 25.0);
     let near = color::delta_e94(Vec3::new(40.0, 1e-20, 0.0), Vec3::new(40.0, 0.0, 1e-20));
     assert!(near.is_finite());
 }
@@ -231,34 +198,25 @@ fn h32_the_candidate_is_the_reference() {
     let ratio = color::delta_e94(grey, vivid) / color::delta_e94(vivid, grey);
     assert_abs_diff_eq!(ratio, 5.5, epsilon = 1e-3);
     let (a, b) = (Vec3::new(0.9, 0.1, 0.1), Vec3::new(0.3, 0.3, 0.3));
-    assert_eq!(
-        wrs::difference(a, b, wrs::GateCode::DeltaE94),
-        color::delta_e94(color::lab(a), color::lab(b)),
-    );
+    assert_eq!(wrs::difference(a, b, wrs::GateCode::DeltaE94), color::delta_e94(color::lab(a), color::lab(b)),);
 }
 
 #[test]
 fn h33_lab_is_continuous_at_its_knee() {
     let knee = 216.0_f32 / 24389.0;
-    for y in [
-        f32::from_bits(knee.to_bits() - 1),
-        knee,
-        f32::from_bits(knee.to_bits() + 1),
-    ] {
+    for y in [f32::from_bits(knee.to_bits() - 1), knee, f32::from_bits(knee.to_bits() + 1)] {
         assert_abs_diff_eq!(color::lab(Vec3::splat(y)).x, 8.0, epsilon = 2e-5);
     }
     // Slope of 903.3 from both sides, over steps wide enough for f32.
     for step in [-1e-4_f32, 1e-4] {
-        let slope =
-            (color::lab(Vec3::splat(knee + step)).x - color::lab(Vec3::splat(knee)).x) / step;
+        let slope = (color::lab(Vec3::splat(knee + step)).x - color::lab(Vec3::splat(knee)).x) / step;
         assert_abs_diff_eq!(slope, 903.3, epsilon = 6.0);
     }
 }
 
 #[test]
 fn h34_h35_dark_noise_and_8_bit_steps_pass_the_gate() {
-    let differs =
-        |a: f32, b: f32| wrs::difference(Vec3::splat(a), Vec3::splat(b), wrs::GateCode::DeltaE94);
+    let differs = |a: f32, b: f32| wrs::difference(Vec3::splat(a), Vec3::splat(b), wrs::GateCode::DeltaE94);
     // L* of 0.002 is 1.8, of 1/255 is 3.54: neither shuts the default gate by more than that many percent, and an offset
     // of one 8-bit step leaves it fully open.
     assert_abs_diff_eq!(differs(0.0, 0.002), 1.81, epsilon = 0.01);
@@ -269,25 +227,11 @@ fn h34_h35_dark_noise_and_8_bit_steps_pass_the_gate() {
 
 #[test]
 fn h20_h37_strong_and_hdr_colours_stay_finite_and_clamp_the_gate() {
-    let colours = [
-        0.0,
-        1.0,
-        1e4,
-        65504.0,
-        1e30,
-        -1.0,
-        -65504.0,
-        -1e30,
-        f32::MAX,
-        f32::MIN,
-    ];
+    let colours = [0.0, 1.0, 1e4, 65504.0, 1e30, -1.0, -65504.0, -1e30, f32::MAX, f32::MIN];
     let mut beyond_100 = false;
     for a in colours {
         for b in colours {
-            for (x, y) in [
-                (Vec3::splat(a), Vec3::splat(b)),
-                (Vec3::new(a, b, 0.5), Vec3::new(b, 0.1, a)),
-            ] {
+            for (x, y) in [(Vec3::splat(a), Vec3::splat(b)), (Vec3::new(a, b, 0.5), Vec3::new(b, 0.1, a))] {
                 let d = wrs::difference(x, y, wrs::GateCode::DeltaE94);
                 assert!(d.is_finite() && d >= 0.0, "{x} {y}: {d}");
                 beyond_100 |= d > 100.0;
@@ -330,16 +274,9 @@ proptest! {
 
 #[test]
 fn h17_h18_bad_weights_count_as_0() {
-    for bad in [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        -1.0,
-        -0.0,
-        0.0,
-        f32::from_bits(1),
-        f32::from_bits(0xffc0_0001),
-    ] {
+    for bad in
+        [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, -0.0, 0.0, f32::from_bits(1), f32::from_bits(0xffc0_0001)]
+    {
         assert_eq!(scrub::weight(bad).to_bits(), 0);
     }
     for good in [f32::MIN_POSITIVE, 1e-20, 1.0, f32::MAX] {
@@ -365,13 +302,7 @@ fn h61_eccentricity_is_exact_where_acos_reads_0() {
             let exact = r.cross(g).length().atan2(r.dot(g));
             let got = f64::from(acuity::eccentricity_deg(ray32, gaze32)).to_radians();
             worst = worst.max((got - exact).abs());
-            let by_acos = f64::from(
-                ray32
-                    .normalize()
-                    .dot(gaze32.normalize())
-                    .clamp(-1.0, 1.0)
-                    .acos(),
-            );
+            let by_acos = f64::from(ray32.normalize().dot(gaze32.normalize()).clamp(-1.0, 1.0).acos());
             worst_acos = worst_acos.max((by_acos - exact).abs());
         }
     }
@@ -398,8 +329,7 @@ fn p7_weight_matches_the_paper_s_table_and_f64() {
         assert_abs_diff_eq!(acuity::candidate_weight(e, 2.5, inv), w, epsilon = 6e-4);
     }
     let density64 = |e: f64| {
-        2.0 * 14804.6 / (1.0 + e / 41.03)
-            * (0.9851 * (1.0 + e / 1.058).powi(-2) + (1.0 - 0.9851) * (-e / 22.14).exp())
+        2.0 * 14804.6 / (1.0 + e / 41.03) * (0.9851 * (1.0 + e / 1.058).powi(-2) + (1.0 - 0.9851) * (-e / 22.14).exp())
     };
     let worst = sweep(1e-3, 180.0, 50_000)
         .map(|e| (f64::from(acuity::cell_density(e)) / density64(f64::from(e)) - 1.0).abs())
@@ -430,9 +360,5 @@ proptest! {
 #[test]
 fn h65_weight_at_90_degrees_has_its_floor() {
     let inv = 1.0 / acuity::cell_density(2.5);
-    assert_abs_diff_eq!(
-        acuity::candidate_weight(90.0, 2.5, inv),
-        0.0013,
-        epsilon = 1e-4
-    );
+    assert_abs_diff_eq!(acuity::candidate_weight(90.0, 2.5, inv), 0.0013, epsilon = 1e-4);
 }

@@ -48,16 +48,10 @@ fn h25_mean_variance_and_frequencies() {
     }
     let n = n as f64;
     accept("mean", p_of_z((sum / n - 0.5) * (12.0 * n).sqrt()));
-    accept(
-        "variance",
-        p_of_z((square / n - 1.0 / 12.0) * (180.0 * n).sqrt()),
-    );
+    accept("variance", p_of_z((square / n - 1.0 / 12.0) * (180.0 * n).sqrt()));
     accept("4096 cells", p_of_counts(&counts, &vec![n / 4096.0; 4096]));
     counts[9] += 1500;
-    reject(
-        "1500 draws too many in one cell",
-        p_of_counts(&counts, &vec![n / 4096.0; 4096]),
-    );
+    reject("1500 draws too many in one cell", p_of_counts(&counts, &vec![n / 4096.0; 4096]));
 }
 
 #[test]
@@ -86,10 +80,7 @@ fn h24_h25_neighbours_and_shifted_frames_are_independent() {
                     .flat_map(|y| (0..side).map(move |x| (x, y)))
                     .map(|(x, y)| (at(x + 16, y + 16, 9), at(x + sx + 1, y + sy + 1, 10))),
             );
-            assert!(
-                p > common::ALPHA / 961.0,
-                "frame t + 1 is frame t shifted by ({sx}, {sy}): p = {p:.1e}"
-            );
+            assert!(p > common::ALPHA / 961.0, "frame t + 1 is frame t shifted by ({sx}, {sy}): p = {p:.1e}");
         }
     }
     // The planted error of H24: pixel + frame as seed.
@@ -106,66 +97,28 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
     let wrap = u64::from(u32::MAX);
     type Pair<'a> = &'a dyn Fn(u32, u32) -> (f32, f32);
     let cases: [(&str, Pair<'_>); 4] = [
-        (
-            "views",
-            &(|x, y| {
-                (
-                    draw(x, y, 0, 3, Purpose::Select),
-                    draw(x, y, 1, 3, Purpose::Select),
-                )
-            }),
-        ),
-        (
-            "purposes",
-            &(|x, y| {
-                (
-                    draw(x, y, 0, 3, Purpose::Select),
-                    draw(x, y, 0, 3, Purpose::Key),
-                )
-            }),
-        ),
+        ("views", &(|x, y| (draw(x, y, 0, 3, Purpose::Select), draw(x, y, 1, 3, Purpose::Select)))),
+        ("purposes", &(|x, y| (draw(x, y, 0, 3, Purpose::Select), draw(x, y, 0, 3, Purpose::Key)))),
         (
             "2^32 frames apart",
-            &(move |x, y| {
-                (
-                    draw(x, y, 0, 3, Purpose::Select),
-                    draw(x, y, 0, wrap + 4, Purpose::Select),
-                )
-            }),
+            &(move |x, y| (draw(x, y, 0, 3, Purpose::Select), draw(x, y, 0, wrap + 4, Purpose::Select))),
         ),
         (
             "frames around the wrap",
-            &(move |x, y| {
-                (
-                    draw(x, y, 0, wrap, Purpose::Select),
-                    draw(x, y, 0, wrap + 1, Purpose::Select),
-                )
-            }),
+            &(move |x, y| (draw(x, y, 0, wrap, Purpose::Select), draw(x, y, 0, wrap + 1, Purpose::Select))),
         ),
     ];
     for (name, pair) in cases {
         accept(name, p_of_correlation(pixels().map(|(x, y)| pair(x, y))));
     }
     let seeds = pixels().map(|(x, y)| {
-        let at = |seed| {
-            rng::uniform(rng::bits(
-                x,
-                y,
-                0,
-                rng::stream_key(seed, 0, Purpose::Select, 0),
-            ))
-        };
+        let at = |seed| rng::uniform(rng::bits(x, y, 0, rng::stream_key(seed, 0, Purpose::Select, 0)));
         (at(1), at(2))
     });
     accept("neighbouring seeds", p_of_correlation(seeds));
     reject(
         "a stream with itself",
-        p_of_correlation(pixels().map(|(x, y)| {
-            (
-                draw(x, y, 0, 3, Purpose::Select),
-                draw(x, y, 0, 3, Purpose::Select),
-            )
-        })),
+        p_of_correlation(pixels().map(|(x, y)| (draw(x, y, 0, 3, Purpose::Select), draw(x, y, 0, 3, Purpose::Select)))),
     );
 }
 
@@ -173,14 +126,11 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
 fn h26_no_period_at_the_row_length() {
     for width in [1_u32, 3, 4095, 4097] {
         let rows = (400_000 / width).clamp(64, 65_536);
-        let p = p_of_correlation((0..rows).flat_map(|y| (0..width).map(move |x| (x, y))).map(
-            |(x, y)| {
-                (
-                    draw(x, y, 0, 0, Purpose::Select),
-                    draw(x, y + 1, 0, 0, Purpose::Select),
-                )
-            },
-        ));
+        let p = p_of_correlation(
+            (0..rows)
+                .flat_map(|y| (0..width).map(move |x| (x, y)))
+                .map(|(x, y)| (draw(x, y, 0, 0, Purpose::Select), draw(x, y + 1, 0, 0, Purpose::Select))),
+        );
         accept(&format!("width {width}"), p);
     }
 }

@@ -14,8 +14,7 @@ mod frames;
 #[path = "scanpath/statistics.rs"]
 mod statistics;
 
-const HEADER: &str =
-    "# screen_px: 1024x768\n# screen_cm: 38.0x30.0\n# distance_cm: 67\nt_s,x_px,y_px,valid\n";
+const HEADER: &str = "# screen_px: 1024x768\n# screen_cm: 38.0x30.0\n# distance_cm: 67\nt_s,x_px,y_px,valid\n";
 const VIEW_PX: [u32; 2] = [640, 360];
 
 fn fixture() -> PathBuf {
@@ -31,11 +30,7 @@ fn parse(rows: &str) -> Result<Scanpath, InputError> {
 }
 
 fn screen(known: bool) -> Screen {
-    Screen {
-        size_px: [1024, 768],
-        size_cm: known.then_some([38.0, 30.0]),
-        distance_cm: known.then_some(67.0),
-    }
+    Screen { size_px: [1024, 768], size_cm: known.then_some([38.0, 30.0]), distance_cm: known.then_some(67.0) }
 }
 
 fn path_of(samples: Vec<Sample>) -> Result<Scanpath, InputError> {
@@ -62,52 +57,27 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
     assert_eq!((path.samples().len(), path.lost()), (1500, 0));
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/scanpaths");
     if !folder.is_dir() {
-        eprintln!(
-            "SKIPPED: {} is not here, recorded files not read",
-            folder.display()
-        );
+        eprintln!("SKIPPED: {} is not here, recorded files not read", folder.display());
         return;
     }
     for (name, samples, lost) in RECORDED {
         let path = read_csv(folder.join(name)).unwrap();
-        assert_eq!(
-            (path.samples().len(), path.lost()),
-            (samples, lost),
-            "{name}"
-        );
+        assert_eq!((path.samples().len(), path.lost()), (samples, lost), "{name}");
         assert_eq!(path.screen().size_px, [1024, 768]);
         let known = path.screen().tangent_per_px().is_some();
         assert_eq!(known, name != "reading_250hz_noisy.csv");
-        let rate: f64 = name
-            .split('_')
-            .find_map(|w| w.split("hz").next()?.parse().ok())
-            .unwrap();
+        let rate: f64 = name.split('_').find_map(|w| w.split("hz").next()?.parse().ok()).unwrap();
         assert_eq!(path.about().rate_hz, Some(rate));
         // H63: lost and wild samples of real trackers give finite pixels in every frame after the first valid sample.
-        let gaze = FrameGaze::new(
-            &path,
-            &view(),
-            GazeMap::default_for(path.screen()),
-            0.0,
-            60.0,
-        )
-        .unwrap();
+        let gaze = FrameGaze::new(&path, &view(), GazeMap::default_for(path.screen()), 0.0, 60.0).unwrap();
         let first_valid = path.samples().iter().find(|s| s.px.is_some()).unwrap().t_s;
         for i in 0..gaze.frames() {
             let px = gaze.px(i);
-            assert_eq!(
-                px.is_none(),
-                (i as f64 / 60.0) < first_valid,
-                "{name}, frame {i}"
-            );
+            assert_eq!(px.is_none(), (i as f64 / 60.0) < first_valid, "{name}, frame {i}");
             assert!(px.unwrap_or_default().iter().all(|v| v.is_finite()));
         }
         let written = csv(&path);
-        assert_eq!(
-            parse_csv(path.name(), &written).unwrap(),
-            path,
-            "{name} round trip"
-        );
+        assert_eq!(parse_csv(path.name(), &written).unwrap(), path, "{name} round trip");
     }
 }
 
@@ -131,12 +101,7 @@ fn the_fixture_is_what_the_generator_makes() {
 }
 
 fn fixture_path() -> Scanpath {
-    let options = SyntheticOptions {
-        seed: 1,
-        duration_s: 6.0,
-        rate_hz: 250.0,
-        ..Default::default()
-    };
+    let options = SyntheticOptions { seed: 1, duration_s: 6.0, rate_hz: 250.0, ..Default::default() };
     generate(&options).unwrap().path
 }
 
@@ -160,32 +125,20 @@ fn bad_files_are_refused_in_one_line_that_says_where() {
         (",1,2,1\n", "line 5: t_s is \"\""),
         ("0.1,1,2,1\n0.1,1,2,1\n", "line 6: t_s is 0.1 after 0.1"),
         ("0.1,1,2,1\n0.0,1,2,1\n", "line 6: t_s is 0 after 0.1"),
-        (
-            "# screen_px: 5x5\n0,1,2,1\n",
-            "line 5: \"screen_px\" is given a second time",
-        ),
+        ("# screen_px: 5x5\n0,1,2,1\n", "line 5: \"screen_px\" is given a second time"),
         ("# rate_hz: fast\n", "line 5: rate_hz is \"fast\""),
         ("# origin: middle\n", "line 5: the origin is \"middle\""),
     ];
     for (rows, expected) in cases {
         let error = parse(rows).unwrap_err().to_string();
-        assert!(
-            error.contains(expected) && error.starts_with("gaze.csv"),
-            "{rows:?}: {error}"
-        );
+        assert!(error.contains(expected) && error.starts_with("gaze.csv"), "{rows:?}: {error}");
         assert!(!error.contains('\n') && error.contains("; "), "{error}");
     }
     let whole: [(&[u8], &str); 8] = [
         (b"", "no column names"),
-        (
-            b"# screen_px: 4x4\n0,1,2,1\n",
-            "line 2: \"0,1,2,1\" where the column names belong",
-        ),
+        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" where the column names belong"),
         (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
-        (
-            b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n",
-            "size is not known",
-        ),
+        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
         (b"# screen_px: 0x768\n", "line 1: screen_px is \"0x768\""),
         (b"# screen_cm: 38x-1\n", "line 1: screen_cm is"),
         (b"# distance_cm: inf\n", "line 1: distance_cm is"),
@@ -205,10 +158,7 @@ fn missing_folder_and_oversized_files_are_refused_before_reading() {
     assert!(error(dir.path()).contains("is a folder"));
     let big = dir.path().join("big.csv");
     // Sparse: takes no space, and reading it would be seen as slow.
-    std::fs::File::create(&big)
-        .unwrap()
-        .set_len(MAX_FILE_BYTES + 1)
-        .unwrap();
+    std::fs::File::create(&big).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
     assert!(error(&big).contains("larger than 256 MiB"));
 }
 
@@ -219,14 +169,8 @@ fn remarks_unknowns_crlf_and_a_byte_order_mark_are_read() {
     let path = parse_csv("x", text.as_bytes()).unwrap();
     assert_eq!(path.screen().size_px, [1024, 768]);
     assert_eq!(path.screen().size_cm, None);
-    assert_eq!(
-        path.about().notes,
-        [("screen_px_note".to_owned(), "(inferred: words)".to_owned())]
-    );
-    assert_eq!(
-        path.samples(),
-        [at(0.0, [1.5, -2e3]), Sample { t_s: 1.0, px: None }]
-    );
+    assert_eq!(path.about().notes, [("screen_px_note".to_owned(), "(inferred: words)".to_owned())]);
+    assert_eq!(path.samples(), [at(0.0, [1.5, -2e3]), Sample { t_s: 1.0, px: None }]);
 }
 
 fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
@@ -299,34 +243,15 @@ proptest! {
 
 #[test]
 fn a_seed_is_a_scanpath() {
-    let make = |seed| {
-        generate(&SyntheticOptions {
-            seed,
-            duration_s: 3.0,
-            ..Default::default()
-        })
-        .unwrap()
-    };
+    let make = |seed| generate(&SyntheticOptions { seed, duration_s: 3.0, ..Default::default() }).unwrap();
     assert_eq!(make(3), make(3));
-    let starts: Vec<_> = (0..20)
-        .map(|seed| make(seed).path.samples()[0].px.unwrap())
-        .collect();
+    let starts: Vec<_> = (0..20).map(|seed| make(seed).path.samples()[0].px.unwrap()).collect();
     for (i, a) in starts.iter().enumerate() {
         assert!(starts[..i].iter().all(|b| a != b));
     }
-    let lengths = [
-        (1.1, 10.0, 11),
-        (6.0, 250.0, 1500),
-        (0.001, 1.0, 1),
-        (2.0, 0.5 + 0.5, 2),
-    ];
+    let lengths = [(1.1, 10.0, 11), (6.0, 250.0, 1500), (0.001, 1.0, 1), (2.0, 0.5 + 0.5, 2)];
     for (duration_s, rate_hz, samples) in lengths {
-        let made = generate(&SyntheticOptions {
-            duration_s,
-            rate_hz,
-            ..Default::default()
-        })
-        .unwrap();
+        let made = generate(&SyntheticOptions { duration_s, rate_hz, ..Default::default() }).unwrap();
         assert_eq!(made.path.samples().len(), samples);
         assert_eq!((made.path.lost(), made.path.samples()[0].t_s), (0, 0.0));
     }
@@ -348,14 +273,8 @@ fn options_out_of_range_are_named() {
         (with(|o| o.screen.size_px = [0, 4]), "0x4 pixels"),
         (with(|o| o.screen.size_cm = None), "not known"),
         (with(|o| o.screen.distance_cm = Some(-3.0)), "from -3 cm"),
-        (
-            with(|o| o.screen.distance_cm = Some(3e3)),
-            "at least 8 degrees",
-        ),
+        (with(|o| o.screen.distance_cm = Some(3e3)), "at least 8 degrees"),
     ] {
-        assert!(
-            error.starts_with("synthetic scanpath, ") && error.contains(expected),
-            "{error}"
-        );
+        assert!(error.starts_with("synthetic scanpath, ") && error.contains(expected), "{error}");
     }
 }

@@ -19,10 +19,7 @@ fn succeeds(args: &[&str]) -> String {
     let output = tool(args);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{args:?}: {stderr}");
-    assert!(
-        stderr.is_empty(),
-        "nothing on stderr when it is no terminal: {stderr}"
-    );
+    assert!(stderr.is_empty(), "nothing on stderr when it is no terminal: {stderr}");
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -46,10 +43,8 @@ fn read_json(path: &Path) -> Value {
 }
 
 fn files(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -85,91 +80,41 @@ fn run<'a>(input: &'a str, out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 fn run_writes_what_the_contract_says() {
     let folder = Folder::new();
     let out = folder.text("out");
-    let more = [
-        SMALL,
-        &[
-            "--reference",
-            "--method",
-            "none,wrs",
-            "--debug",
-            "weight,age,survival,flush,gate,motion",
-        ],
-    ]
-    .concat();
+    let more =
+        [SMALL, &["--reference", "--method", "none,wrs", "--debug", "weight,age,survival,flush,gate,motion"]].concat();
     succeeds(&run("analytic:lateral", &out, &more));
     let out = folder.path("out");
     assert_eq!(
         files(&out),
-        [
-            "debug",
-            "frames.csv",
-            "gaze.csv",
-            "none",
-            "reference",
-            "report.json",
-            "sheet.png",
-            "wrs"
-        ]
+        ["debug", "frames.csv", "gaze.csv", "none", "reference", "report.json", "sheet.png", "wrs"]
     );
     let frames = ["000000.png", "000001.png", "000002.png", "000003.png"];
-    for part in [
-        "none",
-        "wrs",
-        "reference",
-        "debug/wrs/flush",
-        "debug/none/motion",
-    ] {
+    for part in ["none", "wrs", "reference", "debug/wrs/flush", "debug/none/motion"] {
         assert_eq!(files(&out.join(part)), frames, "{part}");
     }
-    assert_eq!(
-        image::open(out.join("wrs/000003.png"))
-            .unwrap()
-            .to_rgb8()
-            .dimensions(),
-        (160, 90)
-    );
+    assert_eq!(image::open(out.join("wrs/000003.png")).unwrap().to_rgb8().dimensions(), (160, 90));
 
     let report = read_json(&out.join("report.json"));
     assert_eq!(report["tool"], "afterimage");
-    assert_eq!(
-        (&report["frames"], &report["size"][0], &report["fps"]),
-        (&4.into(), &160.into(), &60.0.into())
-    );
+    assert_eq!((&report["frames"], &report["size"][0], &report["fps"]), (&4.into(), &160.into(), &60.0.into()));
     assert_eq!(report["backend"]["kind"], "cpu");
     for method in ["none", "wrs"] {
         let m = &report["methods"][method];
-        for key in [
-            "psnr_db",
-            "ssim",
-            "flicker",
-            "cpu_ms",
-            "bytes_per_pixel",
-            "nonfinite_in",
-            "flushed",
-        ] {
+        for key in ["psnr_db", "ssim", "flicker", "cpu_ms", "bytes_per_pixel", "nonfinite_in", "flushed"] {
             assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
         }
         for key in ["median", "p25", "p75"] {
             assert!(m["ms"][key].is_number());
         }
         for band in ["fovea", "mid", "periphery"] {
-            assert!(
-                m["bands"][band].get("psnr_db").is_some() && m["bands"][band].get("flip").is_some()
-            );
+            assert!(m["bands"][band].get("psnr_db").is_some() && m["bands"][band].get("flip").is_some());
         }
         assert_eq!(m["nonfinite_out"], 0);
-        assert!(
-            m["flip"].is_null()
-                && m.get("retained_psnr_db").is_some()
-                && m.get("replaced").is_some()
-        );
+        assert!(m["flip"].is_null() && m.get("retained_psnr_db").is_some() && m.get("replaced").is_some());
     }
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 48);
     let gaze = fs::read_to_string(out.join("gaze.csv")).unwrap();
-    assert_eq!(
-        (gaze.lines().next(), gaze.lines().count()),
-        (Some("frame,x_px,y_px"), 5)
-    );
+    assert_eq!((gaze.lines().next(), gaze.lines().count()), (Some("frame,x_px,y_px"), 5));
 }
 
 #[test]
@@ -178,18 +123,12 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     let frames = |name: &str, threads: &str, seed: &str| {
         let out = folder.text(name);
         let status = Command::new(env!("CARGO_BIN_EXE_afterimage"))
-            .args(run(
-                "analytic:occluder",
-                &out,
-                &[SMALL, &["--seed", seed, "--format", "exr"]].concat(),
-            ))
+            .args(run("analytic:occluder", &out, &[SMALL, &["--seed", seed, "--format", "exr"]].concat()))
             .env("RAYON_NUM_THREADS", threads)
             .output()
             .unwrap();
         assert!(status.status.success());
-        (0..4)
-            .map(|i| fs::read(folder.path(name).join(format!("wrs/{i:06}.exr"))).unwrap())
-            .collect::<Vec<_>>()
+        (0..4).map(|i| fs::read(folder.path(name).join(format!("wrs/{i:06}.exr"))).unwrap()).collect::<Vec<_>>()
     };
     let one = frames("one", "1", "5");
     assert_eq!(one, frames("two", "2", "5"));
@@ -202,26 +141,13 @@ fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     let out = folder.text("out");
     succeeds(&run("analytic:still", &out, SMALL));
     fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
-    succeeds(&run(
-        "analytic:still",
-        &out,
-        &["--size", "160x90", "--frames", "2"],
-    ));
-    assert_eq!(
-        files(&folder.path("out/wrs")),
-        ["000000.png", "000001.png", "notes.txt"]
-    );
+    succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2"]));
+    assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
     // Frames of something else are not touched.
     fs::create_dir_all(folder.path("foreign/wrs")).unwrap();
     fs::write(folder.path("foreign/wrs/000007.png"), "photo").unwrap();
-    refuses(
-        &run("analytic:still", &folder.text("foreign"), SMALL),
-        &["frames of something else", "--out"],
-    );
-    assert_eq!(
-        fs::read_to_string(folder.path("foreign/wrs/000007.png")).unwrap(),
-        "photo"
-    );
+    refuses(&run("analytic:still", &folder.text("foreign"), SMALL), &["frames of something else", "--out"]);
+    assert_eq!(fs::read_to_string(folder.path("foreign/wrs/000007.png")).unwrap(), "photo");
 }
 
 #[test]
@@ -231,21 +157,12 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     let still = "analytic:still";
     refuses(&["run", still], &["--out"]);
     refuses(&["dance"], &["dance"]);
-    refuses(
-        &run(still, &out, &["--method", "none,dlss"]),
-        &["dlss", "wrs"],
-    );
+    refuses(&run(still, &out, &["--method", "none,dlss"]), &["dlss", "wrs"]);
     refuses(&run(still, &out, &["--method", "wrs,wrs"]), &["twice"]);
-    refuses(
-        &run("analytic:lateral", &out, &["--method", "oracle"]),
-        &["stills"],
-    );
+    refuses(&run("analytic:lateral", &out, &["--method", "oracle"]), &["stills"]);
     refuses(&run("analytic:sponza", &out, &[]), &["sponza", "lateral"]);
     refuses(&run(still, &out, &["--size", "0x5"]), &["WxH"]);
-    refuses(
-        &run(still, &out, &["--size", "100000x100000"]),
-        &["limit", "--max-megapixels"],
-    );
+    refuses(&run(still, &out, &["--size", "100000x100000"]), &["limit", "--max-megapixels"]);
     refuses(&run(still, &out, &["--frames", "0"]), &["at least 1"]);
     refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
     refuses(&run(still, &out, &["--fovea", "NaN"]), &["fovea"]);
@@ -253,14 +170,8 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps"]);
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
-    refuses(
-        &run(still, &out, &["--wrs-bias", "exponential:x"]),
-        &["LAMBDA"],
-    );
-    refuses(
-        &run(still, &out, &["--gate-divisor", "0"]),
-        &["gate divisor"],
-    );
+    refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
+    refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
     refuses(&run(still, &out, &["--backend", "gpu"]), &["CPU"]);
     refuses(&run(still, &out, &["--gaze", "1,x"]), &["X,Y"]);
     refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
@@ -276,23 +187,11 @@ fn bad_files_are_one_line_and_exit_code_2() {
         let file = folder.write("gaze.csv", csv.as_bytes());
         refuses(&run("analytic:still", &out, &["--gaze", &file]), words);
     };
-    gaze(
-        "# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,1,1,1\n0.1,abc,1,1\n",
-        &["gaze.csv", "line 4"],
-    );
-    gaze(
-        "# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,nan,nan,0\n0.1,nan,nan,0\n",
-        &["gaze.csv", "lost"],
-    );
+    gaze("# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,1,1,1\n0.1,abc,1,1\n", &["gaze.csv", "line 4"]);
+    gaze("# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,nan,nan,0\n0.1,nan,nan,0\n", &["gaze.csv", "lost"]);
     gaze("", &["gaze.csv"]);
-    refuses(
-        &run("analytic:still", &out, &["--gaze", "no/such.csv"]),
-        &["no/such.csv"],
-    );
-    refuses(
-        &run("no/such/folder", &out, &[]),
-        &["no/such/folder", "does not exist"],
-    );
+    refuses(&run("analytic:still", &out, &["--gaze", "no/such.csv"]), &["no/such.csv"]);
+    refuses(&run("no/such/folder", &out, &[]), &["no/such/folder", "does not exist"]);
     fs::create_dir(folder.path("empty")).unwrap();
     refuses(&run(&folder.text("empty"), &out, &[]), &["empty", ".exr"]);
     let file = folder.write("broken.png", b"\x89PNG\r\n\x1a\nnot a picture");
@@ -307,39 +206,20 @@ fn bad_files_are_one_line_and_exit_code_2() {
     assert!(!folder.path("out").exists(), "nothing was written");
     // A file where the folder should be.
     let file = folder.write("file", b"");
-    refuses(
-        &run("analytic:still", &format!("{file}/out"), SMALL),
-        &["cannot be written", "--out"],
-    );
+    refuses(&run("analytic:still", &format!("{file}/out"), SMALL), &["cannot be written", "--out"]);
 }
 
 #[test]
 fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     let folder = Folder::new();
     let picture = folder.text("still.png");
-    image::RgbImage::from_fn(33, 21, |x, y| image::Rgb([x as u8 * 7, y as u8 * 11, 90]))
-        .save(&picture)
-        .unwrap();
+    image::RgbImage::from_fn(33, 21, |x, y| image::Rgb([x as u8 * 7, y as u8 * 11, 90])).save(&picture).unwrap();
     let out = folder.text("out");
-    succeeds(&run(
-        &picture,
-        &out,
-        &[
-            "--frames",
-            "3",
-            "--method",
-            "none,wrs,oracle",
-            "--gaze",
-            "5,5",
-        ],
-    ));
+    succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5"]));
     let report = read_json(&folder.path("out/report.json"));
     assert!(report["methods"]["oracle"]["bytes_per_pixel"].is_null());
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
-    assert_eq!(
-        report["methods"]["none"]["flicker"], 0.0,
-        "nothing moves, and the eye neither"
-    );
+    assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
 }
 
 #[test]
@@ -351,25 +231,12 @@ fn scanpath_writes_what_run_reads_and_info_explains_both() {
     succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", &again]);
     assert_eq!(fs::read(&csv).unwrap(), fs::read(&again).unwrap());
     let text = succeeds(&["info", &csv]);
-    assert!(
-        text.contains("1920x1080 px") && text.contains("--gaze-map: angle"),
-        "{text}"
-    );
-    succeeds(&run(
-        "analytic:scroll",
-        &folder.text("out"),
-        &[SMALL, &["--gaze", &csv, "--start", "1"]].concat(),
-    ));
+    assert!(text.contains("1920x1080 px") && text.contains("--gaze-map: angle"), "{text}");
+    succeeds(&run("analytic:scroll", &folder.text("out"), &[SMALL, &["--gaze", &csv, "--start", "1"]].concat()));
     let text = succeeds(&["info", "analytic:lateral"]);
-    assert!(
-        text.contains("640x360") && text.contains("motion convention: as read"),
-        "{text}"
-    );
+    assert!(text.contains("640x360") && text.contains("motion convention: as read"), "{text}");
     refuses(&["scanpath", "--seconds=-1", "--out", &csv], &["-1"]);
-    refuses(
-        &["scanpath", "--out", &format!("{csv}/x.csv")],
-        &["cannot be written"],
-    );
+    refuses(&["scanpath", "--out", &format!("{csv}/x.csv")], &["cannot be written"]);
     assert!(succeeds(&["info", "adapters"]).contains("CPU"));
 }
 

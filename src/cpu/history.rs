@@ -19,10 +19,7 @@ pub(super) struct Plane {
 
 impl Plane {
     fn new(len: usize, keys: bool) -> Self {
-        Self {
-            words: vec![[0; 3]; len],
-            log_keys: vec![0.0; if keys { len } else { 0 }],
-        }
+        Self { words: vec![[0; 3]; len], log_keys: vec![0.0; if keys { len } else { 0 }] }
     }
 }
 
@@ -62,20 +59,10 @@ impl History {
     /// The past of `view` to read, and the rows to write.
     pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, &mut [[u32; 3]], &mut [f32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;
-        let keys = if self.previous.log_keys.is_empty() {
-            0..0
-        } else {
-            range.clone()
-        };
-        let past = PastView {
-            words: &self.previous.words[range.clone()],
-            log_keys: &self.previous.log_keys[keys.clone()],
-        };
-        (
-            past,
-            &mut self.current.words[range],
-            &mut self.current.log_keys[keys],
-        )
+        let keys = if self.previous.log_keys.is_empty() { 0..0 } else { range.clone() };
+        let past =
+            PastView { words: &self.previous.words[range.clone()], log_keys: &self.previous.log_keys[keys.clone()] };
+        (past, &mut self.current.words[range], &mut self.current.log_keys[keys])
     }
 
     /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)).
@@ -91,10 +78,7 @@ impl History {
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
-        [&self.previous, &self.current]
-            .iter()
-            .map(|p| size_of_val(&p.words[..]) + size_of_val(&p.log_keys[..]))
-            .sum()
+        [&self.previous, &self.current].iter().map(|p| size_of_val(&p.words[..]) + size_of_val(&p.log_keys[..])).sum()
     }
 }
 

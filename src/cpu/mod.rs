@@ -57,10 +57,7 @@ pub struct FrameStats {
 impl FrameStats {
     /// Pixels that had a history and lost it: bad motion, off screen or disoccluded.
     pub fn flushed(&self) -> u64 {
-        [Verdict::BadMotion, Verdict::OffScreen, Verdict::Disoccluded]
-            .iter()
-            .map(|&v| self.verdicts[v as usize])
-            .sum()
+        [Verdict::BadMotion, Verdict::OffScreen, Verdict::Disoccluded].iter().map(|&v| self.verdicts[v as usize]).sum()
     }
 
     /// Pixels that kept their history, to combine it with the candidate.
@@ -101,18 +98,10 @@ impl CpuAfterimage {
             expected: e.to_string(),
         })?;
         if desc.view_count == 0 {
-            return Err(SettingsError {
-                setting: "view_count",
-                found: "0".into(),
-                expected: "at least 1 view".into(),
-            });
+            return Err(SettingsError { setting: "view_count", found: "0".into(), expected: "at least 1 view".into() });
         }
         let history = History::new(desc.size_px, desc.view_count, uses_keys(&settings));
-        Ok(Self {
-            desc,
-            settings,
-            history,
-        })
+        Ok(Self { desc, settings, history })
     }
 
     /// What it was made for.
@@ -132,11 +121,7 @@ impl CpuAfterimage {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         if uses_keys(&settings) != uses_keys(&self.settings) {
-            self.history = History::new(
-                self.desc.size_px,
-                self.desc.view_count,
-                uses_keys(&settings),
-            );
+            self.history = History::new(self.desc.size_px, self.desc.view_count, uses_keys(&settings));
         }
         self.settings = settings;
         Ok(())
@@ -207,14 +192,7 @@ impl CpuAfterimage {
                 Ok(pass_through(frame, output))
             }
             Method::Wrs => {
-                let stats = wrs_pass::run(
-                    &self.desc,
-                    &self.settings,
-                    &mut self.history,
-                    frame,
-                    output,
-                    trace,
-                );
+                let stats = wrs_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
                 self.history.swap();
                 Ok(stats)
             }
@@ -245,12 +223,7 @@ impl CpuAfterimage {
             ];
             for (input, size) in sizes {
                 if let Some(found) = size.filter(|&s| s != self.desc.size_px) {
-                    return Err(FrameError::Size {
-                        input,
-                        view: i,
-                        found,
-                        expected: self.desc.size_px,
-                    });
+                    return Err(FrameError::Size { input, view: i, found, expected: self.desc.size_px });
                 }
             }
             self.check_camera(i, &view.facts)?;
@@ -262,18 +235,9 @@ impl CpuAfterimage {
         let Some(matrix) = facts.previous_from_current else {
             return Ok(());
         };
-        let refuse = |found: String, expected| {
-            Err(FrameError::Value {
-                what: "previous_from_current",
-                view,
-                found,
-                expected,
-            })
-        };
-        if matches!(
-            self.desc.depth,
-            crate::convention::DepthConvention::Orthographic { .. }
-        ) {
+        let refuse =
+            |found: String, expected| Err(FrameError::Value { what: "previous_from_current", view, found, expected });
+        if matches!(self.desc.depth, crate::convention::DepthConvention::Orthographic { .. }) {
             return refuse(
                 "given with orthographic depth".into(),
                 "None: rays of an orthographic view are not known here",
@@ -295,11 +259,7 @@ fn uses_keys(settings: &Settings) -> bool {
 
 fn check_size(size: [u32; 2]) -> Result<(), FrameError> {
     let max = ContextDesc::MAX_SIDE;
-    if size.iter().all(|s| (1..=max).contains(s)) {
-        Ok(())
-    } else {
-        Err(FrameError::Extent { size, max })
-    }
+    if size.iter().all(|s| (1..=max).contains(s)) { Ok(()) } else { Err(FrameError::Extent { size, max }) }
 }
 
 /// Method `none`: what came, scrubbed.

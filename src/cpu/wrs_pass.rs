@@ -38,15 +38,7 @@ pub struct PixelTrace {
 
 impl Default for PixelTrace {
     fn default() -> Self {
-        Self {
-            weight: 0.0,
-            w_sum: 0.0,
-            age: 0,
-            survival: 0.0,
-            verdict: Verdict::Reset,
-            gate: 1.0,
-            take: true,
-        }
+        Self { weight: 0.0, w_sum: 0.0, age: 0, survival: 0.0, verdict: Verdict::Reset, gate: 1.0, take: true }
     }
 }
 
@@ -105,10 +97,7 @@ pub(super) fn run(
             gaze_ray: view.facts.geometry.ray(gaze_px),
             motion_scale: desc.motion.to_internal(desc.size_px),
             disparity_map: desc.depth.disparity_map(),
-            depth_row: view
-                .facts
-                .previous_from_current
-                .map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
+            depth_row: view.facts.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
             depth_test: settings.depth_test.filter(|_| view.depth.is_some()),
             reset,
             frame_low: frame.index as u32,
@@ -150,10 +139,7 @@ fn split_rows<'a>(
 
 impl ViewPass<'_> {
     fn row(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
-        let mut stats = FrameStats {
-            pixels: u64::from(self.size[0]),
-            ..FrameStats::default()
-        };
+        let mut stats = FrameStats { pixels: u64::from(self.size[0]), ..FrameStats::default() };
         for x in 0..self.size[0] {
             self.pixel(x, y, row, &mut stats);
         }
@@ -168,30 +154,15 @@ impl ViewPass<'_> {
         let weight = if usable { self.weight(ray) } else { 0.0 };
         let disparity = self.disparity(x, y);
         let (verdict, stored, log_key) = self.history(x, y, ray, disparity);
-        let past = Past {
-            color: stored.color,
-            w_sum: if verdict == Verdict::Valid {
-                stored.w_sum
-            } else {
-                0.0
-            },
-            log_key,
-        };
+        let past =
+            Past { color: stored.color, w_sum: if verdict == Verdict::Valid { stored.w_sum } else { 0.0 }, log_key };
         let draw = rng::uniform(rng::bits(x, y, self.frame_low, self.key));
         let decision = wrs::step(candidate, weight, past, &self.params, draw);
 
-        let (color, age) = if decision.take {
-            (candidate, 0)
-        } else {
-            (stored.color, (stored.age + 1).min(pack::MAX_AGE))
-        };
+        let (color, age) =
+            if decision.take { (candidate, 0) } else { (stored.color, (stored.age + 1).min(pack::MAX_AGE)) };
         row.out[i] = color.to_array();
-        row.words[i] = pack::pack(Stored {
-            color,
-            disparity,
-            w_sum: decision.w_sum,
-            age,
-        });
+        row.words[i] = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
         if let Some(keys) = &mut row.log_keys {
             keys[i] = decision.log_key;
         }
@@ -200,11 +171,7 @@ impl ViewPass<'_> {
                 weight,
                 w_sum: decision.w_sum,
                 age,
-                survival: if verdict == Verdict::Valid {
-                    decision.survival
-                } else {
-                    0.0
-                },
+                survival: if verdict == Verdict::Valid { decision.survival } else { 0.0 },
                 verdict,
                 gate: decision.gate,
                 take: decision.take,
@@ -254,34 +221,17 @@ impl ViewPass<'_> {
             Some(test) => self.same_surface(x, y, ray, disparity, stored.disparity, test),
             None => true,
         };
-        let verdict = if same {
-            Verdict::Valid
-        } else {
-            Verdict::Disoccluded
-        };
+        let verdict = if same { Verdict::Valid } else { Verdict::Disoccluded };
         (verdict, stored, log_key)
     }
 
     #[inline(always)]
-    fn same_surface(
-        &self,
-        x: u32,
-        y: u32,
-        ray: Vec3,
-        disparity: f32,
-        stored: f32,
-        test: DepthTest,
-    ) -> bool {
+    fn same_surface(&self, x: u32, y: u32, ray: Vec3, disparity: f32, stored: f32, test: DepthTest) -> bool {
         let [m20, m21, m22, shift] = self.depth_row;
         let stretch = m20 * ray.x + m21 * ray.y + m22;
         let expected = depth::previous_disparity(disparity, stretch, shift);
         depth::same_surface(expected, stored, test.relative, 0.0)
-            || depth::same_surface(
-                expected,
-                stored,
-                test.relative,
-                test.slope_px * self.slope(x, y),
-            )
+            || depth::same_surface(expected, stored, test.relative, test.slope_px * self.slope(x, y))
     }
 
     /// Read only where the plain test fails: few pixels pay for the four taps.

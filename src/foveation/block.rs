@@ -23,9 +23,7 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
         })
         .collect();
     Image::from_fn_parallel(size, |[x, y]| {
-        let level = (1..=coarsest)
-            .rev()
-            .find(|&l| wants[l as usize - 1].at((x >> l) as usize, (y >> l) as usize));
+        let level = (1..=coarsest).rev().find(|&l| wants[l as usize - 1].at((x >> l) as usize, (y >> l) as usize));
         level.unwrap_or(0) as f32
     })
 }

@@ -31,9 +31,7 @@ fn kernels(max_sigma: f32) -> Vec<Vec<f32>> {
         .map(|i| {
             let sigma = (i as f32 * SIGMA_STEP_PX).max(1e-3);
             let radius = (3.0 * sigma).ceil() as i32;
-            let mut weights: Vec<f32> = (0..=radius)
-                .map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp())
-                .collect();
+            let mut weights: Vec<f32> = (0..=radius).map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp()).collect();
             let sum = 2.0 * weights.iter().sum::<f32>() - weights[0];
             weights.iter_mut().for_each(|w| *w /= sum);
             weights
@@ -48,12 +46,7 @@ pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
     let clean = full.map(|c| crate::kernel::scrub::color(Vec3::from(c)).0.to_array());
     let across = blur_axis(&clean, lods, &kernels, true);
     let mut blurred = blur_axis(&across, lods, &kernels, false);
-    for ((out, &lod), &sharp) in blurred
-        .pixels_mut()
-        .iter_mut()
-        .zip(lods.pixels())
-        .zip(full.pixels())
-    {
+    for ((out, &lod), &sharp) in blurred.pixels_mut().iter_mut().zip(lods.pixels()).zip(full.pixels()) {
         if lod <= 0.0 {
             *out = sharp;
         }
@@ -61,29 +54,15 @@ pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
     blurred
 }
 
-fn blur_axis(
-    image: &Image<[f32; 3]>,
-    lods: &Image<f32>,
-    kernels: &[Vec<f32>],
-    horizontal: bool,
-) -> Image<[f32; 3]> {
-    let last = if horizontal {
-        image.width()
-    } else {
-        image.height()
-    } as i32
-        - 1;
+fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, kernels: &[Vec<f32>], horizontal: bool) -> Image<[f32; 3]> {
+    let last = if horizontal { image.width() } else { image.height() } as i32 - 1;
     Image::from_fn_parallel(image.size(), |[x, y]| {
         let sigma = sigma_px(lods.at(x as usize, y as usize));
         let kernel = &kernels[((sigma / SIGMA_STEP_PX).round() as usize).min(kernels.len() - 1)];
         let center = if horizontal { x } else { y } as i32;
         let tap = |offset: i32| {
             let at = (center + offset).clamp(0, last) as usize;
-            Vec3::from(if horizontal {
-                image.at(at, y as usize)
-            } else {
-                image.at(x as usize, at)
-            })
+            Vec3::from(if horizontal { image.at(at, y as usize) } else { image.at(x as usize, at) })
         };
         let mut sum = tap(0) * kernel[0];
         for (d, &w) in kernel.iter().enumerate().skip(1) {

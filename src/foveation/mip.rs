@@ -82,23 +82,16 @@ fn halve(image: &Image<[f32; 3]>, scrub: bool) -> Image<[f32; 3]> {
     let mut half = Image::filled(size, [0.0; 3]);
     let texel = |x: usize, y: usize| {
         let c = Vec3::from(image.at(x, y));
-        if scrub {
-            crate::kernel::scrub::color(c).0
-        } else {
-            c
-        }
+        if scrub { crate::kernel::scrub::color(c).0 } else { c }
     };
-    half.pixels_mut()
-        .par_chunks_mut(size[0].max(1) as usize)
-        .enumerate()
-        .for_each(|(y, row)| {
-            let (y0, y1) = (2 * y, (2 * y + 1).min(image.height() - 1));
-            for (x, out) in row.iter_mut().enumerate() {
-                // A missing texel is replaced by its neighbour, which leaves the mean of those that exist.
-                let (x0, x1) = (2 * x, (2 * x + 1).min(image.width() - 1));
-                let sum = texel(x0, y0) + texel(x1, y0) + texel(x0, y1) + texel(x1, y1);
-                *out = (sum * 0.25).to_array();
-            }
-        });
+    half.pixels_mut().par_chunks_mut(size[0].max(1) as usize).enumerate().for_each(|(y, row)| {
+        let (y0, y1) = (2 * y, (2 * y + 1).min(image.height() - 1));
+        for (x, out) in row.iter_mut().enumerate() {
+            // A missing texel is replaced by its neighbour, which leaves the mean of those that exist.
+            let (x0, x1) = (2 * x, (2 * x + 1).min(image.width() - 1));
+            let sum = texel(x0, y0) + texel(x1, y0) + texel(x0, y1) + texel(x1, y1);
+            *out = (sum * 0.25).to_array();
+        }
+    });
     half
 }

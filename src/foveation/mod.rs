@@ -49,14 +49,7 @@ pub struct Foveation {
 
 impl Default for Foveation {
     fn default() -> Self {
-        Self {
-            filter: Filter::Mip,
-            fovea_deg: 5.0,
-            mid_deg: 15.0,
-            blend_deg: 1.0,
-            rate_mid: 8,
-            rate_far: 16,
-        }
+        Self { filter: Filter::Mip, fovea_deg: 5.0, mid_deg: 15.0, blend_deg: 1.0, rate_mid: 8, rate_far: 16 }
     }
 }
 
@@ -82,10 +75,7 @@ impl Foveation {
                 ),
             });
         }
-        for (setting, rate, least) in [
-            ("rate_mid", self.rate_mid, 1),
-            ("rate_far", self.rate_far, self.rate_mid),
-        ] {
+        for (setting, rate, least) in [("rate_mid", self.rate_mid, 1), ("rate_far", self.rate_far, self.rate_mid)] {
             if !rate.is_power_of_two() || rate < least || rate > Self::MAX_RATE {
                 return Err(SettingsError {
                     setting,
@@ -119,18 +109,11 @@ impl Foveation {
     }
 
     /// Level of detail of every pixel, given their eccentricities for the same gaze.
-    pub fn lod_map(
-        &self,
-        geometry: &ViewGeometry,
-        gaze_px: [f32; 2],
-        ecc_deg: &Image<f32>,
-    ) -> Image<f32> {
+    pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], ecc_deg: &Image<f32>) -> Image<f32> {
         if self.filter == Filter::Block {
             return block::lod_map(self, geometry, gaze_px);
         }
-        Image::from_fn_parallel(geometry.size_px(), |[x, y]| {
-            self.lod(ecc_deg.at(x as usize, y as usize))
-        })
+        Image::from_fn_parallel(geometry.size_px(), |[x, y]| self.lod(ecc_deg.at(x as usize, y as usize)))
     }
 
     /// The frame as it looks with the given level of detail at each pixel. Pixels of level 0 are copied bit for bit.

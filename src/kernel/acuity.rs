@@ -39,9 +39,5 @@ pub fn cell_density(e_deg: f32) -> f32 {
 /// `cell_density(e) / cell_density(fovea)` outside. `inv_density_at_fovea` is `1 / cell_density(fovea_deg)`.
 #[inline]
 pub fn candidate_weight(e_deg: f32, fovea_deg: f32, inv_density_at_fovea: f32) -> f32 {
-    if e_deg <= fovea_deg {
-        1.0
-    } else {
-        (cell_density(e_deg) * inv_density_at_fovea).min(1.0)
-    }
+    if e_deg <= fovea_deg { 1.0 } else { (cell_density(e_deg) * inv_density_at_fovea).min(1.0) }
 }

@@ -17,11 +17,7 @@ pub fn atan2_upper(y: f32, x: f32) -> f32 {
     }
     let steep = small > TAN_PI_8 * large;
     let base = if steep { FRAC_PI_4 } else { 0.0 };
-    let t = if steep {
-        (small - large) / (small + large)
-    } else {
-        small / large
-    };
+    let t = if steep { (small - large) / (small + large) } else { small / large };
     let z = t * t;
     let p = ((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1;
     let mut angle = base + (t + t * z * p);
@@ -43,10 +39,8 @@ pub fn exp(x: f32) -> f32 {
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
     // ln 2 in two parts, so that the product with n loses nothing.
     let r = (x - n * 0.693_359_4) - n * -2.121_944_4e-4;
-    let p = ((((1.987_569_2e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r
-        + 1.666_666_5e-1)
-        * r
-        + 0.5;
+    let p =
+        ((((1.987_569_2e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r + 1.666_666_5e-1) * r + 0.5;
     let scale = f32::from_bits(((n as i32 + 127) as u32) << 23);
     (p * r * r + r + 1.0) * scale
 }
@@ -65,9 +59,7 @@ pub fn ln(x: f32) -> f32 {
     }
     m -= 1.0;
     let z = m * m;
-    let p = ((((((((7.037_683_6e-2 * m - 1.151_461e-1) * m + 1.167_699_9e-1) * m
-        - 1.242_014_1e-1)
-        * m
+    let p = ((((((((7.037_683_6e-2 * m - 1.151_461e-1) * m + 1.167_699_9e-1) * m - 1.242_014_1e-1) * m
         + 1.424_932_3e-1)
         * m
         - 1.666_805_8e-1)

@@ -78,11 +78,7 @@ pub fn luma(c: Vec3) -> f32 {
 
 #[inline]
 fn lab_f(t: f32) -> f32 {
-    if t > LAB_EPSILON {
-        cbrt(t)
-    } else {
-        (LAB_KAPPA * t + 16.0) / 116.0
-    }
+    if t > LAB_EPSILON { cbrt(t) } else { (LAB_KAPPA * t + 16.0) / 116.0 }
 }
 
 /// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 colour, clamped to the half-float range. L\* passes 100 for

@@ -25,11 +25,7 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     if is_nan {
         return INVALID_DISPARITY;
     }
-    let value = if map.clamp {
-        stored.clamp(0.0, 1.0)
-    } else {
-        stored
-    };
+    let value = if map.clamp { stored.clamp(0.0, 1.0) } else { stored };
     let v = map.a * value + map.b;
     if !map.invert {
         return if v > 0.0 { v } else { 0.0 };

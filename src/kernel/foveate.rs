@@ -23,6 +23,5 @@ pub fn region_lod(
     lod_mid: f32,
     lod_far: f32,
 ) -> f32 {
-    lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg)
-        + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
+    lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg) + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
 }

@@ -109,12 +109,7 @@ pub fn unpack(words: [u32; 3]) -> Stored {
     let corrupt = infinite(r) || infinite(g) || infinite(b);
     let w_sum = scrub::weight(f32::from_bits(words[2] & 0xffff_ff00));
     if corrupt || w_sum > MAX_W_SUM {
-        return Stored {
-            color: Vec3::ZERO,
-            disparity: -1.0,
-            w_sum: 0.0,
-            age: 0,
-        };
+        return Stored { color: Vec3::ZERO, disparity: -1.0, w_sum: 0.0, age: 0 };
     }
     Stored {
         color: Vec3::new(half_value(r), half_value(g), half_value(b)),

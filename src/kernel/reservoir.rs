@@ -34,10 +34,7 @@ pub fn combine(first: Reservoir, second: Reservoir, draw: f32) -> (Reservoir, bo
     let w1 = scrub::weight(first.w_sum);
     let w2 = scrub::weight(second.w_sum);
     let w_sum = w1 + w2;
-    let merged = Reservoir {
-        w_sum,
-        count: first.count.saturating_add(second.count),
-    };
+    let merged = Reservoir { w_sum, count: first.count.saturating_add(second.count) };
     (merged, w1 == 0.0 || draw * w_sum < w2)
 }
 

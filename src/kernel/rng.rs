@@ -37,12 +37,7 @@ fn mix(v: &mut [u32; 4]) {
 /// The counter has 64 bits; when the low word wraps, the streams go on with a new key.
 #[inline]
 pub fn stream_key(seed: u64, view: u32, purpose: Purpose, frame: u64) -> u32 {
-    let context = [
-        seed as u32,
-        (seed >> 32) as u32,
-        (frame >> 32) as u32,
-        (purpose as u32) << 16 ^ view,
-    ];
+    let context = [seed as u32, (seed >> 32) as u32, (frame >> 32) as u32, (purpose as u32) << 16 ^ view];
     pcg4d(context)[0]
 }
 

@@ -25,9 +25,5 @@ pub fn color(c: Vec3) -> (Vec3, bool) {
 /// A weight or weight sum: what is NaN, infinite, negative or so small that hardware may flush it to zero counts as 0.
 #[inline]
 pub fn weight(w: f32) -> f32 {
-    if is_finite(w) && w >= f32::MIN_POSITIVE {
-        w
-    } else {
-        0.0
-    }
+    if is_finite(w) && w >= f32::MIN_POSITIVE { w } else { 0.0 }
 }

@@ -95,11 +95,7 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     }
     let reference = color::lab(candidate);
     let stored = color::lab(sample);
-    if code == GateCode::Lightness {
-        (reference.x - stored.x).abs()
-    } else {
-        color::delta_e94(reference, stored)
-    }
+    if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
 /// One frame of one pixel: eq. 7, then Alg. 2 with the candidate as second reservoir. `weight` is 0 for a candidate that must
@@ -129,11 +125,5 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
             (take, if take { new } else { old })
         }
     };
-    Decision {
-        take,
-        w_sum,
-        log_key,
-        gate: gate_value,
-        survival,
-    }
+    Decision { take, w_sum, log_key, gate: gate_value, survival }
 }

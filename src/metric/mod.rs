@@ -46,22 +46,13 @@ impl Band {
 pub fn encode(linear: &Image<[f32; 3]>, exposure_ev: f32) -> Image<[f32; 3]> {
     let gain = exposure_ev.exp2();
     let mut encoded = Image::filled(linear.size(), [0.0; 3]);
-    encoded
-        .pixels_mut()
-        .par_iter_mut()
-        .zip(linear.pixels())
-        .with_min_len(4096)
-        .for_each(|(out, c)| {
-            *out = c.map(|v| {
-                let v = v * gain;
-                // NaN fails the comparison.
-                if v > 0.0 {
-                    color::srgb_encode(v.min(1.0))
-                } else {
-                    0.0
-                }
-            });
+    encoded.pixels_mut().par_iter_mut().zip(linear.pixels()).with_min_len(4096).for_each(|(out, c)| {
+        *out = c.map(|v| {
+            let v = v * gain;
+            // NaN fails the comparison.
+            if v > 0.0 { color::srgb_encode(v.min(1.0)) } else { 0.0 }
         });
+    });
     encoded
 }
 

@@ -91,10 +91,7 @@ pub struct FrameErrors {
 impl Scorer {
     /// A scorer that leaves SSIM out, which is half of the work.
     pub fn without_ssim() -> Self {
-        Self {
-            skip_ssim: true,
-            ..Self::default()
-        }
+        Self { skip_ssim: true, ..Self::default() }
     }
 
     /// Takes one frame: sRGB-encoded reference and shown image, what is known of the frame, eccentricities in degrees. Gives
@@ -131,11 +128,7 @@ impl Scorer {
             }
         }
         self.luma_error = Some(luma_error);
-        let map = if self.skip_ssim {
-            None
-        } else {
-            ssim_map(reference, shown)
-        };
+        let map = if self.skip_ssim { None } else { ssim_map(reference, shown) };
         if let Some(map) = map {
             let margin = (shown.width() - map.width()) / 2;
             for y in 0..map.height() {
@@ -145,10 +138,7 @@ impl Scorer {
                 }
             }
         }
-        FrameErrors {
-            mse: total(squared).value().unwrap_or(0.0),
-            retained_mse: retained.value(),
-        }
+        FrameErrors { mse: total(squared).value().unwrap_or(0.0), retained_mse: retained.value() }
     }
 
     /// The figures so far.

@@ -33,20 +33,13 @@ pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<
             let rows = STRIP_ROWS.min(map_height - first);
             let range = first * width..(first + rows + WINDOW - 1) * width;
             let plane = |image: &Image<[f32; 3]>| Plane {
-                samples: image.pixels()[range.clone()]
-                    .iter()
-                    .map(|&c| 255.0 * color::luma(Vec3::from(c)))
-                    .collect(),
+                samples: image.pixels()[range.clone()].iter().map(|&c| 255.0 * color::luma(Vec3::from(c))).collect(),
                 width,
                 height: rows + WINDOW - 1,
             };
             let outcome = ssim(&plane(reference), &plane(shown), &SsimOptions::default())
                 .expect("strips have one size, at least that of the window");
-            assert_eq!(
-                [outcome.map_width, outcome.map_height],
-                [map_width, rows],
-                "strips must not be shrunk"
-            );
+            assert_eq!([outcome.map_width, outcome.map_height], [map_width, rows], "strips must not be shrunk");
             outcome.map
         })
         .collect();

@@ -43,10 +43,7 @@ impl Tracker {
     ) -> Tracked {
         let size = frame.color.size();
         let map = DepthConvention::Linear.disparity_map();
-        let disparity = frame
-            .depth
-            .as_ref()
-            .map(|d| d.map(|z| depth::disparity(z, map)));
+        let disparity = frame.depth.as_ref().map(|d| d.map(|z| depth::disparity(z, map)));
         if frame.cut {
             self.previous = None;
         }
@@ -84,9 +81,7 @@ fn correspond(
             index - 1
         });
     }
-    let row = frame
-        .previous_from_current
-        .map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]);
+    let row = frame.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]);
     let test = DepthTest::default();
     Image::from_fn(size, |[x, y]| {
         let (xi, yi) = (x as usize, y as usize);
@@ -104,10 +99,6 @@ fn correspond(
         let slope = depth::slope(x, y, size, |x, y| now.at(x as usize, y as usize));
         let slope = test.slope_px * slope;
         let stored = before.at(qx as usize, qy as usize);
-        if depth::same_surface(expected, stored, test.relative, slope) {
-            index
-        } else {
-            NO_PAST
-        }
+        if depth::same_surface(expected, stored, test.relative, slope) { index } else { NO_PAST }
     })
 }

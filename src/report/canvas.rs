@@ -28,10 +28,7 @@ impl DrawTarget for Canvas {
     type Color = Rgb888;
     type Error = Infallible;
 
-    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Infallible> {
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         for Pixel(at, c) in pixels {
             if let (Ok(x), Ok(y)) = (u32::try_from(at.x), u32::try_from(at.y))
                 && let Some(pixel) = self.0.get_pixel_mut_checked(x, y)
@@ -85,39 +82,24 @@ impl Canvas {
         }
         let at = Point::new(center[0].round() as i32, center[1].round() as i32);
         let circle = Circle::with_center(at, (2.0 * radius).round().max(1.0) as u32);
-        sure(
-            circle
-                .into_styled(PrimitiveStyle::with_stroke(rgb(color), width))
-                .draw(self),
-        );
+        sure(circle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 
     /// A straight line.
     pub fn line(&mut self, from: [f32; 2], to: [f32; 2], width: u32, color: [u8; 3]) {
-        if [from, to]
-            .as_flattened()
-            .iter()
-            .any(|v| !v.is_finite() || v.abs() > 1e5)
-        {
+        if [from, to].as_flattened().iter().any(|v| !v.is_finite() || v.abs() > 1e5) {
             return;
         }
         let point = |p: [f32; 2]| Point::new(p[0].round() as i32, p[1].round() as i32);
         let line = Line::new(point(from), point(to));
-        sure(
-            line.into_styled(PrimitiveStyle::with_stroke(rgb(color), width))
-                .draw(self),
-        );
+        sure(line.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 
     /// A rectangle's outline.
     pub fn frame(&mut self, corner: [u32; 2], size: [u32; 2], width: u32, color: [u8; 3]) {
         let corner = Point::new(corner[0] as i32, corner[1] as i32);
         let rectangle = Rectangle::new(corner, Size::new(size[0], size[1]));
-        sure(
-            rectangle
-                .into_styled(PrimitiveStyle::with_stroke(rgb(color), width))
-                .draw(self),
-        );
+        sure(rectangle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 }
 

@@ -11,10 +11,7 @@ pub struct Stopwatch {
 impl Stopwatch {
     /// Starts now.
     pub fn start() -> Self {
-        Self {
-            wall: Instant::now(),
-            cpu_ms: process_cpu_ms(),
-        }
+        Self { wall: Instant::now(), cpu_ms: process_cpu_ms() }
     }
 
     /// Milliseconds that have passed.
@@ -57,16 +54,9 @@ impl Quartiles {
         sorted.sort_by(f64::total_cmp);
         let at = |q: f64| {
             let position = q * (sorted.len() - 1) as f64;
-            let (low, high) = (
-                sorted[position.floor() as usize],
-                sorted[position.ceil() as usize],
-            );
+            let (low, high) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
             low + (high - low) * position.fract()
         };
-        (!sorted.is_empty()).then(|| Self {
-            median: at(0.5),
-            p25: at(0.25),
-            p75: at(0.75),
-        })
+        (!sorted.is_empty()).then(|| Self { median: at(0.5), p25: at(0.25), p75: at(0.75) })
     }
 }

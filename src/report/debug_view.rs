@@ -23,11 +23,7 @@ pub enum DebugView {
 }
 
 /// The picture of a view, sRGB-encoded. `motion` is previous minus current in pixels, `None` for none.
-pub fn picture(
-    view: DebugView,
-    trace: &Image<PixelTrace>,
-    motion: Option<&Image<[f32; 2]>>,
-) -> Image<[f32; 3]> {
+pub fn picture(view: DebugView, trace: &Image<PixelTrace>, motion: Option<&Image<[f32; 2]>>) -> Image<[f32; 3]> {
     match view {
         DebugView::Weight => trace.map(|t| heat::color(t.w_sum / 16.0)),
         DebugView::Age => trace.map(|t| heat::color((t.age as f32 / 255.0).sqrt())),
@@ -58,10 +54,5 @@ fn motion_color(motion: [f32; 2]) -> [f32; 3] {
     if x.is_nan() || y.is_nan() {
         return [0.0, 1.0, 0.0];
     }
-    [
-        0.5 + 0.5 * x,
-        0.5 - 0.25 * x + 0.43 * y,
-        0.5 - 0.25 * x - 0.43 * y,
-    ]
-    .map(|v| v.clamp(0.0, 1.0))
+    [0.5 + 0.5 * x, 0.5 - 0.25 * x + 0.43 * y, 0.5 - 0.25 * x - 0.43 * y].map(|v| v.clamp(0.0, 1.0))
 }

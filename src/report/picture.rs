@@ -10,11 +10,8 @@ use std::path::Path;
 /// 8-bit image of sRGB-encoded values in \[0, 1\].
 pub fn to_rgb8(encoded: &Image<[f32; 3]>) -> RgbImage {
     let [width, height] = encoded.size();
-    let bytes = encoded
-        .pixels()
-        .iter()
-        .flat_map(|c| c.map(|v| (v * 255.0 + 0.5) as u8))
-        .collect();
+    let pixels: Vec<[u8; 3]> = encoded.pixels().iter().map(|c| c.map(|v| (v * 255.0 + 0.5) as u8)).collect();
+    let bytes = bytemuck::allocation::cast_vec(pixels);
     RgbImage::from_raw(width, height, bytes).expect("three bytes a pixel")
 }
 
@@ -25,12 +22,7 @@ pub fn to_rgb8(encoded: &Image<[f32; 3]>) -> RgbImage {
 pub fn write_png(path: &Path, picture: &RgbImage) -> io::Result<()> {
     write_whole(path, |file| {
         PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive)
-            .write_image(
-                picture.as_raw(),
-                picture.width(),
-                picture.height(),
-                ExtendedColorType::Rgb8,
-            )
+            .write_image(picture.as_raw(), picture.width(), picture.height(), ExtendedColorType::Rgb8)
             .map_err(io::Error::other)
     })
 }

@@ -61,11 +61,7 @@ impl Sheet<'_> {
         let head = 2 * LINE_PX + GAP_PX;
         let row_height = panel[1] + LINE_PX + GAP_PX;
         let width = (count * (panel[0] + GAP_PX) + GAP_PX).max(120 * CHAR_PX);
-        let mut canvas = Canvas::new(
-            width,
-            head + LINE_PX + rows * row_height + GAP_PX,
-            BACKGROUND,
-        );
+        let mut canvas = Canvas::new(width, head + LINE_PX + rows * row_height + GAP_PX, BACKGROUND);
         canvas.heading(&self.title, GAP_PX, GAP_PX, INK);
         for (i, column) in self.columns.iter().enumerate() {
             let x = GAP_PX + i as u32 * (panel[0] + GAP_PX);
@@ -133,17 +129,11 @@ impl Sheet<'_> {
 
     /// Radius in pixels of the fovea around a gaze position, measured towards the middle of the view.
     fn radius_px(&self, gaze: [f32; 2]) -> f32 {
-        let side = if gaze[0] > 0.5 * self.geometry.size_px()[0] as f32 {
-            -1.0
-        } else {
-            1.0
-        };
+        let side = if gaze[0] > 0.5 * self.geometry.size_px()[0] as f32 { -1.0 } else { 1.0 };
         let (mut low, mut high) = (0.0_f32, 2.0 * self.geometry.size_px()[0] as f32);
         for _ in 0..24 {
             let mid = 0.5 * (low + high);
-            let e = self
-                .geometry
-                .eccentricity_deg([gaze[0] + side * mid, gaze[1]], gaze);
+            let e = self.geometry.eccentricity_deg([gaze[0] + side * mid, gaze[1]], gaze);
             if e < 0.5 * self.fovea_deg {
                 low = mid;
             } else {
@@ -173,11 +163,7 @@ fn caption(column: &Column<'_>) -> String {
     };
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2} dB"));
     let ssim = scores.whole.ssim.map_or("-".into(), |v| format!("{v:.4}"));
-    format!(
-        "PSNR {}  SSIM {ssim}  retained {}",
-        db(scores.whole.psnr_db),
-        db(scores.retained_psnr_db)
-    )
+    format!("PSNR {}  SSIM {ssim}  retained {}", db(scores.whole.psnr_db), db(scores.retained_psnr_db))
 }
 
 fn panel_size(frame: [u32; 2]) -> [u32; 2] {
@@ -194,11 +180,7 @@ fn fit(picture: &RgbImage, panel: [u32; 2]) -> RgbImage {
     if picture.dimensions() == (panel[0], panel[1]) {
         return picture.clone();
     }
-    let filter = if picture.width() > panel[0] {
-        FilterType::Triangle
-    } else {
-        FilterType::Nearest
-    };
+    let filter = if picture.width() > panel[0] { FilterType::Triangle } else { FilterType::Nearest };
     imageops::resize(picture, panel[0], panel[1], filter)
 }
 
@@ -215,9 +197,7 @@ fn zoom_window(frame: [u32; 2], center: [f32; 2], panel: [u32; 2]) -> ([u32; 2],
 fn zoom(shown: &Image<[f32; 3]>, center: [f32; 2], panel: [u32; 2]) -> RgbImage {
     let (corner, size) = zoom_window(shown.size(), center, panel);
     let mut picture = RgbImage::from_pixel(panel[0], panel[1], Rgb(BACKGROUND));
-    let whole = Image::from_fn(size, |[x, y]| {
-        shown.at((x + corner[0]) as usize, (y + corner[1]) as usize)
-    });
+    let whole = Image::from_fn(size, |[x, y]| shown.at((x + corner[0]) as usize, (y + corner[1]) as usize));
     let (w, h) = (size[0] * ZOOM_FACTOR, size[1] * ZOOM_FACTOR);
     let enlarged = imageops::resize(&to_rgb8(&whole), w, h, FilterType::Nearest);
     imageops::replace(&mut picture, &enlarged, 0, 0);

@@ -22,11 +22,7 @@ pub enum GazeMap {
 impl GazeMap {
     /// [`GazeMap::Angle`] where the screen's geometry is known, else [`GazeMap::Fit`].
     pub fn default_for(screen: &Screen) -> Self {
-        if screen.tangent_per_px().is_some() {
-            Self::Angle
-        } else {
-            Self::Fit
-        }
+        if screen.tangent_per_px().is_some() { Self::Angle } else { Self::Fit }
     }
 }
 
@@ -51,19 +47,9 @@ impl FrameGaze {
     /// # Errors
     /// If `fps` is not a positive number, `start_s` is negative, not finite or beyond the recording's end, or
     /// [`GazeMap::Angle`] is asked for and the screen's geometry is not known.
-    pub fn new(
-        path: &Scanpath,
-        view: &ViewGeometry,
-        map: GazeMap,
-        start_s: f64,
-        fps: f64,
-    ) -> Result<Self, InputError> {
+    pub fn new(path: &Scanpath, view: &ViewGeometry, map: GazeMap, start_s: f64, fps: f64) -> Result<Self, InputError> {
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::new(
-                "fps",
-                format!("{fps} frames per second"),
-                "expected a number above 0",
-            ));
+            return Err(InputError::new("fps", format!("{fps} frames per second"), "expected a number above 0"));
         }
         let left_s = path.duration_s() - start_s;
         if !(start_s >= 0.0 && left_s >= -TIME_SLACK_S) {
@@ -108,8 +94,7 @@ impl FrameGaze {
     /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]: how long ago the eye was last seen there. More than a
     /// few sample intervals mean that the gaze is lost and held, which a caller may answer with a wider fovea.
     pub fn age_s(&self, index: u64) -> Option<f64> {
-        self.held(index)
-            .map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
+        self.held(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
     }
 
     fn held(&self, index: u64) -> Option<(f64, [f32; 2])> {

@@ -45,11 +45,7 @@ impl Default for Screen {
     /// 1920x1080 pixels that span 70 degrees, the field of view of a flat view unless told otherwise, seen from 60 cm.
     fn default() -> Self {
         let width_cm = 2.0 * 60.0 * 35f32.to_radians().tan();
-        Self {
-            size_px: [1920, 1080],
-            size_cm: Some([width_cm, width_cm * 1080.0 / 1920.0]),
-            distance_cm: Some(60.0),
-        }
+        Self { size_px: [1920, 1080], size_cm: Some([width_cm, width_cm * 1080.0 / 1920.0]), distance_cm: Some(60.0) }
     }
 }
 
@@ -60,11 +56,7 @@ impl Screen {
         let size_px = view.size_px().map(|n| n.max(1));
         let (tangent_per_px, _) = view.scale_offset();
         let side = |axis: usize| 60.0 * tangent_per_px[axis] * size_px[axis] as f32;
-        Self {
-            size_px,
-            size_cm: Some([side(0), side(1)]),
-            distance_cm: Some(60.0),
-        }
+        Self { size_px, size_cm: Some([side(0), side(1)]), distance_cm: Some(60.0) }
     }
 
     /// Slope of the view ray per pixel in x and y (the tangent of a small angle); `None` unless size and distance are known.
@@ -84,10 +76,7 @@ impl Screen {
         }
         let usable = |x: f32| x.is_finite() && x > 0.0;
         if let Some([w, h]) = self.size_cm.filter(|s| !s.iter().copied().all(usable)) {
-            return Err((
-                format!("the screen is {w}x{h} cm"),
-                "give `screen_cm` as two numbers above 0, or `unknown`",
-            ));
+            return Err((format!("the screen is {w}x{h} cm"), "give `screen_cm` as two numbers above 0, or `unknown`"));
         }
         if let Some(d) = self.distance_cm.filter(|d| !usable(*d)) {
             return Err((
@@ -133,16 +122,12 @@ impl Scanpath {
         mut samples: Vec<Sample>,
     ) -> Result<Self, InputError> {
         let name = name.into();
-        screen
-            .check()
-            .map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
+        screen.check().map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
         tidy(&mut about).map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
         for sample in &mut samples {
             sample.px = sample.px.filter(|px| px.iter().all(|v| v.is_finite()));
         }
-        let bad_time = |i: usize| {
-            !samples[i].t_s.is_finite() || (i > 0 && samples[i].t_s <= samples[i - 1].t_s)
-        };
+        let bad_time = |i: usize| !samples[i].t_s.is_finite() || (i > 0 && samples[i].t_s <= samples[i - 1].t_s);
         if let Some(i) = (0..samples.len()).find(|&i| bad_time(i)) {
             return Err(InputError::new(
                 name,
@@ -151,11 +136,7 @@ impl Scanpath {
             ));
         }
         if samples.is_empty() {
-            return Err(InputError::new(
-                name,
-                "there is no sample",
-                "give at least one row with a valid gaze",
-            ));
+            return Err(InputError::new(name, "there is no sample", "give at least one row with a valid gaze"));
         }
         if samples.iter().all(|s| s.px.is_none()) {
             return Err(InputError::new(
@@ -164,12 +145,7 @@ impl Scanpath {
                 "give a recording with at least one valid sample",
             ));
         }
-        Ok(Self {
-            name,
-            screen,
-            about,
-            samples,
-        })
+        Ok(Self { name, screen, about, samples })
     }
 
     /// What errors call it, usually the file's path.
@@ -216,19 +192,12 @@ impl Scanpath {
 /// Brings header texts into the form in which a file returns them, so that writing and reading is the identity.
 fn tidy(about: &mut About) -> Result<(), (String, &'static str)> {
     const ONE_LINE: &str = "a header line is `# key: value` on one line, each key once";
-    about.task = about
-        .task
-        .take()
-        .map(|t| t.trim().to_owned())
-        .filter(|t| !t.is_empty() && t != UNKNOWN);
+    about.task = about.task.take().map(|t| t.trim().to_owned()).filter(|t| !t.is_empty() && t != UNKNOWN);
     if about.task.as_ref().is_some_and(|t| t.contains('\n')) {
         return Err(("the task has more than one line".into(), ONE_LINE));
     }
     if let Some(rate) = about.rate_hz.filter(|r| !(r.is_finite() && *r > 0.0)) {
-        return Err((
-            format!("the rate is {rate} Hz"),
-            "give `rate_hz` as a number above 0, or `unknown`",
-        ));
+        return Err((format!("the rate is {rate} Hz"), "give `rate_hz` as a number above 0, or `unknown`"));
     }
     let mut seen = std::collections::HashSet::from(RESERVED_KEYS.map(str::to_owned));
     for (key, value) in &mut about.notes {

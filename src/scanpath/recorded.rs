@@ -30,11 +30,7 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let path = path.as_ref();
     let name = path.display().to_string();
     let unreadable = |e: std::io::Error| {
-        InputError::new(
-            &name,
-            format!("cannot be read ({e})"),
-            "give the path of a scanpath CSV file",
-        )
+        InputError::new(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
     };
     let too_large = || {
         InputError::new(
@@ -46,20 +42,14 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let file = File::open(path).map_err(unreadable)?;
     let meta = file.metadata().map_err(unreadable)?;
     if meta.is_dir() {
-        return Err(InputError::new(
-            name,
-            "is a folder",
-            "give the path of a scanpath CSV file",
-        ));
+        return Err(InputError::new(name, "is a folder", "give the path of a scanpath CSV file"));
     }
     if meta.len() > MAX_FILE_BYTES {
         return Err(too_large());
     }
     // Devices and pipes report no length, so the read is bounded as well.
     let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
+    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(too_large());
     }
@@ -98,9 +88,7 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
                 format!("the first line without # must be {COLUMNS}"),
             ))
         };
-        parsed.map_err(|(problem, remedy)| {
-            InputError::new(format!("{name}, line {}", index + 1), problem, remedy)
-        })?;
+        parsed.map_err(|(problem, remedy)| InputError::new(format!("{name}, line {}", index + 1), problem, remedy))?;
     }
     if !columns_seen {
         return Err(InputError::new(
@@ -116,11 +104,7 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
             "state it in the header as `# screen_px: WIDTHxHEIGHT`",
         ));
     };
-    let screen = Screen {
-        size_px,
-        size_cm: header.size_cm,
-        distance_cm: header.distance_cm,
-    };
+    let screen = Screen { size_px, size_cm: header.size_cm, distance_cm: header.distance_cm };
     Scanpath::new(name, screen, header.about, samples)
 }
 
@@ -177,11 +161,7 @@ fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
     std::str::from_utf8(bytes).map_err(|e| {
         let before = &bytes[..e.valid_up_to()];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        InputError::new(
-            format!("{name}, line {line}"),
-            "not UTF-8 text",
-            "give a scanpath as CSV text",
-        )
+        InputError::new(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
     })
 }
 
@@ -206,10 +186,7 @@ impl Header {
             return Ok(());
         }
         if !self.keys.insert(key.to_owned()) {
-            return Err(bad(
-                format!("{} is given a second time", quote(key)),
-                "keep one of the two lines",
-            ));
+            return Err(bad(format!("{} is given a second time", quote(key)), "keep one of the two lines"));
         }
         match key {
             "task" => self.about.task = Some(value.to_owned()),
@@ -283,47 +260,27 @@ fn row(line: &str, previous: Option<&Sample>) -> Result<Sample, LineError> {
     }
     let t_s: f64 = number(fields[0])
         .filter(|t: &f64| t.is_finite())
-        .ok_or_else(|| {
-            bad(
-                format!("t_s is {}", quote(fields[0])),
-                "expected a time in seconds",
-            )
-        })?;
+        .ok_or_else(|| bad(format!("t_s is {}", quote(fields[0])), "expected a time in seconds"))?;
     if let Some(previous) = previous.filter(|p| t_s <= p.t_s) {
-        return Err(bad(
-            format!("t_s is {t_s} after {}", previous.t_s),
-            "times must increase from row to row",
-        ));
+        return Err(bad(format!("t_s is {t_s} after {}", previous.t_s), "times must increase from row to row"));
     }
     let coordinate = |column: &str, text: &str| {
         if text.is_empty() {
             return Ok(f32::NAN);
         }
         number(text).ok_or_else(|| {
-            bad(
-                format!("{column} is {}", quote(text)),
-                "expected a number of pixels, or nan where the gaze was lost",
-            )
+            bad(format!("{column} is {}", quote(text)), "expected a number of pixels, or nan where the gaze was lost")
         })
     };
-    let px = [
-        coordinate("x_px", fields[1])?,
-        coordinate("y_px", fields[2])?,
-    ];
+    let px = [coordinate("x_px", fields[1])?, coordinate("y_px", fields[2])?];
     let valid = match fields[3] {
         "1" => px.iter().all(|v| v.is_finite()),
         "0" => false,
         other => {
-            return Err(bad(
-                format!("valid is {}", quote(other)),
-                "expected 1, or 0 where the gaze was lost",
-            ));
+            return Err(bad(format!("valid is {}", quote(other)), "expected 1, or 0 where the gaze was lost"));
         }
     };
-    Ok(Sample {
-        t_s,
-        px: valid.then_some(px),
-    })
+    Ok(Sample { t_s, px: valid.then_some(px) })
 }
 
 fn number<T: std::str::FromStr>(text: &str) -> Option<T> {

@@ -76,12 +76,7 @@ pub struct SyntheticOptions {
 
 impl Default for SyntheticOptions {
     fn default() -> Self {
-        Self {
-            seed: 0,
-            duration_s: 60.0,
-            rate_hz: 500.0,
-            screen: Screen::default(),
-        }
+        Self { seed: 0, duration_s: 60.0, rate_hz: 500.0, screen: Screen::default() }
     }
 }
 
@@ -103,18 +98,10 @@ impl SyntheticOptions {
     /// After all checks: slope per pixel, and half the screen's width and height in degrees.
     fn aim_field(&self) -> Result<([f64; 2], [f64; 2]), InputError> {
         let fault = |option: &str, found: String, remedy: &str| {
-            Err(InputError::new(
-                format!("synthetic scanpath, {option}"),
-                found,
-                remedy,
-            ))
+            Err(InputError::new(format!("synthetic scanpath, {option}"), found, remedy))
         };
         if !(1.0..=10_000.0).contains(&self.rate_hz) {
-            return fault(
-                "rate",
-                format!("{} Hz", self.rate_hz),
-                "expected 1 to 10000 Hz",
-            );
+            return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");
         }
         let samples = self.duration_s * self.rate_hz;
         if !(self.duration_s > 0.0 && samples <= MAX_SAMPLES) {
@@ -142,11 +129,7 @@ impl SyntheticOptions {
         if half_deg.iter().any(|h| *h < least) {
             return fault(
                 "screen",
-                format!(
-                    "it spans {:.1}x{:.1} degrees",
-                    2.0 * half_deg[0],
-                    2.0 * half_deg[1]
-                ),
+                format!("it spans {:.1}x{:.1} degrees", 2.0 * half_deg[0], 2.0 * half_deg[1]),
                 "expected at least 8 degrees a side, or no saccade would fit",
             );
         }
@@ -218,20 +201,12 @@ pub fn generate(options: &SyntheticOptions) -> Result<Synthetic, InputError> {
         rate_hz: Some(options.rate_hz),
         notes: [
             ("origin", "top left, x right, y down".into()),
-            (
-                "source",
-                format!("afterimage, synthetic scanpath, seed {}", options.seed),
-            ),
+            ("source", format!("afterimage, synthetic scanpath, seed {}", options.seed)),
             ("licence", "MIT OR Apache-2.0".into()),
         ]
         .map(|(key, value)| (key.to_owned(), value))
         .to_vec(),
     };
-    let path = Scanpath::new(
-        format!("synthetic:{}", options.seed),
-        options.screen,
-        about,
-        samples.collect(),
-    )?;
+    let path = Scanpath::new(format!("synthetic:{}", options.seed), options.screen, about, samples.collect())?;
     Ok(Synthetic { path, events })
 }

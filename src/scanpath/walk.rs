@@ -1,9 +1,8 @@
 //! The eye of the synthetic scanpath: moves along its events and writes down where it is at the sample times.
 
 use super::synthetic::{
-    AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event,
-    EventKind, FIXATION_S, LANDING_S, MAIN_SEQUENCE_S, MICROSACCADE_DEG, MICROSACCADE_HZ,
-    SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
+    AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S,
+    LANDING_S, MAIN_SEQUENCE_S, MICROSACCADE_DEG, MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
 };
 use glam::{DVec2, DVec3};
 use rand::{Rng, SeedableRng};
@@ -81,12 +80,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
             let onset_s = start_s + uniform(&mut self.rng, [0.0, free_s]);
             self.drift_until(onset_s);
             let towards = self.direction_inside(amplitude_deg);
-            self.turn_by(
-                EventKind::Microsaccade,
-                towards,
-                amplitude_deg,
-                amplitude_deg,
-            );
+            self.turn_by(EventKind::Microsaccade, towards, amplitude_deg, amplitude_deg);
         }
         self.drift_until(end_s);
         self.note_rest(EventKind::Fixation, start_s, start);
@@ -175,24 +169,12 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         }
         self.now_s = end_s;
         self.gaze = turn(start, towards, amplitude_deg);
-        self.events.push(Event {
-            kind,
-            start_s,
-            end_s,
-            amplitude_deg,
-            intended_deg,
-        });
+        self.events.push(Event { kind, start_s, end_s, amplitude_deg, intended_deg });
     }
 
     fn note_rest(&mut self, kind: EventKind, start_s: f64, start: DVec3) {
         let moved_deg = angle_deg(start, self.gaze);
-        self.events.push(Event {
-            kind,
-            start_s,
-            end_s: self.now_s,
-            amplitude_deg: moved_deg,
-            intended_deg: moved_deg,
-        });
+        self.events.push(Event { kind, start_s, end_s: self.now_s, amplitude_deg: moved_deg, intended_deg: moved_deg });
     }
 
     fn write(&mut self, t_s: f64, gaze: DVec3) {
@@ -235,9 +217,7 @@ fn axes(gaze: DVec3) -> (DVec3, DVec3) {
 
 /// Direction at `from` of the shortest turn to `to`; any direction if they coincide.
 fn tangent_towards(from: DVec3, to: DVec3) -> DVec3 {
-    (to - from * from.dot(to))
-        .try_normalize()
-        .unwrap_or_else(|| axes(from).0)
+    (to - from * from.dot(to)).try_normalize().unwrap_or_else(|| axes(from).0)
 }
 
 fn angle_deg(a: DVec3, b: DVec3) -> f64 {

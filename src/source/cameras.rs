@@ -69,11 +69,7 @@ impl Cameras {
         if bytes > MAX_BYTES {
             return Err(InputError::new(
                 &subject,
-                format!(
-                    "has {} MB, above the limit of {} MB",
-                    bytes >> 20,
-                    MAX_BYTES >> 20
-                ),
+                format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
                 "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
             ));
         }
@@ -105,11 +101,7 @@ impl Cameras {
         if !poses.is_empty() && poses.len() != form.frames.len() {
             return Err(InputError::new(
                 subject,
-                format!(
-                    "has matrices for {} of its {} frames",
-                    poses.len(),
-                    form.frames.len()
-                ),
+                format!("has matrices for {} of its {} frames", poses.len(), form.frames.len()),
                 "expected camera_to_world for every frame, or for none",
             ));
         }
@@ -128,10 +120,7 @@ impl Cameras {
         match self.size {
             Some(s) if s != size => Err(InputError::new(
                 &self.subject,
-                format!(
-                    "says {}x{} pixels but the frames have {}x{}",
-                    s[0], s[1], size[0], size[1]
-                ),
+                format!("says {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
                 "use the file that belongs to these frames, or remove width and height from it",
             )),
             _ => Ok(()),
@@ -140,10 +129,7 @@ impl Cameras {
 
     /// The pose of every file, by the number in its name, or in order where either side has no numbers. `None` if there are
     /// no matrices at all.
-    pub(super) fn assign(
-        &self,
-        file_numbers: &[Option<u64>],
-    ) -> Result<Option<Vec<usize>>, InputError> {
+    pub(super) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);
         }
@@ -157,22 +143,14 @@ impl Cameras {
                     )
                 })
             };
-            return file_numbers
-                .iter()
-                .map(find)
-                .collect::<Result<_, _>>()
-                .map(Some);
+            return file_numbers.iter().map(find).collect::<Result<_, _>>().map(Some);
         }
         if self.poses.len() == file_numbers.len() {
             return Ok(Some((0..self.poses.len()).collect()));
         }
         Err(InputError::new(
             &self.subject,
-            format!(
-                "has {} cameras for {} files",
-                self.poses.len(),
-                file_numbers.len()
-            ),
+            format!("has {} cameras for {} files", self.poses.len(), file_numbers.len()),
             "expected one for every file, or numbers in both the file names and `frame`",
         ))
     }
@@ -181,14 +159,8 @@ impl Cameras {
     pub(super) fn previous_from_current(&self, previous: usize, current: usize) -> [[f32; 4]; 4] {
         // The file's cameras have y up and look along -z; the flip is its own inverse.
         let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
-        let matrix = flip
-            * self.poses[previous].camera_from_world
-            * self.poses[current].world_from_camera
-            * flip;
-        matrix
-            .transpose()
-            .to_cols_array_2d()
-            .map(|row| row.map(|v| v as f32))
+        let matrix = flip * self.poses[previous].camera_from_world * self.poses[current].world_from_camera * flip;
+        matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
 }
 
@@ -216,21 +188,14 @@ fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, I
         (Some(a), Some(b)) => (a, b),
     };
     let distance = world_from_camera.w_axis.truncate().length();
-    if !(world_from_camera * camera_from_world)
-        .abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance))
-    {
+    if !(world_from_camera * camera_from_world).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
         return Err(InputError::new(
             subject,
-            format!(
-                "camera_to_world and world_to_camera of frame {number} are not inverse to each other"
-            ),
+            format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
             "correct one of them, or remove it",
         ));
     }
-    Ok(Some(Pose {
-        world_from_camera,
-        camera_from_world,
-    }))
+    Ok(Some(Pose { world_from_camera, camera_from_world }))
 }
 
 fn why_not_rigid(m: DMat4) -> Option<&'static str> {
@@ -286,9 +251,7 @@ mod tests {
     #[test]
     fn moving_forward_in_blender_axes_moves_the_scene_towards_the_eye() {
         // The camera looks along -z: at z = -1 it is one unit further on. A point 5 ahead of it was 6 ahead before.
-        let at = |z: f64| {
-            format!(r#"{{"camera_to_world":[[1,0,0,0],[0,1,0,0],[0,0,1,{z}],[0,0,0,1]]}}"#)
-        };
+        let at = |z: f64| format!(r#"{{"camera_to_world":[[1,0,0,0],[0,1,0,0],[0,0,1,{z}],[0,0,0,1]]}}"#);
         let c = parse(&format!("{},{}", at(0.0), at(-1.0))).unwrap();
         let m = c.previous_from_current(0, 1);
         assert_eq!(m[2], [0.0, 0.0, 1.0, 1.0]);

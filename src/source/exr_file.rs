@@ -38,15 +38,9 @@ fn exr_error(subject: &str, error: exr::error::Error) -> InputError {
             format!("uses a feature of EXR that is not supported ({what})"),
             "write it as a flat scan-line or tiled EXR with ZIP compression",
         ),
-        Error::Invalid(what) => (
-            format!("is not a valid EXR file ({what})"),
-            "export it again, or remove it",
-        ),
+        Error::Invalid(what) => (format!("is not a valid EXR file ({what})"), "export it again, or remove it"),
         Error::Io(error) => return io_error(subject, &error),
-        other => (
-            format!("cannot be read ({other})"),
-            "export it again, or remove it",
-        ),
+        other => (format!("cannot be read ({other})"), "export it again, or remove it"),
     };
     InputError::new(subject, one_line(&problem), remedy)
 }
@@ -55,16 +49,12 @@ fn exr_error(subject: &str, error: exr::error::Error) -> InputError {
 pub(crate) fn io_error(subject: &str, error: &std::io::Error) -> InputError {
     use std::io::ErrorKind;
     match error.kind() {
-        ErrorKind::NotFound => InputError::new(
-            subject,
-            "does not exist",
-            "check the path; expected a file or folder that can be read",
-        ),
-        ErrorKind::UnexpectedEof => InputError::new(
-            subject,
-            "ends too early: the file is truncated",
-            "copy or export it again",
-        ),
+        ErrorKind::NotFound => {
+            InputError::new(subject, "does not exist", "check the path; expected a file or folder that can be read")
+        }
+        ErrorKind::UnexpectedEof => {
+            InputError::new(subject, "ends too early: the file is truncated", "copy or export it again")
+        }
         _ => InputError::new(
             subject,
             one_line(&format!("cannot be read ({error})")),
@@ -79,10 +69,7 @@ pub(crate) fn one_line(message: &str) -> String {
 }
 
 /// Runs a decoder of another crate: a panic on a malformed file is that file's fault, not a reason to stop.
-pub(crate) fn guarded<T>(
-    subject: &str,
-    decode: impl FnOnce() -> Result<T, InputError>,
-) -> Result<T, InputError> {
+pub(crate) fn guarded<T>(subject: &str, decode: impl FnOnce() -> Result<T, InputError>) -> Result<T, InputError> {
     catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|_| {
         Err(InputError::new(
             subject,

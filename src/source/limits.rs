@@ -18,18 +18,11 @@ impl Default for ReadLimits {
 impl ReadLimits {
     /// A limit of `megapixels` million pixels, as `--max-megapixels` states it.
     pub const fn from_megapixels(megapixels: u32) -> Self {
-        Self {
-            max_pixels: megapixels as u64 * 1_000_000,
-        }
+        Self { max_pixels: megapixels as u64 * 1_000_000 }
     }
 
     /// The size, if an image of `width` x `height` pixels may be read.
-    pub(crate) fn check(
-        &self,
-        subject: &str,
-        width: u64,
-        height: u64,
-    ) -> Result<[u32; 2], InputError> {
+    pub(crate) fn check(&self, subject: &str, width: u64, height: u64) -> Result<[u32; 2], InputError> {
         if width == 0 || height == 0 {
             return Err(InputError::new(
                 subject,
@@ -46,10 +39,7 @@ impl ReadLimits {
                     "its header claims {width}x{height} pixels, above the limit of {} million pixels",
                     self.max_pixels as f64 / 1e6
                 ),
-                format!(
-                    "use a smaller image, or raise the limit with --max-megapixels {}",
-                    pixels.div_ceil(1_000_000)
-                ),
+                format!("use a smaller image, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
             )),
         }
     }

@@ -83,11 +83,7 @@ pub struct SceneOptions {
 ///
 /// # Errors
 /// If it does not exist, cannot be read, or is of a kind that is not read.
-pub fn open(
-    input: &str,
-    limits: &ReadLimits,
-    scene: &SceneOptions,
-) -> Result<Box<dyn FrameSource + Send>, InputError> {
+pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
     // A scheme in front names a source that is no file. Checked first, so that no file hides it.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
@@ -121,26 +117,14 @@ pub fn open(
     }
 }
 
-fn open_analytic(
-    name: &str,
-    limits: &ReadLimits,
-    scene: &SceneOptions,
-) -> Result<AnalyticSource, InputError> {
+fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<AnalyticSource, InputError> {
     let size = scene.size.unwrap_or(analytic::DEFAULT_SIZE);
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     if pixels > limits.max_pixels {
         return Err(InputError::new(
             format!("analytic:{name}"),
-            format!(
-                "{}x{} pixels are above the limit of {} million",
-                size[0],
-                size[1],
-                limits.max_pixels / 1_000_000
-            ),
-            format!(
-                "choose a smaller size, or raise the limit with --max-megapixels {}",
-                pixels.div_ceil(1_000_000)
-            ),
+            format!("{}x{} pixels are above the limit of {} million", size[0], size[1], limits.max_pixels / 1_000_000),
+            format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
         ));
     }
     AnalyticSource::new(
@@ -161,7 +145,5 @@ fn scene_error(input: &str) -> InputError {
 
 /// The ending of a file name in lower case, without the dot; empty if there is none.
 fn extension(path: &Path) -> String {
-    path.extension()
-        .map(|e| e.to_string_lossy().to_lowercase())
-        .unwrap_or_default()
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

@@ -45,17 +45,10 @@ pub struct MotionCheck {
 /// All conventions: three units, two directions, two y axes. The internal form comes first.
 pub fn conventions() -> impl Iterator<Item = MotionConvention> {
     let units = [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc];
-    let directions = [
-        MotionDirection::PreviousMinusCurrent,
-        MotionDirection::CurrentMinusPrevious,
-    ];
+    let directions = [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious];
     units.into_iter().flat_map(move |unit| {
         directions.into_iter().flat_map(move |direction| {
-            [YAxis::Down, YAxis::Up].map(|y_axis| MotionConvention {
-                unit,
-                direction,
-                y_axis,
-            })
+            [YAxis::Down, YAxis::Up].map(|y_axis| MotionConvention { unit, direction, y_axis })
         })
     })
 }
@@ -76,25 +69,18 @@ pub fn detect(
         if other != size {
             return Err(InputError::new(
                 name,
-                format!(
-                    "has {}x{} pixels but the frame has {}x{}",
-                    other[0], other[1], size[0], size[1]
-                ),
+                format!("has {}x{} pixels but the frame has {}x{}", other[0], other[1], size[0], size[1]),
                 "expected one size for both frames and the motion",
             ));
         }
     }
     let moving = moving_pixels(raw);
-    let mut psnr_db: Vec<_> = conventions()
-        .map(|c| (c, explained_db(previous, current, raw, &moving, c)))
-        .collect();
+    let mut psnr_db: Vec<_> = conventions().map(|c| (c, explained_db(previous, current, raw, &moving, c))).collect();
     // Stable: among exact equals the internal form stays first.
     psnr_db.sort_by(|a, b| b.1.total_cmp(&a.1));
     let top = psnr_db[0].1;
     let tied: Vec<_> = psnr_db.iter().filter(|p| top - p.1 < TIE_DB).collect();
-    let best = conventions()
-        .find(|c| tied.iter().any(|t| t.0 == *c))
-        .unwrap_or_default();
+    let best = conventions().find(|c| tied.iter().any(|t| t.0 == *c)).unwrap_or_default();
     let only_y_differs = |c: MotionConvention| (c.unit, c.direction) == (best.unit, best.direction);
     let verdict = match tied.len() {
         _ if moving.is_empty() => Verdict::Undecidable,
@@ -113,10 +99,7 @@ pub fn detect(
 
 /// Evenly spread pixels whose vectors are among the longer ones. Pixels at rest look alike under every convention.
 fn moving_pixels(raw: &Image<[f32; 2]>) -> Vec<[usize; 2]> {
-    let stride = ((raw.width() * raw.height()) as f64 / SCANNED as f64)
-        .sqrt()
-        .ceil()
-        .max(1.0) as usize;
+    let stride = ((raw.width() * raw.height()) as f64 / SCANNED as f64).sqrt().ceil().max(1.0) as usize;
     let mut found: Vec<(f32, [usize; 2])> = Vec::new();
     for y in (0..raw.height()).step_by(stride) {
         for (x, m) in raw.row(y).iter().enumerate().step_by(stride) {
@@ -151,15 +134,9 @@ fn explained_db(
         .iter()
         .map(|&[x, y]| {
             let m = raw.at(x, y);
-            let fetched = bilinear(
-                previous,
-                x as f32 + m[0] * factor[0],
-                y as f32 + m[1] * factor[1],
-            );
+            let fetched = bilinear(previous, x as f32 + m[0] * factor[0], y as f32 + m[1] * factor[1]);
             let seen = current.at(x, y).map(tone);
-            (0..3)
-                .map(|i| f64::from(fetched[i] - seen[i]).powi(2))
-                .sum::<f64>()
+            (0..3).map(|i| f64::from(fetched[i] - seen[i]).powi(2)).sum::<f64>()
         })
         .sum();
     let mse = error / (3 * pixels.len()).max(1) as f64;

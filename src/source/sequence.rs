@@ -63,14 +63,7 @@ impl SequenceSource {
             Some(c) => c.assign(&numbers)?.map(|poses| (c, poses)),
             None => None,
         };
-        Ok(Self {
-            info,
-            limits: *limits,
-            has_depth: first.has_depth(),
-            cameras,
-            still: None,
-            files,
-        })
+        Ok(Self { info, limits: *limits, has_depth: first.has_depth(), cameras, still: None, files })
     }
 
     /// The frames in playing order.
@@ -152,9 +145,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(|e| io_error(&subject, &e))? {
         let path = entry.map_err(|e| io_error(&subject, &e))?.path();
-        let hidden = path
-            .file_name()
-            .is_some_and(|n| n.to_string_lossy().starts_with('.'));
+        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
         if !hidden && super::extension(&path) == "exr" && path.is_file() {
             files.push(path);
         }
@@ -168,11 +159,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     }
     files.sort_by_cached_key(|f| {
         let number = frame_number(f);
-        (
-            number.is_none(),
-            number,
-            f.file_name().map(|n| n.to_owned()),
-        )
+        (number.is_none(), number, f.file_name().map(|n| n.to_owned()))
     });
     Ok(files)
 }
@@ -182,9 +169,7 @@ fn frame_number(path: &Path) -> Option<u64> {
     let stem = path.file_stem()?.to_string_lossy();
     let digits = |c: char| c.is_ascii_digit();
     let end = stem.rfind(digits)? + 1;
-    let start = stem[..end].rfind(|c| !digits(c)).map_or(0, |i| {
-        i + stem[i..].chars().next().map_or(1, char::len_utf8)
-    });
+    let start = stem[..end].rfind(|c| !digits(c)).map_or(0, |i| i + stem[i..].chars().next().map_or(1, char::len_utf8));
     stem[start..end].parse().ok()
 }
 
@@ -199,11 +184,7 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     match steps.iter().position(|&s| s != smallest) {
         Some(at) if smallest > 0 => Err(InputError::new(
             subject,
-            format!(
-                "its frame numbers jump from {} to {}",
-                numbers[at],
-                numbers[at + 1]
-            ),
+            format!("its frame numbers jump from {} to {}", numbers[at], numbers[at + 1]),
             format!(
                 "expected steps of {smallest}; add the missing frames, or put each unbroken run into a folder of its own"
             ),
@@ -230,20 +211,13 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
         let traits = |h: &ExrHeader| {
             [
                 ("depth", h.has_depth()),
-                (
-                    "motion vectors to the previous frame",
-                    h.has(Vectors::ToPrevious),
-                ),
+                ("motion vectors to the previous frame", h.has(Vectors::ToPrevious)),
                 ("motion vectors to the next frame", h.has(Vectors::ToNext)),
             ]
         };
         for ((what, here), (_, there)) in traits(&header).into_iter().zip(traits(&first)) {
             if here != there {
-                let (has, lacks) = if here {
-                    ("has", "does not")
-                } else {
-                    ("has no", "does")
-                };
+                let (has, lacks) = if here { ("has", "does not") } else { ("has no", "does") };
                 return Err(InputError::new(
                     subject,
                     format!("{has} {what} but {first_name} {lacks}"),
@@ -271,20 +245,7 @@ mod tests {
     fn playback_goes_to_and_fro() {
         let order = |n, m| (0..m).map(|i| playback(i, n)).collect::<Vec<_>>();
         use Step::{Backward as B, First, Forward as F};
-        assert_eq!(
-            order(4, 9),
-            [
-                (0, First),
-                (1, F),
-                (2, F),
-                (3, F),
-                (2, B),
-                (1, B),
-                (0, B),
-                (1, F),
-                (2, F)
-            ]
-        );
+        assert_eq!(order(4, 9), [(0, First), (1, F), (2, F), (3, F), (2, B), (1, B), (0, B), (1, F), (2, F)]);
         assert_eq!(order(2, 4), [(0, First), (1, F), (0, B), (1, F)]);
         assert_eq!(playback(u64::MAX, 2).0, 1);
     }

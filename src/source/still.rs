@@ -30,11 +30,7 @@ impl StillSource {
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         if path.is_dir() {
-            return Err(InputError::new(
-                subject,
-                "is a folder",
-                "expected an image file",
-            ));
+            return Err(InputError::new(subject, "is a folder", "expected an image file"));
         }
         match super::extension(path).as_str() {
             "exr" => Self::open_exr(path, subject, limits),
@@ -102,18 +98,11 @@ impl FrameSource for StillSource {
     }
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        Ok(SourceFrame {
-            cut: index == 0,
-            ..self.frame.clone()
-        })
+        Ok(SourceFrame { cut: index == 0, ..self.frame.clone() })
     }
 }
 
-fn decode_8_or_16_bit(
-    path: &Path,
-    subject: &str,
-    limits: &ReadLimits,
-) -> Result<Image<[f32; 3]>, InputError> {
+fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Image<[f32; 3]>, InputError> {
     let io = |e: std::io::Error| io_error(subject, &e);
     // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
     let most_bytes = limits.max_pixels.saturating_mul(24).saturating_add(1 << 24);
@@ -123,17 +112,12 @@ fn decode_8_or_16_bit(
     if file_bytes > most_bytes {
         return Err(InputError::new(
             subject,
-            format!(
-                "has {} MB, more than the largest allowed image",
-                file_bytes >> 20
-            ),
+            format!("has {} MB, more than the largest allowed image", file_bytes >> 20),
             "use a smaller image, or raise the limit with --max-megapixels N",
         ));
     }
     let bytes = fs::read(path).map_err(io)?;
-    let mut reader = ImageReader::new(Cursor::new(bytes.as_slice()))
-        .with_guessed_format()
-        .map_err(io)?;
+    let mut reader = ImageReader::new(Cursor::new(bytes.as_slice())).with_guessed_format().map_err(io)?;
     match reader.format() {
         Some(ImageFormat::Png) => {}
         Some(ImageFormat::Jpeg) if jpeg_is_whole(&bytes) => {}
@@ -153,8 +137,7 @@ fn decode_8_or_16_bit(
     let size = limits.check(subject, u64::from(w), u64::from(h))?;
     decoder.set_limits(allowed).map_err(error)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
-    Image::from_pixels(size, linear(decoded))
-        .map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+    Image::from_pixels(size, linear(decoded)).map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
 }
 
 /// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
@@ -195,22 +178,14 @@ fn linear(decoded: DynamicImage) -> Vec<[f32; 3]> {
 
 /// Linear values of encoded RGB samples from 0 to `max`.
 fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32) -> Vec<[f32; 3]> {
-    let table: Vec<f32> = (0..=max)
-        .map(|i| srgb_to_linear(f64::from(i) / f64::from(max)) as f32)
-        .collect();
+    let table: Vec<f32> = (0..=max).map(|i| srgb_to_linear(f64::from(i) / f64::from(max)) as f32).collect();
     let pixels = encoded.chunks_exact(3);
-    pixels
-        .map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize]))
-        .collect()
+    pixels.map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize])).collect()
 }
 
 /// IEC 61966-2-1, for values from 0 to 1.
 fn srgb_to_linear(v: f64) -> f64 {
-    if v <= 0.04045 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
 fn image_error(subject: &str, error: ImageError) -> InputError {
@@ -226,10 +201,8 @@ fn image_error(subject: &str, error: ImageError) -> InputError {
             one_line(&format!("uses a feature that is not supported ({e})")),
             "export it again as 8 or 16 bit PNG",
         ),
-        other => InputError::new(
-            subject,
-            one_line(&format!("is damaged or truncated ({other})")),
-            "copy or export it again",
-        ),
+        other => {
+            InputError::new(subject, one_line(&format!("is damaged or truncated ({other})")), "copy or export it again")
+        }
     }
 }

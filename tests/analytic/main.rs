@@ -24,10 +24,7 @@ fn frames(name: &str, indices: [u64; 2]) -> [SourceFrame; 2] {
 
 /// Depth and motion of a frame; analytic scenes always have both.
 fn geometry(frame: &SourceFrame) -> (&Image<f32>, &Image<[f32; 2]>) {
-    (
-        frame.depth.as_ref().unwrap(),
-        frame.motion.as_ref().unwrap(),
-    )
+    (frame.depth.as_ref().unwrap(), frame.motion.as_ref().unwrap())
 }
 
 fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
@@ -36,9 +33,7 @@ fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
 
 /// Near enough to sRGB for a PSNR.
 fn encode(color: [f32; 3]) -> Vec3 {
-    Vec3::from(color)
-        .clamp(Vec3::ZERO, Vec3::ONE)
-        .powf(1.0 / 2.2)
+    Vec3::from(color).clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2)
 }
 
 /// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, where all four texels lie on the same surface,
@@ -81,14 +76,9 @@ fn motion_explains_the_next_frame() {
         let (right, share) = explained(&before, &now, 1.0);
         let (flipped, _) = explained(&before, &now, -1.0);
         let (none, _) = explained(&before, &now, 0.0);
-        println!(
-            "{name} {index}: {right:.2} dB over {share:.3} of the frame, flipped {flipped:.2}, ignored {none:.2}"
-        );
+        println!("{name} {index}: {right:.2} dB over {share:.3} of the frame, flipped {flipped:.2}, ignored {none:.2}");
         assert!(right > 31.0, "{name} {index}: {right} dB");
-        assert!(
-            right > flipped + 8.0 && right > none + 5.0,
-            "{name} {index}"
-        );
+        assert!(right > flipped + 8.0 && right > none + 5.0, "{name} {index}");
         assert!(share > 0.85);
     }
 }
@@ -178,16 +168,10 @@ fn scroll_moves_two_pixels_a_frame() {
 fn frames_do_not_depend_on_threads_or_order() {
     for name in AnalyticSource::names() {
         let on = |threads: usize, indices: &[u64]| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut source = source(name, [203, 117]);
-                indices
-                    .iter()
-                    .map(|&index| bits(&source.frame(index).unwrap()))
-                    .last()
+                indices.iter().map(|&index| bits(&source.frame(index).unwrap())).last()
             })
         };
         assert!(on(1, &[33]) == on(2, &[50, 0, 33]), "{name}");
@@ -204,10 +188,7 @@ fn any_size_gives_finite_frames() {
                 let (depth, motion) = geometry(&frame);
                 assert_eq!(frame.color.size(), size);
                 let colors = frame.color.pixels().iter().flatten();
-                assert!(
-                    colors.clone().all(|c| (0.0..1.6).contains(c)),
-                    "{name} {size:?}"
-                );
+                assert!(colors.clone().all(|c| (0.0..1.6).contains(c)), "{name} {size:?}");
                 assert!(depth.pixels().iter().all(|&z| z > 0.0));
                 assert!(motion.pixels().iter().flatten().all(|m| m.is_finite()));
                 assert_eq!((frame.cut, frame.nonfinite), (index == 0, 0));
@@ -218,12 +199,7 @@ fn any_size_gives_finite_frames() {
 
 #[test]
 fn refusals_say_what_to_do() {
-    let refusal = |name, size, hfov, fps| {
-        AnalyticSource::new(name, size, hfov, fps)
-            .err()
-            .unwrap()
-            .to_string()
-    };
+    let refusal = |name, size, hfov, fps| AnalyticSource::new(name, size, hfov, fps).err().unwrap().to_string();
     let unknown = refusal("courtyrad", SIZE, 70.0, 60.0);
     for name in AnalyticSource::names() {
         assert!(unknown.contains(name), "{unknown}");

@@ -15,10 +15,7 @@ struct Pinhole {
 impl Pinhole {
     fn new(size: [u32; 2], hfov_deg: f64) -> Self {
         let [w, h] = size.map(f64::from);
-        Self {
-            focal: 0.5 * w / (0.5 * hfov_deg).to_radians().tan(),
-            middle: DVec2::new(0.5 * w - 0.5, 0.5 * h - 0.5),
-        }
+        Self { focal: 0.5 * w / (0.5 * hfov_deg).to_radians().tan(), middle: DVec2::new(0.5 * w - 0.5, 0.5 * h - 0.5) }
     }
 
     fn ray(&self, px: DVec2) -> DVec3 {
@@ -86,10 +83,7 @@ impl Occluder {
         Self {
             camera: times.map(|t| {
                 let swing = (tau * t / 6.0).sin();
-                (
-                    DVec3::new(0.35 * swing, 0.0, 0.0),
-                    DMat3::from_rotation_y(-0.03 * swing),
-                )
+                (DVec3::new(0.35 * swing, 0.0, 0.0), DMat3::from_rotation_y(-0.03 * swing))
             }),
             fence: times.map(|t| -1.7 * (tau * t / 6.0 + 0.6).cos()),
             balls: [
@@ -113,8 +107,7 @@ impl Occluder {
     fn previous(&self, ray: DVec3, depth: f64) -> (&'static str, DVec3) {
         let (origin, axes) = self.camera[0];
         let point = origin + axes * ray * depth;
-        if (point.z - 2.0).abs() < 1e-4 && (point.x - self.fence[0]).abs() < 0.8 && point.y < 1.599
-        {
+        if (point.z - 2.0).abs() < 1e-4 && (point.x - self.fence[0]).abs() < 0.8 && point.y < 1.599 {
             let shift = DVec3::new(self.fence[1] - self.fence[0], 0.0, 0.0);
             return ("fence", point + shift);
         }

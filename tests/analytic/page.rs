@@ -21,9 +21,7 @@ fn text_page() -> image::GrayImage {
             // The mock display is a 64x64 canvas: a character at a time.
             let mut cell = MockDisplay::new();
             let glyph = character.to_string();
-            Text::with_baseline(&glyph, Point::zero(), style, Baseline::Top)
-                .draw(&mut cell)
-                .unwrap();
+            Text::with_baseline(&glyph, Point::zero(), style, Baseline::Top).draw(&mut cell).unwrap();
             for (x, y) in (0..20).flat_map(|y| (0..10).map(move |x| (x, y))) {
                 if cell.get_pixel(Point::new(x, y)) == Some(BinaryColor::On) {
                     let px = ORIGIN[0] + column as u32 * ADVANCE + x as u32;
@@ -46,9 +44,6 @@ fn write_text_page() {
 fn text_page_is_as_generated() {
     let kept = image::open(PAGE).unwrap();
     assert_eq!(kept.color(), image::ColorType::L8);
-    assert!(
-        kept.to_luma8() == text_page(),
-        "run the regenerating command of fixtures/README.md"
-    );
+    assert!(kept.to_luma8() == text_page(), "run the regenerating command of fixtures/README.md");
     assert!(std::fs::metadata(PAGE).unwrap().len() < 200_000);
 }

@@ -51,9 +51,7 @@ pub struct Draws(rand_stream::SplitMix64);
 
 /// FNV-1a of a name: seeds are independent by construction, not by choice.
 pub fn seed(name: &str) -> u64 {
-    name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
-        (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)
-    })
+    name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// Property tests with a fixed seed of their own: the same cases on every machine.

@@ -7,13 +7,7 @@ use proptest::prelude::*;
 
 /// Any float, the largest and the non-finite ones often.
 fn wild() -> impl Strategy<Value = f32> {
-    prop_oneof![
-        any::<f32>(),
-        Just(f32::MAX),
-        Just(f32::MIN),
-        Just(f32::NAN),
-        Just(f32::INFINITY)
-    ]
+    prop_oneof![any::<f32>(), Just(f32::MAX), Just(f32::MIN), Just(f32::NAN), Just(f32::INFINITY)]
 }
 
 /// The two maps written out for `view()` and `screen(true)`, with a pinhole of the frame's focal length.
@@ -98,17 +92,11 @@ proptest! {
 fn centre_goes_to_centre_and_fit_puts_corners_on_corners() {
     let one = |px, map| {
         let path = path_of(vec![at(0.0, px)]).unwrap();
-        FrameGaze::new(&path, &view(), map, 0.0, 60.0)
-            .unwrap()
-            .px(0)
-            .unwrap()
+        FrameGaze::new(&path, &view(), map, 0.0, 60.0).unwrap().px(0).unwrap()
     };
     for map in [GazeMap::Angle, GazeMap::Fit] {
         let [x, y] = one([512.0, 384.0], map);
-        assert!(
-            (x - 319.5).abs() < 1e-4 && (y - 179.5).abs() < 1e-4,
-            "{map:?}: {x}, {y}"
-        );
+        assert!((x - 319.5).abs() < 1e-4 && (y - 179.5).abs() < 1e-4, "{map:?}: {x}, {y}");
     }
     // The corner of the screen is the outer corner of the corner pixel, half a pixel from its centre.
     assert_eq!(one([0.0, 0.0], GazeMap::Fit), [-0.5, -0.5]);
@@ -121,22 +109,10 @@ fn centre_goes_to_centre_and_fit_puts_corners_on_corners() {
 #[test]
 fn a_screen_made_for_the_view_makes_both_maps_the_same() {
     let view = view();
-    let path = Scanpath::new(
-        "v",
-        Screen::of_view(&view),
-        About::default(),
-        vec![at(0.0, [33.25, 301.5])],
-    )
-    .unwrap();
+    let path = Scanpath::new("v", Screen::of_view(&view), About::default(), vec![at(0.0, [33.25, 301.5])]).unwrap();
     for map in [GazeMap::Angle, GazeMap::Fit] {
-        let px = FrameGaze::new(&path, &view, map, 0.0, 60.0)
-            .unwrap()
-            .px(0)
-            .unwrap();
-        assert!(
-            (px[0] - 32.75).abs() < 1e-3 && (px[1] - 301.0).abs() < 1e-3,
-            "{map:?}: {px:?}"
-        );
+        let px = FrameGaze::new(&path, &view, map, 0.0, 60.0).unwrap().px(0).unwrap();
+        assert!((px[0] - 32.75).abs() < 1e-3 && (px[1] - 301.0).abs() < 1e-3, "{map:?}: {px:?}");
     }
     let default = Screen::default();
     let [slope_x, slope_y] = default.tangent_per_px().unwrap();
@@ -147,25 +123,22 @@ fn a_screen_made_for_the_view_makes_both_maps_the_same() {
 /// H63: nothing before the first valid sample, then held through a blink, through NaN and to the end.
 #[test]
 fn lost_gaze_is_held_and_its_age_grows() {
-    let path = parse("5.0,0,0,0\n5.1,512,384,1\n5.2,nan,nan,1\n5.3,0.00,0.00,0\n5.4,-4000,384,1\n5.5,nan,nan,0\n").unwrap();
+    let path =
+        parse("5.0,0,0,0\n5.1,512,384,1\n5.2,nan,nan,1\n5.3,0.00,0.00,0\n5.4,-4000,384,1\n5.5,nan,nan,0\n").unwrap();
     let gaze = FrameGaze::new(&path, &view(), GazeMap::Fit, 0.0, 10.0).unwrap();
     assert_eq!(gaze.frames(), 6);
     let x: Vec<_> = (0..8).map(|i| gaze.px(i).map(|p| p[0])).collect();
     let (middle, off) = (Some(319.5), Some(-2500.5));
     assert_eq!(x, [None, middle, middle, middle, off, off, off, off]);
     let age = |i| gaze.age_s(i).map(|a| (a * 10.0).round());
-    assert_eq!(
-        [age(0), age(1), age(3), age(5), age(7)],
-        [None, Some(0.0), Some(2.0), Some(1.0), Some(3.0)]
-    );
+    assert_eq!([age(0), age(1), age(3), age(5), age(7)], [None, Some(0.0), Some(2.0), Some(1.0), Some(3.0)]);
 }
 
 #[test]
 fn impossible_time_windows_and_maps_are_refused() {
     let path = parse("0,1,2,1\n2.0,1,2,1\n").unwrap();
-    let make = |path: &Scanpath, map, start, fps| {
-        FrameGaze::new(path, &view(), map, start, fps).map_err(|e| e.to_string())
-    };
+    let make =
+        |path: &Scanpath, map, start, fps| FrameGaze::new(path, &view(), map, start, fps).map_err(|e| e.to_string());
     assert_eq!(make(&path, GazeMap::Fit, 2.0, 60.0).unwrap().frames(), 1);
     assert_eq!(make(&path, GazeMap::Fit, 0.0, 60.0).unwrap().frames(), 121);
     for start in [2.1, -0.1, f64::NAN, f64::INFINITY] {
@@ -173,19 +146,12 @@ fn impossible_time_windows_and_maps_are_refused() {
         assert!(error.contains("expected 0 to 2 s"), "{error}");
     }
     for fps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(
-            make(&path, GazeMap::Fit, 0.0, fps)
-                .unwrap_err()
-                .starts_with("fps: ")
-        );
+        assert!(make(&path, GazeMap::Fit, 0.0, fps).unwrap_err().starts_with("fps: "));
     }
     let samples = vec![at(0.0, [1.0, 2.0])];
     let unknown = Scanpath::new("u.csv", screen(false), About::default(), samples).unwrap();
     assert_eq!(GazeMap::default_for(unknown.screen()), GazeMap::Fit);
     assert_eq!(GazeMap::default_for(path.screen()), GazeMap::Angle);
     let error = make(&unknown, GazeMap::Angle, 0.0, 60.0).unwrap_err();
-    assert!(
-        error.starts_with("u.csv: ") && error.contains("use the gaze map `fit`"),
-        "{error}"
-    );
+    assert!(error.starts_with("u.csv: ") && error.contains("use the gaze map `fit`"), "{error}");
 }

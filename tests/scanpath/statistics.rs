@@ -14,12 +14,7 @@ const P_LEAST: f64 = 1e-4;
 static MADE: LazyLock<Vec<Synthetic>> = LazyLock::new(|| {
     let make = |i: u64| {
         let seed = i.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5ca1_ab1e;
-        generate(&SyntheticOptions {
-            seed,
-            duration_s: DURATION_S,
-            ..Default::default()
-        })
-        .unwrap()
+        generate(&SyntheticOptions { seed, duration_s: DURATION_S, ..Default::default() }).unwrap()
     };
     (0..RUNS).map(make).collect()
 });
@@ -49,12 +44,7 @@ fn check_z(what: &str, found: f64, expected: f64, sd: f64) {
 /// All draws within the range, mean as of a uniform distribution, and its shape by chi-squared over ten bins.
 fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
     let slack = 1e-9;
-    assert!(
-        draws
-            .iter()
-            .all(|d| (low - slack..=high + slack).contains(d)),
-        "{what}"
-    );
+    assert!(draws.iter().all(|d| (low - slack..=high + slack).contains(d)), "{what}");
     let sd = (high - low) / 12f64.sqrt() / (draws.len() as f64).sqrt();
     check_z(what, mean(draws.iter().copied()), 0.5 * (low + high), sd);
     let mut bins = [0.0; 10];
@@ -62,10 +52,7 @@ fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
         bins[(((d - low) / (high - low) * 10.0).max(0.0) as usize).min(9)] += 1.0;
     }
     let expected = draws.len() as f64 / 10.0;
-    let chi2: f64 = bins
-        .iter()
-        .map(|n| (n - expected) * (n - expected) / expected)
-        .sum();
+    let chi2: f64 = bins.iter().map(|n| (n - expected) * (n - expected) / expected).sum();
     let p = ChiSquared::new(9.0).unwrap().sf(chi2);
     println!("{what}: shape, chi2(9) = {chi2:.2}, p = {p:.4}");
     assert!(p > P_LEAST, "{what}: shape, p = {p:e}");
@@ -79,24 +66,13 @@ fn fixations_landings_undershoot_and_microsaccades_are_distributed_as_claimed() 
     let short = |e: &Event| 1.0 - e.amplitude_deg / e.intended_deg;
     let undershoot: Vec<_> = of(EventKind::Saccade).iter().map(short).collect();
     check_uniform("undershoot", &undershoot, [0.04, 0.12]);
-    let micro: Vec<_> = of(EventKind::Microsaccade)
-        .iter()
-        .map(|e| e.amplitude_deg)
-        .collect();
+    let micro: Vec<_> = of(EventKind::Microsaccade).iter().map(|e| e.amplitude_deg).collect();
     check_uniform("microsaccade / deg", &micro, [0.2, 1.0]);
     // One per fixation with probability 2 Hz x length: a sum of independent yes-or-no draws.
-    let chances: Vec<f64> = of(EventKind::Fixation)
-        .iter()
-        .map(|e| 2.0 * length_s(e))
-        .collect();
+    let chances: Vec<f64> = of(EventKind::Fixation).iter().map(|e| 2.0 * length_s(e)).collect();
     let sd = chances.iter().map(|p| p * (1.0 - p)).sum::<f64>().sqrt();
     let fixated_s = chances.iter().sum::<f64>() / 2.0;
-    check_z(
-        "microsaccades / s of fixation",
-        micro.len() as f64 / fixated_s,
-        2.0,
-        sd / fixated_s,
-    );
+    check_z("microsaccades / s of fixation", micro.len() as f64 / fixated_s, 2.0, sd / fixated_s);
 }
 
 #[test]
@@ -105,28 +81,17 @@ fn two_to_four_saccades_a_second_with_and_without_correctives() {
         let count = |kind| made.events.iter().filter(|e| e.kind == kind).count() as f64;
         let saccades = count(EventKind::Saccade) / DURATION_S;
         let all = saccades + count(EventKind::Corrective) / DURATION_S;
-        assert!(
-            (2.0..4.0).contains(&saccades) && (2.0..4.0).contains(&all),
-            "{saccades} {all}"
-        );
+        assert!((2.0..4.0).contains(&saccades) && (2.0..4.0).contains(&all), "{saccades} {all}");
         assert_eq!(count(EventKind::Landing), count(EventKind::Corrective));
     }
     let per_s = |kind| of(kind).len() as f64 / (RUNS as f64 * DURATION_S);
-    println!(
-        "saccades/s {:.3}, correctives/s {:.3}",
-        per_s(EventKind::Saccade),
-        per_s(EventKind::Corrective)
-    );
+    println!("saccades/s {:.3}, correctives/s {:.3}", per_s(EventKind::Saccade), per_s(EventKind::Corrective));
 }
 
 #[test]
 fn events_tile_the_time_and_follow_the_grammar() {
     for made in MADE.iter() {
-        let main: Vec<_> = made
-            .events
-            .iter()
-            .filter(|e| e.kind != EventKind::Microsaccade)
-            .collect();
+        let main: Vec<_> = made.events.iter().filter(|e| e.kind != EventKind::Microsaccade).collect();
         assert_eq!((main[0].kind, main[0].start_s), (EventKind::Fixation, 0.0));
         for pair in main.windows(2) {
             assert!((pair[1].start_s - pair[0].end_s).abs() < 1e-9);
@@ -141,43 +106,21 @@ fn events_tile_the_time_and_follow_the_grammar() {
             ];
             assert!(allowed.contains(&kinds), "{kinds:?}");
             let error_deg = pair[0].intended_deg - pair[0].amplitude_deg;
-            assert_eq!(
-                kinds == (Saccade, Landing),
-                pair[0].kind == Saccade && error_deg > 0.5
-            );
+            assert_eq!(kinds == (Saccade, Landing), pair[0].kind == Saccade && error_deg > 0.5);
         }
         assert!(main.last().unwrap().end_s >= DURATION_S - 1.0 / 500.0);
         let fixations = main.iter().filter(|e| e.kind == EventKind::Fixation);
-        let inside = |m: &&Event| {
-            fixations
-                .clone()
-                .any(|f| f.start_s <= m.start_s && m.end_s <= f.end_s + 1e-9)
-        };
-        assert!(
-            made.events
-                .iter()
-                .filter(|e| e.kind == EventKind::Microsaccade)
-                .all(|m| inside(&m))
-        );
-        let amplitudes = main
-            .iter()
-            .filter(|e| e.kind == EventKind::Saccade)
-            .map(|e| e.intended_deg);
-        assert!(
-            amplitudes
-                .into_iter()
-                .all(|a| (2.5 - 1e-9..=18.0 + 1e-9).contains(&a))
-        );
+        let inside = |m: &&Event| fixations.clone().any(|f| f.start_s <= m.start_s && m.end_s <= f.end_s + 1e-9);
+        assert!(made.events.iter().filter(|e| e.kind == EventKind::Microsaccade).all(|m| inside(&m)));
+        let amplitudes = main.iter().filter(|e| e.kind == EventKind::Saccade).map(|e| e.intended_deg);
+        assert!(amplitudes.into_iter().all(|a| (2.5 - 1e-9..=18.0 + 1e-9).contains(&a)));
     }
 }
 
 /// Ray of a sample, from the screen's centimetres: shares nothing with the generator.
 fn ray(path: &Scanpath, sample: &Sample) -> [f64; 3] {
     let (screen, px) = (path.screen(), sample.px.unwrap());
-    let cm = |i: usize| {
-        (f64::from(px[i]) / f64::from(screen.size_px[i]) - 0.5)
-            * f64::from(screen.size_cm.unwrap()[i])
-    };
+    let cm = |i: usize| (f64::from(px[i]) / f64::from(screen.size_px[i]) - 0.5) * f64::from(screen.size_cm.unwrap()[i]);
     let v = [cm(0), cm(1), f64::from(screen.distance_cm.unwrap())];
     let length = v.iter().map(|c| c * c).sum::<f64>().sqrt();
     v.map(|c| c / length)
@@ -195,12 +138,7 @@ fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn the_main_sequence_is_in_the_samples() {
     let mut points = Vec::new();
     for seed in 0..10 {
-        let made = generate(&SyntheticOptions {
-            seed,
-            rate_hz: 5_000.0,
-            ..Default::default()
-        })
-        .unwrap();
+        let made = generate(&SyntheticOptions { seed, rate_hz: 5_000.0, ..Default::default() }).unwrap();
         let samples = made.path.samples();
         for e in made.events.iter().filter(|e| e.kind == EventKind::Saccade) {
             let from = samples.partition_point(|s| s.t_s < e.start_s);
@@ -209,16 +147,9 @@ fn the_main_sequence_is_in_the_samples() {
                 continue;
             }
             let start = ray(&made.path, &samples[from]);
-            let way: Vec<f64> = samples[from..to]
-                .iter()
-                .map(|s| angle_deg(start, ray(&made.path, s)))
-                .collect();
+            let way: Vec<f64> = samples[from..to].iter().map(|s| angle_deg(start, ray(&made.path, s))).collect();
             let whole = *way.last().unwrap();
-            assert!(
-                (whole - e.amplitude_deg).abs() < 0.01,
-                "{whole} {}",
-                e.amplitude_deg
-            );
+            assert!((whole - e.amplitude_deg).abs() < 0.01, "{whole} {}", e.amplitude_deg);
             let crossing = |share: f64| {
                 let i = way.partition_point(|w| *w < share * whole);
                 let within = (share * whole - way[i - 1]) / (way[i] - way[i - 1]);
@@ -227,10 +158,7 @@ fn the_main_sequence_is_in_the_samples() {
             points.push((whole, crossing(0.9) - crossing(0.1)));
         }
     }
-    let (mx, my) = (
-        mean(points.iter().map(|p| p.0)),
-        mean(points.iter().map(|p| p.1)),
-    );
+    let (mx, my) = (mean(points.iter().map(|p| p.0)), mean(points.iter().map(|p| p.1)));
     let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
     let slope = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / sxx;
     let intercept = my - slope * mx;
@@ -242,10 +170,7 @@ fn the_main_sequence_is_in_the_samples() {
         1e3 * slope / profile
     );
     // Nothing here is random: what is left is f32 pixels and linear interpolation between samples 0.2 ms apart.
-    assert!(
-        (slope / profile - 0.0022).abs() < 0.0022 * 5e-3
-            && (intercept / profile - 0.021).abs() < 0.021 * 5e-3
-    );
+    assert!((slope / profile - 0.0022).abs() < 0.0022 * 5e-3 && (intercept / profile - 0.021).abs() < 0.021 * 5e-3);
 }
 
 /// Where 10 u^3 - 15 u^4 + 6 u^5 = 0.1, by bisection.
@@ -272,10 +197,7 @@ fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
             let from = samples.partition_point(|s| s.t_s < e.start_s);
             let to = samples.partition_point(|s| s.t_s < e.end_s);
             for pair in samples[from..to].windows(2) {
-                if turns
-                    .iter()
-                    .any(|t| t.start_s < pair[1].t_s && pair[0].t_s < t.end_s)
-                {
+                if turns.iter().any(|t| t.start_s < pair[1].t_s && pair[0].t_s < t.end_s) {
                     continue;
                 }
                 sum_deg2 += angle_deg(ray(&made.path, &pair[0]), ray(&made.path, &pair[1])).powi(2);
@@ -291,48 +213,25 @@ fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
         1e6 * step_deg2,
         1e6 * step_deg2 / f64::sqrt(steps),
     );
-    println!(
-        "drift: {:.5} deg rms in 1/60 s, {steps} steps",
-        (sum_deg2 / steps * 500.0 / 60.0).sqrt()
-    );
+    println!("drift: {:.5} deg rms in 1/60 s, {steps} steps", (sum_deg2 / steps * 500.0 / 60.0).sqrt());
 }
 
 #[test]
 fn gaze_stays_on_the_screen_and_visits_all_of_it() {
-    for (size_cm, distance) in [
-        ([84.0, 47.3], 60.0),
-        ([38.0, 30.0], 67.0),
-        ([8.5, 8.5], 60.0),
-    ] {
-        let screen = Screen {
-            size_px: [1000, 800],
-            size_cm: Some(size_cm),
-            distance_cm: Some(distance),
-        };
+    for (size_cm, distance) in [([84.0, 47.3], 60.0), ([38.0, 30.0], 67.0), ([8.5, 8.5], 60.0)] {
+        let screen = Screen { size_px: [1000, 800], size_cm: Some(size_cm), distance_cm: Some(distance) };
         // Few samples a second and hours of them: what is looked for is rare.
-        let made = generate(&SyntheticOptions {
-            seed: 7,
-            screen,
-            duration_s: 20_000.0,
-            rate_hz: 50.0,
-        })
-        .unwrap();
+        let made = generate(&SyntheticOptions { seed: 7, screen, duration_s: 20_000.0, rate_hz: 50.0 }).unwrap();
         let mut quarters = [0usize; 4];
         for sample in made.path.samples() {
             let r = ray(&made.path, sample);
             for i in 0..2 {
                 let half = (0.5 * size_cm[i] / distance).atan().to_degrees();
-                assert!(
-                    ((r[i] / r[2]).atan().to_degrees()).abs() <= f64::from(half) - 0.499,
-                    "{r:?}"
-                );
+                assert!(((r[i] / r[2]).atan().to_degrees()).abs() <= f64::from(half) - 0.499, "{r:?}");
             }
             quarters[usize::from(r[0] > 0.0) + 2 * usize::from(r[1] > 0.0)] += 1;
         }
         println!("{size_cm:?} cm at {distance} cm: samples per quarter {quarters:?}");
-        assert!(
-            quarters.iter().all(|n| n * 10 > made.path.samples().len()),
-            "{quarters:?}"
-        );
+        assert!(quarters.iter().all(|n| n * 10 > made.path.samples().len()), "{quarters:?}");
     }
 }

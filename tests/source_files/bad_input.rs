@@ -3,19 +3,13 @@
 use crate::{ALL, Extras, assert_says, error_of, folder_of, limits, picture, write_frame};
 use afterimage::error::InputError;
 use afterimage::source::exr_file::{ExrHeader, FrameToWrite, write};
-use afterimage::source::{
-    FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open,
-};
+use afterimage::source::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use std::path::Path;
 
 fn refused(path: &Path) -> InputError {
-    error_of(open(
-        path.to_str().unwrap(),
-        &limits(),
-        &SceneOptions::default(),
-    ))
+    error_of(open(path.to_str().unwrap(), &limits(), &SceneOptions::default()))
 }
 
 #[test]
@@ -27,10 +21,7 @@ fn paths_and_kinds() {
     }
     assert_says(&refused(folder.path()), &["no .exr", "one image"]);
     std::fs::write(at("clip.mp4"), b"x").unwrap();
-    assert_says(
-        &refused(&at("clip.mp4")),
-        &["clip.mp4", ".exr", ".png", ".jpg", ".jpeg"],
-    );
+    assert_says(&refused(&at("clip.mp4")), &["clip.mp4", ".exr", ".png", ".jpg", ".jpeg"]);
     for scene in ["builtin:cornell", "scene.gltf", "scene.GLB"] {
         let e = error_of(open(scene, &limits(), &SceneOptions::default()));
         assert_says(&e, &[scene, "renderer", "EXR frames"]);
@@ -53,31 +44,11 @@ fn frames_that_do_not_fit_together() {
         (
             "motion",
             [8, 4],
-            Extras {
-                motion: false,
-                to_next: false,
-                ..ALL
-            },
+            Extras { motion: false, to_next: false, ..ALL },
             &["has no motion vectors to the previous frame", "every frame"],
         ),
-        (
-            "next",
-            [8, 4],
-            Extras {
-                to_next: false,
-                ..ALL
-            },
-            &["has no motion vectors to the next frame"],
-        ),
-        (
-            "depth",
-            [8, 4],
-            Extras {
-                depth: false,
-                ..ALL
-            },
-            &["has no depth"],
-        ),
+        ("next", [8, 4], Extras { to_next: false, ..ALL }, &["has no motion vectors to the next frame"]),
+        ("depth", [8, 4], Extras { depth: false, ..ALL }, &["has no depth"]),
     ];
     for (what, size, extras, words) in cases {
         let folder = folder_of(3, [8, 4], ALL);
@@ -93,34 +64,16 @@ fn frames_that_do_not_fit_together() {
 
 #[test]
 fn a_sequence_needs_vectors_for_the_way_it_is_played() {
-    let none = Extras {
-        motion: false,
-        to_next: false,
-        ..ALL
-    };
+    let none = Extras { motion: false, to_next: false, ..ALL };
     let folder = folder_of(2, [8, 4], none);
-    assert_says(
-        &refused(folder.path()),
-        &[
-            "frame_0000.exr",
-            "no motion vectors",
-            "Vector.X/Y",
-            "motion.X/Y",
-        ],
-    );
+    assert_says(&refused(folder.path()), &["frame_0000.exr", "no motion vectors", "Vector.X/Y", "motion.X/Y"]);
 
-    let forward = Extras {
-        to_next: false,
-        ..ALL
-    };
+    let forward = Extras { to_next: false, ..ALL };
     let folder = folder_of(3, [8, 4], forward);
     let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
     assert!(source.frame(2).is_ok());
     let e = source.frame(3).unwrap_err();
-    assert_says(
-        &e,
-        &["frame_0001.exr", "backwards", "Vector.Z/W", "motion.Z/W"],
-    );
+    assert_says(&e, &["frame_0001.exr", "backwards", "Vector.Z/W", "motion.Z/W"]);
 
     std::fs::remove_file(folder.path().join("frame_0001.exr")).unwrap();
     let e = source.frame(1).unwrap_err();
@@ -148,12 +101,7 @@ fn every_truncation_is_noticed_before_decoding() {
 
 fn save(path: &Path, channels: Vec<AnyChannel<FlatSamples>>, size: (usize, usize)) {
     let channels = AnyChannels::sort(SmallVec::from_vec(channels));
-    let layer = Layer::new(
-        size,
-        LayerAttributes::default(),
-        Encoding::FAST_LOSSLESS,
-        channels,
-    );
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels);
     Image::from_layer(layer).write().to_file(path).unwrap();
 }
 
@@ -163,29 +111,17 @@ fn missing_colour_lists_what_is_there() {
     let path = folder.path().join("frame_0001.exr");
     let zeros = || FlatSamples::F32(vec![0.0; 16]);
     let names = ["ViewLayer.Depth.Z", "ViewLayer.Mist.Z", "R", "G"];
-    save(
-        &path,
-        names.map(|n| AnyChannel::new(n, zeros())).into(),
-        (4, 4),
-    );
+    save(&path, names.map(|n| AnyChannel::new(n, zeros())).into(), (4, 4));
     assert_says(
         &refused(folder.path()),
-        &[
-            "frame_0001.exr",
-            "no colour",
-            "ViewLayer.Depth.Z, ViewLayer.Mist.Z",
-            "Combined.R/G/B",
-        ],
+        &["frame_0001.exr", "no colour", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
     );
 }
 
 /// Puts `value` in place of the data of attribute `name` of type `kind`.
 fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
     let key = format!("{name}\0{kind}\0");
-    let at = bytes
-        .windows(key.len())
-        .position(|w| w == key.as_bytes())
-        .unwrap();
+    let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
     for (i, v) in value.iter().enumerate() {
         let start = at + key.len() + 4 + 4 * i;
         bytes[start..start + 4].copy_from_slice(&v.to_le_bytes());
@@ -207,25 +143,14 @@ fn absurd_claims_are_refused_from_the_header() {
     };
     let both = ["dataWindow", "displayWindow"];
     let e = with(&both, [0, 0, 99_999, 99_999]);
-    assert_says(
-        &e,
-        &[
-            "frame_0000.exr",
-            "100000x100000",
-            "64 million",
-            "--max-megapixels 10000",
-        ],
-    );
+    assert_says(&e, &["frame_0000.exr", "100000x100000", "64 million", "--max-megapixels 10000"]);
     let e = with(&both, [0, 0, 1_000_000_000, 1_000_000_000]);
     assert_says(&e, &["frame_0000.exr", "1000000001"]);
     // Within the limit, but more chunks than the file has.
     let e = with(&both, [0, 0, 7, 7_000_000]);
     assert_says(&e, &["frame_0000.exr", "truncated"]);
     let e = with(&["displayWindow"], [-1, 0, 8, 3]);
-    assert_says(
-        &e,
-        &["8x4 at (0, 0)", "10x4 at (-1, 0)", "crop or overscan"],
-    );
+    assert_says(&e, &["8x4 at (0, 0)", "10x4 at (-1, 0)", "crop or overscan"]);
 
     let e = error_of(StillSource::open(&path, &ReadLimits { max_pixels: 0 }));
     assert_says(&e, &["--max-megapixels 1"]);
@@ -237,26 +162,16 @@ fn one_huge_tile_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tile.exr");
     // 12 channels of 4 bytes in one block: 48 bytes a pixel, three times what a block may take.
-    let names: Vec<String> = ["R", "G", "B"]
-        .map(str::to_owned)
-        .into_iter()
-        .chain((0..9).map(|i| format!("aux{i}")))
-        .collect();
-    let channels: Vec<_> = names
-        .iter()
-        .map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64])))
-        .collect();
-    let encoding = Encoding {
-        blocks: Blocks::Tiles(Vec2(4096, 4096)),
-        ..Encoding::FAST_LOSSLESS
-    };
+    let names: Vec<String> =
+        ["R", "G", "B"].map(str::to_owned).into_iter().chain((0..9).map(|i| format!("aux{i}"))).collect();
+    let channels: Vec<_> =
+        names.iter().map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64]))).collect();
+    let encoding = Encoding { blocks: Blocks::Tiles(Vec2(4096, 4096)), ..Encoding::FAST_LOSSLESS };
     let channels = AnyChannels::sort(SmallVec::from_vec(channels));
     let layer = Layer::new((64, 64), LayerAttributes::default(), encoding, channels);
     Image::from_layer(layer).write().to_file(&path).unwrap();
     assert!(StillSource::open(&path, &limits()).is_ok());
-    let tight = ReadLimits {
-        max_pixels: 64 * 64,
-    };
+    let tight = ReadLimits { max_pixels: 64 * 64 };
     let e = error_of(StillSource::open(&path, &tight));
     assert_says(&e, &["tile.exr", "smaller tiles", "--max-megapixels"]);
 }
@@ -278,9 +193,7 @@ fn subsampled_channels_are_refused() {
 
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |crc, &b| {
-        (0..8).fold(crc ^ u32::from(b), |c, _| {
-            (c >> 1) ^ (0xEDB8_8320 & 0u32.wrapping_sub(c & 1))
-        })
+        (0..8).fold(crc ^ u32::from(b), |c, _| (c >> 1) ^ (0xEDB8_8320 & 0u32.wrapping_sub(c & 1)))
     })
 }
 
@@ -296,15 +209,7 @@ fn png_and_jpeg_keep_the_same_limits() {
     let crc = crc32(&bytes[12..29]);
     bytes[29..33].copy_from_slice(&crc.to_be_bytes());
     std::fs::write(&png, &bytes).unwrap();
-    assert_says(
-        &refused(&png),
-        &[
-            "a.png",
-            "100000x90000",
-            "64 million",
-            "--max-megapixels 9000",
-        ],
-    );
+    assert_says(&refused(&png), &["a.png", "100000x90000", "64 million", "--max-megapixels 9000"]);
     bytes[16..20].copy_from_slice(&0u32.to_be_bytes());
     let crc = crc32(&bytes[12..29]);
     bytes[29..33].copy_from_slice(&crc.to_be_bytes());
@@ -317,10 +222,7 @@ fn png_and_jpeg_keep_the_same_limits() {
     let sof = bytes.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
     bytes[sof + 5..sof + 9].copy_from_slice(&[0xFF, 0xFE, 0xFF, 0xFD]);
     std::fs::write(&jpg, &bytes).unwrap();
-    assert_says(
-        &refused(&jpg),
-        &["a.jpg", "65533x65534", "--max-megapixels 4295"],
-    );
+    assert_says(&refused(&jpg), &["a.jpg", "65533x65534", "--max-megapixels 4295"]);
 }
 
 #[test]
@@ -335,23 +237,11 @@ fn cameras_that_do_not_belong() {
         ("{".to_owned(), "not the expected JSON"),
         (r#"{"fps":"fast"}"#.to_owned(), "not the expected JSON"),
         (r#"{"fps":0}"#.to_owned(), "fps is 0"),
-        (
-            r#"{"horizontal_fov_deg":180}"#.to_owned(),
-            "horizontal_fov_deg is 180",
-        ),
+        (r#"{"horizontal_fov_deg":180}"#.to_owned(), "horizontal_fov_deg is 180"),
         (r#"{"width":4,"height":8}"#.to_owned(), "4x8"),
-        (
-            frames(&[frame(0, one), frame(7, one)]),
-            "no camera for frame 1",
-        ),
-        (
-            frames(&[frame(0, one), frame(1, bent)]),
-            "camera_to_world of frame 1 scales or shears",
-        ),
-        (
-            frames(&[frame(0, one), r#"{"frame":1}"#.to_owned()]),
-            "1 of its 2 frames",
-        ),
+        (frames(&[frame(0, one), frame(7, one)]), "no camera for frame 1"),
+        (frames(&[frame(0, one), frame(1, bent)]), "camera_to_world of frame 1 scales or shears"),
+        (frames(&[frame(0, one), r#"{"frame":1}"#.to_owned()]), "1 of its 2 frames"),
     ];
     for (text, word) in cases {
         std::fs::write(&json, &text).unwrap();
@@ -372,17 +262,11 @@ fn a_sequence_is_opened_without_decoding_it() {
     std::fs::write(&path, &bytes).unwrap();
     let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
     assert!(source.frame(0).is_ok());
-    assert_says(
-        &source.frame(1).unwrap_err(),
-        &["frame_0001.exr", "export it again"],
-    );
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "export it again"]);
     assert!(source.frame(2).is_ok());
     let color = picture([40, 40]);
     write(&path, &FrameToWrite::color(&color)).unwrap();
-    assert_says(
-        &source.frame(1).unwrap_err(),
-        &["frame_0001.exr", "has changed"],
-    );
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "has changed"]);
 }
 
 #[test]

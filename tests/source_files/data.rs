@@ -16,17 +16,10 @@ fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
     let (w, h) = (image.width(), image.height());
     let (x0, y0) = (x.floor(), y.floor());
     let (fx, fy) = (x - x0, y - y0);
-    let at = |x: f32, y: f32| {
-        image.at(
-            (x.max(0.0) as usize).min(w - 1),
-            (y.max(0.0) as usize).min(h - 1),
-        )
-    };
+    let at = |x: f32, y: f32| image.at((x.max(0.0) as usize).min(w - 1), (y.max(0.0) as usize).min(h - 1));
     let (a, b) = (at(x0, y0), at(x0 + 1.0, y0));
     let (c, d) = (at(x0, y0 + 1.0), at(x0 + 1.0, y0 + 1.0));
-    std::array::from_fn(|i| {
-        (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy
-    })
+    std::array::from_fn(|i| (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy)
 }
 
 /// Where the point behind a pixel was according to depth and cameras, and at which distance.
@@ -47,8 +40,7 @@ fn reprojected_db(
     static_scene: bool,
     min_px: f32,
 ) -> f64 {
-    let view =
-        ViewGeometry::flat(source.info().size, source.info().hfov_deg.unwrap_or(70.0)).unwrap();
+    let view = ViewGeometry::flat(source.info().size, source.info().hfov_deg.unwrap_or(70.0)).unwrap();
     let steps = (indices.end - indices.start) as f64;
     let mut sum = 0.0;
     for index in indices {
@@ -67,17 +59,13 @@ fn reprojected_db(
                 if !inside || m[0].hypot(m[1]) < min_px {
                     continue;
                 }
-                let (expected, tolerance) = if static_scene {
-                    (by_camera(&now, &view, x, y).1, 0.03)
-                } else {
-                    (zn.at(x, y), 0.1)
-                };
+                let (expected, tolerance) =
+                    if static_scene { (by_camera(&now, &view, x, y).1, 0.03) } else { (zn.at(x, y), 0.1) };
                 let seen = zb.at(px.round() as usize, py.round() as usize);
                 if (seen - expected).abs() >= tolerance * expected {
                     continue;
                 }
-                let fetched =
-                    bilinear(&toned, x as f32 + sign[0] * m[0], y as f32 + sign[1] * m[1]);
+                let fetched = bilinear(&toned, x as f32 + sign[0] * m[0], y as f32 + sign[1] * m[1]);
                 let here = now.color.at(x, y).map(tone);
                 for i in 0..3 {
                     error += f64::from(fetched[i] - here[i]).powi(2);
@@ -99,30 +87,18 @@ fn counts_sizes_and_channels() {
         ("blender_raw", [480, 270], 1),
     ] {
         let Some(folder) = recorded(name) else { return };
-        let mut source = open(
-            folder.to_str().unwrap(),
-            &limits(),
-            &SceneOptions::default(),
-        )
-        .unwrap();
+        let mut source = open(folder.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
         let info = source.info().clone();
         assert_eq!((info.size, info.frames), (size, Some(frames)), "{name}");
         assert_eq!(info.still, frames == 1, "{name}");
         if name != "blender_raw" {
-            assert_eq!(
-                (info.fps, info.hfov_deg),
-                (Some(60.0), Some(70.0)),
-                "{name}"
-            );
+            assert_eq!((info.fps, info.hfov_deg), (Some(60.0), Some(70.0)), "{name}");
         }
         let frame = source.frame(0).unwrap();
         assert!(frame.cut && frame.nonfinite == 0);
         assert_eq!(frame.color.size(), size);
         let depth = frame.depth.unwrap();
-        assert!(
-            depth.pixels().iter().all(|&z| z > 0.05 && z < 200.0),
-            "{name}"
-        );
+        assert!(depth.pixels().iter().all(|&z| z > 0.05 && z < 200.0), "{name}");
         assert_eq!(frame.motion.is_some(), frames > 1, "{name}");
     }
 }
@@ -155,39 +131,24 @@ fn the_repacked_frame_is_the_raw_one() {
 /// The table of the data's README, forwards and backwards; flipped signs must be clearly worse.
 #[test]
 fn vectors_reproject_as_published() {
-    let cases = [
-        ("sponza_lateral", true, 0.0, 36.3, 24.8),
-        ("sponza_object", false, 0.25, 34.8, 18.4),
-    ];
+    let cases = [("sponza_lateral", true, 0.0, 36.3, 24.8), ("sponza_object", false, 0.25, 34.8, 18.4)];
     for (name, static_scene, min_px, right, both_flipped) in cases {
         let Some(folder) = recorded(name) else { return };
         let mut source = SequenceSource::open(&folder, &limits()).unwrap();
         let n = source.info().frames.unwrap();
         for (direction, steps) in [("forwards", 1..n), ("backwards", n..2 * n - 1)] {
-            let mut db =
-                |sign| reprojected_db(&mut source, steps.clone(), sign, static_scene, min_px);
-            let (good, still, y, both) = (
-                db([1.0, 1.0]),
-                db([0.0, 0.0]),
-                db([1.0, -1.0]),
-                db([-1.0, -1.0]),
-            );
+            let mut db = |sign| reprojected_db(&mut source, steps.clone(), sign, static_scene, min_px);
+            let (good, still, y, both) = (db([1.0, 1.0]), db([0.0, 0.0]), db([1.0, -1.0]), db([-1.0, -1.0]));
             eprintln!(
                 "{name} {direction}: {good:.2} dB; no motion {still:.2}, y flipped {y:.2}, both flipped {both:.2}"
             );
             assert!((good - right).abs() < 0.5, "{name} {direction}: {good}");
-            assert!(
-                good > still + 5.0 && good > both + 8.0,
-                "{name} {direction}"
-            );
+            assert!(good > still + 5.0 && good > both + 8.0, "{name} {direction}");
             if direction == "forwards" {
                 assert!((both - both_flipped).abs() < 0.5, "{name}: {both}");
             }
             if name == "sponza_object" {
-                assert!(
-                    good > y + 5.0,
-                    "{name} {direction}: the y sign does not matter?"
-                );
+                assert!(good > y + 5.0, "{name} {direction}: the y sign does not matter?");
             }
         }
     }
@@ -231,10 +192,7 @@ fn playback_turns_round() {
     let mut source = SequenceSource::open(&folder, &limits()).unwrap();
     let n = source.info().frames.unwrap();
     for i in [0, 3, n - 2] {
-        let (there, back) = (
-            source.frame(i).unwrap(),
-            source.frame(2 * n - 2 - i).unwrap(),
-        );
+        let (there, back) = (source.frame(i).unwrap(), source.frame(2 * n - 2 - i).unwrap());
         assert_eq!(there.color, back.color);
         assert_ne!(there.motion, back.motion);
         assert_eq!((there.cut, back.cut), (i == 0, false));
@@ -246,10 +204,7 @@ fn playback_turns_round() {
 
 #[test]
 fn the_detector_confirms_what_the_reader_delivers() {
-    for (name, verdict) in [
-        ("sponza_lateral", Verdict::YAxisOpen),
-        ("sponza_object", Verdict::Decided),
-    ] {
+    for (name, verdict) in [("sponza_lateral", Verdict::YAxisOpen), ("sponza_object", Verdict::Decided)] {
         let Some(folder) = recorded(name) else { return };
         let mut source = SequenceSource::open(&folder, &limits()).unwrap();
         for index in [3, 20, 40] {

@@ -9,11 +9,7 @@ use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 use std::path::Path;
 
 fn srgb(v: f64) -> f32 {
-    let linear = if v <= 0.04045 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    };
+    let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
     linear as f32
 }
 
@@ -32,24 +28,16 @@ fn still(path: &Path) -> afterimage::source::SourceFrame {
 fn png_is_decoded_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.PNG");
-    let rgb8 = ImageBuffer::from_fn(256, 3, |x, y| {
-        Rgb([x as u8, 255 - x as u8, (y * 100) as u8])
-    });
-    DynamicImage::ImageRgb8(rgb8)
-        .save_with_format(&path, image::ImageFormat::Png)
-        .unwrap();
+    let rgb8 = ImageBuffer::from_fn(256, 3, |x, y| Rgb([x as u8, 255 - x as u8, (y * 100) as u8]));
+    DynamicImage::ImageRgb8(rgb8).save_with_format(&path, image::ImageFormat::Png).unwrap();
     let frame = still(&path);
     for x in 0..256usize {
         let e = [x as f64, 255.0 - x as f64, 100.0].map(|v| srgb(v / 255.0));
         assert_eq!(frame.color.at(x, 1), e);
     }
 
-    let rgba16 = ImageBuffer::from_fn(64, 64, |x, y| {
-        Rgba([(x * 1000) as u16, (y * 1000 + 7) as u16, 65535, 3])
-    });
-    DynamicImage::ImageRgba16(rgba16)
-        .save_with_format(&path, image::ImageFormat::Png)
-        .unwrap();
+    let rgba16 = ImageBuffer::from_fn(64, 64, |x, y| Rgba([(x * 1000) as u16, (y * 1000 + 7) as u16, 65535, 3]));
+    DynamicImage::ImageRgba16(rgba16).save_with_format(&path, image::ImageFormat::Png).unwrap();
     let frame = still(&path);
     let e = [5000.0, 9007.0, 65535.0].map(|v: f64| srgb(v / 65535.0));
     assert_eq!(frame.color.at(5, 9), e);
@@ -105,10 +93,7 @@ fn what_is_written_is_read_back() {
     assert_eq!(read.color, color);
     assert_eq!(read.depth.as_ref(), Some(&depth));
     assert_eq!(read.motion.as_ref(), Some(&motion));
-    assert_eq!(
-        header.read(Vectors::ToNext).unwrap().motion.as_ref(),
-        Some(&to_next)
-    );
+    assert_eq!(header.read(Vectors::ToNext).unwrap().motion.as_ref(), Some(&to_next));
     assert!(header.read(Vectors::Skip).unwrap().motion.is_none());
 
     let first = std::fs::read(&path).unwrap();
@@ -129,10 +114,7 @@ fn half_output_clamps_and_a_failed_write_leaves_the_old_file() {
     assert_eq!(read.nonfinite, 0);
 
     let depth = Image::filled([3, 3], 1.0f32);
-    let frame = FrameToWrite {
-        depth: Some(&depth),
-        ..FrameToWrite::color(&color)
-    };
+    let frame = FrameToWrite { depth: Some(&depth), ..FrameToWrite::color(&color) };
     let e = write(&path, &frame).unwrap_err().to_string();
     assert!(e.contains("size"), "{e}");
     assert_eq!(still(&path).color, read.color);
@@ -184,11 +166,7 @@ fn ramp(n: usize, scale: f32) -> FlatSamples {
 }
 
 fn encoding(compression: Compression, blocks: Blocks) -> Encoding {
-    Encoding {
-        compression,
-        blocks,
-        line_order: LineOrder::Increasing,
-    }
+    Encoding { compression, blocks, line_order: LineOrder::Increasing }
 }
 
 #[test]
@@ -210,10 +188,7 @@ fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
         for blocks in [scan_lines, tiles] {
             let channels = SmallVec::from_vec(vec![
                 channel("A", ramp(n, 1.0)),
-                channel(
-                    "B",
-                    FlatSamples::F16((0..n).map(|i| f16::from_f32((i % 512) as f32)).collect()),
-                ),
+                channel("B", FlatSamples::F16((0..n).map(|i| f16::from_f32((i % 512) as f32)).collect())),
                 channel("G", FlatSamples::U32((0..n as u32).collect())),
                 channel("R", ramp(n, 0.5)),
                 channel("Z", ramp(n, 2.0)),
@@ -226,8 +201,7 @@ fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
             );
             // A window away from the origin, on both sides of it.
             let mut exr = exr::prelude::Image::from_layer(layer);
-            exr.attributes.display_window =
-                attribute::IntegerBounds::new(Vec2(-12, -7), Vec2(w, h));
+            exr.attributes.display_window = attribute::IntegerBounds::new(Vec2(-12, -7), Vec2(w, h));
             exr.write().to_file(&path).unwrap();
             let frame = still(&path);
             for i in 0..n {
@@ -235,11 +209,7 @@ fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
                 let e = [i as f32 * 0.5, i as f32, (i % 512) as f32];
                 assert_eq!(frame.color.at(x, y), e, "{compression:?} {blocks:?}");
                 let z = frame.depth.as_ref().unwrap().at(x, y);
-                assert!(if i == 0 {
-                    z.is_nan()
-                } else {
-                    z == i as f32 * 2.0
-                });
+                assert!(if i == 0 { z.is_nan() } else { z == i as f32 * 2.0 });
             }
         }
     }
@@ -260,27 +230,13 @@ fn several_parts_and_grey() {
     };
     let n = w * h;
     let parts = vec![
-        part(
-            "v.Noisy Image",
-            ["R", "G", "B"].map(|c| channel(c, ramp(n, 9.0))).into(),
-        ),
+        part("v.Noisy Image", ["R", "G", "B"].map(|c| channel(c, ramp(n, 9.0))).into()),
         part("v.Depth", vec![channel("Z", ramp(n, 3.0))]),
-        part(
-            "v.Vector",
-            ["X", "Y", "Z", "W"]
-                .map(|c| channel(c, ramp(n, 4.0)))
-                .into(),
-        ),
-        part(
-            "v.Combined",
-            ["R", "G", "B"].map(|c| channel(c, ramp(n, 1.0))).into(),
-        ),
+        part("v.Vector", ["X", "Y", "Z", "W"].map(|c| channel(c, ramp(n, 4.0))).into()),
+        part("v.Combined", ["R", "G", "B"].map(|c| channel(c, ramp(n, 1.0))).into()),
     ];
     let attributes = ImageAttributes::new(attribute::IntegerBounds::from_dimensions((w, h)));
-    exr::prelude::Image::from_layers(attributes, parts)
-        .write()
-        .to_file(&path)
-        .unwrap();
+    exr::prelude::Image::from_layers(attributes, parts).write().to_file(&path).unwrap();
     let header = ExrHeader::open(&path, &limits()).unwrap();
     let frame = header.read(Vectors::ToNext).unwrap();
     assert_eq!(frame.color.at(2, 1), [11.0; 3]);
@@ -290,10 +246,7 @@ fn several_parts_and_grey() {
     assert_eq!(before.at(2, 1), [44.0, -44.0]);
 
     let grey = part("", vec![channel("Y", ramp(n, 1.0))]);
-    exr::prelude::Image::from_layer(grey)
-        .write()
-        .to_file(&path)
-        .unwrap();
+    exr::prelude::Image::from_layer(grey).write().to_file(&path).unwrap();
     assert_eq!(still(&path).color.at(3, 2), [21.0; 3]);
 }
 
@@ -313,10 +266,7 @@ fn plain_vectors_are_taken_as_they_are_and_turn_round() {
 
 #[test]
 fn one_frame_in_a_folder_is_a_still_and_depth_is_optional() {
-    let extras = Extras {
-        depth: false,
-        ..ALL
-    };
+    let extras = Extras { depth: false, ..ALL };
     let folder = folder_of(1, [8, 4], extras);
     let name = folder.path().to_str().unwrap();
     std::fs::write(folder.path().join(".frame_0001.exr"), b"hidden").unwrap();

@@ -16,18 +16,12 @@ use std::path::{Path, PathBuf};
 
 /// The folder of a recorded sequence; says loudly when it is not there.
 fn recorded(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/data/sequences")
-        .join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/sequences").join(name);
     if path.is_dir() {
         return Some(path);
     }
     // Not eprintln: the harness would swallow it.
-    let _ = writeln!(
-        std::io::stderr(),
-        "SKIPPED: no recorded frames at {}",
-        path.display()
-    );
+    let _ = writeln!(std::io::stderr(), "SKIPPED: no recorded frames at {}", path.display());
     None
 }
 
@@ -37,16 +31,12 @@ fn limits() -> ReadLimits {
 
 /// A small picture whose pixels all differ.
 fn picture(size: [u32; 2]) -> Image<[f32; 3]> {
-    Image::from_fn(size, |[x, y]| {
-        [x as f32 / 8.0, y as f32 / 4.0, (x * y % 7) as f32]
-    })
+    Image::from_fn(size, |[x, y]| [x as f32 / 8.0, y as f32 / 4.0, (x * y % 7) as f32])
 }
 
 /// Vectors that differ from pixel to pixel.
 fn vectors(size: [u32; 2], offset: f32) -> Image<[f32; 2]> {
-    Image::from_fn(size, |[x, y]| {
-        [x as f32 * 0.25 + offset, y as f32 * -0.5 - offset]
-    })
+    Image::from_fn(size, |[x, y]| [x as f32 * 0.25 + offset, y as f32 * -0.5 - offset])
 }
 
 /// What a frame of a synthetic sequence has besides colour.
@@ -57,11 +47,7 @@ struct Extras {
     to_next: bool,
 }
 
-const ALL: Extras = Extras {
-    depth: true,
-    motion: true,
-    to_next: true,
-};
+const ALL: Extras = Extras { depth: true, motion: true, to_next: true };
 
 fn write_frame(path: &Path, size: [u32; 2], extras: Extras) {
     let color = picture(size);

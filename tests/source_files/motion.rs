@@ -19,12 +19,7 @@ impl Texture {
             let angle = rng.random_range(0.0..std::f32::consts::TAU);
             let length: f32 = rng.random_range(5.0..40.0);
             let k = std::f32::consts::TAU / length;
-            [
-                k * angle.cos(),
-                k * angle.sin(),
-                rng.random_range(0.0..std::f32::consts::TAU),
-                rng.random_range(0.3..1.0),
-            ]
+            [k * angle.cos(), k * angle.sin(), rng.random_range(0.0..std::f32::consts::TAU), rng.random_range(0.3..1.0)]
         };
         Self((0..36).map(|_| wave(rng)).collect())
     }
@@ -32,10 +27,7 @@ impl Texture {
     fn at(&self, x: f32, y: f32) -> [f32; 3] {
         std::array::from_fn(|channel| {
             let waves = &self.0[channel * 12..(channel + 1) * 12];
-            let sum: f32 = waves
-                .iter()
-                .map(|&[kx, ky, phase, a]| a * (kx * x + ky * y + phase).sin())
-                .sum();
+            let sum: f32 = waves.iter().map(|&[kx, ky, phase, a]| a * (kx * x + ky * y + phase).sin()).sum();
             (0.25 * sum).exp()
         })
     }
@@ -52,10 +44,7 @@ fn scene(rng: &mut Pcg64) -> (Picture, Picture, Image<[f32; 2]>) {
     let linear: [f32; 4] = std::array::from_fn(|_| rng.random_range(-0.01..0.01));
     let motion = Image::from_fn(SIZE, |[x, y]| {
         let (u, v) = (x as f32 - 48.0, y as f32 - 36.0);
-        [
-            shift[0] + linear[0] * u + linear[1] * v,
-            shift[1] + linear[2] * u + linear[3] * v,
-        ]
+        [shift[0] + linear[0] * u + linear[1] * v, shift[1] + linear[2] * u + linear[3] * v]
     });
     let previous = Image::from_fn(SIZE, |[x, y]| texture.at(x as f32, y as f32));
     let current = Image::from_fn(SIZE, |[x, y]| {
@@ -71,7 +60,7 @@ fn as_written(motion: &Image<[f32; 2]>, convention: MotionConvention) -> Image<[
 }
 
 #[test]
-fn the_right_convention_is_found_in_random_scenes() {
+fn h56_the_right_convention_is_found_in_random_scenes() {
     let all: Vec<_> = conventions().collect();
     let mut right = 0;
     let mut smallest_margin = f64::INFINITY;
@@ -113,10 +102,7 @@ fn horizontal_motion_leaves_the_y_axis_open() {
         let current = Image::from_fn(SIZE, |[x, y]| texture.at(x as f32 + 2.5, y as f32));
         let check = detect(&previous, &current, &as_written(&motion, truth)).unwrap();
         assert_eq!(check.verdict, Verdict::YAxisOpen, "{truth:?}");
-        assert_eq!(
-            (check.best.unit, check.best.direction),
-            (truth.unit, truth.direction)
-        );
+        assert_eq!((check.best.unit, check.best.direction), (truth.unit, truth.direction));
     }
 }
 

@@ -10,9 +10,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 /// Small enough that a file which gets through at its claimed size still takes little.
-const LIMITS: ReadLimits = ReadLimits {
-    max_pixels: 1 << 20,
-};
+const LIMITS: ReadLimits = ReadLimits { max_pixels: 1 << 20 };
 
 /// Name and bytes of a small valid file of every kind and every compression.
 fn samples() -> &'static [(String, Vec<u8>)] {
@@ -24,21 +22,13 @@ fn samples() -> &'static [(String, Vec<u8>)] {
             let bytes = std::fs::read(folder.path().join(name)).unwrap();
             samples.push((name.to_owned(), bytes));
         };
-        let noisy = ImageBuffer::from_fn(24, 20, |x, y| {
-            Rgb([(x * 11) as u8, (y * 13) as u8, (x * y) as u8])
-        });
+        let noisy = ImageBuffer::from_fn(24, 20, |x, y| Rgb([(x * 11) as u8, (y * 13) as u8, (x * y) as u8]));
         for name in ["a.png", "a.jpg"] {
-            DynamicImage::ImageRgb8(noisy.clone())
-                .save(folder.path().join(name))
-                .unwrap();
+            DynamicImage::ImageRgb8(noisy.clone()).save(folder.path().join(name)).unwrap();
             take(name);
         }
         let (color, motion) = (picture([24, 20]), vectors([24, 20], 0.5));
-        let frame = FrameToWrite {
-            format: ColorFormat::Half,
-            motion: Some(&motion),
-            ..FrameToWrite::color(&color)
-        };
+        let frame = FrameToWrite { format: ColorFormat::Half, motion: Some(&motion), ..FrameToWrite::color(&color) };
         write(&folder.path().join("own.exr"), &frame).unwrap();
         take("own.exr");
         for (name, compression) in [
@@ -50,10 +40,7 @@ fn samples() -> &'static [(String, Vec<u8>)] {
             ("b44", Compression::B44),
             ("dwaa", Compression::DWAA(None)),
         ] {
-            for (kind, blocks) in [
-                ("lines", Blocks::ScanLines),
-                ("tiles", Blocks::Tiles(Vec2(16, 8))),
-            ] {
+            for (kind, blocks) in [("lines", Blocks::ScanLines), ("tiles", Blocks::Tiles(Vec2(16, 8)))] {
                 let name = format!("{name}_{kind}.exr");
                 save(&folder.path().join(&name), compression, blocks);
                 take(&name);
@@ -65,19 +52,14 @@ fn samples() -> &'static [(String, Vec<u8>)] {
 
 fn save(path: &Path, compression: Compression, blocks: Blocks) {
     let n = 24 * 20;
-    let half =
-        |k: usize| FlatSamples::F16((0..n).map(|i| f16::from_f32((i * k % 97) as f32)).collect());
+    let half = |k: usize| FlatSamples::F16((0..n).map(|i| f16::from_f32((i * k % 97) as f32)).collect());
     let channels = SmallVec::from_vec(vec![
         AnyChannel::new("R", half(3)),
         AnyChannel::new("G", half(5)),
         AnyChannel::new("B", half(7)),
         AnyChannel::new("Z", FlatSamples::F32((0..n).map(|i| i as f32).collect())),
     ]);
-    let encoding = Encoding {
-        compression,
-        blocks,
-        line_order: LineOrder::Increasing,
-    };
+    let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
     let channels = AnyChannels::sort(channels);
     let layer = Layer::new((24, 20), LayerAttributes::default(), encoding, channels);
     Image::from_layer(layer).write().to_file(path).unwrap();
@@ -96,11 +78,7 @@ fn mutate(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8)]) {
             return;
         }
         // Headers are where the harm is: half of the edits go there.
-        let span = if how % 2 == 0 {
-            bytes.len().min(420)
-        } else {
-            bytes.len()
-        };
+        let span = if how % 2 == 0 { bytes.len().min(420) } else { bytes.len() };
         let i = at.index(span);
         match how / 2 % 8 {
             0 => bytes[i] = value,
@@ -135,32 +113,20 @@ fn dwa_counters_do_not_set_memory_aside() {
     let (_, whole) = samples().iter().find(|s| s.0 == "dwaa_lines.exr").unwrap();
     // The only chunk follows the table whose only entry points at it; its data follow the line and size.
     let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
-    let chunk = (8..whole.len() - 8)
-        .find(|&at| word(at - 8) == at as u64)
-        .unwrap();
+    let chunk = (8..whole.len() - 8).find(|&at| word(at - 8) == at as u64).unwrap();
     for counter in 1..10 {
         let mut bytes = whole.clone();
         let at = chunk + 8 + 8 * counter;
         bytes[at..at + 8].copy_from_slice(&(1u64 << 35).to_le_bytes());
         std::fs::write(&path, &bytes).unwrap();
-        let e = crate::error_of(open(
-            path.to_str().unwrap(),
-            &LIMITS,
-            &SceneOptions::default(),
-        ));
+        let e = crate::error_of(open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()));
         crate::assert_says(&e, &["dwaa_lines.exr", "damaged"]);
     }
 }
 
 fn cases() -> ProptestConfig {
-    let asked = std::env::var("PROPTEST_CASES")
-        .ok()
-        .and_then(|n| n.parse().ok());
-    ProptestConfig {
-        cases: asked.unwrap_or(4000),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok());
+    ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, ..ProptestConfig::default() }
 }
 
 proptest! {

@@ -95,8 +95,7 @@ impl Clip {
             let frame = source.frame(index as u64)?;
             let step = pipeline.step(index as u64, &frame, gaze)?;
             let reference = metric::encode(&frame.color, self.exposure_ev);
-            let encoded =
-                self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
+            let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
             for ((name, _), lane) in self.lanes.iter().zip(&lanes) {
                 table.row(&lane.row(index, name))?;
             }
@@ -110,23 +109,12 @@ impl Clip {
         bar.finish_and_clear();
         table.finish()?;
         out.gaze("gaze.csv", &gaze_px)?;
-        let pixels = self
-            .geometry
-            .size_px()
+        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
+        let methods = lanes
             .iter()
-            .map(|&s| f64::from(s))
-            .product::<f64>();
-        let methods = lanes.iter().enumerate().map(|(i, lane)| {
-            (
-                self.lanes[i].0,
-                lane.report(pipeline.memory_bytes(i) as f64 / pixels),
-            )
-        });
-        Ok(ClipReport {
-            methods: methods.collect(),
-            foveation_ms: Quartiles::of(&foveation_ms),
-            gaze_px,
-        })
+            .enumerate()
+            .map(|(i, lane)| (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels)));
+        Ok(ClipReport { methods: methods.collect(), foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
     }
 
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.
@@ -152,8 +140,7 @@ impl Clip {
                 out.frame(name, index, &shown.image, &encoded, self.format)?;
                 if let (Some(trace), LaneKind::PostProcess(_)) = (&shown.trace, kind) {
                     for debug in &self.debug {
-                        let picture =
-                            debug_view::picture(debug.view(), trace, frame.motion.as_ref());
+                        let picture = debug_view::picture(debug.view(), trace, frame.motion.as_ref());
                         let folder = format!("debug/{name}/{}", debug.name());
                         out.picture(&folder, index, &to_rgb8(&picture))?;
                     }
@@ -171,22 +158,10 @@ impl Clip {
         gaze_px: &[[f32; 2]],
         out: &Output,
     ) -> Result<(), Failure> {
-        let mut columns = vec![Column {
-            name: "reference",
-            shown: reference,
-            scores: None,
-        }];
+        let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
         for (((name, _), shown), lane) in self.lanes.iter().zip(encoded).zip(lanes) {
-            let name = if *name == "none" {
-                "none (foveated only)"
-            } else {
-                name
-            };
-            columns.push(Column {
-                name,
-                shown,
-                scores: Some(lane.scorer.scores()),
-            });
+            let name = if *name == "none" { "none (foveated only)" } else { name };
+            columns.push(Column { name, shown, scores: Some(lane.scorer.scores()) });
         }
         let sheet = Sheet {
             title: self.title.clone(),
@@ -208,9 +183,7 @@ impl Lane {
         shown: &Shown,
         step: &Step,
     ) {
-        let errors = self
-            .scorer
-            .push(reference, encoded, &step.tracked, &step.ecc_deg);
+        let errors = self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg);
         self.last = Some(errors);
         self.traffic = shown.traffic_bytes_per_pixel;
         self.wall_ms.push(shown.wall_ms);
@@ -228,13 +201,8 @@ impl Lane {
 
     /// A line of `frames.csv`.
     fn row(&self, index: usize, name: &str) -> String {
-        let db = |mse: Option<f64>| {
-            mse.and_then(psnr_db)
-                .map_or(String::new(), |v| format!("{v:.4}"))
-        };
-        let (psnr, retained) = self
-            .last
-            .map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
+        let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
+        let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
         let ms = self.wall_ms.last().copied().unwrap_or_default();
         format!("{index},{name},{psnr},{retained},{ms:.3}")
     }
@@ -262,7 +230,7 @@ fn progress(frames: u64) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {eta} left")
-        .expect("the template is a constant");
+    let style =
+        ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {eta} left").expect("the template is a constant");
     ProgressBar::new(frames).with_style(style)
 }

@@ -27,10 +27,7 @@ impl Failure {
 
     /// Something that could not be written while working.
     pub fn writing(path: &Path, error: impl Display) -> Self {
-        Self::Work(format!(
-            "{}: cannot be written ({error}); free space or choose another --out",
-            path.display()
-        ))
+        Self::Work(format!("{}: cannot be written ({error}); free space or choose another --out", path.display()))
     }
 }
 

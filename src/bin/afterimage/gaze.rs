@@ -3,9 +3,7 @@
 use crate::failure::Failure;
 use crate::run::RunArgs;
 use afterimage::display::ViewGeometry;
-use afterimage::scanpath::{
-    FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv,
-};
+use afterimage::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
 use clap::ValueEnum;
 use std::path::Path;
 
@@ -30,19 +28,11 @@ pub struct Track {
 }
 
 /// Resolves the options for `frames` frames, or for as many as the gaze has.
-pub fn resolve(
-    args: &RunArgs,
-    view: &ViewGeometry,
-    fps: f32,
-    frames: Option<u64>,
-) -> Result<Track, Failure> {
+pub fn resolve(args: &RunArgs, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
     let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
     if let Some(px) = fixed(&args.gaze)? {
         let count = frames.unwrap_or(default_frames) as usize;
-        return Ok(Track {
-            px: vec![Some(px); count],
-            map: "none",
-        });
+        return Ok(Track { px: vec![Some(px); count], map: "none" });
     }
     let synthetic = synthetic_seed(&args.gaze)?;
     let path = match synthetic {
@@ -58,11 +48,7 @@ pub fn resolve(
         None => GazeMap::default_for(path.screen()),
     };
     let gaze = FrameGaze::new(&path, view, map, args.start, f64::from(fps))?;
-    let available = if synthetic.is_some() {
-        default_frames
-    } else {
-        gaze.frames()
-    };
+    let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
     let count = frames.unwrap_or(available);
     let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();
     if px.iter().all(Option::is_none) {
@@ -81,12 +67,8 @@ pub fn resolve(
 }
 
 fn make_synthetic(seed: u64, seconds: f64, view: &ViewGeometry) -> Result<Scanpath, Failure> {
-    let options = SyntheticOptions {
-        seed,
-        duration_s: seconds,
-        screen: Screen::of_view(view),
-        ..SyntheticOptions::default()
-    };
+    let options =
+        SyntheticOptions { seed, duration_s: seconds, screen: Screen::of_view(view), ..SyntheticOptions::default() };
     Ok(generate(&options)?.path)
 }
 
@@ -99,9 +81,9 @@ fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
         (Ok(x), Ok(y)) if x.is_finite() && y.is_finite() => Ok(Some([x, y])),
         // A comma may be part of a file's name.
         _ if Path::new(text).exists() => Ok(None),
-        _ => Err(Failure::Input(format!(
-            "--gaze {text}: expected X,Y in frame pixels, a CSV file, or synthetic[:SEED]"
-        ))),
+        _ => {
+            Err(Failure::Input(format!("--gaze {text}: expected X,Y in frame pixels, a CSV file, or synthetic[:SEED]")))
+        }
     }
 }
 
@@ -109,9 +91,7 @@ fn synthetic_seed(text: &str) -> Result<Option<u64>, Failure> {
     match text.strip_prefix("synthetic") {
         Some("") => Ok(Some(0)),
         Some(rest) if rest.starts_with(':') => rest[1..].parse().map(Some).map_err(|_| {
-            Failure::Input(format!(
-                "--gaze {text}: expected synthetic:SEED with a whole number, such as synthetic:7"
-            ))
+            Failure::Input(format!("--gaze {text}: expected synthetic:SEED with a whole number, such as synthetic:7"))
         }),
         _ => Ok(None),
     }

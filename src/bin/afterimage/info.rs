@@ -28,10 +28,7 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
         say!("CPU: {} threads", rayon::current_num_threads());
         return Ok(());
     }
-    if Path::new(&args.input)
-        .extension()
-        .is_some_and(|e| e == "csv")
-    {
+    if Path::new(&args.input).extension().is_some_and(|e| e == "csv") {
         return Ok(scanpath_info(&args.input)?);
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
@@ -75,25 +72,16 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     }
     say!("still: {}", if info.still { "yes" } else { "no" });
     say!("frames per second: {}", known(info.fps));
-    say!(
-        "horizontal field of view, degrees: {}",
-        known(info.hfov_deg)
-    );
+    say!("horizontal field of view, degrees: {}", known(info.hfov_deg));
     let first = source.frame(0)?;
     say!("non-finite pixels in frame 0: {}", first.nonfinite);
-    let brightest = first
-        .color
-        .pixels()
-        .iter()
-        .flatten()
-        .fold(0.0_f32, |a, &b| a.max(b));
+    let brightest = first.color.pixels().iter().flatten().fold(0.0_f32, |a, &b| a.max(b));
     say!("brightest channel in frame 0, linear: {brightest}");
     match &first.depth {
         None => say!("depth: none"),
         Some(depth) => {
             let finite = depth.pixels().iter().filter(|z| z.is_finite() && **z < 1e9);
-            let (near, far) =
-                finite.fold((f32::INFINITY, 0.0_f32), |(a, b), &z| (a.min(z), b.max(z)));
+            let (near, far) = finite.fold((f32::INFINITY, 0.0_f32), |(a, b), &z| (a.min(z), b.max(z)));
             say!("depth in frame 0: {near} to {far}");
         }
     }
@@ -106,11 +94,7 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
         say!("motion: none");
         return Ok(());
     };
-    let largest = motion
-        .pixels()
-        .iter()
-        .map(|m| m[0].hypot(m[1]))
-        .fold(0.0_f32, f32::max);
+    let largest = motion.pixels().iter().map(|m| m[0].hypot(m[1])).fold(0.0_f32, f32::max);
     say!("motion in frame 1: up to {largest:.2} px");
     let check = motion_check::detect(&first.color, &second.color, motion)?;
     let explains = |db: f64| format!("frame 0 moved by it explains frame 1 to {db:.1} dB");

@@ -34,8 +34,8 @@ impl Output {
             ))
         };
         fs::create_dir_all(root).map_err(|e| refuse(root, &e))?;
-        let ours = fs::read_to_string(root.join("report.json"))
-            .is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
+        let ours =
+            fs::read_to_string(root.join("report.json")).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
         let mut stale = vec![];
         for part in parts {
             stale.extend(numbered_frames(&root.join(part)));
@@ -48,22 +48,15 @@ impl Output {
         }
         // A file that can be made is the proof that the folder can be written.
         let probe = root.join(".afterimage.partial");
-        File::create(&probe)
-            .and_then(|_| fs::remove_file(&probe))
-            .map_err(|e| refuse(root, &e))?;
-        for path in stale
-            .into_iter()
-            .chain(ours.then(|| root.join("report.json")))
-        {
+        File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
+        for path in stale.into_iter().chain(ours.then(|| root.join("report.json"))) {
             fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
         }
         for part in parts {
             let folder = root.join(part);
             fs::create_dir_all(&folder).map_err(|e| refuse(&folder, &e))?;
         }
-        Ok(Self {
-            root: root.to_owned(),
-        })
+        Ok(Self { root: root.to_owned() })
     }
 
     /// Frame `index` of `folder`, from its linear or its encoded image.
@@ -79,8 +72,7 @@ impl Output {
             FormatName::Png => self.picture(folder, index, &to_rgb8(encoded)),
             FormatName::Exr => {
                 let path = self.root.join(folder).join(format!("{index:06}.exr"));
-                exr_file::write(&path, &FrameToWrite::color(linear))
-                    .map_err(|e| Failure::writing(&path, e))
+                exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
             }
         }
     }
@@ -109,8 +101,7 @@ impl Output {
     /// A text file.
     pub fn text(&self, name: &str, text: &str) -> Result<(), Failure> {
         let path = self.root.join(name);
-        write_whole(&path, |file| file.write_all(text.as_bytes()))
-            .map_err(|e| Failure::writing(&path, e))
+        write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
     }
 
     /// Starts a table.
@@ -118,11 +109,7 @@ impl Output {
         let path = self.root.join(name);
         let partial = self.root.join(format!("{name}.partial"));
         let file = File::create(&partial).map_err(|e| Failure::writing(&partial, e))?;
-        let mut table = Table {
-            path,
-            partial,
-            file: BufWriter::new(file),
-        };
+        let mut table = Table { path, partial, file: BufWriter::new(file) };
         table.row(header)?;
         Ok(table)
     }
@@ -150,16 +137,8 @@ fn numbered_frames(folder: &Path) -> Vec<PathBuf> {
     };
     let is_frame = |path: &PathBuf| {
         let ending = path.extension().and_then(|e| e.to_str());
-        let stem = path
-            .file_stem()
-            .and_then(|s| s.to_str())
-            .unwrap_or_default();
-        matches!(ending, Some("png" | "exr"))
-            && stem.len() == 6
-            && stem.bytes().all(|b| b.is_ascii_digit())
+        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+        matches!(ending, Some("png" | "exr")) && stem.len() == 6 && stem.bytes().all(|b| b.is_ascii_digit())
     };
-    entries
-        .filter_map(|e| Some(e.ok()?.path()))
-        .filter(is_frame)
-        .collect()
+    entries.filter_map(|e| Some(e.ok()?.path())).filter(is_frame).collect()
 }

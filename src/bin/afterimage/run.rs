@@ -28,12 +28,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
-    #[arg(
-        long,
-        default_value = "synthetic:0",
-        value_name = "GAZE",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: String,
     /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
     #[arg(long, value_enum)]
@@ -56,13 +51,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        default_value = "none,wrs",
-        value_name = "LIST"
-    )]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
@@ -76,12 +65,7 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value = "png")]
     pub format: FormatName,
     /// Exposure before sRGB encoding, stops
-    #[arg(
-        long,
-        default_value_t = 0.0,
-        value_name = "EV",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
     /// Also write the full-rate frames
     #[arg(long)]
@@ -210,11 +194,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
 }
 
 fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    let scene = source::SceneOptions {
-        size: args.size,
-        hfov_deg: args.hfov,
-        fps: args.fps,
-    };
+    let scene = source::SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
     Ok(source::open(&args.input, limits, &scene)?)
 }
 
@@ -222,32 +202,19 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
 fn check(args: &RunArgs) -> Result<(), Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.backend == BackendName::Gpu {
-        return refuse(
-            "--backend gpu: this version computes on the CPU only; use --backend auto or cpu"
-                .into(),
-        );
+        return refuse("--backend gpu: this version computes on the CPU only; use --backend auto or cpu".into());
     }
     if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
-        return refuse(format!(
-            "--fps {fps}: expected above 0 and at most 10000 frames per second"
-        ));
+        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
     }
     if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
-        return refuse(format!(
-            "--hfov {hfov}: expected above 0 and below 180 degrees"
-        ));
+        return refuse(format!("--hfov {hfov}: expected above 0 and below 180 degrees"));
     }
     if !(args.start >= 0.0 && args.start.is_finite()) {
-        return refuse(format!(
-            "--start {}: expected seconds, 0 or more",
-            args.start
-        ));
+        return refuse(format!("--start {}: expected seconds, 0 or more", args.start));
     }
     if !(-32.0..=32.0).contains(&args.exposure) {
-        return refuse(format!(
-            "--exposure {}: expected -32 to 32 stops",
-            args.exposure
-        ));
+        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
     }
     if args.frames == Some(0) {
         return refuse("--frames 0: expected at least 1 frame".into());
@@ -316,11 +283,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
 fn folders(args: &RunArgs) -> Vec<String> {
     let mut folders: Vec<String> = args.method.iter().map(|m| m.name().to_owned()).collect();
     for method in args.method.iter().filter(|&&m| m != MethodName::Oracle) {
-        folders.extend(
-            args.debug
-                .iter()
-                .map(|d| format!("debug/{}/{}", method.name(), d.name())),
-        );
+        folders.extend(args.debug.iter().map(|d| format!("debug/{}/{}", method.name(), d.name())));
     }
     if args.reference {
         folders.push("reference".into());

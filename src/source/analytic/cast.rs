@@ -29,18 +29,11 @@ impl Pattern {
                 let bits = count.trailing_zeros();
                 let reversed = i.reverse_bits().checked_shr(32 - bits).unwrap_or(0);
                 // A quarter turn of strata keeps the columns of four samples apart.
-                let y = if bits == 2 {
-                    [1, 3, 0, 2][i as usize]
-                } else {
-                    reversed
-                };
+                let y = if bits == 2 { [1, 3, 0, 2][i as usize] } else { reversed };
                 [i, y].map(|k| (k as f32 + 0.5) / count as f32 - 0.5)
             })
             .collect();
-        Self {
-            offsets,
-            footprint: 1.2 / (count as f32).sqrt(),
-        }
+        Self { offsets, footprint: 1.2 / (count as f32).sqrt() }
     }
 }
 
@@ -64,61 +57,41 @@ pub(super) struct Geometry {
 impl<'a> Caster<'a> {
     pub fn new(stage: &'a Stage, view: &'a ViewGeometry, pattern: &'a Pattern) -> Self {
         let outline = |object: &Placed| Outline::of(&object.shape, &stage.cameras[0], view);
-        Self {
-            stage,
-            view,
-            pattern,
-            outlines: stage.objects.iter().map(outline).collect(),
-        }
+        Self { stage, view, pattern, outlines: stage.objects.iter().map(outline).collect() }
     }
 
     /// Calls `pixel(x, y, tile)` for every pixel and gathers the results row after row.
-    pub fn render<T: Send + Copy>(
-        &self,
-        empty: T,
-        pixel: impl Fn(u32, u32, &Tile) -> T + Sync,
-    ) -> Vec<T> {
+    pub fn render<T: Send + Copy>(&self, empty: T, pixel: impl Fn(u32, u32, &Tile) -> T + Sync) -> Vec<T> {
         let [width, height] = self.view.size_px().map(|s| s as usize);
         let mut pixels = vec![empty; width * height];
-        pixels
-            .par_chunks_mut(width * SIDE)
-            .enumerate()
-            .for_each(|(band, rows)| {
-                let mut tile = Tile::default();
-                for left in (0..width).step_by(SIDE) {
-                    let right = (left + SIDE).min(width);
-                    let top = band * SIDE;
-                    let bottom = top + rows.len() / width;
-                    let area = [[left, top], [right, bottom]].map(|p| p.map(|c| c as f32));
-                    let corners = self.corners(area);
-                    tile.fill(self.stage, &self.outlines, area.map(Vec2::from), &corners);
-                    for y in top..bottom {
-                        for x in left..right {
-                            rows[(y - top) * width + x] = pixel(x as u32, y as u32, &tile);
-                        }
+        pixels.par_chunks_mut(width * SIDE).enumerate().for_each(|(band, rows)| {
+            let mut tile = Tile::default();
+            for left in (0..width).step_by(SIDE) {
+                let right = (left + SIDE).min(width);
+                let top = band * SIDE;
+                let bottom = top + rows.len() / width;
+                let area = [[left, top], [right, bottom]].map(|p| p.map(|c| c as f32));
+                let corners = self.corners(area);
+                tile.fill(self.stage, &self.outlines, area.map(Vec2::from), &corners);
+                for y in top..bottom {
+                    for x in left..right {
+                        rows[(y - top) * width + x] = pixel(x as u32, y as u32, &tile);
                     }
                 }
-            });
+            }
+        });
         pixels
     }
 
     /// Rays through the corners of a rectangle of pixels, in order around it.
     fn corners(&self, [from, to]: [[f32; 2]; 2]) -> [Ray; 4] {
-        [
-            [from[0], from[1]],
-            [to[0], from[1]],
-            [to[0], to[1]],
-            [from[0], to[1]],
-        ]
-        .map(|corner| self.ray(corner.map(|c| c - 0.5)))
+        [[from[0], from[1]], [to[0], from[1]], [to[0], to[1]], [from[0], to[1]]]
+            .map(|corner| self.ray(corner.map(|c| c - 0.5)))
     }
 
     fn ray(&self, px: [f32; 2]) -> Ray {
         let camera = &self.stage.cameras[0];
-        Ray {
-            origin: camera.origin,
-            direction: camera.axes * self.view.ray(px),
-        }
+        Ray { origin: camera.origin, direction: camera.axes * self.view.ray(px) }
     }
 
     fn nearest(&self, ray: &Ray, tile: &Tile) -> Option<(usize, f32)> {
@@ -150,8 +123,7 @@ impl<'a> Caster<'a> {
     pub fn touches(&self, x: u32, y: u32, tile: &Tile, wanted: usize) -> bool {
         self.pattern.offsets.iter().any(|offset| {
             let ray = self.ray([x as f32 + offset[0], y as f32 + offset[1]]);
-            self.nearest(&ray, tile)
-                .is_some_and(|(index, _)| index == wanted)
+            self.nearest(&ray, tile).is_some_and(|(index, _)| index == wanted)
         })
     }
 
@@ -163,19 +135,13 @@ impl<'a> Caster<'a> {
             // Nothing has a place there, but a direction: only the camera's turn moves it.
             return Geometry {
                 depth: f32::INFINITY,
-                motion: self.motion(
-                    before.axes.transpose() * ray.direction,
-                    now.axes.transpose() * ray.direction,
-                ),
+                motion: self.motion(before.axes.transpose() * ray.direction, now.axes.transpose() * ray.direction),
             };
         };
         let point = ray.at(depth);
         let object = &self.stage.objects[index];
         let previous = object.previous(object.shape.bound().0, point);
-        Geometry {
-            depth,
-            motion: self.motion(before.view(previous), now.view(point)),
-        }
+        Geometry { depth, motion: self.motion(before.view(previous), now.view(point)) }
     }
 
     /// Pixels from one point of view space to another. A difference of two projections, not of a projection and the pixel:
@@ -220,10 +186,6 @@ impl<'a> Caster<'a> {
             }
             _ => (Vec3::ZERO, 1.0),
         };
-        Spot {
-            uv: surface.uv,
-            w: Vec2::new(width(u), width(v)),
-            ball,
-        }
+        Spot { uv: surface.uv, w: Vec2::new(width(u), width(v)), ball }
     }
 }

@@ -14,47 +14,27 @@ pub(super) const RIGHT: f32 = 3.9;
 pub(super) const BACK: f32 = 8.0;
 
 fn fixed(shape: Shape, material: Material) -> Object {
-    Object {
-        shape,
-        material,
-        path: None,
-    }
+    Object { shape, material, path: None }
 }
 
 fn rect(centre: [f32; 3], u: Vec3, v: Vec3, half: [f32; 2], material: Material) -> Object {
-    let shape = Shape::Rect {
-        centre: centre.into(),
-        u,
-        v,
-        half: half.into(),
-        cutout: Cutout::Solid,
-    };
+    let shape = Shape::Rect { centre: centre.into(), u, v, half: half.into(), cutout: Cutout::Solid };
     fixed(shape, material)
 }
 
 fn ball(centre: [f32; 3], radius: f32, material: Material) -> Object {
-    let shape = Shape::Sphere {
-        centre: centre.into(),
-        radius,
-    };
+    let shape = Shape::Sphere { centre: centre.into(), radius };
     fixed(shape, material)
 }
 
 /// A post from the floor up to `top`.
 fn post(x: f32, z: f32, radius: f32, top: f32, material: Material) -> Object {
-    let shape = Shape::Post {
-        centre: Vec3::new(x, 0.5 * (FLOOR + top), z),
-        radius,
-        half_height: 0.5 * (FLOOR - top),
-    };
+    let shape = Shape::Post { centre: Vec3::new(x, 0.5 * (FLOOR + top), z), radius, half_height: 0.5 * (FLOOR - top) };
     fixed(shape, material)
 }
 
 fn block(centre: [f32; 3], half: [f32; 3], material: Material) -> Object {
-    let shape = Shape::Block {
-        centre: centre.into(),
-        half: half.into(),
-    };
+    let shape = Shape::Block { centre: centre.into(), half: half.into() };
     fixed(shape, material)
 }
 
@@ -67,58 +47,16 @@ const STONE: Material = Material::Plaster([0.62, 0.57, 0.48]);
 /// Floor, walls and what hangs on them, columns and the trees behind. The floor comes first.
 fn walls() -> Vec<Object> {
     vec![
-        rect(
-            [0.0, FLOOR, 5.0],
-            Vec3::X,
-            Vec3::Z,
-            [14.0, 11.0],
-            Material::Floor,
-        ),
-        rect(
-            [0.15, -0.1, BACK],
-            Vec3::X,
-            Vec3::Y,
-            [3.75, 1.7],
-            Material::Bricks,
-        ),
-        rect(
-            [LEFT, -0.1, 3.0],
-            Vec3::Z,
-            Vec3::Y,
-            [5.0, 1.7],
-            Material::Azulejo,
-        ),
-        rect(
-            [RIGHT, -0.1, 3.0],
-            Vec3::NEG_Z,
-            Vec3::Y,
-            [5.0, 1.7],
-            Material::Azulejo,
-        ),
+        rect([0.0, FLOOR, 5.0], Vec3::X, Vec3::Z, [14.0, 11.0], Material::Floor),
+        rect([0.15, -0.1, BACK], Vec3::X, Vec3::Y, [3.75, 1.7], Material::Bricks),
+        rect([LEFT, -0.1, 3.0], Vec3::Z, Vec3::Y, [5.0, 1.7], Material::Azulejo),
+        rect([RIGHT, -0.1, 3.0], Vec3::NEG_Z, Vec3::Y, [5.0, 1.7], Material::Azulejo),
         block([0.15, -1.88, 8.1], [3.9, 0.08, 0.22], STONE),
         block([-3.72, -1.88, 3.0], [0.2, 0.08, 5.0], STONE),
         block([4.02, -1.88, 3.0], [0.2, 0.08, 5.0], STONE),
-        rect(
-            [0.45, -0.35, 7.93],
-            Vec3::X,
-            Vec3::Y,
-            [2.25, 1.05],
-            Material::Gallery,
-        ),
-        rect(
-            [-3.57, -0.85, 6.2],
-            Vec3::Z,
-            Vec3::Y,
-            [0.9, 0.62],
-            Material::Rug,
-        ),
-        rect(
-            [3.87, -0.85, 6.0],
-            Vec3::NEG_Z,
-            Vec3::Y,
-            [0.9, 0.62],
-            Material::Rug,
-        ),
+        rect([0.45, -0.35, 7.93], Vec3::X, Vec3::Y, [2.25, 1.05], Material::Gallery),
+        rect([-3.57, -0.85, 6.2], Vec3::Z, Vec3::Y, [0.9, 0.62], Material::Rug),
+        rect([3.87, -0.85, 6.0], Vec3::NEG_Z, Vec3::Y, [0.9, 0.62], Material::Rug),
     ]
 }
 
@@ -153,23 +91,14 @@ fn notice() -> Vec<Object> {
         let foot = centre + u * (side * 0.56) + Vec3::new(0.02, 0.0, 0.05);
         post(foot.x, foot.z, 0.03, -0.1, OAK)
     };
-    vec![
-        rect(centre.to_array(), u, Vec3::Y, half, Material::Notice(half)),
-        leg(-1.0),
-        leg(1.0),
-    ]
+    vec![rect(centre.to_array(), u, Vec3::Y, half, Material::Notice(half)), leg(-1.0), leg(1.0)]
 }
 
 fn scene(extra: Vec<Object>, camera: fn(f64) -> Camera) -> Scene {
     let mut objects = walls();
     objects.extend(things());
     objects.extend(extra);
-    Scene {
-        objects,
-        camera,
-        floor: 0,
-        panel: None,
-    }
+    Scene { objects, camera, floor: 0, panel: None }
 }
 
 /// `still` and `light-step`.
@@ -214,26 +143,20 @@ pub(super) fn occluder() -> Scene {
             let x = 1.5 * (TAU * t / 5.0).cos();
             Pose {
                 offset: Vec3::new(x as f32, 0.0, 0.0),
-                spin: Mat3::from_rotation_z((x / f64::from(ROLLING)) as f32)
-                    * Mat3::from_rotation_x(1.2),
+                spin: Mat3::from_rotation_z((x / f64::from(ROLLING)) as f32) * Mat3::from_rotation_x(1.2),
             }
         }),
         ..ball([0.0, FLOOR - ROLLING, 3.3], ROLLING, Material::BeachBall)
     });
     let mut scene = scene(extra, |t| {
         let swing = (TAU * t / 6.0).sin();
-        Camera::looking(
-            Vec3::new((0.35 * swing) as f32, 0.0, 0.0),
-            (-0.03 * swing) as f32,
-            0.0,
-        )
+        Camera::looking(Vec3::new((0.35 * swing) as f32, 0.0, 0.0), (-0.03 * swing) as f32, 0.0)
     });
     for object in &mut scene.objects {
         if object.material == Material::Globe {
             object.path = Some(|t| Pose {
                 offset: Vec3::ZERO,
-                spin: Mat3::from_rotation_z(0.4)
-                    * Mat3::from_rotation_y((0.8 * t).rem_euclid(TAU) as f32),
+                spin: Mat3::from_rotation_z(0.4) * Mat3::from_rotation_y((0.8 * t).rem_euclid(TAU) as f32),
             });
         }
     }
@@ -246,25 +169,9 @@ const PANEL_Z: f32 = 3.4;
 
 /// `scroll`: a page faces the camera; `step` metres of it pass each frame. The panel is the last object.
 pub(super) fn scroll() -> Scene {
-    let panel = rect(
-        [1.05, 0.15, PANEL_Z],
-        Vec3::X,
-        Vec3::Y,
-        PANEL_HALF,
-        Material::Scroll {
-            half: PANEL_HALF,
-            shift: 0.0,
-        },
-    );
-    let legs = [0.4, 1.7].map(|x| {
-        post(
-            x,
-            PANEL_Z + 0.06,
-            0.03,
-            -0.3,
-            Material::Timber([0.05, 0.05, 0.06]),
-        )
-    });
+    let panel =
+        rect([1.05, 0.15, PANEL_Z], Vec3::X, Vec3::Y, PANEL_HALF, Material::Scroll { half: PANEL_HALF, shift: 0.0 });
+    let legs = [0.4, 1.7].map(|x| post(x, PANEL_Z + 0.06, 0.03, -0.3, Material::Timber([0.05, 0.05, 0.06])));
     let mut scene = scene(legs.to_vec(), still_camera);
     scene.panel = Some(scene.objects.len());
     scene.objects.push(panel);

@@ -91,11 +91,7 @@ pub(super) fn running_text(p: Vec2, w: Vec2, columns: i32, first: i32) -> f32 {
     }
     let index = line.wrapping_mul(columns) + column + first;
     let character = ALICE[index.rem_euclid(ALICE.len() as i32) as usize];
-    let ink = dot(
-        dots(character),
-        p.x - column as f32 * ADVANCE,
-        p.y - line as f32 * LEADING,
-    );
+    let ink = dot(dots(character), p.x - column as f32 * ADVANCE, p.y - line as f32 * LEADING);
     grey + (ink - grey) * kept
 }
 
@@ -105,9 +101,5 @@ pub(super) fn headline(p: Vec2) -> f32 {
     if !(0..10).contains(&column) {
         return 0.0;
     }
-    dot(
-        HEADLINE[column as usize],
-        p.x - column as f32 * ADVANCE,
-        p.y,
-    )
+    dot(HEADLINE[column as usize], p.x - column as f32 * ADVANCE, p.y)
 }

@@ -19,17 +19,9 @@ const REACH: f32 = 4.0;
 /// Light that arrives at a point with normal `n` of object `index`: what its albedo is multiplied with.
 pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n: Vec3) -> Vec3 {
     let facing = n.dot(TO_SUN);
-    let sun = if facing > 0.0 {
-        facing * sunlight(stage, &tile.casters[index], point + n * NEAR)
-    } else {
-        0.0
-    };
+    let sun = if facing > 0.0 { facing * sunlight(stage, &tile.casters[index], point + n * NEAR) } else { 0.0 };
     let upward = 0.5 - 0.5 * n.y;
-    let open = if index == stage.floor {
-        open_floor(stage, &tile.standing, point)
-    } else {
-        corner(FLOOR - point.y)
-    };
+    let open = if index == stage.floor { open_floor(stage, &tile.standing, point) } else { corner(FLOOR - point.y) };
     BOUNCE.lerp(SKY, upward) * open + SUN * sun
 }
 
@@ -39,10 +31,7 @@ fn sunlight(stage: &Stage, casters: &[u16], point: Vec3) -> f32 {
     if open <= 0.0 {
         return 0.0;
     }
-    let ray = Ray {
-        origin: point,
-        direction: TO_SUN,
-    };
+    let ray = Ray { origin: point, direction: TO_SUN };
     let shaded = casters.iter().any(|&caster| {
         let shape = &stage.objects[caster as usize].shape;
         shape.hit(&ray, NEAR, f32::INFINITY).is_some()
@@ -75,9 +64,7 @@ fn open_floor(stage: &Stage, standing: &[u16], point: Vec3) -> f32 {
 /// The ball that stands for the foot of an object on the floor; `None` for what does not stand there.
 fn foot(shape: &Shape) -> Option<(Vec3, f32)> {
     match *shape {
-        Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => {
-            Some((centre, radius))
-        }
+        Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => Some((centre, radius)),
         Shape::Post { centre, radius, .. } => Some((centre.with_y(FLOOR - radius), radius)),
         Shape::Block { centre, half } if centre.y + half.y > FLOOR - 0.1 => {
             let radius = half.x.max(half.z);
@@ -112,8 +99,7 @@ fn slats(point: Vec3) -> f32 {
 pub(super) fn sky(direction: Vec3) -> Vec3 {
     let d = direction.normalize();
     let up = (-d.y).max(0.0);
-    let blue =
-        Vec3::new(0.66, 0.80, 0.95).lerp(Vec3::new(0.16, 0.36, 0.74), smoothstep(0.0, 0.75, up));
+    let blue = Vec3::new(0.66, 0.80, 0.95).lerp(Vec3::new(0.16, 0.36, 0.74), smoothstep(0.0, 0.75, up));
     let p = Vec2::new(d.x, d.y * 2.0) * (11.0 / (0.6 + d.z.abs()));
     let cover = fbm(p, 0.02, 5, 407);
     let cloud = smoothstep(0.50, 0.68, cover);

@@ -177,8 +177,7 @@ impl AnalyticSource {
         if let Some(panel) = stage.panel
             && let Material::Scroll { shift, .. } = &mut stage.objects[panel].material
         {
-            let tangent = 2.0 * f64::from(0.5 * DEFAULT_HFOV_DEG).to_radians().tan()
-                / f64::from(DEFAULT_SIZE[0]);
+            let tangent = 2.0 * f64::from(0.5 * DEFAULT_HFOV_DEG).to_radians().tan() / f64::from(DEFAULT_SIZE[0]);
             let metres = courtyard::panel_metres(SCROLL_PX, tangent) * now;
             *shift = metres.rem_euclid(SCROLL_PERIOD) as f32;
         }
@@ -188,13 +187,9 @@ impl AnalyticSource {
     fn cast(&self, index: u64) -> SourceFrame {
         let stage = self.stage(index);
         let caster = self.caster(&stage);
-        let empty = Geometry {
-            depth: f32::INFINITY,
-            motion: [0.0; 2],
-        };
-        let pixels = caster.render(([0.0; 3], empty), |x, y, tile| {
-            (caster.color(x, y, tile), caster.geometry(x, y, tile))
-        });
+        let empty = Geometry { depth: f32::INFINITY, motion: [0.0; 2] };
+        let pixels =
+            caster.render(([0.0; 3], empty), |x, y, tile| (caster.color(x, y, tile), caster.geometry(x, y, tile)));
         let size = self.info.size;
         let geometry = image(size, pixels);
         SourceFrame {

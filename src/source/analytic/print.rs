@@ -76,8 +76,7 @@ pub(super) fn gallery(uv: Vec2, w: Vec2) -> Vec3 {
     if depth < -wide {
         return cloth * weave;
     }
-    let gilt = Vec3::new(0.52, 0.36, 0.12)
-        * (0.55 + 0.9 * pulse((q.x + q.y) * 22.0, 0.5, 2.0 * wide * 22.0));
+    let gilt = Vec3::new(0.52, 0.36, 0.12) * (0.55 + 0.9 * pulse((q.x + q.y) * 22.0, 0.5, 2.0 * wide * 22.0));
     let picture = print(q, w, HALF - Vec2::splat(RIM + MOUNT), (x, y));
     let mount = PAPER * 1.02;
     let on_mount = mount.lerp(picture, inside(RIM + MOUNT - depth, wide));
@@ -102,10 +101,7 @@ fn print(q: Vec2, w: Vec2, half: Vec2, (x, y): (i32, i32)) -> Vec3 {
 fn text_sheet(q: Vec2, w: Vec2, half: Vec2, first: i32) -> Vec3 {
     const DOT: f32 = 0.0062;
     let columns = (2.0 * half.x / (6.0 * DOT)) as i32;
-    PAPER.lerp(
-        INK,
-        glyph::running_text((q + half) / DOT, w / DOT, columns, first),
-    )
+    PAPER.lerp(INK, glyph::running_text((q + half) / DOT, w / DOT, columns, first))
 }
 
 /// A test figure of spokes, as fine towards the middle as anything can show.
@@ -113,11 +109,7 @@ fn star(q: Vec2, wide: f32) -> Vec3 {
     const SPOKES: f32 = 24.0;
     let r = q.length().max(1e-4);
     let turns = q.y.atan2(q.x) / std::f32::consts::TAU;
-    let spokes = pulse(
-        turns * SPOKES,
-        0.5,
-        SPOKES * wide / (std::f32::consts::TAU * r),
-    );
+    let spokes = pulse(turns * SPOKES, 0.5, SPOKES * wide / (std::f32::consts::TAU * r));
     let rings = inside((r - 0.285).abs() - 0.008, wide);
     let disc = inside(r - 0.265, wide);
     PAPER.lerp(INK, (spokes * disc + rings).min(1.0))
@@ -129,14 +121,10 @@ fn map(q: Vec2, wide: f32, seed: u32) -> Vec3 {
     let blur = 5.0 * 1.2 * wide * 12.0;
     let lines = pulse(height * 12.0, 0.16, blur) * surviving(blur);
     let sea = inside((0.45 - height).min(1.0) * 0.3, wide);
-    let ground = Vec3::new(0.20, 0.42, 0.50).lerp(
-        Vec3::new(0.72, 0.62, 0.36).lerp(Vec3::new(0.42, 0.30, 0.16), height),
-        sea,
-    );
+    let ground =
+        Vec3::new(0.20, 0.42, 0.50).lerp(Vec3::new(0.72, 0.62, 0.36).lerp(Vec3::new(0.42, 0.30, 0.16), height), sea);
     let grid = pulse(q.x * 8.0, 0.03, wide * 8.0) + pulse(q.y * 8.0, 0.03, wide * 8.0);
-    ground
-        .lerp(INK, 0.8 * lines)
-        .lerp(Vec3::new(0.5, 0.1, 0.1), 0.6 * grid.min(1.0))
+    ground.lerp(INK, 0.8 * lines).lerp(Vec3::new(0.5, 0.1, 0.1), 0.6 * grid.min(1.0))
 }
 
 /// A head in concentric lines whose thickness is the shade, as engravers did.
@@ -147,8 +135,7 @@ fn engraving(q: Vec2, wide: f32, seed: u32) -> Vec3 {
     let relief = fbm(q * 9.0, 9.0 * wide, 3, seed);
     let shoulders = inside(0.2 + 1.6 * q.x * q.x - q.y, wide);
     let head = inside((face - 1.0) * 0.18, wide);
-    let shade =
-        0.25 + 0.25 * relief + 0.45 * (1.0 - light) * head + 0.45 * shoulders * (1.0 - head);
+    let shade = 0.25 + 0.25 * relief + 0.45 * (1.0 - light) * head + 0.45 * shoulders * (1.0 - head);
     let rings = (q - Vec2::new(0.02, -0.08)).length() / PITCH;
     let ink = pulse(rings, shade.clamp(0.1, 0.9), wide / PITCH);
     PAPER.lerp(INK, ink)
@@ -156,20 +143,13 @@ fn engraving(q: Vec2, wide: f32, seed: u32) -> Vec3 {
 
 /// Ridge behind ridge under a low sun.
 fn hills(q: Vec2, wide: f32, half: Vec2, seed: u32) -> Vec3 {
-    let mut colour = Vec3::new(0.80, 0.42, 0.20).lerp(
-        Vec3::new(0.85, 0.74, 0.45),
-        (0.5 + 0.5 * q.y / half.y).clamp(0.0, 1.0),
-    );
+    let mut colour =
+        Vec3::new(0.80, 0.42, 0.20).lerp(Vec3::new(0.85, 0.74, 0.45), (0.5 + 0.5 * q.y / half.y).clamp(0.0, 1.0));
     let sun = inside((q - Vec2::new(0.07, -0.1)).length() - 0.07, wide);
     colour = colour.lerp(Vec3::new(0.98, 0.86, 0.60), sun);
     for ridge in 0..4 {
         let k = ridge as f32;
-        let line = fbm(
-            Vec2::new(q.x * (5.0 + 2.0 * k) + 3.0 * k, k),
-            5.0 * wide,
-            4,
-            seed + ridge,
-        );
+        let line = fbm(Vec2::new(q.x * (5.0 + 2.0 * k) + 3.0 * k, k), 5.0 * wide, 4, seed + ridge);
         let top = -0.10 + 0.10 * k - 0.22 * (line - 0.4);
         let tone = Vec3::new(0.42, 0.30, 0.34).lerp(Vec3::new(0.03, 0.07, 0.06), k / 3.0);
         let trees = 0.75 + 0.5 * fbm(q * 60.0, 60.0 * wide, 2, seed + 7);

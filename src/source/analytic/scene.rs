@@ -33,10 +33,7 @@ pub(super) struct Camera {
 impl Camera {
     /// A level camera turned to the right by `yaw` and down by `pitch`, in radians.
     pub fn looking(origin: Vec3, yaw: f32, pitch: f32) -> Self {
-        Self {
-            origin,
-            axes: Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(-pitch),
-        }
+        Self { origin, axes: Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(-pitch) }
     }
 
     /// A world point in view space.
@@ -111,27 +108,17 @@ impl Scene {
         for (receiver, object) in objects.iter_mut().enumerate() {
             object.casters = (0..bounds.len())
                 .filter(|&caster| {
-                    caster != receiver
-                        && caster != self.floor
-                        && may_shade(bounds[caster], bounds[receiver])
+                    caster != receiver && caster != self.floor && may_shade(bounds[caster], bounds[receiver])
                 })
                 .map(|caster| caster as u16)
                 .collect();
         }
-        Stage {
-            objects,
-            cameras: [(self.camera)(now), (self.camera)(before)],
-            floor: self.floor,
-            panel: self.panel,
-        }
+        Stage { objects, cameras: [(self.camera)(now), (self.camera)(before)], floor: self.floor, panel: self.panel }
     }
 }
 
 /// Whether a ball can throw its shadow on another.
-pub(super) fn may_shade(
-    (caster, caster_radius): (Vec3, f32),
-    (receiver, receiver_radius): (Vec3, f32),
-) -> bool {
+pub(super) fn may_shade((caster, caster_radius): (Vec3, f32), (receiver, receiver_radius): (Vec3, f32)) -> bool {
     let between = caster - receiver;
     let along = between.dot(TO_SUN);
     let reach = caster_radius + receiver_radius;

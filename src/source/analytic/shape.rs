@@ -20,21 +20,11 @@ impl Ray {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Shape {
     /// A flat rectangle, seen from both sides. `u` and `v` are orthogonal unit axes.
-    Rect {
-        centre: Vec3,
-        u: Vec3,
-        v: Vec3,
-        half: Vec2,
-        cutout: Cutout,
-    },
+    Rect { centre: Vec3, u: Vec3, v: Vec3, half: Vec2, cutout: Cutout },
     /// A ball.
     Sphere { centre: Vec3, radius: f32 },
     /// A round vertical post without caps.
-    Post {
-        centre: Vec3,
-        radius: f32,
-        half_height: f32,
-    },
+    Post { centre: Vec3, radius: f32, half_height: f32 },
     /// A box along the axes.
     Block { centre: Vec3, half: Vec3 },
 }
@@ -96,11 +86,7 @@ impl Shape {
         match *self {
             Self::Rect { centre, half, .. } => (centre, half.length()),
             Self::Sphere { centre, radius } => (centre, radius),
-            Self::Post {
-                centre,
-                radius,
-                half_height,
-            } => (centre, radius.hypot(half_height)),
+            Self::Post { centre, radius, half_height } => (centre, radius.hypot(half_height)),
             Self::Block { centre, half } => (centre, half.length()),
         }
     }
@@ -108,24 +94,12 @@ impl Shape {
     /// Corners of a box around the shape (of a rectangle: its own, twice).
     pub fn corners(&self) -> [Vec3; 8] {
         let (centre, axes) = match *self {
-            Self::Rect {
-                centre, u, v, half, ..
-            } => (centre, [u * half.x, v * half.y, Vec3::ZERO]),
-            Self::Sphere { centre, radius } => {
-                (centre, [Vec3::X, Vec3::Y, Vec3::Z].map(|a| a * radius))
+            Self::Rect { centre, u, v, half, .. } => (centre, [u * half.x, v * half.y, Vec3::ZERO]),
+            Self::Sphere { centre, radius } => (centre, [Vec3::X, Vec3::Y, Vec3::Z].map(|a| a * radius)),
+            Self::Post { centre, radius, half_height } => {
+                (centre, [Vec3::X * radius, Vec3::Y * half_height, Vec3::Z * radius])
             }
-            Self::Post {
-                centre,
-                radius,
-                half_height,
-            } => (
-                centre,
-                [Vec3::X * radius, Vec3::Y * half_height, Vec3::Z * radius],
-            ),
-            Self::Block { centre, half } => (
-                centre,
-                [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z],
-            ),
+            Self::Block { centre, half } => (centre, [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z]),
         };
         std::array::from_fn(|i| {
             let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
@@ -137,19 +111,9 @@ impl Shape {
     #[inline]
     pub fn hit(&self, ray: &Ray, near: f32, far: f32) -> Option<f32> {
         let t = match *self {
-            Self::Rect {
-                centre,
-                u,
-                v,
-                half,
-                cutout,
-            } => return hit_rect(ray, [centre, u, v], half, cutout, near, far),
+            Self::Rect { centre, u, v, half, cutout } => return hit_rect(ray, [centre, u, v], half, cutout, near, far),
             Self::Sphere { centre, radius } => hit_ball(ray, centre, radius, near)?,
-            Self::Post {
-                centre,
-                radius,
-                half_height,
-            } => hit_post(ray, centre, radius, half_height, near)?,
+            Self::Post { centre, radius, half_height } => hit_post(ray, centre, radius, half_height, near)?,
             Self::Block { centre, half } => hit_block(ray, centre, half, near)?,
         };
         (t > near && t < far).then_some(t)
@@ -170,11 +134,7 @@ impl Shape {
             Self::Sphere { centre, .. } => {
                 let normal = (point - centre).normalize();
                 let u = normal.any_orthonormal_vector();
-                Surface {
-                    normal,
-                    tangents: [u, normal.cross(u)],
-                    uv: Vec2::ZERO,
-                }
+                Surface { normal, tangents: [u, normal.cross(u)], uv: Vec2::ZERO }
             }
             Self::Post { centre, radius, .. } => {
                 let local = point - centre;
@@ -191,14 +151,7 @@ impl Shape {
 }
 
 #[inline]
-fn hit_rect(
-    ray: &Ray,
-    [centre, u, v]: [Vec3; 3],
-    half: Vec2,
-    cutout: Cutout,
-    near: f32,
-    far: f32,
-) -> Option<f32> {
+fn hit_rect(ray: &Ray, [centre, u, v]: [Vec3; 3], half: Vec2, cutout: Cutout, near: f32, far: f32) -> Option<f32> {
     let n = u.cross(v);
     let t = n.dot(centre - ray.origin) / n.dot(ray.direction);
     // Also refuses the NaN of a ray within the plane.
@@ -224,11 +177,7 @@ fn hit_ball(ray: &Ray, centre: Vec3, radius: f32, near: f32) -> Option<f32> {
     }
     let half_chord = (inside2 / length2).sqrt();
     let first = t_mid - half_chord;
-    Some(if first > near {
-        first
-    } else {
-        t_mid + half_chord
-    })
+    Some(if first > near { first } else { t_mid + half_chord })
 }
 
 #[inline]
@@ -268,9 +217,5 @@ fn block_surface(local: Vec3, half: Vec3) -> Surface {
     } else {
         (Vec3::Z * local.z.signum(), [Vec3::X, Vec3::Y])
     };
-    Surface {
-        normal,
-        tangents,
-        uv: Vec2::new(local.dot(tangents[0]), local.dot(tangents[1])),
-    }
+    Surface { normal, tangents, uv: Vec2::new(local.dot(tangents[0]), local.dot(tangents[1])) }
 }

@@ -144,11 +144,7 @@ fn azulejo_wall(uv: Vec2, w: Vec2) -> Vec3 {
     let r = r2.sqrt();
     // cos of four times the angle, without one.
     let (a, b) = (q.x * q.x, q.y * q.y);
-    let cos4 = if r2 > 1e-6 {
-        (a * a - 6.0 * a * b + b * b) / (r2 * r2)
-    } else {
-        1.0
-    };
+    let cos4 = if r2 > 1e-6 { (a * a - 6.0 * a * b + b * b) / (r2 * r2) } else { 1.0 };
     let turn = if (x ^ y) & 1 == 0 { 1.0 } else { -1.0 };
     let petals = inside(r - 0.50 - 0.22 * cos4 * turn, wide);
     let vein = inside((r - 0.33 - 0.16 * cos4 * turn).abs() - 0.045, wide);
@@ -166,8 +162,7 @@ fn azulejo_wall(uv: Vec2, w: Vec2) -> Vec3 {
     let face = pulse(p.x + 0.015, 0.97, wt.x) * pulse(p.y + 0.015, 0.97, wt.y);
     let tiles = mean.lerp(painted, kept) * glaze * (0.35 + 0.65 * face);
     let ledge = inside(uv.y.abs() - 0.05, w.y);
-    wall.lerp(tiles, frieze)
-        .lerp(Vec3::new(0.08, 0.11, 0.25), ledge)
+    wall.lerp(tiles, frieze).lerp(Vec3::new(0.08, 0.11, 0.25), ledge)
 }
 
 /// Plaster scored like courses of cut stone.
@@ -205,13 +200,8 @@ fn rug(uv: Vec2, w: Vec2) -> Vec3 {
     let filled = inside(rhomb - 0.26, blur);
     let eye = inside(rhomb - 0.10, blur);
     let stripes = pulse(y * 12.0, 0.5, 12.0 * w.y / BAND) * inside(0.42 - y, w.y / BAND);
-    let weave =
-        0.75 + 0.5 * pulse(uv.x * 55.0, 0.5, 55.0 * w.x) * pulse(uv.y * 40.0, 0.6, 40.0 * w.y);
-    ground
-        .lerp(wool, outline.max(stripes))
-        .lerp(motif, filled)
-        .lerp(wool, eye)
-        * weave
+    let weave = 0.75 + 0.5 * pulse(uv.x * 55.0, 0.5, 55.0 * w.x) * pulse(uv.y * 40.0, 0.6, 40.0 * w.y);
+    ground.lerp(wool, outline.max(stripes)).lerp(motif, filled).lerp(wool, eye) * weave
 }
 
 fn plaster(uv: Vec2, w: Vec2, tint: Vec3) -> Vec3 {
@@ -241,11 +231,7 @@ fn planks(uv: Vec2, w: Vec2, tint: Vec3) -> Vec3 {
 
 fn picket(uv: Vec2, w: Vec2) -> Vec3 {
     let board = split(uv.x / super::shape::PICKET_PERIOD).0;
-    let tones = [
-        Vec3::new(0.78, 0.78, 0.74),
-        Vec3::new(0.35, 0.55, 0.62),
-        Vec3::new(0.80, 0.62, 0.26),
-    ];
+    let tones = [Vec3::new(0.78, 0.78, 0.74), Vec3::new(0.35, 0.55, 0.62), Vec3::new(0.80, 0.62, 0.26)];
     let tone = tones[board.rem_euclid(3) as usize];
     grain(uv.yx() + Vec2::new(board as f32, 0.0), w.yx(), tone, 81) * 0.95
 }
@@ -272,10 +258,7 @@ fn lon_lat(spot: &Spot) -> (Vec2, Vec2) {
     let lat = (-d.y).clamp(-1.0, 1.0).asin() / tau;
     let wide = spot.w.max_element() / (radius * tau);
     let cos = (1.0 - d.y * d.y).max(0.0).sqrt();
-    (
-        Vec2::new(lon, lat),
-        Vec2::new((wide / cos.max(1e-3)).min(1.0), wide),
-    )
+    (Vec2::new(lon, lat), Vec2::new((wide / cos.max(1e-3)).min(1.0), wide))
 }
 
 fn globe(spot: &Spot) -> Vec3 {
@@ -305,8 +288,7 @@ fn beach_ball(spot: &Spot) -> Vec3 {
     ];
     let segment = split(p.x * 12.0).0;
     let colour = palette[segment.rem_euclid(4) as usize];
-    let seam =
-        pulse(p.x * 12.0 + 0.03, 0.06, w.x * 12.0).max(pulse(p.y * 12.0 + 0.06, 0.12, w.y * 12.0));
+    let seam = pulse(p.x * 12.0 + 0.03, 0.06, w.x * 12.0).max(pulse(p.y * 12.0 + 0.06, 0.12, w.y * 12.0));
     // Rows of dots, as large on the ball everywhere between the tropics.
     let dots = Vec2::new(p.x * 36.0, p.y * 36.0);
     let q = dots - floor2(dots) - 0.5;

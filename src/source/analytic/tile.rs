@@ -19,13 +19,7 @@ pub(super) struct Tile {
 
 impl Tile {
     /// Makes the lists for the pixels from `from` to before `to`; `corners` are the rays around them, in order.
-    pub fn fill(
-        &mut self,
-        stage: &Stage,
-        outlines: &[Outline],
-        [from, to]: [Vec2; 2],
-        corners: &[Ray; 4],
-    ) {
+    pub fn fill(&mut self, stage: &Stage, outlines: &[Outline], [from, to]: [Vec2; 2], corners: &[Ray; 4]) {
         self.casters.resize(stage.objects.len(), Vec::new());
         self.candidates.clear();
         self.standing.clear();
@@ -37,16 +31,11 @@ impl Tile {
             let part = visible_part(object, corners);
             let casters = &mut self.casters[index];
             casters.clear();
-            casters.extend(
-                object
-                    .casters
-                    .iter()
-                    .filter(|&&c| may_shade(stage.objects[c as usize].shape.bound(), part)),
-            );
+            casters
+                .extend(object.casters.iter().filter(|&&c| may_shade(stage.objects[c as usize].shape.bound(), part)));
             if index == stage.floor {
                 self.standing.extend(
-                    (0..stage.objects.len() as u16)
-                        .filter(|&i| light::darkens(&stage.objects[i as usize].shape, part)),
+                    (0..stage.objects.len() as u16).filter(|&i| light::darkens(&stage.objects[i as usize].shape, part)),
                 );
             }
         }
@@ -68,15 +57,8 @@ fn visible_part(object: &Placed, corners: &[Ray; 4]) -> (Vec3, f32) {
     }
     let points = corners.map(|ray| ray.at(distance(&ray)));
     let middle = points.iter().sum::<Vec3>() / 4.0;
-    let radius = points
-        .iter()
-        .map(|p| p.distance(middle))
-        .fold(0.0, f32::max);
-    if radius < whole.1 {
-        (middle, radius * 1.001 + 1e-3)
-    } else {
-        whole
-    }
+    let radius = points.iter().map(|p| p.distance(middle)).fold(0.0, f32::max);
+    if radius < whole.1 { (middle, radius * 1.001 + 1e-3) } else { whole }
 }
 
 /// The rectangle of the picture, in pixels, outside of which an object cannot be seen.
@@ -91,10 +73,7 @@ impl Outline {
     pub fn of(shape: &Shape, camera: &Camera, view: &ViewGeometry) -> Self {
         const NEAR: f32 = 1e-2;
         let corners = shape.corners().map(|corner| camera.view(corner));
-        let mut outline = Self {
-            from: Vec2::INFINITY,
-            to: Vec2::NEG_INFINITY,
-        };
+        let mut outline = Self { from: Vec2::INFINITY, to: Vec2::NEG_INFINITY };
         for (i, &a) in corners.iter().enumerate() {
             if a.z >= NEAR {
                 outline.add(a, view);

@@ -27,14 +27,7 @@ impl ChannelName {
         };
         let mut layer: Vec<String> = shown.to_lowercase().split('.').map(str::to_owned).collect();
         let leaf = layer.pop().unwrap_or_default();
-        Self {
-            part,
-            index,
-            shown,
-            layer,
-            leaf,
-            plain: !name.contains('.'),
-        }
+        Self { part, index, shown, layer, leaf, plain: !name.contains('.') }
     }
 
     fn in_layer(&self, last: &str) -> bool {
@@ -89,10 +82,7 @@ fn id(c: &ChannelName) -> ChannelId {
 
 /// The channel `leaf` of the same part and layer as `of`.
 fn sibling(channels: &[ChannelName], of: &ChannelName, leaf: &str) -> Option<ChannelId> {
-    channels
-        .iter()
-        .find(|c| c.part == of.part && c.layer == of.layer && c.plain == of.plain && c.leaf == leaf)
-        .map(id)
+    channels.iter().find(|c| c.part == of.part && c.layer == of.layer && c.plain == of.plain && c.leaf == leaf).map(id)
 }
 
 fn find_color(channels: &[ChannelName]) -> Option<[ChannelId; 3]> {
@@ -100,51 +90,32 @@ fn find_color(channels: &[ChannelName]) -> Option<[ChannelId; 3]> {
         let g = sibling(channels, r, "g")?;
         let b = sibling(channels, r, "b")?;
         // A renderer's noisy image is not what anybody wants to look at while there is another.
-        let noisy = r
-            .layer
-            .iter()
-            .any(|l| l.contains("noisy") || l.contains("denois"));
+        let noisy = r.layer.iter().any(|l| l.contains("noisy") || l.contains("denois"));
         let rank = (!r.in_layer("combined"), !r.plain, noisy, r.layer.len());
         Some((rank, [id(r), g, b]))
     });
-    complete
-        .min_by_key(|&(rank, _)| rank)
-        .map(|(_, color)| color)
-        .or_else(|| {
-            let grey = channels
-                .iter()
-                .find(|c| c.plain && c.leaf == "y" && sibling(channels, c, "x").is_none())?;
-            Some([id(grey); 3])
-        })
+    complete.min_by_key(|&(rank, _)| rank).map(|(_, color)| color).or_else(|| {
+        let grey = channels.iter().find(|c| c.plain && c.leaf == "y" && sibling(channels, c, "x").is_none())?;
+        Some([id(grey); 3])
+    })
 }
 
 fn find_depth(channels: &[ChannelName]) -> Option<ChannelId> {
     let named = |c: &&ChannelName| c.in_layer("depth") && (c.leaf == "z" || c.leaf == "v");
     // A part that holds vectors or normals has a plain Z too, beside its X.
-    let plain = |c: &&ChannelName| {
-        c.plain && (c.leaf == "depth" || c.leaf == "z" && sibling(channels, c, "x").is_none())
-    };
-    let found = channels
-        .iter()
-        .find(named)
-        .or_else(|| channels.iter().find(plain));
+    let plain =
+        |c: &&ChannelName| c.plain && (c.leaf == "depth" || c.leaf == "z" && sibling(channels, c, "x").is_none());
+    let found = channels.iter().find(named).or_else(|| channels.iter().find(plain));
     found.map(id)
 }
 
 fn find_motion(channels: &[ChannelName], layer: &str, form: VectorForm) -> Option<MotionChannels> {
-    channels
-        .iter()
-        .filter(|c| c.leaf == "x" && c.in_layer(layer))
-        .find_map(|x| {
-            let y = sibling(channels, x, "y")?;
-            let z = sibling(channels, x, "z");
-            let w = sibling(channels, x, "w");
-            Some(MotionChannels {
-                form,
-                to_previous: [id(x), y],
-                to_next: z.zip(w).map(|(z, w)| [z, w]),
-            })
-        })
+    channels.iter().filter(|c| c.leaf == "x" && c.in_layer(layer)).find_map(|x| {
+        let y = sibling(channels, x, "y")?;
+        let z = sibling(channels, x, "z");
+        let w = sibling(channels, x, "w");
+        Some(MotionChannels { form, to_previous: [id(x), y], to_next: z.zip(w).map(|(z, w)| [z, w]) })
+    })
 }
 
 #[cfg(test)]
@@ -155,9 +126,7 @@ mod tests {
         let part = |(p, (name, channels)): (usize, &(Option<&str>, &[&str]))| {
             let name = *name;
             let named = channels.iter().enumerate();
-            named
-                .map(|(i, c)| ChannelName::new(p, name, i, c))
-                .collect::<Vec<_>>()
+            named.map(|(i, c)| ChannelName::new(p, name, i, c)).collect::<Vec<_>>()
         };
         parts.iter().enumerate().flat_map(part).collect()
     }
@@ -185,17 +154,7 @@ mod tests {
     fn plain_wins_over_a_layer_and_a_clean_layer_over_a_noisy_one() {
         let n = names(&[(None, &["B", "G", "R", "a.B", "a.G", "a.R"])]);
         assert_eq!(Roles::find(&n).unwrap().color, [(0, 2), (0, 1), (0, 0)]);
-        let n = names(&[(
-            None,
-            &[
-                "a.Noisy.B",
-                "a.Noisy.G",
-                "a.Noisy.R",
-                "b.c.B",
-                "b.c.G",
-                "b.c.R",
-            ],
-        )]);
+        let n = names(&[(None, &["a.Noisy.B", "a.Noisy.G", "a.Noisy.R", "b.c.B", "b.c.G", "b.c.R"])]);
         assert_eq!(Roles::find(&n).unwrap().color, [(0, 5), (0, 4), (0, 3)]);
     }
 

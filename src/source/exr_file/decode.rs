@@ -6,9 +6,7 @@ use super::{exr_error, guarded, io_error};
 use crate::error::{FrameError, InputError};
 use crate::image::Image;
 use exr::block::UncompressedBlock;
-use exr::block::chunk::{
-    Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,
-};
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
 use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelList, Compression, SampleType};
@@ -50,23 +48,15 @@ impl ExrHeader {
         for part in planes.parts() {
             self.read_part(&mut file, part, &mut planes)?;
         }
-        planes
-            .finish(self.size)
-            .map_err(|e| InputError::new(&self.subject, e.to_string(), "export it again"))
+        planes.finish(self.size).map_err(|e| InputError::new(&self.subject, e.to_string(), "export it again"))
     }
 
-    fn read_part(
-        &self,
-        file: &mut File,
-        part: usize,
-        planes: &mut Planes,
-    ) -> Result<(), InputError> {
+    fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
         let header = &self.meta.headers[part];
         let (columns, rows) = full_resolution_chunks(header);
         let block = header.max_block_pixel_size();
-        let block_bytes = block.0.min(header.layer_size.0)
-            * block.1.min(header.layer_size.1)
-            * header.channels.bytes_per_pixel;
+        let block_bytes =
+            block.0.min(header.layer_size.0) * block.1.min(header.layer_size.1) * header.channels.bytes_per_pixel;
         let batch = (BATCH_BYTES / block_bytes.max(1)).max(1);
         for start in (0..columns * rows).step_by(batch) {
             let end = (start + batch).min(columns * rows);
@@ -86,13 +76,7 @@ impl ExrHeader {
     }
 
     /// Reads chunk `index` of a part, which must say that it is the block `tile`: so every pixel is written once.
-    fn read_chunk(
-        &self,
-        file: &mut File,
-        part: usize,
-        index: usize,
-        tile: Vec2<usize>,
-    ) -> Result<Chunk, InputError> {
+    fn read_chunk(&self, file: &mut File, part: usize, index: usize, tile: Vec2<usize>) -> Result<Chunk, InputError> {
         let io = |e: std::io::Error| io_error(&self.subject, &e);
         let header = &self.meta.headers[part];
         let offset = self.chunk_offsets[part][index];
@@ -101,10 +85,8 @@ impl ExrHeader {
         let head = &mut head[..head_bytes as usize];
         file.seek(SeekFrom::Start(offset)).map_err(io)?;
         file.read_exact(head).map_err(io)?;
-        let fields: Vec<i32> = head
-            .chunks_exact(4)
-            .map(|b| i32::from_le_bytes(b.try_into().unwrap_or_default()))
-            .collect();
+        let fields: Vec<i32> =
+            head.chunks_exact(4).map(|b| i32::from_le_bytes(b.try_into().unwrap_or_default())).collect();
 
         let (&bytes, place) = fields.split_last().unwrap_or((&-1, &[]));
         let rest = self.file_bytes.saturating_sub(offset + head_bytes);
@@ -124,17 +106,11 @@ impl ExrHeader {
                 compressed_pixels_le: data,
             }),
             BlockDescription::Tiles(_) => CompressedBlock::Tile(CompressedTileBlock {
-                coordinates: TileCoordinates {
-                    tile_index: tile,
-                    level_index: Vec2(0, 0),
-                },
+                coordinates: TileCoordinates { tile_index: tile, level_index: Vec2(0, 0) },
                 compressed_pixels_le: data,
             }),
         };
-        Ok(Chunk {
-            layer_index: part,
-            compressed_block,
-        })
+        Ok(Chunk { layer_index: part, compressed_block })
     }
 
     /// What precedes the size in the head of a chunk.
@@ -157,10 +133,7 @@ impl ExrHeader {
     fn damaged(&self, index: usize) -> InputError {
         InputError::new(
             &self.subject,
-            format!(
-                "is truncated or damaged: chunk {} is not what the table of chunks says",
-                index + 1
-            ),
+            format!("is truncated or damaged: chunk {} is not what the table of chunks says", index + 1),
             "copy or export it again",
         )
     }
@@ -169,10 +142,7 @@ impl ExrHeader {
 /// Whether a DWA chunk promises no more than its block can hold. The `exr` crate sets aside what the counters at its start
 /// ask for, whatever that is, and a failed allocation ends the process.
 fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> bool {
-    if !matches!(
-        header.compression,
-        Compression::DWAA(_) | Compression::DWAB(_)
-    ) {
+    if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
         return true;
     }
     let block = header.max_block_pixel_size();
@@ -218,11 +188,7 @@ impl Planes {
                 (Vectors::ToNext, form) => {
                     let ids = motion.to_next.ok_or_else(missing)?;
                     // Blender's are current minus next with y up; next minus current with y down negates x alone.
-                    let signs = if form == VectorForm::Blender {
-                        [-1.0, 1.0]
-                    } else {
-                        [1.0, 1.0]
-                    };
+                    let signs = if form == VectorForm::Blender { [-1.0, 1.0] } else { [1.0, 1.0] };
                     (ids, signs)
                 }
                 (_, VectorForm::Blender) => (motion.to_previous, [1.0, -1.0]),
@@ -248,13 +214,7 @@ impl Planes {
     }
 
     /// Copies the wanted channels of a decoded block. In it, each row holds the samples of one channel after another.
-    fn scatter(
-        &mut self,
-        part: usize,
-        block: &UncompressedBlock,
-        channels: &ChannelList,
-        width: usize,
-    ) {
+    fn scatter(&mut self, part: usize, block: &UncompressedBlock, channels: &ChannelList, width: usize) {
         let Vec2(x0, y0) = block.index.pixel_position;
         let Vec2(w, h) = block.index.pixel_size;
         let mut first = 0;
@@ -273,13 +233,7 @@ impl Planes {
         }
     }
 
-    fn store(
-        &mut self,
-        slot: Slot,
-        pixels: std::ops::Range<usize>,
-        samples: &[u8],
-        kind: SampleType,
-    ) {
+    fn store(&mut self, slot: Slot, pixels: std::ops::Range<usize>, samples: &[u8], kind: SampleType) {
         match slot {
             Slot::Color(i) => {
                 let out = self.color[pixels].iter_mut().map(|p| &mut p[i]);
@@ -308,14 +262,8 @@ impl Planes {
         }
         Ok(ExrFrame {
             color: Image::from_pixels(size, self.color)?,
-            depth: self
-                .depth
-                .map(|d| Image::from_pixels(size, d))
-                .transpose()?,
-            motion: self
-                .motion
-                .map(|m| Image::from_pixels(size, m))
-                .transpose()?,
+            depth: self.depth.map(|d| Image::from_pixels(size, d)).transpose()?,
+            motion: self.motion.map(|m| Image::from_pixels(size, m)).transpose()?,
             nonfinite,
         })
     }
@@ -333,12 +281,7 @@ fn blacken_nonfinite(color: &mut [[f32; 3]]) -> u64 {
     count
 }
 
-fn convert<'a>(
-    samples: &[u8],
-    kind: SampleType,
-    sign: f32,
-    out: impl Iterator<Item = &'a mut f32>,
-) {
+fn convert<'a>(samples: &[u8], kind: SampleType, sign: f32, out: impl Iterator<Item = &'a mut f32>) {
     let quad = |b: &[u8]| <[u8; 4]>::try_from(b).unwrap_or_default();
     match kind {
         SampleType::F16 => {
@@ -365,14 +308,7 @@ fn missing_vectors(header: &ExrHeader, vectors: Vectors) -> InputError {
             "to the next frame, which playing backwards needs",
             "<layer>.Vector.Z/W or motion.Z/W; add them, or ask for no more frames than there are",
         ),
-        _ => (
-            "to the previous frame",
-            "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still",
-        ),
+        _ => ("to the previous frame", "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still"),
     };
-    InputError::new(
-        &header.subject,
-        format!("has no motion vectors {which}"),
-        format!("expected {needed}"),
-    )
+    InputError::new(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
 }

@@ -53,11 +53,7 @@ impl ExrHeader {
         let file = File::open(path).map_err(io)?;
         let file_bytes = file.metadata().map_err(io)?.len();
         if file_bytes == 0 {
-            return Err(InputError::new(
-                subject,
-                "is empty",
-                "copy or export it again",
-            ));
+            return Err(InputError::new(subject, "is empty", "copy or export it again"));
         }
         let mut reader = Counting::new(BufReader::new(file));
         let invalid = |e| exr_error(subject, e);
@@ -132,12 +128,7 @@ fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
 
 fn missing_color(subject: &str, shown: &[String]) -> InputError {
     const LISTED: usize = 40;
-    let mut list = shown
-        .iter()
-        .take(LISTED)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
+    let mut list = shown.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
     if shown.len() > LISTED {
         list += &format!(" and {} more", shown.len() - LISTED);
     }
@@ -149,12 +140,7 @@ fn missing_color(subject: &str, shown: &[String]) -> InputError {
 }
 
 /// The size that all used parts share, after every check of what the header claims.
-fn checked_size(
-    subject: &str,
-    meta: &MetaData,
-    roles: &Roles,
-    limits: &ReadLimits,
-) -> Result<[u32; 2], InputError> {
+fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimits) -> Result<[u32; 2], InputError> {
     let mut size = None;
     for part in used_parts(roles) {
         let header = &meta.headers[part];
@@ -175,12 +161,7 @@ fn checked_size(
 
 /// Parts that hold a used channel, in file order.
 pub(super) fn used_parts(roles: &Roles) -> Vec<usize> {
-    let mut parts: Vec<usize> = roles
-        .color
-        .iter()
-        .chain(&roles.depth)
-        .map(|c| c.0)
-        .collect();
+    let mut parts: Vec<usize> = roles.color.iter().chain(&roles.depth).map(|c| c.0).collect();
     parts.extend(roles.motion.iter().map(|m| m.to_previous[0].0));
     parts.sort_unstable();
     parts.dedup();
@@ -194,30 +175,18 @@ fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
         return Ok(());
     }
     let text = |b: exr::meta::attribute::IntegerBounds| {
-        format!(
-            "{}x{} at ({}, {})",
-            b.size.0, b.size.1, b.position.0, b.position.1
-        )
+        format!("{}x{} at ({}, {})", b.size.0, b.size.1, b.position.0, b.position.1)
     };
     Err(InputError::new(
         subject,
-        format!(
-            "its data window is {} but its display window is {}",
-            text(data),
-            text(display)
-        ),
+        format!("its data window is {} but its display window is {}", text(data), text(display)),
         "expected the whole frame; export it without crop or overscan",
     ))
 }
 
 /// Refuses subsampled channels, and blocks whose decoding would take far more memory than the frame.
 fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(), InputError> {
-    if let Some(c) = header
-        .channels
-        .list
-        .iter()
-        .find(|c| c.sampling != Vec2(1, 1))
-    {
+    if let Some(c) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
         return Err(InputError::new(
             subject,
             super::one_line(&format!("its channel {} is subsampled", c.name)),
@@ -250,40 +219,28 @@ fn read_tables(
     header_end: u64,
     file_bytes: u64,
 ) -> Result<Vec<Vec<u64>>, InputError> {
-    let entries = meta
-        .headers
-        .iter()
-        .try_fold(0u64, |sum, h| sum.checked_add(h.chunk_count as u64));
+    let entries = meta.headers.iter().try_fold(0u64, |sum, h| sum.checked_add(h.chunk_count as u64));
     let tables_end = entries
         .and_then(|n| n.checked_mul(8))
         .and_then(|bytes| bytes.checked_add(header_end))
         .filter(|&end| end <= file_bytes)
         .ok_or_else(|| truncated(subject, "its table of chunks does not fit in the file"))?;
 
-    reader
-        .seek(SeekFrom::Start(header_end))
-        .map_err(|e| io_error(subject, &e))?;
+    reader.seek(SeekFrom::Start(header_end)).map_err(|e| io_error(subject, &e))?;
     let mut tables = Vec::with_capacity(meta.headers.len());
     let mut last = (0, 0);
     for (part, header) in meta.headers.iter().enumerate() {
         let mut bytes = vec![0u8; header.chunk_count * 8];
-        reader
-            .read_exact(&mut bytes)
-            .map_err(|e| io_error(subject, &e))?;
-        let mut table: Vec<u64> = bytes
-            .chunks_exact(8)
-            .map(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()))
-            .collect();
+        reader.read_exact(&mut bytes).map_err(|e| io_error(subject, &e))?;
+        let mut table: Vec<u64> =
+            bytes.chunks_exact(8).map(|b| u64::from_le_bytes(b.try_into().unwrap_or_default())).collect();
         let chunk_header = chunk_header_bytes(meta, part);
         let in_file = |&o: &u64| o >= tables_end && o.saturating_add(chunk_header) <= file_bytes;
         if let Some(bad) = table.iter().position(|o| !in_file(o)) {
             let n = table.len();
             return Err(truncated(
                 subject,
-                &format!(
-                    "chunk {} of {n} lies outside the file of {file_bytes} bytes",
-                    bad + 1
-                ),
+                &format!("chunk {} of {n} lies outside the file of {file_bytes} bytes", bad + 1),
             ));
         }
         last = last.max((table.iter().copied().max().unwrap_or(0), part));
@@ -316,20 +273,12 @@ fn check_chunk_is_whole(
 }
 
 fn truncated(subject: &str, what: &str) -> InputError {
-    InputError::new(
-        subject,
-        format!("is truncated or damaged: {what}"),
-        "copy or export it again",
-    )
+    InputError::new(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
 }
 
 /// Bytes before a chunk's data: the part's number in a file of several, the position, the size.
 pub(super) fn chunk_header_bytes(meta: &MetaData, part: usize) -> u64 {
-    let part_number = if meta.requirements.is_multilayer() {
-        4
-    } else {
-        0
-    };
+    let part_number = if meta.requirements.is_multilayer() { 4 } else { 0 };
     let position = match meta.headers[part].blocks {
         BlockDescription::ScanLines => 4,
         BlockDescription::Tiles(_) => 16,
@@ -340,10 +289,7 @@ pub(super) fn chunk_header_bytes(meta: &MetaData, part: usize) -> u64 {
 /// Columns and rows of blocks at full resolution. They come first in the table.
 pub(super) fn full_resolution_chunks(header: &Header) -> (usize, usize) {
     let block = header.max_block_pixel_size();
-    (
-        header.layer_size.0.div_ceil(block.0),
-        header.layer_size.1.div_ceil(block.1),
-    )
+    (header.layer_size.0.div_ceil(block.0), header.layer_size.1.div_ceil(block.1))
 }
 
 /// Counts what is read, because the `exr` crate does not say where its header ended.

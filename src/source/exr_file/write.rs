@@ -3,8 +3,8 @@
 use crate::image::Image;
 use crate::whole_file::write_whole;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder,
-    SmallVec, WritableImage, f16,
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder, SmallVec,
+    WritableImage, f16,
 };
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -41,13 +41,7 @@ pub struct FrameToWrite<'a> {
 impl<'a> FrameToWrite<'a> {
     /// Colour alone, as half float.
     pub fn color(color: &'a Image<[f32; 3]>) -> Self {
-        Self {
-            color,
-            format: ColorFormat::Half,
-            depth: None,
-            motion: None,
-            motion_to_next: None,
-        }
+        Self { color, format: ColorFormat::Half, depth: None, motion: None, motion_to_next: None }
     }
 }
 
@@ -57,11 +51,7 @@ impl<'a> FrameToWrite<'a> {
 /// If the images differ in size or are empty, or the file cannot be written.
 pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     let size = frame.color.size();
-    let others = [
-        frame.depth.map(Image::size),
-        frame.motion.map(Image::size),
-        frame.motion_to_next.map(Image::size),
-    ];
+    let others = [frame.depth.map(Image::size), frame.motion.map(Image::size), frame.motion_to_next.map(Image::size)];
     if size.contains(&0) || others.into_iter().flatten().any(|s| s != size) {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
@@ -80,13 +70,10 @@ fn write_to(out: &mut BufWriter<File>, frame: &FrameToWrite) -> io::Result<()> {
     };
     let channels = AnyChannels::sort(SmallVec::from_vec(channels(frame)));
     let layer = Layer::new((w, h), LayerAttributes::default(), encoding, channels);
-    exr::image::Image::from_layer(layer)
-        .write()
-        .to_buffered(out)
-        .map_err(|e| match e {
-            exr::error::Error::Io(e) => e,
-            other => io::Error::other(other.to_string()),
-        })
+    exr::image::Image::from_layer(layer).write().to_buffered(out).map_err(|e| match e {
+        exr::error::Error::Io(e) => e,
+        other => io::Error::other(other.to_string()),
+    })
 }
 
 fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
@@ -94,11 +81,9 @@ fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
     for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
         let values = frame.color.pixels().iter().map(|p| p[i]);
         let samples = match frame.format {
-            ColorFormat::Half => FlatSamples::F16(
-                values
-                    .map(|v| f16::from_f32(v.clamp(-HALF_MAX, HALF_MAX)))
-                    .collect(),
-            ),
+            ColorFormat::Half => {
+                FlatSamples::F16(values.map(|v| f16::from_f32(v.clamp(-HALF_MAX, HALF_MAX))).collect())
+            }
             ColorFormat::Float => FlatSamples::F32(values.collect()),
         };
         channels.push(AnyChannel::new(name, samples));
@@ -107,10 +92,7 @@ fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
         let samples = FlatSamples::F32(depth.pixels().to_vec());
         channels.push(AnyChannel::new("Z", samples));
     }
-    let pairs = [
-        (frame.motion, ["motion.X", "motion.Y"]),
-        (frame.motion_to_next, ["motion.Z", "motion.W"]),
-    ];
+    let pairs = [(frame.motion, ["motion.X", "motion.Y"]), (frame.motion_to_next, ["motion.Z", "motion.W"])];
     for (image, names) in pairs {
         for (i, name) in names.into_iter().enumerate() {
             if let Some(image) = image {

@@ -1,0 +1,120 @@
+//! Determinism, reset, resize, refusals.
+
+use super::*;
+
+fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
+    frames.map(|i| one(post, i, &Input::still(noise(SIZE, &format!("run {i}")))).0).collect()
+}
+
+#[test]
+fn h29_the_same_bytes_whatever_the_number_of_threads() {
+    for settings in [
+        Settings::default(),
+        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Settings::default() },
+    ] {
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut post = context(settings);
+                (run(&mut post, 0..20), post.history().words().to_vec())
+            })
+        };
+        assert_eq!(with(1), with(2));
+        assert_eq!(with(2), with(7));
+    }
+    let other_seed = run(&mut context(Settings { seed: 1, ..Settings::default() }), 0..20);
+    assert_ne!(other_seed, run(&mut context(Settings::default()), 0..20));
+}
+
+#[test]
+fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
+    let settings = Settings { gate: None, ..Settings::default() };
+    let fresh = run(&mut context(settings), 20..30);
+    let mut used = context(settings);
+    run(&mut used, 0..20);
+    let stale = run(&mut used.clone(), 20..30);
+    assert_ne!(stale, fresh, "the planted error: no reset");
+
+    let mut forgotten = used.clone();
+    forgotten.forget();
+    assert_eq!(run(&mut forgotten, 20..30), fresh);
+
+    let mut resized = used.clone();
+    resized.resize([3, 5]).unwrap();
+    resized.resize(SIZE).unwrap();
+    assert_eq!(run(&mut resized, 20..30), fresh);
+
+    let mut cut = used.clone();
+    let input = Input::still(noise(SIZE, "run 20"));
+    for _ in 0..2 {
+        assert_eq!(step(&mut cut, 20, Reset::All, &[&input]).0[0], fresh[0], "reset two frames running");
+    }
+    assert_eq!(run(&mut cut, 21..30), fresh[1..]);
+}
+
+#[test]
+fn a_frame_that_is_refused_changes_nothing() {
+    let settings = Settings { gate: None, ..Settings::default() };
+    let (mut good, mut mixed) = (context(settings), context(settings));
+    let expected = run(&mut good, 0..6);
+    let mut got = run(&mut mixed, 0..3);
+    let words = mixed.history().words().to_vec();
+    let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
+    let facts = Input::still(right.clone()).view().facts;
+    let bad = |view: CpuView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
+        let frame = CpuFrame { views: &[view], index: 3, reset: Reset::All };
+        mixed.process(&frame, out, None).unwrap_err()
+    };
+    let view = CpuView { facts, color: &right, depth: None, motion: None };
+    let depth = Image::filled([3, 4], 1.0);
+    let mut matrix = facts;
+    matrix.previous_from_current = Some([[f32::NAN; 4]; 4]);
+    for (view, out_size) in [
+        (CpuView { color: &small, ..view }, SIZE),
+        (CpuView { depth: Some(&depth), ..view }, SIZE),
+        (CpuView { facts: matrix, ..view }, SIZE),
+        (view, [9, 9]),
+    ] {
+        let mut out = [Image::filled(out_size, [0.5; 3])];
+        let error = bad(view, &mut out, &mut mixed);
+        println!("{error}");
+        assert!(out[0].pixels().iter().all(|&c| c == [0.5; 3]), "nothing was written");
+    }
+    assert_eq!(bad(view, &mut [], &mut mixed), FrameError::ViewCount { found: 0, expected: 1 });
+    assert_eq!(mixed.history().words(), words);
+    got.extend(run(&mut mixed, 3..6));
+    assert_eq!(got, expected);
+}
+
+#[test]
+fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
+    for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
+        assert!(CpuAfterimage::new(ContextDesc::new(size), Settings::default()).is_err());
+        let mut post = context(Settings::default());
+        assert!(matches!(post.resize(size), Err(FrameError::Extent { .. })));
+        assert_eq!(post.desc().size_px, SIZE);
+    }
+    let mut post = CpuAfterimage::new(ContextDesc::new([1, 1]), Settings::default()).unwrap();
+    let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
+    assert_eq!(one(&mut post, 0, &input).0, input.color);
+    assert_eq!(one(&mut post, 1, &input).0, input.color);
+}
+
+#[test]
+fn memory_is_what_the_documentation_says() {
+    let pixels = 64 * 48;
+    assert_eq!(context(Settings::default()).memory_bytes(), 24 * pixels);
+    assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::default() }).memory_bytes(), 32 * pixels);
+    let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    assert_eq!(CpuAfterimage::new(stereo, Settings::default()).unwrap().memory_bytes(), 48 * pixels);
+}
+
+#[test]
+fn method_none_shows_the_frame_and_forgets() {
+    let mut post = context(Settings { method: Method::None, ..Settings::default() });
+    let mut color = noise(SIZE, "none");
+    color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
+    let (out, stats, _) = one(&mut post, 0, &Input::still(color.clone()));
+    assert_eq!((out.pixels()[3], stats.nonfinite, out.pixels()[4]), ([0.0; 3], 1, color.pixels()[4]));
+    assert!(!post.history().is_filled());
+}

@@ -1,0 +1,80 @@
+//! Several views, lost gaze, settings.
+
+use super::*;
+
+#[test]
+fn h27_stereo_views_never_read_each_other() {
+    let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    let settings = Settings { gate: None, ..Settings::default() };
+    let mut both = CpuAfterimage::new(stereo, settings).unwrap();
+    let mut swapped_right = CpuAfterimage::new(stereo, settings).unwrap();
+    let mut left_alone = context(settings);
+    let mut differ = false;
+    for index in 0..20 {
+        let left = Input::still(noise(SIZE, &format!("left {index}")));
+        let right =
+            Input { gaze: Gaze::At { px: [50.0, 30.0] }, ..Input::still(noise(SIZE, &format!("right {index}"))) };
+        let junk = Input { gaze: Gaze::Lost, ..Input::still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9])) };
+        let (a, ..) = step(&mut both, index, Reset::None, &[&left, &right]);
+        let (b, ..) = step(&mut swapped_right, index, Reset::None, &[&left, &junk]);
+        let (c, ..) = one(&mut left_alone, index, &left);
+        assert_eq!(a[0], b[0], "what the right eye sees changes nothing on the left");
+        assert_eq!(a[0], c);
+        // The same input to both eyes still draws different numbers.
+        let (d, ..) = step(&mut both.clone(), index, Reset::None, &[&left, &left]);
+        differ |= d[0] != d[1];
+    }
+    assert!(differ);
+}
+
+#[test]
+fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
+    let held = |gazes: &[Gaze]| {
+        let mut post = context(Settings { gate: None, ..Settings::default() });
+        let mut weights = vec![];
+        for (i, &gaze) in gazes.iter().enumerate() {
+            let (_, _, trace) = one(&mut post, i as u64, &Input { gaze, ..Input::still(noise(SIZE, "gaze")) });
+            assert!(trace.pixels().iter().all(|t| t.weight.is_finite() && t.weight > 0.0));
+            weights = trace.pixels().iter().map(|t| t.weight).collect();
+        }
+        weights
+    };
+    let at = |px| Gaze::At { px };
+    let there = held(&[at([9.0, 9.0])]);
+    assert_eq!(held(&[at([9.0, 9.0]), Gaze::Lost]), there);
+    assert_eq!(held(&[at([9.0, 9.0]), at([f32::NAN, 3.0])]), there);
+    assert_eq!(held(&[at([9.0, 9.0]), Gaze::Lost, at([f32::INFINITY, 3.0])]), there);
+    assert_eq!(held(&[Gaze::Lost]), held(&[at([31.5, 23.5])]));
+    held(&[at([-5000.0, 1e30])]);
+}
+
+#[test]
+fn h66_a_saccade_keeps_the_old_fovea() {
+    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let sharp = noise(SIZE, "sharp");
+    for index in 0..18 {
+        one(&mut post, index, &Input { gaze: Gaze::At { px: [10.0, 24.0] }, ..Input::still(sharp.clone()) });
+    }
+    let blurred = Input { gaze: Gaze::At { px: [55.0, 24.0] }, ..Input::still(Image::filled(SIZE, [0.5; 3])) };
+    let (out, ..) = one(&mut post, 18, &blurred);
+    let kept =
+        (5..15).flat_map(|x| (20..28).map(move |y| (x, y))).filter(|&(x, y)| out.at(x, y) == sharp.at(x, y)).count();
+    assert!(kept >= 78, "{kept} of 80 sharp samples kept the first frame after");
+}
+
+#[test]
+fn settings_are_checked_and_named() {
+    let base = Settings::default();
+    for (settings, name) in [
+        (Settings { fovea_deg: -1.0, ..base }, "fovea_deg"),
+        (Settings { fovea_deg: f32::NAN, ..base }, "fovea_deg"),
+        (Settings { bias: Bias::Exponential { lambda: -0.1 }, ..base }, "bias lambda"),
+        (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
+    ] {
+        let error = CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap_err();
+        assert_eq!(error.setting, name);
+        let mut post = context(base);
+        assert!(post.set_settings(settings).is_err());
+        assert_eq!(*post.settings(), base);
+    }
+}
