@@ -218,6 +218,13 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5"]));
     let report = read_json(&folder.path("out/report.json"));
     assert!(report["methods"]["oracle"]["bytes_per_pixel"].is_null());
+    assert!(report["methods"]["oracle"]["share_of_oracle"]["psnr"].is_null(), "the eye did not move: nothing to gain");
+    let more = ["--size", "160x90", "--frames", "60", "--method", "none,wrs,oracle"];
+    succeeds(&run("analytic:still", &folder.text("moving eye"), &more));
+    let methods = &read_json(&folder.path("moving eye/report.json"))["methods"];
+    let share = |method: &str| methods[method]["share_of_oracle"]["psnr"].as_f64().unwrap();
+    assert_eq!((share("none"), share("oracle")), (0.0, 1.0));
+    assert!(share("wrs") > 0.0 && share("wrs") < 1.0);
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
     assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
 }

@@ -37,6 +37,8 @@ pub struct Clip {
 /// Figures of a lane, as `report.json` has them.
 #[derive(Serialize)]
 pub struct MethodReport {
+    /// How far the method gets from the foveated frame to what any reuse could show; where both were run.
+    pub share_of_oracle: Option<Share>,
     /// Wall time of the pass a frame.
     pub ms: Option<Quartiles>,
     /// Mean CPU time of the pass a frame.
@@ -54,6 +56,15 @@ pub struct MethodReport {
     pub bytes_per_pixel: Option<u32>,
     /// Bytes kept between frames a pixel.
     pub persistent_bytes_per_pixel: f64,
+}
+
+/// A part of the way from `none` (0) to `oracle` (1); below 0 is worse than doing nothing.
+#[derive(Clone, Copy, Serialize)]
+pub struct Share {
+    /// In whole-image PSNR.
+    pub psnr: Option<f64>,
+    /// In whole-image SSIM.
+    pub ssim: Option<f64>,
 }
 
 /// What a clip came to.
@@ -110,11 +121,13 @@ impl Clip {
         table.finish()?;
         out.gaze("gaze.csv", &gaze_px)?;
         let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
-        let methods = lanes
+        let mut methods: Vec<_> = lanes
             .iter()
             .enumerate()
-            .map(|(i, lane)| (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels)));
-        Ok(ClipReport { methods: methods.collect(), foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
+            .map(|(i, lane)| (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels)))
+            .collect();
+        compare_with_oracle(&mut methods);
+        Ok(ClipReport { methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
     }
 
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.
@@ -211,6 +224,7 @@ impl Lane {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
         let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();
         MethodReport {
+            share_of_oracle: None,
             ms: Quartiles::of(&self.wall_ms),
             cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
             scores: self.scorer.scores(),
@@ -222,6 +236,25 @@ impl Lane {
             bytes_per_pixel: self.traffic,
             persistent_bytes_per_pixel,
         }
+    }
+}
+
+/// Fills in the shares, where `none` and `oracle` were run.
+fn compare_with_oracle(methods: &mut [(&'static str, MethodReport)]) {
+    let find = |name: &str| methods.iter().find(|m| m.0 == name).map(|m| m.1.scores.whole);
+    let (Some(none), Some(oracle)) = (find("none"), find("oracle")) else {
+        return;
+    };
+    let share = |value: Option<f64>, from: Option<f64>, to: Option<f64>| {
+        let (value, from, to) = (value?, from?, to?);
+        (to > from).then(|| (value - from) / (to - from))
+    };
+    for (_, method) in methods {
+        let whole = method.scores.whole;
+        method.share_of_oracle = Some(Share {
+            psnr: share(whole.psnr_db, none.psnr_db, oracle.psnr_db),
+            ssim: share(whole.ssim, none.ssim, oracle.ssim),
+        });
     }
 }
 

@@ -293,26 +293,24 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
-    say!(
-        "{} frames on the CPU ({} threads); the last figures are dB of pixels seen sharp before, and flicker:",
-        report.gaze_px.len(),
-        rayon::current_num_threads()
-    );
-    say!("method    PSNR dB   SSIM   fovea    mid  periph  retained  flicker  ms/frame");
+    say!("{} frames on the CPU ({} threads)", report.gaze_px.len(), rayon::current_num_threads());
+    say!("method    PSNR dB    SSIM   fovea     mid  periph  retained  flicker  of oracle  ms/frame");
     for (name, m) in &report.methods {
         let s = &m.scores;
-        let bands = s.bands.map(|b| db(b.psnr_db));
+        let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
         say!(
-            "{name:8} {:>8} {:>7} {:>6} {:>6} {:>7} {:>9} {:>8} {:>9}",
+            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>9} {:>8} {:>10} {:>9}",
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
             bands[0],
             bands[1],
             bands[2],
             db(s.retained_psnr_db),
-            s.flicker.map_or("-".into(), |v| format!("{v:.2}")),
+            db(s.flicker),
+            m.share_of_oracle.and_then(|s| s.psnr).map_or("-".into(), |v| format!("{:.0} %", 100.0 * v)),
             m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
         );
     }
+    say!("retained: PSNR where the eye has already seen sharp; of oracle: share of the PSNR that reuse could gain");
     say!("sheet: {}", args.out.join("sheet.png").display());
 }
