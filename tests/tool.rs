@@ -164,6 +164,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--size", "0x5"]), &["WxH"]);
     refuses(&run(still, &out, &["--size", "100000x100000"]), &["limit", "--max-megapixels"]);
     refuses(&run(still, &out, &["--frames", "0"]), &["at least 1"]);
+    refuses(&run(still, &out, &["--frames", "1000000000000"]), &["at most"]);
     refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
     refuses(&run(still, &out, &["--fovea", "NaN"]), &["fovea"]);
     refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);

@@ -1,14 +1,27 @@
 //! `--gaze` and its companions: from what was typed to one position a frame.
 
 use crate::failure::Failure;
-use crate::run::RunArgs;
 use afterimage::display::ViewGeometry;
 use afterimage::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use std::path::Path;
 
 /// Seconds of a gaze that has no end of its own.
 const DEFAULT_SECONDS: f64 = 5.0;
+
+/// Where the eye looks.
+#[derive(Args, Clone, Debug)]
+pub struct GazeArgs {
+    /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
+    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
+    pub gaze: String,
+    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    #[arg(long, value_enum)]
+    pub gaze_map: Option<GazeMapName>,
+    /// Start in the scanpath, seconds
+    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    pub start: f64,
+}
 
 /// Names of gaze maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -27,43 +40,48 @@ pub struct Track {
     pub map: &'static str,
 }
 
-/// Resolves the options for `frames` frames, or for as many as the gaze has.
-pub fn resolve(args: &RunArgs, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
-    let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
-    if let Some(px) = fixed(&args.gaze)? {
-        let count = frames.unwrap_or(default_frames) as usize;
-        return Ok(Track { px: vec![Some(px); count], map: "none" });
-    }
-    let synthetic = synthetic_seed(&args.gaze)?;
-    let path = match synthetic {
-        Some(seed) => {
-            let seconds = frames.unwrap_or(default_frames) as f64 / f64::from(fps) + args.start;
-            make_synthetic(seed, seconds + 0.1, view)?
+impl GazeArgs {
+    /// Resolves the options for `frames` frames, or for as many as the gaze has.
+    pub fn resolve(&self, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
+        if !(self.start >= 0.0 && self.start.is_finite()) {
+            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
         }
-        None => read_csv(Path::new(&args.gaze))?,
-    };
-    let map = match args.gaze_map {
-        Some(GazeMapName::Angle) => GazeMap::Angle,
-        Some(GazeMapName::Fit) => GazeMap::Fit,
-        None => GazeMap::default_for(path.screen()),
-    };
-    let gaze = FrameGaze::new(&path, view, map, args.start, f64::from(fps))?;
-    let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
-    let count = frames.unwrap_or(available);
-    let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();
-    if px.iter().all(Option::is_none) {
-        return Err(Failure::Input(format!(
-            "{}: the gaze is lost in all {count} frames from {} s on; choose another --start",
-            args.gaze, args.start
-        )));
+        let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
+        if let Some(px) = fixed(&self.gaze)? {
+            let count = frames.unwrap_or(default_frames) as usize;
+            return Ok(Track { px: vec![Some(px); count], map: "none" });
+        }
+        let synthetic = synthetic_seed(&self.gaze)?;
+        let path = match synthetic {
+            Some(seed) => {
+                let seconds = frames.unwrap_or(default_frames) as f64 / f64::from(fps) + self.start;
+                make_synthetic(seed, seconds + 0.1, view)?
+            }
+            None => read_csv(Path::new(&self.gaze))?,
+        };
+        let map = match self.gaze_map {
+            Some(GazeMapName::Angle) => GazeMap::Angle,
+            Some(GazeMapName::Fit) => GazeMap::Fit,
+            None => GazeMap::default_for(path.screen()),
+        };
+        let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
+        let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
+        let count = frames.unwrap_or(available);
+        let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();
+        if px.iter().all(Option::is_none) {
+            return Err(Failure::Input(format!(
+                "{}: the gaze is lost in all {count} frames from {} s on; choose another --start",
+                self.gaze, self.start
+            )));
+        }
+        Ok(Track {
+            px,
+            map: match map {
+                GazeMap::Angle => "angle",
+                GazeMap::Fit => "fit",
+            },
+        })
     }
-    Ok(Track {
-        px,
-        map: match map {
-            GazeMap::Angle => "angle",
-            GazeMap::Fit => "fit",
-        },
-    })
 }
 
 fn make_synthetic(seed: u64, seconds: f64, view: &ViewGeometry) -> Result<Scanpath, Failure> {

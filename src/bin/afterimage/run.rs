@@ -3,7 +3,7 @@
 use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
 use crate::clip::{Clip, ClipReport, MethodReport};
 use crate::failure::Failure;
-use crate::gaze::{self, GazeMapName};
+use crate::gaze::GazeArgs;
 use crate::output::Output;
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::LaneKind;
@@ -27,15 +27,8 @@ pub struct RunArgs {
     /// Folder for everything that is written
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
-    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
-    pub gaze: String,
-    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
-    #[arg(long, value_enum)]
-    pub gaze_map: Option<GazeMapName>,
-    /// Start in the scanpath, seconds
-    #[arg(long, default_value_t = 0.0, value_name = "S")]
-    pub start: f64,
+    #[command(flatten)]
+    pub gaze: GazeArgs,
     /// Frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
@@ -77,6 +70,9 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
 }
+
+/// Frames of the longest run: two days at 60 frames per second.
+const MAX_FRAMES: u64 = 10_000_000;
 
 /// Names of backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -183,9 +179,9 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
             rate_far: args.foveation.rate_far,
             ms: report.foveation_ms,
         },
-        gaze: &args.gaze,
+        gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
-        start_s: args.start,
+        start_s: args.gaze.start,
         methods: Methods(&report.methods),
     };
     let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
@@ -210,14 +206,11 @@ fn check(args: &RunArgs) -> Result<(), Failure> {
     if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
         return refuse(format!("--hfov {hfov}: expected above 0 and below 180 degrees"));
     }
-    if !(args.start >= 0.0 && args.start.is_finite()) {
-        return refuse(format!("--start {}: expected seconds, 0 or more", args.start));
-    }
     if !(-32.0..=32.0).contains(&args.exposure) {
         return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
     }
-    if args.frames == Some(0) {
-        return refuse("--frames 0: expected at least 1 frame".into());
+    if let Some(frames) = args.frames.filter(|n| !(1..=MAX_FRAMES).contains(n)) {
+        return refuse(format!("--frames {frames}: expected at least 1 frame and at most {MAX_FRAMES}"));
     }
     Ok(())
 }
@@ -251,7 +244,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     }
     // Stills and endless scenes last as long as the eye looks.
     let frames = args.frames.or(if info.still { None } else { info.frames });
-    let track = gaze::resolve(args, &geometry, fps, frames)?;
+    let track = args.gaze.resolve(&geometry, fps, frames)?;
     Ok(Plan {
         fps,
         gaze_map: track.map,
