@@ -44,7 +44,7 @@ pub enum GateMetric {
     /// Delta E 94 of the whole colour.
     #[default]
     DeltaE94,
-    /// L\* alone: a third cheaper, blind to changes of hue.
+    /// L\* alone: blind to changes of hue.
     Lightness,
 }
 

@@ -16,8 +16,11 @@ const GAZE: [u8; 3] = [255, 210, 60];
 const TRAIL: [u8; 3] = [90, 200, 255];
 const ZOOM: [u8; 3] = [120, 255, 140];
 
-/// Width of a panel in pixels; panels of smaller frames are enlarged by whole factors.
+/// Width of a panel of a large frame in pixels.
 const PANEL_PX: u32 = 640;
+
+/// Panels of small frames are enlarged by whole factors to at least this width, which a caption needs.
+const MIN_PANEL_PX: u32 = 480;
 const GAP_PX: u32 = 12;
 
 /// How many times the close look magnifies.
@@ -63,23 +66,25 @@ impl Sheet<'_> {
         let width = (count * (panel[0] + GAP_PX) + GAP_PX).max(120 * CHAR_PX);
         let mut canvas = Canvas::new(width, head + LINE_PX + rows * row_height + GAP_PX, BACKGROUND);
         canvas.heading(&self.title, GAP_PX, GAP_PX, INK);
+        let row_y = |row: u32| 3 * LINE_PX + GAP_PX + row * row_height;
         for (i, column) in self.columns.iter().enumerate() {
             let x = GAP_PX + i as u32 * (panel[0] + GAP_PX);
-            let mut y = LINE_PX + GAP_PX;
-            canvas.heading(column.name, x, y, INK);
-            y += LINE_PX;
-            canvas.text(&caption(column), x, y, FAINT);
-            y += LINE_PX;
-            self.draw_shown(&mut canvas, column, panel, [x, y], zoom_center);
-            y += row_height;
-            self.draw_error(&mut canvas, column, panel, [x, y]);
-            y += row_height;
+            canvas.heading(column.name, x, LINE_PX + GAP_PX, INK);
+            canvas.text(&caption(column), x, 2 * LINE_PX + GAP_PX, FAINT);
+            self.draw_shown(&mut canvas, column, panel, [x, row_y(0)], zoom_center);
+            self.draw_error(&mut canvas, column, panel, [x, row_y(1)]);
             if let Some(center) = zoom_center {
-                canvas.put(&zoom(column.shown, center, panel), x, y);
-                canvas.frame([x, y], panel, 2, ZOOM);
-                let note = format!("close look where the eye was before, {ZOOM_FACTOR}x");
-                canvas.text(&note, x, y + panel[1] + 2, FAINT);
+                canvas.put(&zoom(column.shown, center, panel), x, row_y(2));
+                canvas.frame([x, row_y(2)], panel, 2, ZOOM);
             }
+        }
+        let notes = [
+            "the last frame; yellow: the eye and its fovea; blue: where it went; green: the close look below",
+            "error against the reference: black none, white a quarter of full scale or more",
+            "close look at a place where the eye rested before",
+        ];
+        for (row, note) in notes.iter().take(rows as usize).enumerate() {
+            canvas.text(note, GAP_PX, row_y(row as u32) + panel[1] + 2, FAINT);
         }
         canvas.0
     }
@@ -109,8 +114,6 @@ impl Sheet<'_> {
             picture.frame(corner, size.map(|v| (v as f32 * scale) as u32), 2, ZOOM);
         }
         canvas.put(&picture.0, at[0], at[1]);
-        let note = "last frame; circle: fovea, blue: where the eye went";
-        canvas.text(note, at[0], at[1] + panel[1] + 2, FAINT);
     }
 
     fn draw_error(&self, canvas: &mut Canvas, column: &Column<'_>, panel: [u32; 2], at: [u32; 2]) {
@@ -123,8 +126,6 @@ impl Sheet<'_> {
             heat::color((sum / 3.0 * 4.0).min(1.0))
         });
         canvas.put(&fit(&to_rgb8(&errors), panel), at[0], at[1]);
-        let note = "error: black none, white a quarter of full scale or more";
-        canvas.text(note, at[0], at[1] + panel[1] + 2, FAINT);
     }
 
     /// Radius in pixels of the fovea around a gaze position, measured towards the middle of the view.
@@ -171,7 +172,7 @@ fn panel_size(frame: [u32; 2]) -> [u32; 2] {
     if w >= PANEL_PX {
         return [PANEL_PX, (h * PANEL_PX / w).max(1)];
     }
-    let factor = PANEL_PX / w;
+    let factor = MIN_PANEL_PX.div_ceil(w);
     [w * factor, h * factor]
 }
 

@@ -24,6 +24,25 @@ fn a_disoccluded_wall_is_flushed_and_only_it() {
 }
 
 #[test]
+fn h44_a_steep_floor_under_jitter_is_not_flushed() {
+    let mut post = context(Settings { gate: None, ..Settings::default() });
+    for index in 0..20 {
+        // Disparity grows by 0.001 a row from the horizon at the top; the depth sample moves by half a pixel.
+        let jitter = 0.5 * (index % 2) as f32;
+        let depth = Image::from_fn(SIZE, |[_, y]| 1000.0 / (y as f32 + 1.0 + jitter));
+        let input = Input { depth: Some(depth), ..Input::still(noise(SIZE, "floor")) };
+        let (_, stats, _) = one(&mut post, index, &input);
+        assert_eq!(stats.flushed(), 0, "frame {index}");
+    }
+    // The planted error: no allowance for slope.
+    let test = DepthTest { slope_px: 0.0, ..DepthTest::default() };
+    post.set_settings(Settings { depth_test: Some(test), ..*post.settings() }).unwrap();
+    let depth = Image::from_fn(SIZE, |[_, y]| 1000.0 / (y as f32 + 1.0));
+    let input = Input { depth: Some(depth), ..Input::still(noise(SIZE, "floor")) };
+    assert!(one(&mut post, 20, &input).1.flushed() > 0);
+}
+
+#[test]
 fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
     let step_m = 1.0;
     let camera = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, step_m], [0.0, 0.0, 0.0, 1.0]];

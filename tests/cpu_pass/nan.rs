@@ -53,3 +53,17 @@ fn h79_poisoned_fresh_history_is_never_read() {
     let (out, _, _) = step(&mut post, 0, Reset::All, &[&input]);
     assert_eq!(out[0], input.color);
 }
+
+#[test]
+fn h18_a_broken_candidate_shows_what_was_remembered() {
+    let mut post = context(Settings::default());
+    let good = noise(SIZE, "good");
+    one(&mut post, 0, &Input::still(good.clone()));
+    for index in 1..200 {
+        let broken = Input::still(Image::filled(SIZE, [f32::NAN; 3]));
+        let (out, stats, trace) = one(&mut post, index, &broken);
+        assert_eq!(out, good, "frame {index}");
+        assert_eq!((stats.nonfinite, stats.replaced), (64 * 48, 0));
+        assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && u64::from(t.age) == index && t.survival == 1.0));
+    }
+}

@@ -6,25 +6,24 @@ use super::*;
 fn h27_stereo_views_never_read_each_other() {
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     let settings = Settings { gate: None, ..Settings::default() };
-    let mut both = CpuAfterimage::new(stereo, settings).unwrap();
-    let mut swapped_right = CpuAfterimage::new(stereo, settings).unwrap();
-    let mut left_alone = context(settings);
-    let mut differ = false;
+    let fresh = || CpuAfterimage::new(stereo, settings).unwrap();
+    let [mut both, mut left_only, mut right_only] = [fresh(), fresh(), fresh()];
+    let mut mono = context(settings);
+    let junk = Input { gaze: Gaze::Lost, ..Input::still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9])) };
+    let mut eyes_differ = false;
     for index in 0..20 {
         let left = Input::still(noise(SIZE, &format!("left {index}")));
-        let right =
-            Input { gaze: Gaze::At { px: [50.0, 30.0] }, ..Input::still(noise(SIZE, &format!("right {index}"))) };
-        let junk = Input { gaze: Gaze::Lost, ..Input::still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9])) };
-        let (a, ..) = step(&mut both, index, Reset::None, &[&left, &right]);
-        let (b, ..) = step(&mut swapped_right, index, Reset::None, &[&left, &junk]);
-        let (c, ..) = one(&mut left_alone, index, &left);
-        assert_eq!(a[0], b[0], "what the right eye sees changes nothing on the left");
-        assert_eq!(a[0], c);
+        let gaze = Gaze::At { px: [50.0, 30.0] };
+        let right = Input { gaze, ..Input::still(noise(SIZE, &format!("right {index}"))) };
+        let both_out = step(&mut both, index, Reset::None, &[&left, &right]).0;
+        assert_eq!(both_out[0], step(&mut left_only, index, Reset::None, &[&left, &junk]).0[0], "left");
+        assert_eq!(both_out[1], step(&mut right_only, index, Reset::None, &[&junk, &right]).0[1], "right");
+        assert_eq!(both_out[0], one(&mut mono, index, &left).0, "as if it were alone");
         // The same input to both eyes still draws different numbers.
-        let (d, ..) = step(&mut both.clone(), index, Reset::None, &[&left, &left]);
-        differ |= d[0] != d[1];
+        let same_out = step(&mut both.clone(), index, Reset::None, &[&left, &left]).0;
+        eyes_differ |= same_out[0] != same_out[1];
     }
-    assert!(differ);
+    assert!(eyes_differ);
 }
 
 #[test]

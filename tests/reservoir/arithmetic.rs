@@ -97,6 +97,25 @@ fn h21_survival_does_not_cancel() {
 }
 
 #[test]
+fn h03_a_candidate_of_weight_0_is_not_taken_by_a_draw_of_0() {
+    for sampler in [SamplerCode::AChao, SamplerCode::AEs] {
+        let params = WrsParams { sampler, ..PAPER };
+        let d = wrs::step(Vec3::ONE, 0.0, Past { log_key: -0.3, ..past(5.42) }, &params, 0.0);
+        assert!(!d.take && d.w_sum == 5.42, "{sampler:?}");
+    }
+}
+
+#[test]
+fn eq7_survival_uses_the_sum_before_the_gate() {
+    let params = WrsParams { gate: GateCode::DeltaE94, ..PAPER };
+    let (a, b) = (3.0_f32, 0.4_f32);
+    let d = step(&params, a, b, 0.5);
+    assert!(d.gate > 0.1 && d.gate < 0.9, "the gate is half open: {}", d.gate);
+    let exact = f64::from(d.gate) * f64::from(a) * f64::from(a) / f64::from(a + b) + f64::from(b);
+    assert!((f64::from(d.w_sum) - exact).abs() < 1e-6);
+}
+
+#[test]
 fn h20_a_shut_gate_takes_the_candidate_for_certain() {
     let params = WrsParams { gate: GateCode::DeltaE94, inv_gate_divisor: 1.0, ..PAPER };
     for draw in [0.0, 0.5, 16_777_215.0 / 16_777_216.0] {
