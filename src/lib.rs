@@ -46,6 +46,8 @@ pub mod error;
 #[cfg(feature = "lab")]
 pub mod foveation;
 pub mod frame;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod image;
 pub mod kernel;
 #[cfg(feature = "lab")]

@@ -1,0 +1,1 @@
+// Twin of src/kernel/color.rs.

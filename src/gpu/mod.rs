@@ -1,0 +1,3 @@
+//! The wgpu executor: the post-process as WGSL passes, recorded into the caller's command encoder.
+
+pub mod shader;
