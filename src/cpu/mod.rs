@@ -14,7 +14,7 @@ use crate::frame::{ContextDesc, Reset, ViewFrame, check_size};
 use crate::image::Image;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
-use crate::settings::{Method, Sampler, Settings};
+use crate::settings::{Method, Settings};
 use glam::Vec3;
 
 /// Inputs of one view of one frame.
@@ -92,7 +92,7 @@ impl CpuAfterimage {
     pub fn new(desc: ContextDesc, settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         desc.validate()?;
-        let history = History::new(desc.size_px, desc.view_count, uses_keys(&settings));
+        let history = History::new(desc.size_px, desc.view_count, settings.uses_keys());
         Ok(Self { desc, settings, history })
     }
 
@@ -112,8 +112,8 @@ impl CpuAfterimage {
     /// If a setting is out of range; then the old ones stay.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        if uses_keys(&settings) != uses_keys(&self.settings) {
-            self.history = History::new(self.desc.size_px, self.desc.view_count, uses_keys(&settings));
+        if settings.uses_keys() != self.settings.uses_keys() {
+            self.history = History::new(self.desc.size_px, self.desc.view_count, settings.uses_keys());
         }
         self.settings = settings;
         Ok(())
@@ -126,7 +126,7 @@ impl CpuAfterimage {
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
-        self.history = History::new(size_px, self.desc.view_count, uses_keys(&self.settings));
+        self.history = History::new(size_px, self.desc.view_count, self.settings.uses_keys());
         Ok(())
     }
 
@@ -155,7 +155,7 @@ impl CpuAfterimage {
         if self.settings.method == Method::None {
             return color + output;
         }
-        let history = 2 * if uses_keys(&self.settings) { 16 } else { 12 };
+        let history = 2 * if self.settings.uses_keys() { 16 } else { 12 };
         let depth = if view.depth.is_some() { 4 } else { 0 };
         let motion = if view.motion.is_some() { 4 } else { 0 };
         color + depth + motion + history + output
@@ -221,10 +221,6 @@ impl CpuAfterimage {
         }
         Ok(())
     }
-}
-
-fn uses_keys(settings: &Settings) -> bool {
-    settings.sampler == Sampler::AEs
 }
 
 /// Method `none`: what came, scrubbed.

@@ -152,7 +152,7 @@ impl ViewPass<'_> {
         let (verdict, stored, log_key) = self.history(x, y, ray, disparity);
         let past =
             Past { color: stored.color, w_sum: if verdict == Verdict::Valid { stored.w_sum } else { 0.0 }, log_key };
-        let draw = rng::uniform(rng::bits(x, y, self.frame_low, self.key));
+        let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.key));
         let decision = wrs::step(candidate, weight, past, &self.params, draw);
 
         let (color, age) =

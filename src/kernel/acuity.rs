@@ -23,16 +23,18 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let cross = (cx * cx + cy * cy + cz * cz).sqrt();
-    let dot = ray.x * gaze.x + ray.y * gaze.y + ray.z * gaze.z;
+    // The term that may be constant first: compilers may move a constant that comes last.
+    let dot = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
     approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)
 }
 
 /// Density of midget retinal ganglion cell receptive fields per square degree at eccentricity `e_deg` >= 0 (eq. 3).
 #[inline]
 pub fn cell_density(e_deg: f32) -> f32 {
-    let near = 1.0 / (1.0 + e_deg / R_2_DEG);
+    let q = 1.0 + e_deg / R_2_DEG;
     let far = approx::exp(-e_deg / R_E_DEG);
-    (2.0 * D_C0) / (1.0 + e_deg / R_M_DEG) * (A_K * (near * near) + (1.0 - A_K) * far)
+    // As a quotient: compilers reorder a sum of two products with constants.
+    (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg / R_M_DEG)
 }
 
 /// Weight of a candidate shaded at eccentricity `e_deg`, in (0, 1\] (eq. 4): 1 inside the fovea of radius `fovea_deg`,

@@ -20,7 +20,7 @@ pub fn cbrt(x: f32) -> f32 {
     let mut r = f32::from_bits(a.to_bits() / 3 + 0x2a51_4067);
     for _ in 0..2 {
         let r3 = r * r * r;
-        r -= r * ((r3 - a) / (r3 + r3 + a));
+        r -= r * ((r3 - a) / (2.0 * r3 + a));
     }
     if x < 0.0 { -r } else { r }
 }
