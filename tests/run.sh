@@ -1,10 +1,23 @@
 #!/usr/bin/env bash
-# All checks: format, lints, tests, documentation. Needs only Rust; finds everything else in the repository.
-# Real frames and scanpaths are read from ../shared/data where that folder exists, and missed loudly where not.
+# All checks: format, lints, tests, documentation. Needs Rust; installs a software Vulkan driver if the machine has none and
+# may (Debian, root). Real frames and scanpaths are read from ../shared/data where that folder exists, and missed loudly where not.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s\n' "$*"; }
+
+step "a Vulkan driver"
+has_icd() { ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json "${VK_DRIVER_FILES:-/nonexistent}" 2>/dev/null | grep -q .; }
+if ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' && has_icd; then
+    echo "there is one"
+elif command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libvulkan1 mesa-vulkan-drivers
+else
+    echo "none found: install one (Debian: mesa-vulkan-drivers); tests that need it will fail" >&2
+fi
+# Tests that need an adapter fail without one. The other silences a line of Mesa's about windows.
+export AFTERIMAGE_GPU=require NODEVICE_SELECT=1
 
 step "format"
 cargo fmt --check
@@ -13,6 +26,9 @@ step "lints, in every combination of features that users meet"
 cargo clippy --locked --all-targets --all-features -- -D warnings
 cargo clippy --locked --no-default-features -- -D warnings
 cargo clippy --locked --no-default-features --features lab -- -D warnings
+
+step "the library alone against wgpu 29"
+tests/wgpu29.sh
 
 if [ ! -d ../shared/data ]; then
     printf '\nWARNING: no ../shared/data here: tests on real frames and recorded scanpaths are SKIPPED\n'

@@ -6,5 +6,7 @@ mod common;
 #[path = "../common/gpu.rs"]
 mod gpu;
 
+mod layout;
+mod lifecycle;
 mod rig;
 mod sequences;

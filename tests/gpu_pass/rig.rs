@@ -91,6 +91,52 @@ impl Rig {
         self.read()
     }
 
+    /// The same images twice, with different facts, recorded into one encoder.
+    pub fn on_gpu_in_one_submission(&mut self, view: &View, facts: &[ViewFrame]) -> Made {
+        self.upload(std::slice::from_ref(view));
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        for (index, facts) in facts.iter().enumerate() {
+            let frame = Frame {
+                color: &self.color,
+                depth: Some(&self.depth),
+                motion: Some(&self.motion),
+                output: &self.output,
+                views: std::slice::from_ref(facts),
+                index: index as u64,
+                reset: Reset::None,
+            };
+            self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
+        }
+        self.queue.submit([encoder.finish()]);
+        self.read()
+    }
+
+    /// Fills the past with words that are NaN as whatever they are read.
+    pub fn poison(&self) {
+        for texture in self.gpu.history_textures() {
+            let texel = texture.format().block_copy_size(None).unwrap();
+            let [width, height] = self.context.size_px;
+            let bytes = vec![0xff; (texel * width * height) as usize];
+            for layer in 0..self.context.view_count as usize {
+                self.write(texture, layer, &bytes);
+            }
+        }
+    }
+
+    /// Gives each of two views the other's past.
+    pub fn swap_past_layers(&self) {
+        let made = self.read();
+        let half = made.words.len() / 2;
+        for layer in 0..2 {
+            let words = &made.words[(1 - layer) * half..(2 - layer) * half];
+            let colors: Vec<[u32; 2]> = words.iter().map(|w| [w[0], w[1]]).collect();
+            let weights: Vec<u32> = words.iter().map(|w| w[2]).collect();
+            let textures = self.gpu.history_textures();
+            self.write(&textures[0], layer, bytemuck::cast_slice(&colors));
+            self.write(&textures[1], layer, bytemuck::cast_slice(&weights));
+        }
+    }
+
     /// Shown colours and stored reservoirs as they are on the device.
     pub fn read(&self) -> Made {
         let shown = self.read_texture(&self.output);

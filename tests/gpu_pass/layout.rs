@@ -1,0 +1,35 @@
+//! The structs that Rust fills are the structs that shaders read: names, order, offsets, sizes.
+
+use afterimage::gpu::shader;
+use afterimage::gpu::types::{FrameConstants, MAX_VIEWS, ViewConstants};
+use std::mem::offset_of;
+
+/// Name and offset of each member of a WGSL struct, and its size.
+fn wgsl(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
+    let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+    let list = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
+    (list, *span as usize)
+}
+
+macro_rules! rust {
+    ($ty:ty: $($field:ident),*) => {
+        (vec![$((stringify!($field).to_owned(), offset_of!($ty, $field))),*], size_of::<$ty>())
+    };
+}
+
+#[test]
+fn constants_have_one_layout() {
+    let composed = shader::compose("wrs_pass");
+    let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
+    let frame = rust!(FrameConstants: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
+        gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, disparity_a, motion_scale, disparity_b,
+        disparity_flags, views);
+    assert_eq!(wgsl(&module, "FrameConstants"), frame);
+    let (mut members, size) = wgsl(&module, "ViewConstants");
+    // Three words of padding in WGSL are one array in Rust.
+    members.retain(|m| !m.0.starts_with("unused"));
+    let mut view = rust!(ViewConstants: ray_scale, ray_offset, gaze_ray, depth_row, key);
+    assert_eq!((members, size), (std::mem::take(&mut view.0), view.1));
+    assert!(composed.source.contains(&format!("array<ViewConstants, {MAX_VIEWS}>")));
+}
