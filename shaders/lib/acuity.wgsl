@@ -1,1 +1,33 @@
-// Twin of src/kernel/acuity.rs.
+//#use approx
+// Twin of src/kernel/acuity.rs: Watson 2014; constants are explained there.
+
+const A_K: f32 = 0.9851;
+const R_2_DEG: f32 = 1.058;
+const R_E_DEG: f32 = 22.14;
+const D_C0: f32 = 14804.6;
+const R_M_DEG: f32 = 41.03;
+
+// acuity::eccentricity_deg
+fn eccentricity_deg(ray: vec3<f32>, gaze: vec3<f32>) -> f32 {
+    let cx = ray.y * gaze.z - ray.z * gaze.y;
+    let cy = ray.z * gaze.x - ray.x * gaze.z;
+    let cz = ray.x * gaze.y - ray.y * gaze.x;
+    let across = sqrt(cx * cx + cy * cy + cz * cz);
+    let along = ray.x * gaze.x + ray.y * gaze.y + ray.z * gaze.z;
+    return atan2_upper(across, along) * (180.0f / PI);
+}
+
+// acuity::cell_density (eq. 3)
+fn cell_density(e_deg: f32) -> f32 {
+    let near = 1.0 / (1.0 + e_deg / R_2_DEG);
+    let far = exp(-e_deg / R_E_DEG);
+    return (2.0f * D_C0) / (1.0 + e_deg / R_M_DEG) * (A_K * (near * near) + (1.0f - A_K) * far);
+}
+
+// acuity::candidate_weight (eq. 4)
+fn candidate_weight(e_deg: f32, fovea_deg: f32, inv_density_at_fovea: f32) -> f32 {
+    if e_deg <= fovea_deg {
+        return 1.0;
+    }
+    return min(cell_density(e_deg) * inv_density_at_fovea, 1.0);
+}

@@ -1,1 +1,95 @@
-// Twin of src/kernel/pack.rs.
+//#use scrub
+// Twin of src/kernel/pack.rs: one reservoir in three words; the layout is tabled there.
+
+const MAX_W_SUM: f32 = 0x1p100;
+const MAX_AGE: u32 = 255u;
+
+struct Stored {
+    color: vec3<f32>,
+    disparity: f32,
+    w_sum: f32,
+    age: u32,
+}
+
+// pack::half_bits
+fn half_bits(x: f32) -> u32 {
+    let sign_bit = (bitcast<u32>(x) >> 16u) & 0x8000u;
+    let a = bitcast<u32>(x) & 0x7fffffffu;
+    if a >= bitcast<u32>(MAX_HALF) {
+        return sign_bit | 0x7bffu;
+    }
+    if a < (113u << 23u) {
+        return sign_bit | (bitcast<u32>(bitcast<f32>(a) + 0.5) - bitcast<u32>(0.5f));
+    }
+    let odd = (a >> 13u) & 1u;
+    let rounded = (a - (112u << 23u) + 0xfffu + odd) >> 13u;
+    return sign_bit | min(rounded, 0x7bffu);
+}
+
+// pack::half_value
+fn half_value(bits: u32) -> f32 {
+    let magnitude = (bits & 0x7fffu) << 13u;
+    let sign_bit = (bits & 0x8000u) << 16u;
+    var value = bitcast<f32>(magnitude + (112u << 23u));
+    if (bits & 0x7c00u) == 0u {
+        value = bitcast<f32>(magnitude + (113u << 23u)) - bitcast<f32>(113u << 23u);
+    }
+    return bitcast<f32>(bitcast<u32>(value) | sign_bit);
+}
+
+// pack::disparity_code
+fn disparity_code(disparity: f32) -> u32 {
+    if disparity < 0.0 {
+        return 0xffffu;
+    }
+    let bits = bitcast<u32>(disparity);
+    if bits < (95u << 23u) {
+        return 0u;
+    }
+    let rounded = (bits + 0x1000u) >> 13u;
+    return clamp(rounded - min(rounded, 95u << 10u), 1u, 0xfffeu);
+}
+
+// pack::disparity_value
+fn disparity_value(code: u32) -> f32 {
+    if code == 0u {
+        return 0.0;
+    }
+    if code == 0xffffu {
+        return -1.0;
+    }
+    return bitcast<f32>((code + (95u << 10u)) << 13u);
+}
+
+// pack::pack
+fn pack(s: Stored) -> vec3<u32> {
+    let w = bitcast<u32>(clamp(s.w_sum, 0.0, MAX_W_SUM));
+    let w_upper = w + 0x7fu + ((w >> 8u) & 1u);
+    return vec3<u32>(
+        half_bits(s.color.x) | (half_bits(s.color.y) << 16u),
+        half_bits(s.color.z) | (disparity_code(s.disparity) << 16u),
+        (w_upper & 0xffffff00u) | min(s.age, MAX_AGE),
+    );
+}
+
+fn half_is_infinite(bits: u32) -> bool {
+    return (bits & 0x7c00u) == 0x7c00u;
+}
+
+// pack::unpack
+fn unpack(words: vec3<u32>) -> Stored {
+    let r = words.x;
+    let g = words.x >> 16u;
+    let b = words.y;
+    let corrupt = half_is_infinite(r) || half_is_infinite(g) || half_is_infinite(b);
+    let w_sum = weight(bitcast<f32>(words.z & 0xffffff00u));
+    if corrupt || w_sum > MAX_W_SUM {
+        return Stored(vec3<f32>(0.0), -1.0, 0.0, 0u);
+    }
+    return Stored(
+        vec3<f32>(half_value(r), half_value(g), half_value(b)),
+        disparity_value(words.y >> 16u),
+        w_sum,
+        words.z & 0xffu,
+    );
+}

@@ -1,1 +1,69 @@
-// Twin of src/kernel/reservoir.rs.
+//#use approx
+//#use scrub
+// Twin of src/kernel/reservoir.rs (the paper: Cantory et al., MIG 2025).
+
+// f32::MIN
+const LOWEST: f32 = -0x1.fffffep127;
+
+struct Reservoir {
+    w_sum: f32,
+    count: u32,
+}
+
+struct Combined {
+    reservoir: Reservoir,
+    keep_second: bool,
+}
+
+// reservoir::update (Alg. 1)
+fn update(reservoir: ptr<function, Reservoir>, candidate_weight: f32, draw: f32) -> bool {
+    let w = weight(candidate_weight);
+    let w_sum = (*reservoir).w_sum + w;
+    *reservoir = Reservoir(w_sum, saturating_add((*reservoir).count, 1u));
+    return draw * w_sum < w;
+}
+
+// reservoir::combine (Alg. 2, strict on the second)
+fn combine(first: Reservoir, second: Reservoir, draw: f32) -> Combined {
+    let w1 = weight(first.w_sum);
+    let w2 = weight(second.w_sum);
+    let w_sum = w1 + w2;
+    let merged = Reservoir(w_sum, saturating_add(first.count, second.count));
+    return Combined(merged, w1 == 0.0 || draw * w_sum < w2);
+}
+
+// reservoir::bernoulli_survival (eq. 5): 1 - w_new / (w_sum + w_new)
+fn bernoulli_survival(w_sum: f32, w_new: f32) -> f32 {
+    let total = w_sum + w_new;
+    if total > 0.0 {
+        return w_sum / total;
+    }
+    return 1.0;
+}
+
+// reservoir::exponential_survival: exp(-lambda)
+fn exponential_survival(lambda_per_frame: f32) -> f32 {
+    return exp(-lambda_per_frame);
+}
+
+// reservoir::a_es_log_key: ln(draw) / w
+fn a_es_log_key(draw: f32, sample_weight: f32) -> f32 {
+    let w = weight(sample_weight);
+    if w == 0.0 {
+        return LOWEST;
+    }
+    return max(ln(max(draw, 1.0 / 33554432.0)) / w, LOWEST);
+}
+
+// reservoir::a_es_decay: key / survival
+fn a_es_decay(log_key: f32, survival: f32) -> f32 {
+    if survival <= 0.0 {
+        return LOWEST;
+    }
+    return max(log_key / survival, LOWEST);
+}
+
+// u32::saturating_add
+fn saturating_add(a: u32, b: u32) -> u32 {
+    return a + min(b, 0xffffffffu - a);
+}

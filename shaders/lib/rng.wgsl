@@ -1,1 +1,37 @@
 // Twin of src/kernel/rng.rs.
+
+const PURPOSE_SELECT: u32 = 0u;
+const PURPOSE_KEY: u32 = 1u;
+
+// rng::pcg4d (Jarzynski and Olano, JCGT 9(3), 2020)
+fn pcg4d(input: vec4<u32>) -> vec4<u32> {
+    var v = input * 1664525u + 1013904223u;
+    v = pcg4d_mix(v);
+    v = v ^ (v >> vec4<u32>(16u));
+    return pcg4d_mix(v);
+}
+
+// rng::mix, which WGSL's own `mix` forbids as a name.
+fn pcg4d_mix(input: vec4<u32>) -> vec4<u32> {
+    var v = input;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// rng::stream_key; 64-bit numbers are (low word, high word).
+fn stream_key(seed: vec2<u32>, view: u32, purpose: u32, frame: vec2<u32>) -> u32 {
+    return pcg4d(vec4<u32>(seed.x, seed.y, frame.y, (purpose << 16u) ^ view)).x;
+}
+
+// rng::bits
+fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
+    return pcg4d(vec4<u32>(x, y, frame, key)).x;
+}
+
+// rng::uniform: in [0, 1) on the grid of 2^-24.
+fn uniform(bits: u32) -> f32 {
+    return f32(bits >> 8u) * (1.0 / 16777216.0);
+}

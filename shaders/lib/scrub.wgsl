@@ -1,1 +1,27 @@
-// Twin of src/kernel/scrub.rs.
+// Twin of src/kernel/scrub.rs. By bits throughout: WGSL may assume that NaN and infinity do not exist.
+
+const MAX_HALF: f32 = 65504.0;
+
+// scrub::is_finite
+fn is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+struct Scrubbed {
+    color: vec3<f32>,
+    usable: bool,
+}
+
+// scrub::color
+fn color(c: vec3<f32>) -> Scrubbed {
+    if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
+        return Scrubbed(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);
+    }
+    return Scrubbed(vec3<f32>(0.0), false);
+}
+
+// scrub::weight: kept from the smallest normal float to the largest finite one.
+fn weight(w: f32) -> f32 {
+    let bits = bitcast<u32>(w);
+    return select(0.0, w, bits >= 0x00800000u && bits < 0x7f800000u);
+}

@@ -1,1 +1,84 @@
-// Twin of src/kernel/wrs.rs.
+//#use color
+//#use reservoir
+// Twin of src/kernel/wrs.rs: gate, forget, combine.
+
+// wrs::SamplerCode
+const SAMPLER_A_CHAO: u32 = 0u;
+const SAMPLER_A_ES: u32 = 1u;
+
+// wrs::BiasCode
+const BIAS_NONE: u32 = 0u;
+const BIAS_EXPONENTIAL: u32 = 1u;
+const BIAS_BERNOULLI: u32 = 2u;
+
+// wrs::GateCode
+const GATE_OFF: u32 = 0u;
+const GATE_DELTA_E94: u32 = 1u;
+const GATE_LIGHTNESS: u32 = 2u;
+
+struct WrsParams {
+    sampler: u32,
+    bias: u32,
+    exponential_survival: f32,
+    gate: u32,
+    gate_offset: f32,
+    inv_gate_divisor: f32,
+}
+
+struct Past {
+    color: vec3<f32>,
+    w_sum: f32,
+    log_key: f32,
+}
+
+struct Decision {
+    take: bool,
+    w_sum: f32,
+    log_key: f32,
+    gate: f32,
+    survival: f32,
+}
+
+// wrs::gate (eq. 7): 1 - |dL|
+fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
+    return 1.0 - clamp((difference - offset) * inv_divisor, 0.0, 1.0);
+}
+
+// wrs::difference; exactly 0 for equal colours.
+fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
+    if code == GATE_OFF || all(candidate == stored_color) {
+        return 0.0;
+    }
+    let reference = lab(candidate);
+    let stored = lab(stored_color);
+    if code == GATE_LIGHTNESS {
+        return abs(reference.x - stored.x);
+    }
+    return delta_e94(reference, stored);
+}
+
+// wrs::step: eq. 7, then Alg. 2 with the candidate as second reservoir.
+fn step(candidate: vec3<f32>, weight: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
+    var gate_value = 1.0;
+    if weight > 0.0 && past.w_sum > 0.0 {
+        let d = difference(candidate, past.color, params.gate);
+        gate_value = gate(d, params.gate_offset, params.inv_gate_divisor);
+    }
+    // The survival term uses the sum before the gate (eq. 7).
+    var bias = 1.0;
+    if params.bias == BIAS_EXPONENTIAL {
+        bias = params.exponential_survival;
+    } else if params.bias == BIAS_BERNOULLI {
+        bias = bernoulli_survival(past.w_sum, weight);
+    }
+    let survival = bias * gate_value;
+    let kept = past.w_sum * survival;
+    let w_sum = kept + weight;
+    if params.sampler == SAMPLER_A_CHAO {
+        return Decision(kept == 0.0 || draw * w_sum < weight, w_sum, 0.0, gate_value, survival);
+    }
+    let old_key = a_es_decay(past.log_key, survival);
+    let new_key = a_es_log_key(draw, weight);
+    let take = kept == 0.0 || new_key > old_key;
+    return Decision(take, w_sum, select(old_key, new_key, take), gate_value, survival);
+}
