@@ -13,7 +13,7 @@ fn eccentricity_deg(ray: vec3<f32>, gaze: vec3<f32>) -> f32 {
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let across = sqrt(cx * cx + cy * cy + cz * cz);
-    let along = ray.x * gaze.x + ray.y * gaze.y + ray.z * gaze.z;
+    let along = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
     return atan2_upper(across, along) * (180.0f / PI);
 }
 

@@ -37,7 +37,8 @@ fn exp(exponent: f32) -> f32 {
     let r = (x - n * 0.6933594) - n * -2.1219444e-4;
     let p = ((((1.9875692e-4 * r + 1.3982e-3) * r + 8.333452e-3) * r + 4.1665796e-2) * r + 1.6666665e-1) * r + 0.5;
     let scale = bitcast<f32>(u32(i32(n) + 127) << 23u);
-    return (p * r * r + r + 1.0) * scale;
+    // Not (p * r * r + r) + 1: compilers may move the constant.
+    return ((p * r + 1.0) * r + 1.0) * scale;
 }
 
 // approx::ln: exponent and a polynomial of the mantissa.

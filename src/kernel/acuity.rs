@@ -23,7 +23,8 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let cross = (cx * cx + cy * cy + cz * cz).sqrt();
-    let dot = ray.x * gaze.x + ray.y * gaze.y + ray.z * gaze.z;
+    // The term that may be constant first: compilers may move a constant that comes last.
+    let dot = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
     approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)
 }
 

@@ -1,4 +1,7 @@
 //! Elementary functions from exact operations only, so that CPU and GPU agree bit for bit. Accuracies are tested.
+//!
+//! Shader compilers may still reorder sums: Mesa turns `(product + x) + constant` into `(x + constant) + product`. Horner's form
+//! leaves it nothing to reorder.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -42,7 +45,7 @@ pub fn exp(x: f32) -> f32 {
     let p =
         ((((1.987_569_2e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r + 1.666_666_5e-1) * r + 0.5;
     let scale = f32::from_bits(((n as i32 + 127) as u32) << 23);
-    (p * r * r + r + 1.0) * scale
+    ((p * r + 1.0) * r + 1.0) * scale
 }
 
 /// Natural logarithm of `x` in \[1.2e-38, 3.4e38\]. Relative error below 2e-7, absolute below 1e-7 near 1.

@@ -1,0 +1,63 @@
+//! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
+
+use crate::probe::Probe;
+use crate::{gpu, mathematics, state};
+
+#[track_caller]
+fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
+    let probe = probes.iter().find(|p| p.name == name).unwrap();
+    let source = probe.source();
+    assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {name}");
+    let Some((device, queue)) = gpu::device() else { return };
+    let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
+    println!("{name}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
+    assert!(!lines.is_empty(), "planted error not caught: {name}, '{right}' -> '{wrong}'");
+}
+
+#[test]
+fn a_lax_comparison_is_caught() {
+    caught(state::PROBES, "combine", "draw * w_sum < w2", "draw * w_sum <= w2");
+    caught(state::PROBES, "update", "draw * w_sum < w;", "draw * w_sum <= w;");
+    caught(state::PROBES, "step", "draw * w_sum < weight", "draw * w_sum <= weight");
+}
+
+#[test]
+fn a_weight_one_percent_off_is_caught() {
+    caught(mathematics::PROBES, "candidate_weight", "* inv_density_at_fovea", "* (1.01 * inv_density_at_fovea)");
+}
+
+#[test]
+fn a_flipped_motion_sign_is_caught() {
+    caught(state::PROBES, "nearest", "f32(x) + motion.x", "f32(x) - motion.x");
+    caught(state::PROBES, "nearest", "f32(y) + motion.y", "f32(y) - motion.y");
+}
+
+#[test]
+fn draws_without_the_shift_are_caught() {
+    caught(state::PROBES, "uniform", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)");
+    caught(state::PROBES, "bits", "v = v ^ (v >> vec4<u32>(16u));", "");
+}
+
+#[test]
+fn swapped_colours_are_caught() {
+    caught(state::PROBES, "difference", "delta_e94(reference, stored)", "delta_e94(stored, reference)");
+    caught(state::PROBES, "step", "difference(candidate, past.color,", "difference(past.color, candidate,");
+    caught(mathematics::PROBES, "delta_e94", "delta_e94(in_v(0u), in_v(3u))", "delta_e94(in_v(3u), in_v(0u))");
+}
+
+#[test]
+fn one_wrong_last_bit_is_caught() {
+    caught(mathematics::PROBES, "exp", "1.3982e-3", "1.3982001e-3");
+    caught(mathematics::PROBES, "lab", "0.376224", "0.37622404");
+    caught(
+        mathematics::PROBES,
+        "atan2_upper",
+        "const TAN_PI_8: f32 = 0.41421356;",
+        "const TAN_PI_8: f32 = 0.41421354;",
+    );
+}
+
+#[test]
+fn an_unwritten_word_is_caught() {
+    caught(state::PROBES, "unpack", "out_u(s.age);", "");
+}

@@ -1,0 +1,59 @@
+//! Every function of every module; one test a module, named after its hard cases.
+
+use crate::probe::check_module;
+use crate::{mathematics, state};
+
+#[test]
+fn acuity_is_bit_equal_h61_h62_h64_h65() {
+    check_module(mathematics::PROBES, "acuity");
+}
+
+#[test]
+fn approx_is_bit_equal_h38_h61() {
+    check_module(mathematics::PROBES, "approx");
+}
+
+#[test]
+fn color_is_bit_equal_h30_h31_h32_h33_h36_h37_h38() {
+    check_module(mathematics::PROBES, "color");
+}
+
+#[test]
+fn depth_is_bit_equal_h41_h42_h44_h45_h46_h47() {
+    check_module(mathematics::PROBES, "depth");
+}
+
+#[test]
+fn foveate_is_bit_equal_h71() {
+    check_module(mathematics::PROBES, "foveate");
+}
+
+#[test]
+fn pack_is_bit_equal_h05_h15_h19() {
+    check_module(state::PROBES, "pack");
+}
+
+#[test]
+fn reproject_is_bit_equal_h51_h52_h54_h57() {
+    check_module(state::PROBES, "reproject");
+}
+
+#[test]
+fn reservoir_is_bit_equal_h01_h02_h04_h15_h17_h18_h21() {
+    check_module(state::PROBES, "reservoir");
+}
+
+#[test]
+fn rng_is_bit_equal_h23_h26_and_for_a_million_words_h28() {
+    check_module(state::PROBES, "rng");
+}
+
+#[test]
+fn scrub_is_bit_equal_h17_h18_h37() {
+    check_module(state::PROBES, "scrub");
+}
+
+#[test]
+fn wrs_decides_bit_equal_h01_h02_h20_h39() {
+    check_module(state::PROBES, "wrs");
+}

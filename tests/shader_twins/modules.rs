@@ -1,0 +1,137 @@
+//! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
+
+use crate::{mathematics, state};
+use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// File and line of the first error, with its message.
+fn validate(composed: &Composed) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(&composed.source).map_err(|e| {
+        let line = e.location(&composed.source).map_or(0, |l| l.line_number);
+        let (file, line) = composed.origin(line).unwrap_or(("?", 0));
+        format!("{file}:{line}: {}", e.message())
+    })?;
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    validator.validate(&module).map(|_| ()).map_err(|e| {
+        // The narrowest span: the widest is a whole function.
+        let widths = e.spans().filter_map(|(span, _)| span.to_range().map(|r| (r.len(), *span)));
+        let span = widths.min_by_key(|(width, _)| *width).map(|(_, span)| span);
+        let line = span.map_or(0, |s| s.location(&composed.source).line_number);
+        let (file, line) = composed.origin(line).unwrap_or(("?", 0));
+        let mut message = e.as_inner().to_string();
+        let mut cause = std::error::Error::source(e.as_inner());
+        while let Some(inner) = cause {
+            message = format!("{message}: {inner}");
+            cause = inner.source();
+        }
+        format!("{file}:{line}: {message}")
+    })
+}
+
+#[test]
+fn every_module_composes_and_is_valid() {
+    let names: Vec<_> = module_names().collect();
+    assert!(names.len() >= 11);
+    for name in names {
+        validate(&compose(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}
+
+#[test]
+fn errors_name_file_and_line() {
+    let syntax = compose_with(&["wrs"], "fn good() {}\nfn bad( {}\n");
+    let error = validate(&syntax).unwrap_err();
+    assert!(error.starts_with("(the caller's text):2: "), "{error}");
+
+    let types = compose_with(&["wrs"], "// A comment.\nfn bad() -> f32 {\n    return luma(1u);\n}\n");
+    let error = validate(&types).unwrap_err();
+    assert!(error.starts_with("(the caller's text):3: "), "{error}");
+
+    // One that sits in a library file: the same text with a hole in it.
+    let mut broken = compose_with(&["wrs"], "");
+    broken.source = broken.source.replacen("return 0.2126 *", "return 0.2126 * *", 1);
+    let error = validate(&broken).unwrap_err();
+    let path = "shaders/lib/color.wgsl";
+    let line = read(path).lines().position(|l| l.contains("0.2126")).unwrap() + 1;
+    assert!(error.starts_with(&format!("{path}:{line}: ")), "{error}");
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// Names after `fn ` at the start of a line, `pub` or not.
+fn functions(text: &str) -> BTreeSet<String> {
+    text.lines()
+        .filter_map(|l| l.strip_prefix("pub ").unwrap_or(l).strip_prefix("fn "))
+        .map(|l| l.split(['(', '<']).next().unwrap().to_owned())
+        .collect()
+}
+
+/// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a closure,
+/// and `mix`, which is a builtin of WGSL.
+const WGSL_ONLY: &[(&str, &str)] =
+    &[("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
+
+/// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
+const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "one_sided_slope", "pcg4d_mix", "saturating_add"];
+
+fn stems() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/lib");
+    let mut stems: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    stems.sort();
+    stems
+}
+
+#[test]
+fn twins_have_the_same_functions_and_every_one_is_probed() {
+    let mut wgsl_names = BTreeSet::new();
+    for stem in stems() {
+        let wgsl = functions(&read(&format!("shaders/lib/{stem}.wgsl")));
+        let rust = functions(&read(&format!("src/kernel/{stem}.rs")));
+        let only: BTreeSet<String> =
+            WGSL_ONLY.iter().filter(|(s, _)| *s == stem).map(|(_, name)| (*name).to_owned()).collect();
+        let mut expected: BTreeSet<String> = rust.union(&only).cloned().collect();
+        expected.remove("mix");
+        assert_eq!(wgsl, expected, "{stem}");
+        wgsl_names.extend(wgsl);
+    }
+    let probed = mathematics::PROBES.iter().chain(state::PROBES).map(|p| p.name);
+    let covered: BTreeSet<String> = probed.chain(PRIVATE.iter().copied()).map(str::to_owned).collect();
+    assert_eq!(wgsl_names, covered);
+}
+
+/// naga reads a literal without suffix as f64 and rounds it again; Rust reads f32 at once.
+#[test]
+fn literals_mean_the_same_bits_in_both_languages() {
+    let mut count = 0;
+    for stem in stems() {
+        for line in read(&format!("shaders/lib/{stem}.wgsl")).lines() {
+            let code = line.split("//").next().unwrap();
+            let mut rest = code;
+            while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+                let named = start > 0 && rest[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+                let body = &rest[start..];
+                let mut end = body.find(|c: char| !(c.is_ascii_alphanumeric() || c == '.')).unwrap_or(body.len());
+                if body[..end].ends_with('e') {
+                    end += 1 + body[end + 1..].find(|c: char| !c.is_ascii_digit()).unwrap_or(body.len() - end - 1);
+                }
+                let token = body[..end].trim_end_matches('f');
+                if !named && token.contains('.') && !token.starts_with("0x") {
+                    let twice = token.parse::<f64>().unwrap() as f32;
+                    let once = token.parse::<f32>().unwrap();
+                    assert_eq!(twice.to_bits(), once.to_bits(), "{stem}: {token}");
+                    count += 1;
+                }
+                rest = &body[end..];
+            }
+        }
+    }
+    println!("{count} literals");
+    assert!(count > 80);
+}
