@@ -19,9 +19,9 @@ fn eccentricity_deg(ray: vec3<f32>, gaze: vec3<f32>) -> f32 {
 
 // acuity::cell_density (eq. 3)
 fn cell_density(e_deg: f32) -> f32 {
-    let near = 1.0 / (1.0 + e_deg / R_2_DEG);
+    let q = 1.0 + e_deg / R_2_DEG;
     let far = exp(-e_deg / R_E_DEG);
-    return (2.0f * D_C0) / (1.0 + e_deg / R_M_DEG) * (A_K * (near * near) + (1.0f - A_K) * far);
+    return (2.0f * D_C0) * (A_K / (q * q) + (1.0f - A_K) * far) / (1.0 + e_deg / R_M_DEG);
 }
 
 // acuity::candidate_weight (eq. 4)

@@ -13,7 +13,7 @@ fn cbrt(x: f32) -> f32 {
     var r = bitcast<f32>(bitcast<u32>(a) / 3u + 0x2a514067u);
     for (var i = 0u; i < 2u; i++) {
         let r3 = r * r * r;
-        r = r - r * ((r3 - a) / (r3 + r3 + a));
+        r = r - r * ((r3 - a) / (2.0 * r3 + a));
     }
     return select(r, -r, x < 0.0);
 }
@@ -37,7 +37,7 @@ fn srgb_encode(linear_value: f32) -> f32 {
     var encoded = 12.92 * a;
     if a > 0.0031308 {
         let c = cbrt(a);
-        encoded = 1.055 * (c * sqrt(sqrt(c))) - 0.055;
+        encoded = (1.055 * c) * sqrt(sqrt(c)) - 0.055;
     }
     return select(encoded, -encoded, linear_value < 0.0);
 }

@@ -63,7 +63,7 @@ fn disparity_value(code: u32) -> f32 {
 
 // pack::pack
 fn pack(s: Stored) -> vec3<u32> {
-    let w = bitcast<u32>(clamp(s.w_sum, 0.0, MAX_W_SUM));
+    let w = bitcast<u32>(select(0.0, min(s.w_sum, MAX_W_SUM), s.w_sum > 0.0));
     let w_upper = w + 0x7fu + ((w >> 8u) & 1u);
     return vec3<u32>(
         half_bits(s.color.x) | (half_bits(s.color.y) << 16u),

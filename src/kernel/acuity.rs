@@ -31,9 +31,10 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
 /// Density of midget retinal ganglion cell receptive fields per square degree at eccentricity `e_deg` >= 0 (eq. 3).
 #[inline]
 pub fn cell_density(e_deg: f32) -> f32 {
-    let near = 1.0 / (1.0 + e_deg / R_2_DEG);
+    let q = 1.0 + e_deg / R_2_DEG;
     let far = approx::exp(-e_deg / R_E_DEG);
-    (2.0 * D_C0) / (1.0 + e_deg / R_M_DEG) * (A_K * (near * near) + (1.0 - A_K) * far)
+    // As a quotient: compilers reorder a sum of two products with constants.
+    (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg / R_M_DEG)
 }
 
 /// Weight of a candidate shaded at eccentricity `e_deg`, in (0, 1\] (eq. 4): 1 inside the fovea of radius `fovea_deg`,

@@ -20,7 +20,7 @@ pub fn cbrt(x: f32) -> f32 {
     let mut r = f32::from_bits(a.to_bits() / 3 + 0x2a51_4067);
     for _ in 0..2 {
         let r3 = r * r * r;
-        r -= r * ((r3 - a) / (r3 + r3 + a));
+        r -= r * ((r3 - a) / (2.0 * r3 + a));
     }
     if x < 0.0 { -r } else { r }
 }
@@ -49,7 +49,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
         12.92 * a
     } else {
         let c = cbrt(a);
-        1.055 * (c * c.sqrt().sqrt()) - 0.055
+        (1.055 * c) * c.sqrt().sqrt() - 0.055
     };
     if linear < 0.0 { -encoded } else { encoded }
 }

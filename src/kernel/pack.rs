@@ -92,7 +92,9 @@ pub fn disparity_value(code: u32) -> f32 {
 /// Packs a reservoir. The colour must be finite.
 #[inline]
 pub fn pack(s: Stored) -> [u32; 3] {
-    let w = s.w_sum.clamp(0.0, MAX_W_SUM).to_bits();
+    // Not clamp(), which leaves the sign of -0 to the device.
+    let w_sum = if s.w_sum > 0.0 { s.w_sum.min(MAX_W_SUM) } else { 0.0 };
+    let w = w_sum.to_bits();
     let w_upper = w + 0x7f + ((w >> 8) & 1);
     [
         half_bits(s.color.x) | half_bits(s.color.y) << 16,
