@@ -14,6 +14,36 @@ pub struct SettingsError {
     pub expected: String,
 }
 
+/// A context that cannot be made on this device.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum CreateError {
+    /// A setting or fact out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// A device limit is too low.
+    #[error(
+        "the device's {limit} is {found}: expected at least {needed}; request the device with it, see required_limits()"
+    )]
+    Limit {
+        /// Name in `wgpu::Limits`.
+        limit: &'static str,
+        /// The device's.
+        found: u32,
+        /// What is needed.
+        needed: u32,
+    },
+    /// The output format cannot be written by a compute shader.
+    #[error("output format {found:?}: expected one of {expected}")]
+    OutputFormat {
+        /// What was asked for.
+        found: wgpu::TextureFormat,
+        /// What is accepted.
+        expected: &'static str,
+    },
+}
+
 /// A frame that cannot be processed. Nothing was changed: the history is as it was before the call.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -55,6 +85,18 @@ pub enum FrameError {
         size: [u32; 2],
         /// Largest side accepted.
         max: u32,
+    },
+    /// A texture that cannot be bound as what it is given for.
+    #[error("{input} is a texture of format {format}, {problem}: expected {expected}")]
+    Texture {
+        /// Which input.
+        input: &'static str,
+        /// Its format.
+        format: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What is accepted.
+        expected: &'static str,
     },
     /// A number of the frame's description is not usable.
     #[error("{what} of view {view} is {found}: expected {expected}")]

@@ -1,6 +1,11 @@
 //! Facts of a frame that CPU and GPU share: gaze, view, reset.
 
+use crate::convention::{DepthConvention, MotionConvention};
 use crate::display::ViewGeometry;
+use crate::error::{FrameError, SettingsError};
+use crate::kernel::rng::{self, Purpose};
+use crate::settings::{Sampler, Settings};
+use glam::Vec3;
 
 /// Where one eye looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,6 +46,68 @@ pub struct ViewFrame {
     pub previous_from_current: Option<[[f32; 4]; 4]>,
 }
 
+/// What a pass needs to know of one view of one frame besides its images, for both executors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ViewConstants {
+    /// Where the eye is taken to look; to be held if the gaze is lost next.
+    pub gaze_px: [f32; 2],
+    /// Ray through it.
+    pub gaze_ray: Vec3,
+    /// Third row of the current-to-previous view transform: it gives the previous distance.
+    pub depth_row: [f32; 4],
+    /// Key of the view's random stream.
+    pub key: u32,
+}
+
+impl ViewFrame {
+    /// Constants of view `view` of frame `index`, with the gaze `held` from before.
+    pub(crate) fn constants(
+        &self,
+        held: Option<[f32; 2]>,
+        settings: &Settings,
+        view: usize,
+        index: u64,
+    ) -> ViewConstants {
+        let gaze_px = self.gaze.resolve(held, self.geometry.size_px());
+        let purpose = match settings.sampler {
+            Sampler::AChao => Purpose::Select,
+            Sampler::AEs => Purpose::Key,
+        };
+        ViewConstants {
+            gaze_px,
+            gaze_ray: self.geometry.ray(gaze_px),
+            depth_row: self.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
+            key: rng::stream_key(settings.seed, view as u32, purpose, index),
+        }
+    }
+
+    /// Checks what does not depend on images.
+    pub(crate) fn check(&self, view: usize, desc: &ContextDesc) -> Result<(), FrameError> {
+        let found = self.geometry.size_px();
+        if found != desc.size_px {
+            return Err(FrameError::Size { input: "geometry", view, found, expected: desc.size_px });
+        }
+        let Some(matrix) = self.previous_from_current else {
+            return Ok(());
+        };
+        let refuse =
+            |found: String, expected| Err(FrameError::Value { what: "previous_from_current", view, found, expected });
+        if matches!(desc.depth, DepthConvention::Orthographic { .. }) {
+            return refuse(
+                "given with orthographic depth".into(),
+                "None: rays of an orthographic view are not known here",
+            );
+        }
+        match matrix.iter().flatten().find(|v| !v.is_finite()) {
+            Some(v) => refuse(
+                format!("a matrix that holds {v}"),
+                "finite numbers, or None if the camera's motion is not known",
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
 /// What of the history is still true.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reset {
@@ -59,9 +126,9 @@ pub struct ContextDesc {
     /// Number of views; 2 for stereo.
     pub view_count: u32,
     /// What motion vectors mean.
-    pub motion: crate::convention::MotionConvention,
+    pub motion: MotionConvention,
     /// What depth values mean.
-    pub depth: crate::convention::DepthConvention,
+    pub depth: DepthConvention,
 }
 
 impl ContextDesc {
@@ -73,4 +140,24 @@ impl ContextDesc {
     pub fn new(size_px: [u32; 2]) -> Self {
         Self { size_px, view_count: 1, motion: Default::default(), depth: Default::default() }
     }
+
+    /// Checks size, number of views and planes.
+    pub(crate) fn validate(&self) -> Result<(), SettingsError> {
+        self.depth.validate()?;
+        check_size(self.size_px).map_err(|e| SettingsError {
+            setting: "size_px",
+            found: format!("{}x{}", self.size_px[0], self.size_px[1]),
+            expected: e.to_string(),
+        })?;
+        if self.view_count == 0 {
+            return Err(SettingsError { setting: "view_count", found: "0".into(), expected: "at least 1 view".into() });
+        }
+        Ok(())
+    }
+}
+
+/// Refuses sizes without a pixel and sizes beyond [`ContextDesc::MAX_SIDE`].
+pub(crate) fn check_size(size: [u32; 2]) -> Result<(), FrameError> {
+    let max = ContextDesc::MAX_SIDE;
+    if size.iter().all(|s| (1..=max).contains(s)) { Ok(()) } else { Err(FrameError::Extent { size, max }) }
 }

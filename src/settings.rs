@@ -139,6 +139,11 @@ impl Settings {
         Ok(())
     }
 
+    /// Whether reservoirs need a key besides their weight sum.
+    pub(crate) fn uses_keys(&self) -> bool {
+        self.sampler == Sampler::AEs
+    }
+
     /// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
     pub(crate) fn inv_density_at_fovea(&self) -> f32 {
         1.0 / acuity::cell_density(0.5 * self.fovea_deg)

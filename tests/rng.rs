@@ -9,7 +9,7 @@ const KEY_SEED: u64 = 0x5eed;
 
 fn draw(x: u32, y: u32, view: u32, frame: u64, purpose: Purpose) -> f32 {
     let key = rng::stream_key(KEY_SEED, view, purpose, frame);
-    rng::uniform(rng::bits(x, y, frame as u32, key))
+    rng::unit_draw(rng::bits(x, y, frame as u32, key))
 }
 
 /// p-value of the correlation of pairs of uniform numbers, by the normal approximation.
@@ -24,9 +24,9 @@ fn p_of_correlation(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
 
 #[test]
 fn h23_draws_stay_below_1() {
-    assert_eq!(rng::uniform(0), 0.0);
-    assert!(rng::uniform(u32::MAX) < 1.0);
-    assert_eq!(f64::from(rng::uniform(u32::MAX)), 1.0 - 1.0 / 16_777_216.0);
+    assert_eq!(rng::unit_draw(0), 0.0);
+    assert!(rng::unit_draw(u32::MAX) < 1.0);
+    assert_eq!(f64::from(rng::unit_draw(u32::MAX)), 1.0 - 1.0 / 16_777_216.0);
     // The planted error: straight scaling rounds the top 128 values up.
     assert_eq!(u32::MAX as f32 * (1.0 / 4_294_967_296.0), 1.0);
 }
@@ -84,7 +84,7 @@ fn h24_h25_neighbours_and_shifted_frames_are_independent() {
         }
     }
     // The planted error of H24: pixel + frame as seed.
-    let bad = |x: u32, y: u32, t: u32| rng::uniform(rng::bits(x + y * 4096 + t, 0, 0, 0));
+    let bad = |x: u32, y: u32, t: u32| rng::unit_draw(rng::bits(x + y * 4096 + t, 0, 0, 0));
     reject(
         "seed = pixel + frame, shift by one",
         p_of_correlation(pixels().map(|(x, y)| (bad(x + 1, y, 9), bad(x, y, 10)))),
@@ -112,7 +112,7 @@ fn h26_h27_streams_of_views_purposes_seeds_and_epochs_differ() {
         accept(name, p_of_correlation(pixels().map(|(x, y)| pair(x, y))));
     }
     let seeds = pixels().map(|(x, y)| {
-        let at = |seed| rng::uniform(rng::bits(x, y, 0, rng::stream_key(seed, 0, Purpose::Select, 0)));
+        let at = |seed| rng::unit_draw(rng::bits(x, y, 0, rng::stream_key(seed, 0, Purpose::Select, 0)));
         (at(1), at(2))
     });
     accept("neighbouring seeds", p_of_correlation(seeds));

@@ -31,7 +31,7 @@ fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
     return pcg4d(vec4<u32>(x, y, frame, key)).x;
 }
 
-// rng::uniform: in [0, 1) on the grid of 2^-24.
-fn uniform(bits: u32) -> f32 {
+// rng::unit_draw: in [0, 1) on the grid of 2^-24.
+fn unit_draw(bits: u32) -> f32 {
     return f32(bits >> 8u) * (1.0 / 16777216.0);
 }

@@ -17,10 +17,10 @@ const GATE_DELTA_E94: u32 = 1u;
 const GATE_LIGHTNESS: u32 = 2u;
 
 struct WrsParams {
-    sampler: u32,
-    bias: u32,
+    sampler_code: u32,
+    bias_code: u32,
     exponential_survival: f32,
-    gate: u32,
+    gate_code: u32,
     gate_offset: f32,
     inv_gate_divisor: f32,
 }
@@ -61,20 +61,20 @@ fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
 fn step(candidate: vec3<f32>, weight: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
     var gate_value = 1.0;
     if weight > 0.0 && past.w_sum > 0.0 {
-        let d = difference(candidate, past.color, params.gate);
+        let d = difference(candidate, past.color, params.gate_code);
         gate_value = gate(d, params.gate_offset, params.inv_gate_divisor);
     }
     // The survival term uses the sum before the gate (eq. 7).
     var bias = 1.0;
-    if params.bias == BIAS_EXPONENTIAL {
+    if params.bias_code == BIAS_EXPONENTIAL {
         bias = params.exponential_survival;
-    } else if params.bias == BIAS_BERNOULLI {
+    } else if params.bias_code == BIAS_BERNOULLI {
         bias = bernoulli_survival(past.w_sum, weight);
     }
     let survival = bias * gate_value;
     let kept = past.w_sum * survival;
     let w_sum = kept + weight;
-    if params.sampler == SAMPLER_A_CHAO {
+    if params.sampler_code == SAMPLER_A_CHAO {
         return Decision(kept == 0.0 || draw * w_sum < weight, w_sum, 0.0, gate_value, survival);
     }
     let old_key = a_es_decay(past.log_key, survival);

@@ -1,1 +1,178 @@
+//#use acuity
+//#use depth
+//#use pack
+//#use reproject
+//#use rng
+//#use scrub
 //#use wrs
+// The fused pass of weighted reservoirs: scrub, reproject, flush, gate, bias, combine, store and show. Its twin on the CPU is
+// src/cpu/wrs_pass.rs. One invocation a pixel; z is the view.
+
+// What the frame brings and the settings ask for. A pipeline's constants; switched off means not compiled.
+override PASS_THROUGH: u32 = 0u;
+override HAS_DEPTH: u32 = 1u;
+override HAS_MOTION: u32 = 1u;
+override DEPTH_TEST: u32 = 1u;
+override SAMPLER: u32 = 0u;
+override BIAS: u32 = 2u;
+override GATE: u32 = 1u;
+
+// src/gpu/types.rs: ViewConstants
+struct ViewConstants {
+    ray_scale: vec2<f32>,
+    ray_offset: vec2<f32>,
+    gaze_ray: vec4<f32>,
+    depth_row: vec4<f32>,
+    key: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
+}
+
+// src/gpu/types.rs: FrameConstants
+struct FrameConstants {
+    size: vec2<u32>,
+    reset: u32,
+    frame_low: u32,
+    fovea_radius_deg: f32,
+    inv_density_at_fovea: f32,
+    exponential_survival: f32,
+    gate_offset: f32,
+    inv_gate_divisor: f32,
+    depth_relative: f32,
+    depth_slope_px: f32,
+    disparity_a: f32,
+    motion_scale: vec2<f32>,
+    disparity_b: f32,
+    disparity_flags: u32,
+    views: array<ViewConstants, 4>,
+}
+
+@group(0) @binding(0) var<uniform> frame: FrameConstants;
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var depth_in: texture_2d_array<f32>;
+@group(0) @binding(3) var motion_in: texture_2d_array<f32>;
+@group(0) @binding(4) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(5) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(6) var past_keys: texture_2d_array<f32>;
+@group(0) @binding(7) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(8) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(9) var next_keys: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(10) var color_out: texture_storage_2d_array<rgba16float, write>;
+
+// The history side of a pixel.
+struct History {
+    verdict: u32,
+    stored: Stored,
+    log_key: f32,
+}
+
+fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
+    let map = DisparityMap(frame.disparity_a, frame.disparity_b, frame.disparity_flags);
+    return disparity(textureLoad(depth_in, px, view, 0).x, map);
+}
+
+// How much the surface's disparity changes from pixel to pixel. Read only where the plain test fails: few pixels pay for the
+// four taps.
+fn slope_at(px: vec2<u32>, view: u32, center: f32) -> f32 {
+    var left = INVALID_DISPARITY;
+    var right = INVALID_DISPARITY;
+    var up = INVALID_DISPARITY;
+    var down = INVALID_DISPARITY;
+    if px.x > 0u {
+        left = disparity_at(px - vec2<u32>(1u, 0u), view);
+    }
+    if px.x + 1u < frame.size.x {
+        right = disparity_at(px + vec2<u32>(1u, 0u), view);
+    }
+    if px.y > 0u {
+        up = disparity_at(px - vec2<u32>(0u, 1u), view);
+    }
+    if px.y + 1u < frame.size.y {
+        down = disparity_at(px + vec2<u32>(0u, 1u), view);
+    }
+    return slope(center, left, right, up, down);
+}
+
+fn is_same_surface(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32, stored: f32) -> bool {
+    let row = frame.views[view].depth_row;
+    let stretch = row.x * ray.x + row.y * ray.y + row.z;
+    let expected = previous_disparity(disparity_now, stretch, row.w);
+    if same_surface(expected, stored, frame.depth_relative, 0.0) {
+        return true;
+    }
+    let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now);
+    return same_surface(expected, stored, frame.depth_relative, slope_px);
+}
+
+// The reservoir that a pixel continues, and whether it may.
+fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32) -> History {
+    let empty = unpack(vec3<u32>(0u));
+    if frame.reset != 0u {
+        return History(VERDICT_RESET, empty, LOWEST);
+    }
+    var motion = vec2<f32>(0.0);
+    if HAS_MOTION != 0u {
+        motion = textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
+    }
+    let source = nearest(px.x, px.y, motion, frame.size);
+    if source.verdict != VERDICT_VALID {
+        return History(source.verdict, empty, LOWEST);
+    }
+    let colors = textureLoad(past_colors, source.at, view, 0).xy;
+    let stored = unpack(vec3<u32>(colors, textureLoad(past_weights, source.at, view, 0).x));
+    var log_key = LOWEST;
+    if SAMPLER == SAMPLER_A_ES {
+        log_key = textureLoad(past_keys, source.at, view, 0).x;
+    }
+    if stored.w_sum == 0.0 {
+        return History(VERDICT_EMPTY, stored, log_key);
+    }
+    if DEPTH_TEST != 0u {
+        if !is_same_surface(px, view, ray, disparity_now, stored.disparity) {
+            return History(VERDICT_DISOCCLUDED, stored, log_key);
+        }
+    }
+    return History(VERDICT_VALID, stored, log_key);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let px = id.xy;
+    let view = id.z;
+    if px.x >= frame.size.x || px.y >= frame.size.y {
+        return;
+    }
+    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    if PASS_THROUGH != 0u {
+        textureStore(color_out, px, view, vec4<f32>(candidate.color, 1.0));
+        return;
+    }
+    let constants = frame.views[view];
+    let ray = vec3<f32>(vec2<f32>(px) * constants.ray_scale + constants.ray_offset, 1.0);
+    var candidate_w = 0.0;
+    if candidate.usable {
+        let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
+        candidate_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
+    }
+    var disparity_now = INVALID_DISPARITY;
+    if HAS_DEPTH != 0u {
+        disparity_now = disparity_at(px, view);
+    }
+    let history = history_of(px, view, ray, disparity_now);
+    let past_w = select(0.0, history.stored.w_sum, history.verdict == VERDICT_VALID);
+    let past = Past(history.stored.color, past_w, history.log_key);
+    let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, frame.gate_offset, frame.inv_gate_divisor);
+    let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
+    let decision = step(candidate.color, candidate_w, past, params, draw);
+
+    let shown = select(history.stored.color, candidate.color, decision.take);
+    let age = select(min(history.stored.age + 1u, MAX_AGE), 0u, decision.take);
+    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    let words = pack(Stored(shown, disparity_now, decision.w_sum, age));
+    textureStore(next_colors, px, view, vec4<u32>(words.xy, 0u, 0u));
+    textureStore(next_weights, px, view, vec4<u32>(words.z, 0u, 0u, 0u));
+    if SAMPLER == SAMPLER_A_ES {
+        textureStore(next_keys, px, view, vec4<f32>(decision.log_key, 0.0, 0.0, 0.0));
+    }
+}

@@ -10,11 +10,11 @@ pub use history::History;
 pub use wrs_pass::PixelTrace;
 
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Reset, ViewFrame};
+use crate::frame::{ContextDesc, Reset, ViewFrame, check_size};
 use crate::image::Image;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
-use crate::settings::{Method, Sampler, Settings};
+use crate::settings::{Method, Settings};
 use glam::Vec3;
 
 /// Inputs of one view of one frame.
@@ -91,16 +91,8 @@ impl CpuAfterimage {
     /// If a setting or the depth convention is out of range, or the size is empty or beyond [`ContextDesc::MAX_SIDE`].
     pub fn new(desc: ContextDesc, settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
-        desc.depth.validate()?;
-        check_size(desc.size_px).map_err(|e| SettingsError {
-            setting: "size_px",
-            found: format!("{}x{}", desc.size_px[0], desc.size_px[1]),
-            expected: e.to_string(),
-        })?;
-        if desc.view_count == 0 {
-            return Err(SettingsError { setting: "view_count", found: "0".into(), expected: "at least 1 view".into() });
-        }
-        let history = History::new(desc.size_px, desc.view_count, uses_keys(&settings));
+        desc.validate()?;
+        let history = History::new(desc.size_px, desc.view_count, settings.uses_keys());
         Ok(Self { desc, settings, history })
     }
 
@@ -120,8 +112,8 @@ impl CpuAfterimage {
     /// If a setting is out of range; then the old ones stay.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        if uses_keys(&settings) != uses_keys(&self.settings) {
-            self.history = History::new(self.desc.size_px, self.desc.view_count, uses_keys(&settings));
+        if settings.uses_keys() != self.settings.uses_keys() {
+            self.history = History::new(self.desc.size_px, self.desc.view_count, settings.uses_keys());
         }
         self.settings = settings;
         Ok(())
@@ -134,7 +126,7 @@ impl CpuAfterimage {
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
-        self.history = History::new(size_px, self.desc.view_count, uses_keys(&self.settings));
+        self.history = History::new(size_px, self.desc.view_count, self.settings.uses_keys());
         Ok(())
     }
 
@@ -163,7 +155,7 @@ impl CpuAfterimage {
         if self.settings.method == Method::None {
             return color + output;
         }
-        let history = 2 * if uses_keys(&self.settings) { 16 } else { 12 };
+        let history = 2 * if self.settings.uses_keys() { 16 } else { 12 };
         let depth = if view.depth.is_some() { 4 } else { 0 };
         let motion = if view.motion.is_some() { 4 } else { 0 };
         color + depth + motion + history + output
@@ -219,47 +211,16 @@ impl CpuAfterimage {
                 ("motion", view.motion.map(Image::size)),
                 ("output", Some(output[i].size())),
                 ("trace", trace.map(|t| t[i].size())),
-                ("geometry", Some(view.facts.geometry.size_px())),
             ];
             for (input, size) in sizes {
                 if let Some(found) = size.filter(|&s| s != self.desc.size_px) {
                     return Err(FrameError::Size { input, view: i, found, expected: self.desc.size_px });
                 }
             }
-            self.check_camera(i, &view.facts)?;
+            view.facts.check(i, &self.desc)?;
         }
         Ok(())
     }
-
-    fn check_camera(&self, view: usize, facts: &ViewFrame) -> Result<(), FrameError> {
-        let Some(matrix) = facts.previous_from_current else {
-            return Ok(());
-        };
-        let refuse =
-            |found: String, expected| Err(FrameError::Value { what: "previous_from_current", view, found, expected });
-        if matches!(self.desc.depth, crate::convention::DepthConvention::Orthographic { .. }) {
-            return refuse(
-                "given with orthographic depth".into(),
-                "None: rays of an orthographic view are not known here",
-            );
-        }
-        match matrix.iter().flatten().find(|v| !v.is_finite()) {
-            Some(v) => refuse(
-                format!("a matrix that holds {v}"),
-                "finite numbers, or None if the camera's motion is not known",
-            ),
-            None => Ok(()),
-        }
-    }
-}
-
-fn uses_keys(settings: &Settings) -> bool {
-    settings.sampler == Sampler::AEs
-}
-
-fn check_size(size: [u32; 2]) -> Result<(), FrameError> {
-    let max = ContextDesc::MAX_SIDE;
-    if size.iter().all(|s| (1..=max).contains(s)) { Ok(()) } else { Err(FrameError::Extent { size, max }) }
 }
 
 /// Method `none`: what came, scrubbed.

@@ -10,8 +10,8 @@ use crate::image::Image;
 use crate::kernel::depth::{self, DisparityMap};
 use crate::kernel::pack::{self, Stored};
 use crate::kernel::reproject::{self, Verdict};
-use crate::kernel::rng::{self, Purpose};
-use crate::kernel::wrs::{self, Past, SamplerCode, WrsParams};
+use crate::kernel::rng;
+use crate::kernel::wrs::{self, Past, WrsParams};
 use crate::kernel::{acuity, scrub};
 use crate::settings::{DepthTest, Settings};
 use glam::Vec3;
@@ -80,13 +80,9 @@ pub(super) fn run(
     let mut stats = FrameStats::default();
     for (i, view) in frame.views.iter().enumerate() {
         let held = history.held_gaze(i);
-        let gaze_px = view.facts.gaze.resolve(*held, desc.size_px);
-        *held = Some(gaze_px);
+        let constants = view.facts.constants(*held, settings, i, frame.index);
+        *held = Some(constants.gaze_px);
         let (past, words, log_keys) = history.split(i);
-        let purpose = match settings.wrs_params().sampler {
-            SamplerCode::AChao => Purpose::Select,
-            SamplerCode::AEs => Purpose::Key,
-        };
         let pass = ViewPass {
             view,
             past,
@@ -94,14 +90,14 @@ pub(super) fn run(
             params: settings.wrs_params(),
             fovea_radius_deg: 0.5 * settings.fovea_deg,
             inv_density_at_fovea: settings.inv_density_at_fovea(),
-            gaze_ray: view.facts.geometry.ray(gaze_px),
+            gaze_ray: constants.gaze_ray,
             motion_scale: desc.motion.to_internal(desc.size_px),
             disparity_map: desc.depth.disparity_map(),
-            depth_row: view.facts.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
+            depth_row: constants.depth_row,
             depth_test: settings.depth_test.filter(|_| view.depth.is_some()),
             reset,
             frame_low: frame.index as u32,
-            key: rng::stream_key(settings.seed, i as u32, purpose, frame.index),
+            key: constants.key,
         };
         let trace = trace.as_mut().map(|t| t[i].pixels_mut());
         let mut rows = split_rows(pass.size, words, output[i].pixels_mut(), log_keys, trace);
@@ -156,7 +152,7 @@ impl ViewPass<'_> {
         let (verdict, stored, log_key) = self.history(x, y, ray, disparity);
         let past =
             Past { color: stored.color, w_sum: if verdict == Verdict::Valid { stored.w_sum } else { 0.0 }, log_key };
-        let draw = rng::uniform(rng::bits(x, y, self.frame_low, self.key));
+        let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.key));
         let decision = wrs::step(candidate, weight, past, &self.params, draw);
 
         let (color, age) =

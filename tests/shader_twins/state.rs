@@ -174,14 +174,14 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "uniform",
+        name: "unit_draw",
         module: "rng",
         words: [1, 1],
-        wgsl: "out_f(uniform(in_u(0u)));",
-        rust: |r, o| o.f(rng::uniform(r.u(0))),
+        wgsl: "out_f(unit_draw(in_u(0u)));",
+        rust: |r, o| o.f(rng::unit_draw(r.u(0))),
         rows: || {
             let top: Vec<u32> = (0..600).map(|k| !k).collect();
-            Rows::new(1).cross(&[&top]).cross(&[&words()]).random("uniform", |d, row| row.push(bits(d)))
+            Rows::new(1).cross(&[&top]).cross(&[&words()]).random("unit_draw", |d, row| row.push(bits(d)))
         },
     },
     Probe {

@@ -1,0 +1,95 @@
+//! Everything about a frame that can be wrong, found before anything is recorded.
+
+use super::{Frame, GpuDesc};
+use crate::error::FrameError;
+use wgpu::{Texture, TextureAspect, TextureSampleType, TextureUsages};
+
+/// Checks a frame against what the context was made for.
+pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
+    let expected = desc.context.view_count as usize;
+    if frame.views.len() != expected {
+        return Err(FrameError::ViewCount { found: frame.views.len(), expected });
+    }
+    for (i, view) in frame.views.iter().enumerate() {
+        view.check(i, &desc.context)?;
+    }
+    let read = TextureUsages::TEXTURE_BINDING;
+    check_texture(desc, "colour", frame.color, read)?;
+    check_readable("colour", frame.color, 3)?;
+    if let Some(depth) = frame.depth {
+        check_texture(desc, "depth", depth, read)?;
+        check_readable("depth", depth, 1)?;
+    }
+    if let Some(motion) = frame.motion {
+        check_texture(desc, "motion", motion, read)?;
+        check_readable("motion", motion, 2)?;
+    }
+    check_texture(desc, "output", frame.output, TextureUsages::STORAGE_BINDING)?;
+    if frame.output.format() == desc.output_format {
+        Ok(())
+    } else {
+        Err(refuse(
+            "output",
+            frame.output,
+            "not the context's".into(),
+            "the output format that the context was made for",
+        ))
+    }
+}
+
+/// Size, layers, samples, usage.
+fn check_texture(
+    desc: &GpuDesc,
+    input: &'static str,
+    texture: &Texture,
+    usage: TextureUsages,
+) -> Result<(), FrameError> {
+    let found = [texture.width(), texture.height()];
+    if found != desc.context.size_px {
+        return Err(FrameError::Size { input, view: 0, found, expected: desc.context.size_px });
+    }
+    let layers = texture.depth_or_array_layers();
+    if texture.dimension() != wgpu::TextureDimension::D2 || layers != desc.context.view_count {
+        return Err(refuse(
+            input,
+            texture,
+            format!("with {layers} layers"),
+            "a 2D texture with one array layer a view",
+        ));
+    }
+    if texture.sample_count() != 1 {
+        let samples = texture.sample_count();
+        return Err(refuse(input, texture, format!("with {samples} samples"), "one sample a pixel; resolve it first"));
+    }
+    if !texture.usage().contains(usage) {
+        let expected = if usage == TextureUsages::STORAGE_BINDING {
+            "the usage STORAGE_BINDING"
+        } else {
+            "the usage TEXTURE_BINDING"
+        };
+        return Err(refuse(input, texture, "without the usage it needs".into(), expected));
+    }
+    Ok(())
+}
+
+/// Float or depth, with enough channels.
+fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Result<(), FrameError> {
+    let format = texture.format();
+    let aspect = format.has_depth_aspect().then_some(TextureAspect::DepthOnly);
+    let readable =
+        matches!(format.sample_type(aspect, None), Some(TextureSampleType::Float { .. } | TextureSampleType::Depth));
+    let found = if format.has_depth_aspect() { 1 } else { format.components() };
+    if readable && found >= channels {
+        return Ok(());
+    }
+    let expected = match channels {
+        1 => "a depth format or R32Float",
+        2 => "Rg16Float, Rg32Float or wider",
+        _ => "a float or normalised format with red, green and blue, such as Rgba16Float",
+    };
+    Err(refuse(input, texture, "not readable as what it is for".into(), expected))
+}
+
+fn refuse(input: &'static str, texture: &Texture, problem: String, expected: &'static str) -> FrameError {
+    FrameError::Texture { input, format: format!("{:?}", texture.format()), problem, expected }
+}

@@ -1,0 +1,142 @@
+//! Pipelines: one shader, specialised by `override` constants to what a frame brings and what the settings ask for.
+
+use super::desc::GpuDesc;
+use super::shader;
+use crate::error::CreateError;
+use crate::kernel::wrs::GateCode;
+use crate::settings::{Method, Settings};
+use std::collections::HashMap;
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BufferBindingType, ComputePipeline,
+    ComputePipelineDescriptor, Device, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
+    ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StorageTextureAccess, TextureFormat,
+    TextureSampleType, TextureViewDimension,
+};
+
+/// What a pipeline is specialised to. Absent inputs are switched off, not read as zeros.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Variant {
+    pass_through: bool,
+    has_depth: bool,
+    has_motion: bool,
+    depth_test: bool,
+    keys: bool,
+    bias: u32,
+    gate: u32,
+}
+
+impl Variant {
+    pub fn new(settings: &Settings, has_depth: bool, has_motion: bool) -> Self {
+        let params = settings.wrs_params();
+        Self {
+            pass_through: settings.method == Method::None,
+            has_depth,
+            has_motion,
+            depth_test: has_depth && settings.depth_test.is_some(),
+            keys: settings.uses_keys(),
+            bias: params.bias as u32,
+            gate: if settings.gate.is_some() { params.gate as u32 } else { GateCode::Off as u32 },
+        }
+    }
+
+    /// Values of the shader's overrides.
+    fn constants(self) -> [(&'static str, f64); 7] {
+        let flag = |on: bool| f64::from(u8::from(on));
+        [
+            ("PASS_THROUGH", flag(self.pass_through)),
+            ("HAS_DEPTH", flag(self.has_depth)),
+            ("HAS_MOTION", flag(self.has_motion)),
+            ("DEPTH_TEST", flag(self.depth_test)),
+            ("SAMPLER", flag(self.keys)),
+            ("BIAS", f64::from(self.bias)),
+            ("GATE", f64::from(self.gate)),
+        ]
+    }
+}
+
+/// The shader, its bindings, and the pipelines made of it so far.
+#[derive(Debug)]
+pub(super) struct Pipelines {
+    pub bindings: BindGroupLayout,
+    layout: PipelineLayout,
+    module: ShaderModule,
+    made: HashMap<Variant, ComputePipeline>,
+}
+
+impl Pipelines {
+    pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
+        // The texel format of a storage texture is part of the text in WGSL.
+        let source = shader::compose("wrs_pass").source.replace(
+            "texture_storage_2d_array<rgba16float",
+            &format!("texture_storage_2d_array<{}", desc.output_texel()?),
+        );
+        let module = device.create_shader_module(ShaderModuleDescriptor {
+            label: Some("afterimage wrs"),
+            source: ShaderSource::Wgsl(source.into()),
+        });
+        let bindings = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+            label: Some("afterimage wrs"),
+            entries: &entries(desc.output_format),
+        });
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some("afterimage wrs"),
+            bind_group_layouts: &[Some(&bindings)],
+            ..PipelineLayoutDescriptor::default()
+        });
+        Ok(Self { bindings, layout, module, made: HashMap::new() })
+    }
+
+    /// The pipeline of a variant, made at its first use.
+    pub fn get(&mut self, device: &Device, variant: Variant) -> &ComputePipeline {
+        self.made.entry(variant).or_insert_with(|| {
+            device.create_compute_pipeline(&ComputePipelineDescriptor {
+                label: Some("afterimage wrs"),
+                layout: Some(&self.layout),
+                module: &self.module,
+                entry_point: Some("main"),
+                compilation_options: PipelineCompilationOptions {
+                    constants: &variant.constants(),
+                    ..PipelineCompilationOptions::default()
+                },
+                cache: None,
+            })
+        })
+    }
+}
+
+/// Bindings of `shaders/pass/wrs_pass.wgsl`, in its order.
+fn entries(output: TextureFormat) -> Vec<BindGroupLayoutEntry> {
+    let float = TextureSampleType::Float { filterable: false };
+    let sampled = |sample_type| BindingType::Texture {
+        sample_type,
+        view_dimension: TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    let storage = |format| BindingType::StorageTexture {
+        access: StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: TextureViewDimension::D2Array,
+    };
+    let uniform =
+        BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+    let types = [
+        uniform,
+        sampled(float),
+        sampled(float),
+        sampled(float),
+        sampled(TextureSampleType::Uint),
+        sampled(TextureSampleType::Uint),
+        sampled(float),
+        storage(TextureFormat::Rg32Uint),
+        storage(TextureFormat::R32Uint),
+        storage(TextureFormat::R32Float),
+        storage(output),
+    ];
+    let entry = |(binding, ty): (usize, BindingType)| BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    types.into_iter().enumerate().map(entry).collect()
+}

@@ -1,0 +1,10 @@
+//! The pass on the GPU against its twin on the CPU: whole sequences, decisions and stored state bit for bit.
+#![cfg(all(feature = "gpu", feature = "lab"))]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/gpu.rs"]
+mod gpu;
+
+mod rig;
+mod sequences;

@@ -1,0 +1,176 @@
+//! The same frames through both executors, and what comes back from the device.
+
+use super::gpu;
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView, PixelTrace};
+use afterimage::frame::{ContextDesc, Reset, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::image::Image;
+use afterimage::settings::Settings;
+use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
+
+/// Images of one view of one frame.
+#[derive(Clone)]
+pub struct View {
+    pub facts: ViewFrame,
+    pub color: Image<[f32; 3]>,
+    pub depth: Option<Image<f32>>,
+    pub motion: Option<Image<[f32; 2]>>,
+}
+
+/// A device with textures of one size, and both executors.
+pub struct Rig {
+    pub device: Device,
+    pub queue: Queue,
+    pub context: ContextDesc,
+    pub cpu: CpuAfterimage,
+    pub gpu: Afterimage,
+    color: Texture,
+    depth: Texture,
+    motion: Texture,
+    pub output: Texture,
+}
+
+/// What an executor made of a frame: shown colours and packed reservoirs, view after view.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Made {
+    pub shown: Vec<[u32; 3]>,
+    pub words: Vec<[u32; 3]>,
+}
+
+impl Rig {
+    /// `None`, after saying so, without an adapter.
+    pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
+        let (device, queue) = gpu::device()?;
+        let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
+        let texture = |format, usage| make_texture(&device, &context, format, usage);
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        Some(Self {
+            cpu: CpuAfterimage::new(context, settings).unwrap(),
+            gpu: gpu::validated(&device, "new", || Afterimage::new(&device, &desc)).unwrap(),
+            color: texture(TextureFormat::Rgba32Float, read),
+            depth: texture(TextureFormat::R32Float, read),
+            motion: texture(TextureFormat::Rg32Float, read),
+            output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            context,
+            device,
+            queue,
+        })
+    }
+
+    pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
+        let size = self.context.size_px;
+        let mut output = vec![Image::filled(size, [0.0; 3]); views.len()];
+        let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
+        let cpu_views: Vec<_> = views
+            .iter()
+            .map(|v| CpuView { facts: v.facts, color: &v.color, depth: v.depth.as_ref(), motion: v.motion.as_ref() })
+            .collect();
+        let frame = CpuFrame { views: &cpu_views, index, reset };
+        self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
+        let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
+        (Made { shown, words: self.cpu.history().words().to_vec() }, trace)
+    }
+
+    pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
+        self.upload(views);
+        let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
+        let frame = Frame {
+            color: &self.color,
+            depth: views[0].depth.is_some().then_some(&self.depth),
+            motion: views[0].motion.is_some().then_some(&self.motion),
+            output: &self.output,
+            views: &facts,
+            index,
+            reset,
+        };
+        gpu::validated(&self.device, "record", || {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
+            self.queue.submit([encoder.finish()]);
+        });
+        self.read()
+    }
+
+    /// Shown colours and stored reservoirs as they are on the device.
+    pub fn read(&self) -> Made {
+        let shown = self.read_texture(&self.output);
+        let [colors, weights] = [0, 1].map(|i| self.read_texture(&self.gpu.history_textures()[i]));
+        Made {
+            shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
+            words: colors.chunks_exact(2).zip(weights).map(|(c, w)| [c[0], c[1], w]).collect(),
+        }
+    }
+
+    fn upload(&self, views: &[View]) {
+        for (layer, view) in views.iter().enumerate() {
+            let color: Vec<[f32; 4]> = view.color.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
+            self.write(&self.color, layer, bytemuck::cast_slice(&color));
+            if let Some(depth) = &view.depth {
+                self.write(&self.depth, layer, bytemuck::cast_slice(depth.pixels()));
+            }
+            if let Some(motion) = &view.motion {
+                self.write(&self.motion, layer, bytemuck::cast_slice(motion.pixels()));
+            }
+        }
+    }
+
+    fn write(&self, texture: &Texture, layer: usize, bytes: &[u8]) {
+        let [width, height] = self.context.size_px;
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let mut to = texture.as_image_copy();
+        to.origin.z = layer as u32;
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(bytes.len() as u32 / height),
+            rows_per_image: Some(height),
+        };
+        self.queue.write_texture(to, bytes, layout, size);
+    }
+
+    /// All words of a texture with 32-bit channels, layer after layer.
+    fn read_texture(&self, texture: &Texture) -> Vec<u32> {
+        let texel = texture.format().block_copy_size(None).unwrap();
+        let row = texture.width() * texel;
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let rows = texture.height() * texture.depth_or_array_layers();
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size: u64::from(padded) * u64::from(rows),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(padded),
+            rows_per_image: Some(texture.height()),
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            texture.size(),
+        );
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        let mapped = buffer.get_mapped_range(..).expect("the readback is mapped");
+        mapped
+            .chunks_exact(padded as usize)
+            .flat_map(|r| bytemuck::cast_slice::<u8, u32>(&r[..row as usize]).to_vec())
+            .collect()
+    }
+}
+
+pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {
+    let [width, height] = context.size_px;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: context.view_count },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
