@@ -37,7 +37,7 @@ fn srgb_encode(linear_value: f32) -> f32 {
     var encoded = 12.92 * a;
     if a > 0.0031308 {
         let c = cbrt(a);
-        encoded = 1.055 * (c * sqrt(sqrt(c))) - 0.055;
+        encoded = (1.055 * c) * sqrt(sqrt(c)) - 0.055;
     }
     return select(encoded, -encoded, linear_value < 0.0);
 }

@@ -39,7 +39,7 @@ fn fifth_root(x: f32) -> f32 {
     r
 }
 
-/// sRGB encoding of one linear channel (IEC 61966-2-1). Error below 5e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
+/// sRGB encoding of one linear channel (IEC 61966-2-1). Error below 6e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
 ///
 /// `x^(1/2.4) = c * sqrt(sqrt(c))` with `c = cbrt(x)`.
 #[inline]
