@@ -47,7 +47,7 @@ fn swapped_colours_are_caught() {
 
 #[test]
 fn one_wrong_last_bit_is_caught() {
-    caught(mathematics::PROBES, "exp", "1.3982e-3", "1.3985e-3");
+    caught(mathematics::PROBES, "exp", "1.6666665e-1", "1.6666667e-1");
     caught(mathematics::PROBES, "lab", "0.376224", "0.37622404");
     caught(
         mathematics::PROBES,
