@@ -6,7 +6,7 @@ use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::metric::{Scorer, encode};
-use afterimage::pipeline::{LaneKind, Pipeline};
+use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::Method;
 use afterimage::source::{self, ReadLimits, SceneOptions};
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let none = Settings { method: Method::None, ..Settings::default() };
     let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
-    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, false)?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, false, &Backend::Cpu)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
     for index in 0..60 {
         let frame = source.frame(index)?;

@@ -8,7 +8,7 @@ use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::metric::{Scorer, encode};
-use afterimage::pipeline::{LaneKind, Pipeline};
+use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler};
 use afterimage::source::{self, ReadLimits, SceneOptions};
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         lanes.pop();
     }
     let kinds: Vec<_> = lanes.iter().map(|l| l.1).collect();
-    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, false)?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, false, &Backend::Cpu)?;
     let mut scorers = vec![Scorer::without_ssim(); lanes.len()];
     println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
     for index in 0..frames {

@@ -7,7 +7,7 @@ use afterimage::display::ViewGeometry;
 use afterimage::error::InputError;
 use afterimage::foveation::Foveation;
 use afterimage::metric::{Scorer, Scores, encode};
-use afterimage::pipeline::{LaneKind, Pipeline};
+use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::Method;
 use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo};
@@ -77,7 +77,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcom
     let view = ViewGeometry::flat(info.size, hfov).unwrap();
     let scanpath = read_csv(data(clip.scanpath).unwrap()).unwrap();
     let gaze = FrameGaze::new(&scanpath, &view, clip.map, clip.start_s, 60.0).unwrap();
-    let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, false).unwrap();
+    let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, false, &Backend::Cpu).unwrap();
     let mut scorers = vec![Scorer::default(); lanes.len()];
     let mut last = vec![];
     let (mut flushed, mut pixels) = (0, 0);

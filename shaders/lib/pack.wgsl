@@ -42,7 +42,7 @@ fn disparity_code(disparity: f32) -> u32 {
     if disparity < 0.0 {
         return 0xffffu;
     }
-    let bits = bitcast<u32>(disparity);
+    let bits = bitcast<u32>(disparity) & 0x7fffffffu;
     if bits < (95u << 23u) {
         return 0u;
     }

@@ -71,7 +71,8 @@ pub fn disparity_code(disparity: f32) -> u32 {
     if disparity < 0.0 {
         return 0xffff;
     }
-    let bits = disparity.to_bits();
+    // Without the sign of -0.
+    let bits = disparity.to_bits() & 0x7fff_ffff;
     if bits < 95 << 23 {
         return 0;
     }

@@ -7,7 +7,7 @@ use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
 use afterimage::metric::{self, FrameErrors, Scorer, Scores, psnr_db};
-use afterimage::pipeline::{LaneKind, Pipeline, Shown, Step};
+use afterimage::pipeline::{Backend, LaneKind, Pipeline, Shown, Step};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::debug_view;
 use afterimage::report::picture::to_rgb8;
@@ -32,6 +32,7 @@ pub struct Clip {
     pub format: FormatName,
     pub write_reference: bool,
     pub debug: Vec<DebugName>,
+    pub backend: Backend,
 }
 
 /// Figures of a lane, as `report.json` has them.
@@ -71,6 +72,8 @@ pub struct Share {
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
     pub foveation_ms: Option<Quartiles>,
+    /// What computed the methods, in words.
+    pub backend: String,
     /// Where the eye was taken to look.
     pub gaze_px: Vec<[f32; 2]>,
 }
@@ -96,7 +99,7 @@ impl Clip {
         let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
         let is_still = source.info().still;
         let trace = !self.debug.is_empty();
-        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, trace)?;
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, trace, &self.backend)?;
         let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
         let mut foveation_ms = vec![];
         let mut gaze_px = vec![];
@@ -127,7 +130,11 @@ impl Clip {
             .map(|(i, lane)| (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels)))
             .collect();
         compare_with_oracle(&mut methods);
-        Ok(ClipReport { methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
+        let backend = match &self.backend {
+            Backend::Cpu => format!("CPU ({} threads)", rayon::current_num_threads()),
+            Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
+        };
+        Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
     }
 
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.

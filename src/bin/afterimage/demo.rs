@@ -32,6 +32,8 @@ const DEMO: &[&str] = &[
     "--method",
     "none,wrs,oracle",
     "--reference",
+    "--backend",
+    "cpu",
 ];
 
 #[derive(Parser)]

@@ -1,6 +1,6 @@
 //! How the tool ends when it cannot go on: one line, and an exit code that tells whose turn it is.
 
-use afterimage::error::{FrameError, InputError, SettingsError};
+use afterimage::error::{CreateError, FrameError, InputError, SettingsError};
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -39,6 +39,12 @@ impl From<InputError> for Failure {
 
 impl From<SettingsError> for Failure {
     fn from(error: SettingsError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<CreateError> for Failure {
+    fn from(error: CreateError) -> Self {
         Self::Input(error.to_string())
     }
 }

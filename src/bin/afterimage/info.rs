@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use afterimage::error::InputError;
+use afterimage::pipeline::Headless;
 use afterimage::scanpath::{GazeMap, read_csv};
 use afterimage::source::motion_check::{self, Verdict};
 use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions};
@@ -24,7 +25,14 @@ pub struct InfoArgs {
 /// The subcommand.
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.input == "adapters" {
-        say!("no GPU adapters: this version computes on the CPU only");
+        let adapters = Headless::adapters();
+        if adapters.is_empty() {
+            say!("no GPU adapters; software Vulkan (Debian: mesa-vulkan-drivers) gives one");
+        }
+        for adapter in adapters {
+            let info = adapter.get_info();
+            say!("{:?}: {}, {} {}, {:?}", info.device_type, info.name, info.driver, info.driver_info, info.backend);
+        }
         say!("CPU: {} threads", rayon::current_num_threads());
         return Ok(());
     }

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::gaze::GazeArgs;
 use crate::output::Output;
 use afterimage::display::ViewGeometry;
-use afterimage::pipeline::LaneKind;
+use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
 use afterimage::settings::Method;
 use afterimage::source::{self, FrameSource, ReadLimits, SourceInfo};
@@ -48,7 +48,7 @@ pub struct RunArgs {
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
-    /// What computes; this version has the CPU only
+    /// What computes the methods: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: BackendName,
     /// Seed of the random numbers: same seed, same bytes
@@ -77,11 +77,11 @@ const MAX_FRAMES: u64 = 10_000_000;
 /// Names of backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BackendName {
-    /// A GPU adapter if there is one, else the CPU
+    /// A GPU if there is one, else the CPU
     Auto,
     /// The CPU
     Cpu,
-    /// A GPU adapter
+    /// Any adapter, a software one too
     Gpu,
 }
 
@@ -96,7 +96,7 @@ struct Report<'a> {
     hfov_deg: f32,
     seed: u64,
     exposure_ev: f32,
-    backend: Backend,
+    backend: BackendReport,
     foveation: FoveationReport,
     gaze: &'a str,
     gaze_map: &'a str,
@@ -105,7 +105,7 @@ struct Report<'a> {
 }
 
 #[derive(Serialize)]
-struct Backend {
+struct BackendReport {
     kind: &'static str,
     name: String,
     driver: String,
@@ -165,11 +165,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         hfov_deg: plan.clip.geometry.hfov_deg(),
         seed: args.seed,
         exposure_ev: args.exposure,
-        backend: Backend {
-            kind: "cpu",
-            name: format!("{} threads", rayon::current_num_threads()),
-            driver: "none".into(),
-        },
+        backend: backend_report(&plan.clip.backend),
         foveation: FoveationReport {
             simulator: args.foveation.filter.name(),
             fovea_deg: args.foveation.fovea,
@@ -197,8 +193,8 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
 /// What can be wrong before anything is opened.
 fn check(args: &RunArgs) -> Result<(), Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    if args.backend == BackendName::Gpu {
-        return refuse("--backend gpu: this version computes on the CPU only; use --backend auto or cpu".into());
+    if args.backend == BackendName::Gpu && !args.debug.is_empty() {
+        return refuse("--debug: decisions are only read back from the CPU; use --backend cpu".into());
     }
     if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
         return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
@@ -268,6 +264,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             format: args.format,
             write_reference: args.reference,
             debug: args.debug.clone(),
+            backend: backend(args)?,
         },
     })
 }
@@ -284,9 +281,40 @@ fn folders(args: &RunArgs) -> Vec<String> {
     folders
 }
 
+/// Chooses what computes, and says so.
+fn backend(args: &RunArgs) -> Result<Backend, Failure> {
+    let found = match args.backend {
+        BackendName::Cpu => None,
+        BackendName::Auto if !args.debug.is_empty() => None,
+        BackendName::Auto => Headless::find(false),
+        BackendName::Gpu => Some(Headless::find(true).ok_or_else(|| {
+            Failure::Input(
+                "--backend gpu: there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers) or use --backend cpu"
+                    .into(),
+            )
+        })?),
+    };
+    Ok(found.map_or(Backend::Cpu, Backend::Gpu))
+}
+
+fn backend_report(backend: &Backend) -> BackendReport {
+    match backend {
+        Backend::Cpu => BackendReport {
+            kind: "cpu",
+            name: format!("{} threads", rayon::current_num_threads()),
+            driver: "none".into(),
+        },
+        Backend::Gpu(gpu) => BackendReport {
+            kind: "gpu",
+            name: gpu.info.name.clone(),
+            driver: format!("{} {}", gpu.info.driver, gpu.info.driver_info),
+        },
+    }
+}
+
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
-    say!("{} frames on the CPU ({} threads)", report.gaze_px.len(), rayon::current_num_threads());
+    say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
     say!("method    PSNR dB    SSIM   fovea     mid  periph  retained  flicker  of oracle  ms/frame");
     for (name, m) in &report.methods {
         let s = &m.scores;

@@ -1,8 +1,12 @@
 //! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
 
+mod gpu_lane;
+
+pub use gpu_lane::Headless;
+
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView, FrameStats, PixelTrace};
 use crate::display::ViewGeometry;
-use crate::error::{FrameError, SettingsError};
+use crate::error::{CreateError, FrameError};
 use crate::foveation::{Foveation, Pyramid};
 use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use crate::image::Image;
@@ -10,6 +14,8 @@ use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
 use crate::settings::{Method, Settings};
 use crate::source::SourceFrame;
+use gpu_lane::{GpuLane, LaneInput};
+use std::sync::Arc;
 
 /// What a lane of the pipeline does with the foveated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,8 +60,19 @@ pub struct Step {
     pub foveation_ms: f64,
 }
 
+/// What the post-process runs on.
+#[derive(Clone, Debug, Default)]
+pub enum Backend {
+    /// The CPU executor.
+    #[default]
+    Cpu,
+    /// The wgpu executor on this device. Frames are uploaded and read back; times are of the pass alone.
+    Gpu(Arc<Headless>),
+}
+
 enum Executor {
     PostProcess(Box<CpuAfterimage>),
+    Gpu(Box<GpuLane>),
     Oracle { best: Option<Image<f32>> },
 }
 
@@ -76,14 +93,15 @@ impl Pipeline {
     /// built once. `trace`: keep pixel decisions.
     ///
     /// # Errors
-    /// If a setting is out of range.
+    /// If a setting is out of range, or the device cannot do it.
     pub fn new(
         geometry: ViewGeometry,
         foveation: Foveation,
         lanes: &[LaneKind],
         is_still: bool,
         trace: bool,
-    ) -> Result<Self, SettingsError> {
+        backend: &Backend,
+    ) -> Result<Self, CreateError> {
         foveation.validate()?;
         let lanes = lanes
             .iter()
@@ -92,10 +110,13 @@ impl Pipeline {
                 LaneKind::PostProcess(settings) => {
                     let settings = Settings { fovea_deg: foveation.fovea_deg, ..*settings };
                     let desc = ContextDesc::new(geometry.size_px());
-                    Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?)))
+                    match backend {
+                        Backend::Cpu => Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?))),
+                        Backend::Gpu(gpu) => Ok(Executor::Gpu(Box::new(GpuLane::new(gpu, desc, settings)?))),
+                    }
                 }
             })
-            .collect::<Result<_, SettingsError>>()?;
+            .collect::<Result<_, CreateError>>()?;
         Ok(Self {
             geometry,
             foveation,
@@ -143,6 +164,17 @@ impl Pipeline {
         for lane in &mut self.lanes {
             shown.push(match lane {
                 Executor::PostProcess(post) => post_process(post, &cpu_frame, self.trace)?,
+                Executor::Gpu(lane) => post_process_on_gpu(
+                    lane,
+                    &LaneInput {
+                        facts,
+                        color: &candidate,
+                        depth: frame.depth.as_ref(),
+                        motion: frame.motion.as_ref(),
+                        index,
+                        reset: cpu_frame.reset,
+                    },
+                )?,
                 Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),
             });
         }
@@ -157,6 +189,7 @@ impl Pipeline {
         match &self.lanes[index] {
             Executor::PostProcess(post) if post.settings().method != Method::None => post.memory_bytes(),
             Executor::PostProcess(_) => 0,
+            Executor::Gpu(lane) => lane.memory_bytes(),
             Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
         }
     }
@@ -177,6 +210,19 @@ fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, trace: bool) -> 
         stats,
         traffic_bytes_per_pixel: Some(post.traffic_bytes_per_pixel(&frame.views[0])),
         trace: traces.map(|[t]| t),
+    })
+}
+
+/// On a GPU nothing is counted, and no decisions come back.
+fn post_process_on_gpu(lane: &mut GpuLane, input: &LaneInput<'_>) -> Result<Shown, FrameError> {
+    let made = lane.process(input)?;
+    Ok(Shown {
+        image: made.image,
+        wall_ms: made.wall_ms,
+        cpu_ms: made.cpu_ms,
+        stats: FrameStats::default(),
+        traffic_bytes_per_pixel: None,
+        trace: None,
     })
 }
 
