@@ -43,9 +43,13 @@ pub const PROBES: &[Probe] = &[
         wgsl: "out_f(ln(in_f(0u)));",
         rust: |r, o| o.f(approx::ln(r.f(0))),
         rows: || {
-            one("ln", &[normal(), around(&[0.707_106_77, 1.0, 1.414_213_5])].concat(), |d| scaled(d, -126, 127))
-                .random("ln, draws", |d, row| row.push(range(d, 0.0, 1.0)))
-                .within(|r| r.f(0) >= f32::MIN_POSITIVE)
+            one(
+                "ln",
+                &[normal(), around(&[std::f32::consts::FRAC_1_SQRT_2, 1.0, std::f32::consts::SQRT_2])].concat(),
+                |d| scaled(d, -126, 127),
+            )
+            .random("ln, draws", |d, row| row.push(range(d, 0.0, 1.0)))
+            .within(|r| r.f(0) >= f32::MIN_POSITIVE)
         },
     },
     Probe {
