@@ -6,34 +6,48 @@
 //! (MIG 2025).
 //!
 //! ```
-//! use afterimage::Settings;
-//! use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 //! use afterimage::display::ViewGeometry;
-//! use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
-//! use afterimage::image::Image;
+//! use afterimage::frame::{Gaze, Reset, ViewFrame};
+//! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+//! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+//! # let texture = |usage| device.create_texture(&wgpu::TextureDescriptor {
+//! #     label: None,
+//! #     size: wgpu::Extent3d { width: 640, height: 360, depth_or_array_layers: 1 },
+//! #     mip_level_count: 1,
+//! #     sample_count: 1,
+//! #     dimension: wgpu::TextureDimension::D2,
+//! #     format: wgpu::TextureFormat::Rgba16Float,
+//! #     usage,
+//! #     view_formats: &[],
+//! # });
+//! # let color = texture(wgpu::TextureUsages::TEXTURE_BINDING);
+//! # let output = texture(wgpu::TextureUsages::STORAGE_BINDING);
+//! # let mut encoder = device.create_command_encoder(&Default::default());
+//! # let (size, gaze_px, index) = ([640, 360], [200.0, 180.0], 0);
 //!
-//! let size = [64, 36];
-//! let mut post = CpuAfterimage::new(ContextDesc::new(size), Settings::default())?;
+//! let mut post = Afterimage::new(&device, &GpuDesc::new(size, output.format()))?;
 //!
-//! // Every frame: colour, and depth and motion where there are any, one gaze a view.
-//! let color = Image::filled(size, [0.2, 0.4, 0.6]);
-//! let facts = ViewFrame {
+//! // Every frame, after the foveated frame is rendered: its textures, one gaze a view, your encoder.
+//! let views = [ViewFrame {
 //!     geometry: ViewGeometry::flat(size, 70.0)?,
-//!     gaze: Gaze::At { px: [20.0, 18.0] },
+//!     gaze: Gaze::At { px: gaze_px },
 //!     previous_from_current: None,
-//! };
-//! let view = CpuView { facts, color: &color, depth: None, motion: None };
-//! let mut output = [Image::filled(size, [0.0; 3])];
-//! post.process(&CpuFrame { views: &[view], index: 0, reset: Reset::None }, &mut output, None)?;
-//! assert_eq!(output[0], color);
+//! }];
+//! post.record(&device, &mut encoder, &Frame {
+//!     color: &color, depth: None, motion: None, output: &output, views: &views, index, reset: Reset::None,
+//! })?;
+//! queue.submit([encoder.finish()]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Without a GPU the same in memory: [`cpu::CpuAfterimage`].
 //!
 //! Where to look:
 //!
 //! - [`settings`]: what can be tuned, what more and less of it does.
 //! - [`frame`], [`convention`], [`display`]: what the caller says about a frame, and in which conventions.
-//! - [`cpu`]: the executor. [`kernel`]: the mathematics it calls, one function a formula.
+//! - [`gpu`] and [`cpu`]: the two executors of the same pass, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
+//!   they share, one function a formula.
 //! - With the feature `lab`: `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
 //!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric` and `report`.
 //!

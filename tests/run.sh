@@ -41,7 +41,7 @@ step "examples"
 for example in 01_smallest 04_stereo; do
     cargo run --locked --quiet --example "$example"
 done
-for example in 02_moving_camera 03_scanpath; do
+for example in 02_moving_camera 03_scanpath 06_gpu_headless; do
     cargo run --locked --quiet --features lab --example "$example"
 done
 

@@ -9,6 +9,8 @@ use std::process::{Command, Output};
 fn tool(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_afterimage"))
         .args(args)
+        // Silences a line of Mesa's about windows.
+        .env("NODEVICE_SELECT", "1")
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .expect("the tool starts")
@@ -136,6 +138,34 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
 }
 
 #[test]
+fn both_backends_write_the_same_bytes() {
+    let folder = Folder::new();
+    let on = |backend| {
+        let out = folder.text(backend);
+        let more = ["--format", "exr", "--wrs-sampler", "a-es", "--backend", backend];
+        tool(&run("analytic:occluder", &out, &[SMALL, &more].concat()))
+    };
+    let gpu = on("gpu");
+    if gpu.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        let text = String::from_utf8_lossy(&gpu.stderr).into_owned();
+        assert!(text.contains("mesa-vulkan-drivers"), "{text}");
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(gpu.status.success(), "{}", String::from_utf8_lossy(&gpu.stderr));
+    assert!(on("cpu").status.success());
+    let report = read_json(&folder.path("gpu/report.json"));
+    assert_eq!(report["backend"]["kind"], "gpu");
+    assert!(report["methods"]["wrs"]["flushed"].is_null(), "not counted there, and not made up");
+    if report["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+        for i in 0..4 {
+            let frame = |b: &str| fs::read(folder.path(b).join(format!("wrs/{i:06}.exr"))).unwrap();
+            assert_eq!(frame("cpu"), frame("gpu"), "frame {i}");
+        }
+    }
+}
+
+#[test]
 fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     let folder = Folder::new();
     let out = folder.text("out");
@@ -173,7 +203,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
-    refuses(&run(still, &out, &["--backend", "gpu"]), &["CPU"]);
+    refuses(&run(still, &out, &["--backend", "gpu", "--debug", "age"]), &["--backend cpu"]);
     refuses(&run(still, &out, &["--gaze", "1,x"]), &["X,Y"]);
     refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
     refuses(&run("scene.glb", &out, &[]), &["renderer"]);

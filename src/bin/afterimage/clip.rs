@@ -33,6 +33,8 @@ pub struct Clip {
     pub write_reference: bool,
     pub debug: Vec<DebugName>,
     pub backend: Backend,
+    /// Why the CPU, if that was not asked for.
+    pub backend_note: &'static str,
 }
 
 /// Figures of a lane, as `report.json` has them.
@@ -131,7 +133,7 @@ impl Clip {
             .collect();
         compare_with_oracle(&mut methods);
         let backend = match &self.backend {
-            Backend::Cpu => format!("CPU ({} threads)", rayon::current_num_threads()),
+            Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
             Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
         };
         Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })

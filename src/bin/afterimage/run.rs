@@ -240,6 +240,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     }
     // Stills and endless scenes last as long as the eye looks.
     let frames = args.frames.or(if info.still { None } else { info.frames });
+    let backend = backend(args)?;
     let track = args.gaze.resolve(&geometry, fps, frames)?;
     Ok(Plan {
         fps,
@@ -264,7 +265,12 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             format: args.format,
             write_reference: args.reference,
             debug: args.debug.clone(),
-            backend: backend(args)?,
+            backend_note: match (args.backend, &backend) {
+                (BackendName::Auto, Backend::Cpu) if args.debug.is_empty() => "; no GPU was found",
+                (BackendName::Auto, Backend::Cpu) => "; decisions are only read back from it",
+                _ => "",
+            },
+            backend,
         },
     })
 }
@@ -283,9 +289,10 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 /// Chooses what computes, and says so.
 fn backend(args: &RunArgs) -> Result<Backend, Failure> {
-    let found = match args.backend {
+    // Decisions are only read back from the CPU.
+    let wanted = if args.debug.is_empty() { args.backend } else { BackendName::Cpu };
+    let found = match wanted {
         BackendName::Cpu => None,
-        BackendName::Auto if !args.debug.is_empty() => None,
         BackendName::Auto => Headless::find(false),
         BackendName::Gpu => Some(Headless::find(true).ok_or_else(|| {
             Failure::Input(
