@@ -56,6 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 views: &views,
                 index: index as u64,
                 reset: Reset::None,
+                timestamps: None,
             },
         )?;
         queue.submit([encoder.finish()]);

@@ -279,8 +279,29 @@ fn scanpath_writes_what_run_reads_and_info_explains_both() {
 }
 
 #[test]
+fn bench_times_every_pass_against_the_copy() {
+    let folder = Folder::new();
+    let json = folder.text("bench.json");
+    let output = tool(&["bench", "post", "--size", "160x90", "--frames", "30", "--json", &json]);
+    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = read_json(Path::new(&json));
+    let passes = report["passes"].as_array().unwrap();
+    assert_eq!(passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(), ["copy", "none", "wrs"]);
+    for pass in passes {
+        assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
+        assert!(pass["bytes_per_pixel"].as_u64().unwrap() <= 48);
+    }
+    assert!(!report["adapter"].as_str().unwrap().is_empty() && report["cold_start_ms"].as_f64().unwrap() > 0.0);
+    refuses(&["bench", "post", "--frames", "3"], &["30"]);
+}
+
+#[test]
 fn help_states_units_and_an_example() {
-    for command in ["demo", "run", "scanpath", "info"] {
+    for command in ["demo", "run", "bench", "scanpath", "info"] {
         let text = succeeds(&[command, "--help"]);
         assert!(text.contains("Example"), "{command}");
         assert!(text.contains(&format!("afterimage {command}")), "{command}");

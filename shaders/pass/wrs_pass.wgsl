@@ -10,6 +10,7 @@
 
 // What the frame brings and the settings ask for. A pipeline's constants; switched off means not compiled.
 override PASS_THROUGH: u32 = 0u;
+override COPY_ONLY: u32 = 0u;
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
@@ -136,6 +137,19 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32) -> H
     return History(VERDICT_VALID, stored, log_key);
 }
 
+// The same bytes in and out without the work between: what benches hold the pass against.
+fn copy_only(px: vec2<u32>, view: u32, shown: vec3<f32>) {
+    let motion = textureLoad(motion_in, px, view, 0).xy;
+    let depth = textureLoad(depth_in, px, view, 0).x;
+    let words = textureLoad(past_colors, px, view, 0).xy;
+    let weight_word = textureLoad(past_weights, px, view, 0).x;
+    // Nothing that was read may be optimised away.
+    let used = bitcast<u32>(motion.x) ^ bitcast<u32>(motion.y) ^ bitcast<u32>(depth);
+    textureStore(next_colors, px, view, vec4<u32>(words, 0u, 0u));
+    textureStore(next_weights, px, view, vec4<u32>(weight_word ^ used, 0u, 0u, 0u));
+    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+}
+
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let px = id.xy;
@@ -146,6 +160,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
     if PASS_THROUGH != 0u {
         textureStore(color_out, px, view, vec4<f32>(candidate.color, 1.0));
+        return;
+    }
+    if COPY_ONLY != 0u {
+        copy_only(px, view, candidate.color);
         return;
     }
     let constants = frame.views[view];

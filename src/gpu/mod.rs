@@ -42,6 +42,20 @@ pub struct Frame<'a> {
     pub index: u64,
     /// Whether the history still holds.
     pub reset: Reset,
+    /// Where the device writes when the pass begins and ends, if the caller wants to time it. Needs
+    /// `Features::TIMESTAMP_QUERY`.
+    pub timestamps: Option<Timestamps<'a>>,
+}
+
+/// Two queries of a set of the caller's that the device writes its clock to.
+#[derive(Clone, Copy, Debug)]
+pub struct Timestamps<'a> {
+    /// A set of `QueryType::Timestamp`.
+    pub queries: &'a wgpu::QuerySet,
+    /// Index of the query written when the pass begins.
+    pub begin: u32,
+    /// Index of the query written when it ends.
+    pub end: u32,
 }
 
 /// The post-process on the GPU.
@@ -130,6 +144,40 @@ impl Afterimage {
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<(), FrameError> {
+        let variant = Variant::new(&self.desc.settings, frame.depth.is_some(), frame.motion.is_some());
+        self.record_variant(device, encoder, frame, variant)
+    }
+
+    /// Records a pass that reads and writes what [`record`](Self::record) would with depth and motion, and computes nothing:
+    /// what the method's time is held against. The history is worthless afterwards.
+    ///
+    /// # Errors
+    /// As for `record`, and if depth or motion is absent.
+    pub fn record_copy(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+    ) -> Result<(), FrameError> {
+        if frame.depth.is_none() || frame.motion.is_none() {
+            return Err(FrameError::Value {
+                what: "depth or motion",
+                view: 0,
+                found: "None".into(),
+                expected: "both, to move all bytes",
+            });
+        }
+        let variant = Variant::copy(&self.desc.settings);
+        self.record_variant(device, encoder, frame, variant)
+    }
+
+    fn record_variant(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        variant: Variant,
+    ) -> Result<(), FrameError> {
         input::check(&self.desc, frame)?;
         let constants = self.constants(frame);
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -166,7 +214,6 @@ impl Afterimage {
             layout: &self.pipelines.bindings,
             entries: &entries,
         });
-        let variant = Variant::new(&self.desc.settings, frame.depth.is_some(), frame.motion.is_some());
         let mut pass = encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("afterimage wrs"), timestamp_writes: None });
         pass.set_pipeline(self.pipelines.get(device, variant));

@@ -17,6 +17,7 @@ use wgpu::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Variant {
     pass_through: bool,
+    copy_only: bool,
     has_depth: bool,
     has_motion: bool,
     depth_test: bool,
@@ -30,6 +31,7 @@ impl Variant {
         let params = settings.wrs_params();
         Self {
             pass_through: settings.method == Method::None,
+            copy_only: false,
             has_depth,
             has_motion,
             depth_test: has_depth && settings.depth_test.is_some(),
@@ -39,11 +41,17 @@ impl Variant {
         }
     }
 
+    /// The pass that moves the same bytes as the method with depth and motion, and computes nothing.
+    pub fn copy(settings: &Settings) -> Self {
+        Self { copy_only: true, ..Self::new(settings, true, true) }
+    }
+
     /// Values of the shader's overrides.
-    fn constants(self) -> [(&'static str, f64); 7] {
+    fn constants(self) -> [(&'static str, f64); 8] {
         let flag = |on: bool| f64::from(u8::from(on));
         [
             ("PASS_THROUGH", flag(self.pass_through)),
+            ("COPY_ONLY", flag(self.copy_only)),
             ("HAS_DEPTH", flag(self.has_depth)),
             ("HAS_MOTION", flag(self.has_motion)),
             ("DEPTH_TEST", flag(self.depth_test)),

@@ -13,8 +13,10 @@ use wgpu::{Buffer, Texture, TextureFormat, TextureUsages};
 /// A device without a window.
 #[derive(Debug)]
 pub struct Headless {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    /// With default limits, and timestamp queries where the adapter has them.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
     /// Adapter, driver, version and kind of device.
     pub info: wgpu::AdapterInfo,
 }
@@ -39,10 +41,25 @@ impl Headless {
         adapters.sort_by_key(rank);
         adapters.retain(|a| software || rank(a) < 3);
         adapters.into_iter().find_map(|adapter| {
-            let request = adapter.request_device(&wgpu::DeviceDescriptor::default());
+            let request = adapter.request_device(&wgpu::DeviceDescriptor {
+                label: Some("afterimage"),
+                required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+                ..wgpu::DeviceDescriptor::default()
+            });
             let (device, queue) = pollster::block_on(request).ok()?;
             Some(Arc::new(Self { device, queue, info: adapter.get_info() }))
         })
+    }
+
+    /// Whether the device is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Waits until the device has done all that was submitted.
+    pub fn wait(&self) {
+        // A lost device shows at the next map, with wgpu's own message.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 }
 
@@ -113,7 +130,7 @@ impl GpuLane {
         }
         // The uploads are done before the watch starts.
         self.gpu.queue.submit([]);
-        self.wait();
+        self.gpu.wait();
         let watch = Stopwatch::start();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let frame = Frame {
@@ -124,17 +141,13 @@ impl GpuLane {
             views: std::slice::from_ref(&input.facts),
             index: input.index,
             reset: input.reset,
+            timestamps: None,
         };
         self.post.record(&self.gpu.device, &mut encoder, &frame)?;
         self.gpu.queue.submit([encoder.finish()]);
-        self.wait();
+        self.gpu.wait();
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
         Ok(LaneOutput { image: self.read(), wall_ms, cpu_ms })
-    }
-
-    fn wait(&self) {
-        // A lost device shows as a failed map in read(), with wgpu's own message.
-        let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
     fn upload(&self, texture: &Texture, bytes: &[u8]) {
@@ -158,7 +171,7 @@ impl GpuLane {
         );
         self.gpu.queue.submit([encoder.finish()]);
         self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
-        self.wait();
+        self.gpu.wait();
         let mut image = Image::filled(size, [0.0; 3]);
         {
             let mapped = self.readback.slice(..).get_mapped_range();

@@ -82,6 +82,7 @@ impl Rig {
             views: &facts,
             index,
             reset,
+            timestamps: None,
         };
         gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -104,6 +105,7 @@ impl Rig {
                 views: std::slice::from_ref(facts),
                 index: index as u64,
                 reset: Reset::None,
+                timestamps: None,
             };
             self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
         }

@@ -9,6 +9,7 @@ macro_rules! say {
 }
 
 mod args;
+mod bench;
 mod clip;
 mod demo;
 mod failure;
@@ -36,6 +37,8 @@ enum Command {
     Demo(demo::DemoArgs),
     /// Foveate a frame stream, enhance it, score it
     Run(Box<run::RunArgs>),
+    /// Time the passes against a copy of the same bytes
+    Bench(bench::BenchArgs),
     /// Write a synthetic scanpath
     Scanpath(scanpath::ScanpathArgs),
     /// Say what an input holds, or which adapters there are
@@ -50,6 +53,7 @@ fn main() -> ExitCode {
     let result = match cli.command {
         Command::Demo(args) => demo::demo(&args),
         Command::Run(args) => run::run(&args),
+        Command::Bench(args) => bench::bench(&args),
         Command::Scanpath(args) => scanpath::scanpath(&args),
         Command::Info(args) => info::info(&args),
     };

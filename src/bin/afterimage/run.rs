@@ -74,6 +74,9 @@ pub struct RunArgs {
 /// Frames of the longest run: two days at 60 frames per second.
 const MAX_FRAMES: u64 = 10_000_000;
 
+/// What to do without an adapter.
+pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
+
 /// Names of backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BackendName {
@@ -294,12 +297,10 @@ fn backend(args: &RunArgs) -> Result<Backend, Failure> {
     let found = match wanted {
         BackendName::Cpu => None,
         BackendName::Auto => Headless::find(false),
-        BackendName::Gpu => Some(Headless::find(true).ok_or_else(|| {
-            Failure::Input(
-                "--backend gpu: there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers) or use --backend cpu"
-                    .into(),
-            )
-        })?),
+        BackendName::Gpu => Some(
+            Headless::find(true)
+                .ok_or_else(|| Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")))?,
+        ),
     };
     Ok(found.map_or(Backend::Cpu, Backend::Gpu))
 }

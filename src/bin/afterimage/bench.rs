@@ -1,0 +1,325 @@
+//! `afterimage bench`: what the passes cost, off-screen, against a copy pass that moves the same bytes.
+
+use crate::args::parse_size;
+use crate::failure::Failure;
+use crate::run::NO_ADAPTER;
+use afterimage::display::ViewGeometry;
+use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc, Timestamps};
+use afterimage::kernel::pack::half_bits;
+use afterimage::kernel::rng;
+use afterimage::pipeline::Headless;
+use afterimage::report::clock::{Quartiles, Stopwatch};
+use afterimage::settings::{Method, Settings};
+use afterimage::whole_file::write_whole;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use std::io::Write;
+use std::path::PathBuf;
+use wgpu::{Texture, TextureFormat, TextureUsages};
+
+/// Frames before the watch starts: pipelines compile, caches fill.
+const WARM_UP: u64 = 8;
+
+/// Time the passes against a copy of the same bytes
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Example:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json")]
+pub struct BenchArgs {
+    /// What is timed
+    #[arg(value_enum, default_value = "post")]
+    pub what: What,
+    /// Size of a frame, pixels
+    #[arg(long, value_parser = parse_size, default_value = "1920x1080", value_name = "WxH")]
+    pub size: [u32; 2],
+    /// Frames after warm-up, at least 30
+    #[arg(long, default_value_t = 60, value_name = "N")]
+    pub frames: u64,
+    /// Also write the figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// What can be timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// The post-process: none, wrs, and a copy of the same bytes
+    Post,
+}
+
+#[derive(Serialize)]
+struct Report {
+    tool: &'static str,
+    version: &'static str,
+    adapter: String,
+    driver: String,
+    backend: String,
+    size: [u32; 2],
+    frames: u64,
+    /// What the times are: of the device, by timestamp queries, or of the process's CPU time on a software device.
+    clock: &'static str,
+    /// From the first call to the first frame done: shader, pipeline, and what the driver compiles at the first dispatch.
+    cold_start_ms: f64,
+    passes: Vec<PassReport>,
+}
+
+#[derive(Serialize)]
+struct PassReport {
+    name: &'static str,
+    ms: Option<Quartiles>,
+    ms_per_megapixel: Option<f64>,
+    bytes_per_pixel: u32,
+    /// Time of a copy of as many bytes over the pass's time.
+    share_of_copy_bandwidth: Option<f64>,
+}
+
+/// Textures of a frame as engines store them.
+struct Inputs {
+    color: Texture,
+    depth: Texture,
+    motion: Texture,
+    output: Texture,
+}
+
+/// The passes, in the order in which each frame times them.
+const PASSES: [(&str, u32); 3] = [("copy", 48), ("none", 16), ("wrs", 48)];
+
+/// The subcommand.
+pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
+    if args.frames < 30 || args.frames > 100_000 {
+        return Err(Failure::Input(format!("--frames {}: expected 30 to 100000", args.frames)));
+    }
+    let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
+    let clock = Clock::new(&gpu);
+    let inputs = Inputs::new(&gpu, args.size);
+    let mut lanes = vec![];
+    let watch = Stopwatch::start();
+    let mut cold_start_ms = 0.0;
+    for (name, _) in PASSES {
+        let method = if name == "none" { Method::None } else { Method::Wrs };
+        let settings = Settings { method, ..Settings::default() };
+        let context = ContextDesc::new(args.size);
+        let desc = GpuDesc { context, output_format: TextureFormat::Rgba16Float, settings };
+        lanes.push(Afterimage::new(&gpu.device, &desc)?);
+    }
+    let mut times: Vec<Vec<f64>> = vec![vec![]; PASSES.len()];
+    for index in 0..WARM_UP + args.frames {
+        for (i, post) in lanes.iter_mut().enumerate() {
+            let ms = time(&gpu, &clock, &inputs, post, PASSES[i].0 == "copy", index)?;
+            if index >= WARM_UP {
+                times[i].push(ms);
+            }
+        }
+        if index == 0 {
+            cold_start_ms = watch.wall_ms();
+        }
+    }
+    let report = summarise(args, &gpu, &clock, cold_start_ms, &times);
+    print(&report);
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&report).map_err(|e| Failure::Work(e.to_string()))?;
+        write_whole(path, |file| writeln!(file, "{text}")).map_err(|e| Failure::writing(path, e))?;
+    }
+    Ok(())
+}
+
+fn summarise(args: &BenchArgs, gpu: &Headless, clock: &Clock, cold_start_ms: f64, times: &[Vec<f64>]) -> Report {
+    let megapixels = f64::from(args.size[0]) * f64::from(args.size[1]) / 1e6;
+    let median = |i: usize| Quartiles::of(&times[i]).map(|q| q.median);
+    let passes = PASSES.iter().enumerate().map(|(i, &(name, bytes_per_pixel))| PassReport {
+        name,
+        ms: Quartiles::of(&times[i]),
+        ms_per_megapixel: median(i).map(|ms| ms / megapixels),
+        bytes_per_pixel,
+        share_of_copy_bandwidth: (|| {
+            let copy_of_as_many = median(0)? * f64::from(bytes_per_pixel) / f64::from(PASSES[0].1);
+            Some(copy_of_as_many / median(i)?)
+        })(),
+    });
+    Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        adapter: gpu.info.name.clone(),
+        driver: format!("{} {}", gpu.info.driver, gpu.info.driver_info),
+        backend: format!("{:?}", gpu.info.backend),
+        size: args.size,
+        frames: args.frames,
+        clock: clock.name(),
+        cold_start_ms,
+        passes: passes.collect(),
+    }
+}
+
+fn print(report: &Report) {
+    say!("{} ({}, {})", report.adapter, report.driver, report.backend);
+    say!("{}x{}, {} frames; times are {}", report.size[0], report.size[1], report.frames, report.clock);
+    say!("pass      median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
+    for pass in &report.passes {
+        let (Some(q), Some(per_mpx), Some(share)) = (pass.ms, pass.ms_per_megapixel, pass.share_of_copy_bandwidth)
+        else {
+            continue;
+        };
+        say!(
+            "{:6} {:>9.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
+            pass.name,
+            q.median,
+            q.p25,
+            q.p75,
+            per_mpx,
+            pass.bytes_per_pixel,
+            100.0 * share
+        );
+    }
+    say!("cold start, all passes: {:.0} ms", report.cold_start_ms);
+}
+
+/// Milliseconds of one pass of one frame.
+fn time(
+    gpu: &Headless,
+    clock: &Clock,
+    inputs: &Inputs,
+    post: &mut Afterimage,
+    copy: bool,
+    index: u64,
+) -> Result<f64, Failure> {
+    let size = post.desc().context.size_px;
+    let turn = index as f32 * 0.1;
+    let px = [0.5, 0.5].map(|v| v + 0.3 * if v > 0.0 { turn.sin() } else { turn.cos() });
+    let views = [ViewFrame {
+        geometry: ViewGeometry::flat(size, 70.0)?,
+        gaze: Gaze::At { px: [px[0] * size[0] as f32, px[1] * size[1] as f32] },
+        previous_from_current: None,
+    }];
+    let frame = Frame {
+        color: &inputs.color,
+        depth: Some(&inputs.depth),
+        motion: Some(&inputs.motion),
+        output: &inputs.output,
+        views: &views,
+        index,
+        reset: Reset::None,
+        timestamps: clock.timestamps(),
+    };
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let watch = Stopwatch::start();
+    if copy {
+        post.record_copy(&gpu.device, &mut encoder, &frame)?;
+    } else {
+        post.record(&gpu.device, &mut encoder, &frame)?;
+    }
+    clock.resolve(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait();
+    Ok(clock.read_ms(gpu, &watch))
+}
+
+/// The device's clock, or the process's.
+enum Clock {
+    Device { queries: wgpu::QuerySet, resolved: wgpu::Buffer, readback: wgpu::Buffer, period_ns: f64 },
+    Process,
+}
+
+impl Clock {
+    fn new(gpu: &Headless) -> Self {
+        if gpu.is_software() || !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+            return Self::Process;
+        }
+        let buffer = |usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timestamps"),
+                size: 16,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self::Device {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("timestamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            }),
+            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
+            readback: buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
+            period_ns: f64::from(gpu.queue.get_timestamp_period()),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Device { .. } => "the device's, by timestamp queries",
+            Self::Process => "CPU time of the process, recording and waiting included",
+        }
+    }
+
+    fn timestamps(&self) -> Option<Timestamps<'_>> {
+        match self {
+            Self::Device { queries, .. } => Some(Timestamps { queries, begin: 0, end: 1 }),
+            Self::Process => None,
+        }
+    }
+
+    fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Self::Device { queries, resolved, readback, .. } = self {
+            encoder.resolve_query_set(queries, 0..2, resolved, 0);
+            encoder.copy_buffer_to_buffer(resolved, 0, readback, 0, 16);
+        }
+    }
+
+    fn read_ms(&self, gpu: &Headless, watch: &Stopwatch) -> f64 {
+        let Self::Device { readback, period_ns, .. } = self else {
+            return watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
+        };
+        readback.map_async(wgpu::MapMode::Read, .., |_| ());
+        gpu.wait();
+        let ticks = {
+            let mapped = readback.slice(..).get_mapped_range().expect("the readback was mapped and waited for");
+            let at = |i: usize| u64::from_le_bytes(mapped[i * 8..(i + 1) * 8].try_into().expect("eight bytes"));
+            at(1).saturating_sub(at(0))
+        };
+        readback.unmap();
+        ticks as f64 * period_ns * 1e-6
+    }
+}
+
+impl Inputs {
+    /// Noise to look at, two depths, and vectors of a few pixels.
+    fn new(gpu: &Headless, size: [u32; 2]) -> Self {
+        let texture = |format, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("bench"),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let upload = |texture: &Texture, bytes: &[u8]| {
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(bytes.len() as u32 / size[1]),
+                rows_per_image: None,
+            };
+            gpu.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+        };
+        let pixels = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y]));
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let half = |v: f32| half_bits(v) as u16;
+        let inputs = Self {
+            color: texture(TextureFormat::Rgba16Float, read),
+            depth: texture(TextureFormat::R32Float, read),
+            motion: texture(TextureFormat::Rg16Float, read),
+            output: texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING),
+        };
+        let color: Vec<[u16; 4]> =
+            pixels().map(|[x, y]| [0, 1, 2, 3].map(|i| half(rng::unit_draw(rng::bits(x, y, i, 1))))).collect();
+        upload(&inputs.color, bytemuck::cast_slice(&color));
+        let depth: Vec<f32> = pixels().map(|[x, _]| if x / 64 % 2 == 0 { 3.0 } else { 12.0 }).collect();
+        upload(&inputs.depth, bytemuck::cast_slice(&depth));
+        let motion: Vec<[u16; 2]> =
+            pixels().map(|[x, _]| if x / 64 % 2 == 0 { [half(-3.0), half(1.0)] } else { [0, 0] }).collect();
+        upload(&inputs.motion, bytemuck::cast_slice(&motion));
+        inputs
+    }
+}
