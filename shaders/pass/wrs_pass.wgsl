@@ -73,37 +73,37 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     return disparity(textureLoad(depth_in, px, view, 0).x, map);
 }
 
-// How much the surface's disparity changes from pixel to pixel. Read only where the plain test fails: few pixels pay for the
-// four taps.
-fn slope_at(px: vec2<u32>, view: u32, center: f32) -> f32 {
-    var left = INVALID_DISPARITY;
-    var right = INVALID_DISPARITY;
-    var up = INVALID_DISPARITY;
-    var down = INVALID_DISPARITY;
-    if px.x > 0u {
-        left = disparity_at(px - vec2<u32>(1u, 0u), view);
+// depth::slope with its reader: how much the surface's disparity changes from pixel to pixel, where that is wanted. A loop, because
+// software Vulkan runs the body of an `if` for all pixels, but leaves a loop that no pixel wants after one round.
+fn slope_at(px: vec2<u32>, view: u32, center: f32, wanted: bool) -> f32 {
+    var total = 0.0;
+    var before = INVALID_DISPARITY;
+    let taps = select(0u, 4u, wanted);
+    for (var i = 0u; i < taps; i++) {
+        // Left, right, up, down.
+        let ahead = (i & 1u) == 1u;
+        let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), i < 2u);
+        let at = vec2<i32>(px) + select(-axis, axis, ahead);
+        var tap = INVALID_DISPARITY;
+        if all(at >= vec2<i32>(0)) && all(at < vec2<i32>(frame.size)) {
+            tap = disparity_at(vec2<u32>(at), view);
+        }
+        if ahead {
+            total += one_sided_slope(center, before, tap);
+        }
+        before = tap;
     }
-    if px.x + 1u < frame.size.x {
-        right = disparity_at(px + vec2<u32>(1u, 0u), view);
-    }
-    if px.y > 0u {
-        up = disparity_at(px - vec2<u32>(0u, 1u), view);
-    }
-    if px.y + 1u < frame.size.y {
-        down = disparity_at(px + vec2<u32>(0u, 1u), view);
-    }
-    return slope(center, left, right, up, down);
+    return total;
 }
 
 fn is_same_surface(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32, stored: f32) -> bool {
     let row = frame.views[view].depth_row;
     let stretch = row.x * ray.x + row.y * ray.y + row.z;
     let expected = previous_disparity(disparity_now, stretch, row.w);
-    if same_surface(expected, stored, frame.depth_relative, 0.0) {
-        return true;
-    }
-    let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now);
-    return same_surface(expected, stored, frame.depth_relative, slope_px);
+    let plain = same_surface(expected, stored, frame.depth_relative, 0.0);
+    // Few pixels pay for the four taps.
+    let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now, !plain);
+    return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }
 
 // The reservoir that a pixel continues, and whether it may.
