@@ -151,9 +151,10 @@ fn copy_only(px: vec2<u32>, view: u32, shown: vec3<f32>) {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let px = id.xy;
-    let view = id.z;
+    // From the workgroup, not the invocation: uniform, so that its constants are loaded once.
+    let view = group.z;
     if px.x >= frame.size.x || px.y >= frame.size.y {
         return;
     }
