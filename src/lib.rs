@@ -34,7 +34,7 @@
 //!     previous_from_current: None,
 //! }];
 //! post.record(&device, &mut encoder, &Frame {
-//!     color: &color, depth: None, motion: None, output: &output, views: &views, index, reset: Reset::None,
+//!     color: &color, depth: None, motion: None, output: &output, views: &views, index, reset: Reset::None, timestamps: None,
 //! })?;
 //! queue.submit([encoder.finish()]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,6 +1,6 @@
 //! What is fixed when a context is made, and what it asks of the device.
 
-use super::types::MAX_VIEWS;
+use super::MAX_VIEWS;
 use crate::error::{CreateError, SettingsError};
 use crate::frame::ContextDesc;
 use crate::settings::Settings;

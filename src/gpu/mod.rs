@@ -7,10 +7,14 @@ mod desc;
 mod history;
 mod input;
 mod pipeline;
+// Public for this package's own tests, which compose and validate every shader and compare struct layouts.
+#[doc(hidden)]
 pub mod shader;
+#[doc(hidden)]
 pub mod types;
 
 pub use desc::GpuDesc;
+pub use types::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{Reset, ViewFrame, check_size};
