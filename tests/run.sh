@@ -38,11 +38,9 @@ step "tests"
 cargo test --locked --all-features
 
 step "examples"
-for example in 01_smallest 04_stereo; do
-    cargo run --locked --quiet --example "$example"
-done
-for example in 02_moving_camera 03_scanpath 06_gpu_headless; do
-    cargo run --locked --quiet --features lab --example "$example"
+# With the features of the tests, so that nothing is compiled twice. 05 is a long experiment.
+for example in 01_smallest 02_moving_camera 03_scanpath 04_stereo 06_gpu_headless; do
+    cargo run --locked --quiet --all-features --example "$example"
 done
 
 step "documentation"
