@@ -5,7 +5,7 @@
 use afterimage::Settings;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::display::ViewGeometry;
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
 use afterimage::image::Image;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -22,8 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             gaze: Gaze::At { px: [gaze_x, 90.0] },
             previous_from_current: None,
         };
-        let view = CpuView { facts, color, depth: None, motion: None };
-        let frame = CpuFrame { views: &[view], index: index as u64, reset: Reset::None };
+        let views = [CpuView::new(facts, color)];
+        let frame = CpuFrame::new(&views, index as u64);
         post.process(&frame, &mut output, None)?;
     }
 

@@ -39,10 +39,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             gaze: Gaze::At { px: [160.0, 90.0] },
             previous_from_current: frame.previous_from_current,
         };
-        let view = CpuView { facts, color: &frame.color, depth: depth.as_ref(), motion: motion.as_ref() };
+        let view = CpuView { depth: depth.as_ref(), motion: motion.as_ref(), ..CpuView::new(facts, &frame.color) };
         // A cut at frame 20: nothing of the frames before is true any more.
         let reset = if index == 20 { Reset::All } else { Reset::None };
-        let stats = post.process(&CpuFrame { views: &[view], index, reset }, &mut output, None)?;
+        let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&[view], index) }, &mut output, None)?;
         let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
         println!(
             "frame {index:2}: history valid {:5.1} %, disoccluded {:4.1} %, from outside {:4.1} %, reset {:5.1} %",

@@ -5,7 +5,7 @@
 use afterimage::Settings;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::display::ViewGeometry;
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
 use afterimage::image::Image;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -24,9 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let target = glam::Vec3::new(offset_m, 0.0, 0.6);
             let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
             let facts = ViewFrame { geometry, gaze, previous_from_current: None };
-            views.push(CpuView { facts, color, depth: None, motion: None });
+            views.push(CpuView::new(facts, color));
         }
-        let frame = CpuFrame { views: &views, index, reset: Reset::None };
+        let frame = CpuFrame::new(&views, index);
         post.process(&frame, &mut output, None)?;
     }
     println!("left eye shows {:?}, right eye {:?}", output[0].at(128, 128), output[1].at(128, 128));

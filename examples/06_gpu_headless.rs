@@ -3,7 +3,7 @@
 //! `cargo run --features lab --example 06_gpu_headless` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 use afterimage::display::ViewGeometry;
-use afterimage::frame::{Gaze, Reset, ViewFrame};
+use afterimage::frame::{Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -45,20 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             previous_from_current: None,
         }];
         let mut encoder = device.create_command_encoder(&Default::default());
-        post.record(
-            &device,
-            &mut encoder,
-            &Frame {
-                color: &color,
-                depth: None,
-                motion: None,
-                output: &output,
-                views: &views,
-                index: index as u64,
-                reset: Reset::None,
-                timestamps: None,
-            },
-        )?;
+        post.record(&device, &mut encoder, &Frame::new(&color, &output, &views, index as u64))?;
         queue.submit([encoder.finish()]);
     }
 

@@ -118,6 +118,20 @@ pub enum Reset {
     All,
 }
 
+/// How bright this frame's numbers are against the previous frame's. Engines that multiply an exposure into the colours they
+/// hand over say so here, and history follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Exposure {
+    /// As bright: the same surface in the same light has the same numbers.
+    #[default]
+    Same,
+    /// This frame's exposure over the previous frame's.
+    Changed {
+        /// Above 0 and finite.
+        ratio: f32,
+    },
+}
+
 /// Facts that hold from creation on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContextDesc {

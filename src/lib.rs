@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use afterimage::display::ViewGeometry;
-//! use afterimage::frame::{Gaze, Reset, ViewFrame};
+//! use afterimage::frame::{Gaze, ViewFrame};
 //! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 //! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 //! # let texture = |usage| device.create_texture(&wgpu::TextureDescriptor {
@@ -33,9 +33,7 @@
 //!     gaze: Gaze::At { px: gaze_px },
 //!     previous_from_current: None,
 //! }];
-//! post.record(&device, &mut encoder, &Frame {
-//!     color: &color, depth: None, motion: None, output: &output, views: &views, index, reset: Reset::None, timestamps: None,
-//! })?;
+//! post.record(&device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
 //! queue.submit([encoder.finish()]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -57,7 +55,6 @@ pub mod convention;
 pub mod cpu;
 pub mod display;
 pub mod error;
-#[cfg(feature = "lab")]
 pub mod foveation;
 pub mod frame;
 #[cfg(feature = "gpu")]

@@ -1,6 +1,7 @@
 //! Tunables of the post-process, with units, ranges and what more and less does.
 
 use crate::error::SettingsError;
+use crate::foveation::Foveation;
 use crate::kernel::{acuity, reservoir, wrs};
 
 /// What the post-process does with history.
@@ -89,9 +90,8 @@ impl Default for DepthTest {
 pub struct Settings {
     /// What is done with history.
     pub method: Method,
-    /// Diameter of the full-rate region in degrees of visual angle, in \[0, 180\]: as the foveation has it. Candidates inside
-    /// have weight 1. Default 5.
-    pub fovea_deg: f32,
+    /// How the renderer foveates: where its frame is how coarse. Candidates inside the fovea have weight 1.
+    pub foveation: Foveation,
     /// Sampler.
     pub sampler: Sampler,
     /// How history is forgotten.
@@ -108,7 +108,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             method: Method::default(),
-            fovea_deg: 5.0,
+            foveation: Foveation::default(),
             sampler: Sampler::default(),
             bias: Bias::default(),
             gate: Some(Gate::default()),
@@ -124,7 +124,7 @@ impl Settings {
     /// # Errors
     /// Names the first setting outside its range.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        check("fovea_deg", self.fovea_deg, 0.0..=180.0, "degrees")?;
+        self.foveation.validate()?;
         if let Bias::Exponential { lambda } = self.bias {
             check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
         }
@@ -146,7 +146,7 @@ impl Settings {
 
     /// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
     pub(crate) fn inv_density_at_fovea(&self) -> f32 {
-        1.0 / acuity::cell_density(0.5 * self.fovea_deg)
+        1.0 / acuity::cell_density(0.5 * self.foveation.fovea_deg)
     }
 
     /// The kernel's form of the method's tunables.

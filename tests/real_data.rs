@@ -55,21 +55,9 @@ struct Outcome {
     flushed: f64,
 }
 
-const NONE: LaneKind = LaneKind::PostProcess(Settings { method: Method::None, ..DEFAULTS });
-const WRS: LaneKind = LaneKind::PostProcess(DEFAULTS);
-const DEFAULTS: Settings = Settings {
-    method: Method::Wrs,
-    fovea_deg: 5.0,
-    sampler: afterimage::settings::Sampler::AChao,
-    bias: afterimage::settings::Bias::Bernoulli,
-    gate: Some(afterimage::settings::Gate {
-        metric: afterimage::settings::GateMetric::DeltaE94,
-        divisor: 100.0,
-        offset: 0.0,
-    }),
-    depth_test: Some(afterimage::settings::DepthTest { relative: 0.02, slope_px: 1.0 }),
-    seed: 0,
-};
+fn lane(method: Method) -> LaneKind {
+    LaneKind::PostProcess(Settings { method, ..Settings::default() })
+}
 
 fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcome {
     let info = source.info().clone();
@@ -129,7 +117,8 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     let Some(path) = data("sequences/sponza_still") else {
         return;
     };
-    let outcome = play(open(&path).as_mut(), &Clip::default(), &[NONE, WRS, LaneKind::Oracle]);
+    let outcome =
+        play(open(&path).as_mut(), &Clip::default(), &[lane(Method::None), lane(Method::Wrs), LaneKind::Oracle]);
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");
     assert!(psnr(&outcome, 2) > psnr(&outcome, 1) && psnr(&outcome, 2) > psnr(&outcome, 0));
     assert!(retained(&outcome, 2) > 45.0, "the oracle shows what was seen");
@@ -148,7 +137,7 @@ fn the_oracle_agrees_with_an_independent_measurement() {
     };
     for (map, average, last) in [(GazeMap::Angle, 1.7, 2.7), (GazeMap::Fit, 2.2, 3.6)] {
         let clip = Clip { map, frames: 300, ..Clip::default() };
-        let outcome = play(open(&path).as_mut(), &clip, &[NONE, LaneKind::Oracle]);
+        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), LaneKind::Oracle]);
         let gains = [psnr(&outcome, 1) - psnr(&outcome, 0), outcome.last_psnr_db[1] - outcome.last_psnr_db[0]];
         println!("{map:?}: oracle {:+.2} dB on average, {:+.2} dB in the last frame", gains[0], gains[1]);
         assert!((gains[0] - average).abs() < 0.3 && (gains[1] - last).abs() < 0.3);
@@ -180,12 +169,12 @@ fn sponza_sequences_reproject_and_flush_as_they_should() {
             ..Clip::default()
         };
         println!("{name}");
-        let outcome = play(open(&path).as_mut(), &clip, &[NONE, WRS]);
+        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs)]);
         println!("flushed {:.3}", outcome.flushed);
         assert!(outcome.flushed > 0.0 && outcome.flushed < most_flushed);
         assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0));
         // The planted error: vectors of the wrong sign lead to other surfaces, which the depth test finds out.
-        let flipped = play(&mut Flipped(open(&path)), &clip, &[NONE, WRS]);
+        let flipped = play(&mut Flipped(open(&path)), &clip, &[lane(Method::None), lane(Method::Wrs)]);
         println!("flushed with vectors of the wrong sign {:.3}", flipped.flushed);
         assert!(flipped.flushed > 1.5 * outcome.flushed, "{name}: the sign of motion must matter");
     }
@@ -198,6 +187,6 @@ fn a_4k_page_is_read_with_a_recorded_eye() {
     };
     let clip =
         Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
-    let outcome = play(open(&path).as_mut(), &clip, &[NONE, WRS, LaneKind::Oracle]);
+    let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs), LaneKind::Oracle]);
     assert!(psnr(&outcome, 2) >= psnr(&outcome, 0));
 }

@@ -10,7 +10,7 @@ pub use history::History;
 pub use wrs_pass::PixelTrace;
 
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Reset, ViewFrame, check_size};
+use crate::frame::{ContextDesc, Exposure, Reset, ViewFrame, check_size};
 use crate::image::Image;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
@@ -28,6 +28,18 @@ pub struct CpuView<'a> {
     pub depth: Option<&'a Image<f32>>,
     /// Motion in the context's convention. `None`: nothing moves.
     pub motion: Option<&'a Image<[f32; 2]>>,
+    /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
+    /// reflections). `None`: 1 everywhere.
+    pub trust: Option<&'a Image<f32>>,
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it.
+    pub lod: Option<&'a Image<f32>>,
+}
+
+impl<'a> CpuView<'a> {
+    /// A view without optional inputs.
+    pub fn new(facts: ViewFrame, color: &'a Image<[f32; 3]>) -> Self {
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None }
+    }
 }
 
 /// One frame.
@@ -39,6 +51,15 @@ pub struct CpuFrame<'a> {
     pub index: u64,
     /// Whether the history still holds.
     pub reset: Reset,
+    /// How bright its numbers are against the previous frame's.
+    pub exposure: Exposure,
+}
+
+impl<'a> CpuFrame<'a> {
+    /// A frame that goes on from the previous one.
+    pub fn new(views: &'a [CpuView<'a>], index: u64) -> Self {
+        Self { views, index, reset: Reset::None, exposure: Exposure::Same }
+    }
 }
 
 /// Counts of one frame over all views.

@@ -88,7 +88,7 @@ pub(super) fn run(
             past,
             size: desc.size_px,
             params: settings.wrs_params(),
-            fovea_radius_deg: 0.5 * settings.fovea_deg,
+            fovea_radius_deg: 0.5 * settings.foveation.fovea_deg,
             inv_density_at_fovea: settings.inv_density_at_fovea(),
             gaze_ray: constants.gaze_ray,
             motion_scale: desc.motion.to_internal(desc.size_px),

@@ -1,28 +1,12 @@
 //! Gaussian blur that grows with eccentricity. Two one-dimensional passes, each with the width of the pixel it writes: exact
 //! where the width is constant, and close to it where it changes slowly.
 
-use super::Foveation;
 use crate::image::Image;
+use crate::kernel::foveate::blur_sigma_px;
 use glam::Vec3;
 
 /// Kernels are kept for widths in steps of this many pixels.
 const SIGMA_STEP_PX: f32 = 1.0 / 16.0;
-
-/// Level of detail of a blur that is 0 inside the fovea and whose standard deviation grows linearly from there, to
-/// `(rate_mid - 1) / 2` pixels at the middle region's edge, up to `(rate_far - 1) / 2`: `2^lod = 1 + 2 sigma`, so that block
-/// edges and blurs of one level look equally coarse.
-pub fn lod(foveation: &Foveation, e_deg: f32) -> f32 {
-    let (start, end) = (0.5 * foveation.fovea_deg, 0.5 * foveation.mid_deg);
-    let at_end = 0.5 * (foveation.rate_mid - 1) as f32;
-    let largest = 0.5 * (foveation.rate_far - 1) as f32;
-    let slope = at_end / (end - start).max(1e-3);
-    let sigma = (slope * (e_deg - start)).clamp(0.0, largest);
-    (1.0 + 2.0 * sigma).log2()
-}
-
-fn sigma_px(lod: f32) -> f32 {
-    0.5 * (lod.exp2() - 1.0)
-}
 
 /// Half kernels by width: weight of the centre, then of each pixel to a side. Each whole kernel sums to 1.
 fn kernels(max_sigma: f32) -> Vec<Vec<f32>> {
@@ -42,7 +26,7 @@ fn kernels(max_sigma: f32) -> Vec<Vec<f32>> {
 /// The frame blurred by the width that belongs to each pixel's level of detail. Borders are continued by their last pixel.
 pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
     let largest = lods.pixels().iter().copied().fold(0.0, f32::max);
-    let kernels = kernels(sigma_px(largest));
+    let kernels = kernels(blur_sigma_px(largest));
     let clean = full.map(|c| crate::kernel::scrub::color(Vec3::from(c)).0.to_array());
     let across = blur_axis(&clean, lods, &kernels, true);
     let mut blurred = blur_axis(&across, lods, &kernels, false);
@@ -57,7 +41,7 @@ pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
 fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, kernels: &[Vec<f32>], horizontal: bool) -> Image<[f32; 3]> {
     let last = if horizontal { image.width() } else { image.height() } as i32 - 1;
     Image::from_fn_parallel(image.size(), |[x, y]| {
-        let sigma = sigma_px(lods.at(x as usize, y as usize));
+        let sigma = blur_sigma_px(lods.at(x as usize, y as usize));
         let kernel = &kernels[((sigma / SIGMA_STEP_PX).round() as usize).min(kernels.len() - 1)];
         let center = if horizontal { x } else { y } as i32;
         let tap = |offset: i32| {

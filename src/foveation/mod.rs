@@ -1,16 +1,23 @@
-//! Foveation simulators: turn a full-rate frame into what a foveating renderer would have delivered.
+//! What the renderer's foveation does, and simulators of it.
 //!
-//! Two independent questions: **where** the frame is how coarse (a map of levels of detail by eccentricity) and **how** coarse
-//! looks (the filter). A level of detail `l` means blocks of 2^l pixels a side.
+//! Two independent questions: **where** the frame is how coarse (a level of detail by eccentricity) and **how** coarse looks (the
+//! filter). A level of detail `l` means blocks of 2^l pixels a side. The post-process is told both by [`Foveation`]; with the
+//! feature `lab` the same description turns a full-rate frame into what such a renderer would have delivered.
 
+#[cfg(feature = "lab")]
 mod block;
+#[cfg(feature = "lab")]
 mod gaussian;
+#[cfg(feature = "lab")]
 mod mip;
 
+#[cfg(feature = "lab")]
 pub use mip::Pyramid;
 
+#[cfg(feature = "lab")]
 use crate::display::ViewGeometry;
 use crate::error::SettingsError;
+#[cfg(feature = "lab")]
 use crate::image::Image;
 use crate::kernel::foveate;
 use crate::settings::check;
@@ -96,7 +103,13 @@ impl Foveation {
     pub fn lod(&self, e_deg: f32) -> f32 {
         match self.filter {
             Filter::Off => 0.0,
-            Filter::Gauss => gaussian::lod(self, e_deg),
+            Filter::Gauss => foveate::blur_lod(
+                e_deg,
+                0.5 * self.fovea_deg,
+                0.5 * self.mid_deg,
+                0.5 * (self.rate_mid - 1) as f32,
+                0.5 * (self.rate_far - 1) as f32,
+            ),
             Filter::Mip | Filter::Block => foveate::region_lod(
                 e_deg,
                 0.5 * self.fovea_deg,
@@ -108,6 +121,7 @@ impl Foveation {
         }
     }
 
+    #[cfg(feature = "lab")]
     /// Level of detail of every pixel, given their eccentricities for the same gaze.
     pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], ecc_deg: &Image<f32>) -> Image<f32> {
         if self.filter == Filter::Block {
@@ -116,6 +130,7 @@ impl Foveation {
         Image::from_fn_parallel(geometry.size_px(), |[x, y]| self.lod(ecc_deg.at(x as usize, y as usize)))
     }
 
+    #[cfg(feature = "lab")]
     /// The frame as it looks with the given level of detail at each pixel. Pixels of level 0 are copied bit for bit.
     pub fn render(&self, pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
         match self.filter {

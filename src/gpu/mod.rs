@@ -17,7 +17,7 @@ pub use desc::GpuDesc;
 pub use types::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
-use crate::frame::{Reset, ViewFrame, check_size};
+use crate::frame::{Exposure, Reset, ViewFrame, check_size};
 use crate::settings::{Method, Settings};
 use history::{History, array_view};
 use pipeline::{Pipelines, Variant};
@@ -38,6 +38,12 @@ pub struct Frame<'a> {
     pub depth: Option<&'a Texture>,
     /// Motion in the context's convention: `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves.
     pub motion: Option<&'a Texture>,
+    /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
+    /// reflections). Any float or normalised format. `None`: 1 everywhere.
+    pub trust: Option<&'a Texture>,
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels, any float format. `None`: as
+    /// [`Settings::foveation`] has it.
+    pub lod: Option<&'a Texture>,
     /// What the user will see: the context's output format, usage `STORAGE_BINDING`.
     pub output: &'a Texture,
     /// One entry a view.
@@ -46,9 +52,30 @@ pub struct Frame<'a> {
     pub index: u64,
     /// Whether the history still holds.
     pub reset: Reset,
+    /// How bright its numbers are against the previous frame's.
+    pub exposure: Exposure,
     /// Where the device writes when the pass begins and ends, if the caller wants to time it. Needs
     /// `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame that goes on from the previous one, without optional inputs.
+    pub fn new(color: &'a Texture, output: &'a Texture, views: &'a [ViewFrame], index: u64) -> Self {
+        Self {
+            color,
+            depth: None,
+            motion: None,
+            trust: None,
+            lod: None,
+            output,
+            views,
+            index,
+            reset: Reset::None,
+            exposure: Exposure::Same,
+            timestamps: None,
+        }
+    }
 }
 
 /// Two queries of a set of the caller's that the device writes its clock to.
@@ -244,7 +271,7 @@ impl Afterimage {
             size: self.desc.context.size_px,
             reset: u32::from(reset),
             frame_low: frame.index as u32,
-            fovea_radius_deg: 0.5 * settings.fovea_deg,
+            fovea_radius_deg: 0.5 * settings.foveation.fovea_deg,
             inv_density_at_fovea: settings.inv_density_at_fovea(),
             exponential_survival: params.exponential_survival,
             gate_offset: params.gate_offset,

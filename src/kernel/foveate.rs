@@ -25,3 +25,19 @@ pub fn region_lod(
 ) -> f32 {
     lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg) + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
 }
+
+/// Level of detail of a blur that is 0 up to `start_deg` and whose standard deviation grows linearly from there, to
+/// `sigma_at_end` pixels at `end_deg`, up to `largest_sigma`: `2^lod = 1 + 2 sigma`, so that block edges and blurs of one level
+/// look equally coarse.
+#[inline]
+pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest_sigma: f32) -> f32 {
+    let slope = sigma_at_end / (end_deg - start_deg).max(1e-3);
+    let sigma = (slope * (e_deg - start_deg)).clamp(0.0, largest_sigma);
+    (1.0 + 2.0 * sigma).log2()
+}
+
+/// Standard deviation in pixels of the blur of level of detail `lod`.
+#[inline]
+pub fn blur_sigma_px(lod: f32) -> f32 {
+    0.5 * (lod.exp2() - 1.0)
+}

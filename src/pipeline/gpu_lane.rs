@@ -134,14 +134,10 @@ impl GpuLane {
         let watch = Stopwatch::start();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let frame = Frame {
-            color: &self.color,
             depth: input.depth.map(|_| &self.depth),
             motion: input.motion.map(|_| &self.motion),
-            output: &self.output,
-            views: std::slice::from_ref(&input.facts),
-            index: input.index,
             reset: input.reset,
-            timestamps: None,
+            ..Frame::new(&self.color, &self.output, std::slice::from_ref(&input.facts), input.index)
         };
         self.post.record(&self.gpu.device, &mut encoder, &frame)?;
         self.gpu.queue.submit([encoder.finish()]);

@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// What a lane of the pipeline does with the foveated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LaneKind {
-    /// The post-process with these settings; their fovea is replaced by the foveation's.
+    /// The post-process with these settings; their foveation is replaced by the pipeline's.
     PostProcess(Settings),
     /// Every pixel at the best level of detail it was ever shown at: the upper bound of temporal reuse. Only right for stills.
     Oracle,
@@ -108,7 +108,7 @@ impl Pipeline {
             .map(|lane| match lane {
                 LaneKind::Oracle => Ok(Executor::Oracle { best: None }),
                 LaneKind::PostProcess(settings) => {
-                    let settings = Settings { fovea_deg: foveation.fovea_deg, ..*settings };
+                    let settings = Settings { foveation, ..*settings };
                     let desc = ContextDesc::new(geometry.size_px());
                     match backend {
                         Backend::Cpu => Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?))),
@@ -158,8 +158,10 @@ impl Pipeline {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: frame.previous_from_current,
         };
-        let view = CpuView { facts, color: &candidate, depth: frame.depth.as_ref(), motion: frame.motion.as_ref() };
-        let cpu_frame = CpuFrame { views: &[view], index, reset: if frame.cut { Reset::All } else { Reset::None } };
+        let view =
+            CpuView { depth: frame.depth.as_ref(), motion: frame.motion.as_ref(), ..CpuView::new(facts, &candidate) };
+        let reset = if frame.cut { Reset::All } else { Reset::None };
+        let cpu_frame = CpuFrame { reset, ..CpuFrame::new(std::slice::from_ref(&view), index) };
         let mut shown = vec![];
         for lane in &mut self.lanes {
             shown.push(match lane {
@@ -172,7 +174,7 @@ impl Pipeline {
                         depth: frame.depth.as_ref(),
                         motion: frame.motion.as_ref(),
                         index,
-                        reset: cpu_frame.reset,
+                        reset,
                     },
                 )?,
                 Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),

@@ -62,10 +62,10 @@ fn a_frame_that_is_refused_changes_nothing() {
     let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
     let facts = Input::still(right.clone()).view().facts;
     let bad = |view: CpuView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
-        let frame = CpuFrame { views: &[view], index: 3, reset: Reset::All };
+        let frame = CpuFrame { reset: Reset::All, ..CpuFrame::new(std::slice::from_ref(&view), 3) };
         mixed.process(&frame, out, None).unwrap_err()
     };
-    let view = CpuView { facts, color: &right, depth: None, motion: None };
+    let view = CpuView::new(facts, &right);
     let depth = Image::filled([3, 4], 1.0);
     let mut matrix = facts;
     matrix.previous_from_current = Some([[f32::NAN; 4]; 4]);

@@ -48,16 +48,9 @@ impl Input {
     }
 
     fn view(&self) -> CpuView<'_> {
-        CpuView {
-            facts: ViewFrame {
-                geometry: geometry(self.color.size()),
-                gaze: self.gaze,
-                previous_from_current: self.camera,
-            },
-            color: &self.color,
-            depth: self.depth.as_ref(),
-            motion: self.motion.as_ref(),
-        }
+        let geometry = geometry(self.color.size());
+        let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
+        CpuView { depth: self.depth.as_ref(), motion: self.motion.as_ref(), ..CpuView::new(facts, &self.color) }
     }
 }
 
@@ -83,7 +76,7 @@ fn step(
     let mut out = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
     let views: Vec<_> = inputs.iter().map(|i| i.view()).collect();
-    let stats = post.process(&CpuFrame { views: &views, index, reset }, &mut out, Some(&mut trace)).unwrap();
+    let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&views, index) }, &mut out, Some(&mut trace)).unwrap();
     (out, stats, trace)
 }
 

@@ -1,6 +1,7 @@
 //! Several views, lost gaze, settings.
 
 use super::*;
+use afterimage::foveation::Foveation;
 
 #[test]
 fn h27_stereo_views_never_read_each_other() {
@@ -64,9 +65,10 @@ fn h66_a_saccade_keeps_the_old_fovea() {
 #[test]
 fn settings_are_checked_and_named() {
     let base = Settings::default();
+    let fovea = |fovea_deg| Foveation { fovea_deg, ..Foveation::default() };
     for (settings, name) in [
-        (Settings { fovea_deg: -1.0, ..base }, "fovea_deg"),
-        (Settings { fovea_deg: f32::NAN, ..base }, "fovea_deg"),
+        (Settings { foveation: fovea(-1.0), ..base }, "fovea"),
+        (Settings { foveation: fovea(f32::NAN), ..base }, "fovea"),
         (Settings { bias: Bias::Exponential { lambda: -0.1 }, ..base }, "bias lambda"),
         (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
     ] {

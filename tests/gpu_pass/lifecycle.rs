@@ -141,16 +141,7 @@ fn good_bad_good_equals_good_good() {
     let wrong_output = texture(TextureFormat::Rgba16Float, write, SIZE);
     let facts = [frames[0].facts];
     let elsewhere = [ViewFrame { geometry: ViewGeometry::flat([9, 9], 70.0).unwrap(), ..facts[0] }];
-    let good = Frame {
-        color: &color,
-        depth: None,
-        motion: None,
-        output: &output,
-        views: &facts,
-        index: 7,
-        reset: Reset::All,
-        timestamps: None,
-    };
+    let good = Frame { reset: Reset::All, ..Frame::new(&color, &output, &facts, 7) };
     let bad = [
         Frame { color: &small, ..good },
         Frame { color: &unbound, ..good },
@@ -226,16 +217,7 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
         let (color, output) = textures.as_ref().unwrap();
         let geometry = ViewGeometry::flat(post.desc().context.size_px, 70.0).unwrap();
         let views = [ViewFrame { geometry, gaze: Gaze::Lost, previous_from_current: None }];
-        let frame = Frame {
-            color,
-            depth: None,
-            motion: None,
-            output,
-            views: &views,
-            index,
-            reset: Reset::None,
-            timestamps: None,
-        };
+        let frame = Frame::new(color, output, &views, index);
         let mut encoder = device.create_command_encoder(&Default::default());
         post.record(&device, &mut encoder, &frame).unwrap();
         queue.submit([encoder.finish()]);

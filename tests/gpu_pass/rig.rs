@@ -63,9 +63,9 @@ impl Rig {
         let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
         let cpu_views: Vec<_> = views
             .iter()
-            .map(|v| CpuView { facts: v.facts, color: &v.color, depth: v.depth.as_ref(), motion: v.motion.as_ref() })
+            .map(|v| CpuView { depth: v.depth.as_ref(), motion: v.motion.as_ref(), ..CpuView::new(v.facts, &v.color) })
             .collect();
-        let frame = CpuFrame { views: &cpu_views, index, reset };
+        let frame = CpuFrame { reset, ..CpuFrame::new(&cpu_views, index) };
         self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: self.cpu.history().words().to_vec() }, trace)
@@ -75,14 +75,10 @@ impl Rig {
         self.upload(views);
         let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
         let frame = Frame {
-            color: &self.color,
             depth: views[0].depth.is_some().then_some(&self.depth),
             motion: views[0].motion.is_some().then_some(&self.motion),
-            output: &self.output,
-            views: &facts,
-            index,
             reset,
-            timestamps: None,
+            ..Frame::new(&self.color, &self.output, &facts, index)
         };
         gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -98,14 +94,9 @@ impl Rig {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for (index, facts) in facts.iter().enumerate() {
             let frame = Frame {
-                color: &self.color,
                 depth: Some(&self.depth),
                 motion: Some(&self.motion),
-                output: &self.output,
-                views: std::slice::from_ref(facts),
-                index: index as u64,
-                reset: Reset::None,
-                timestamps: None,
+                ..Frame::new(&self.color, &self.output, std::slice::from_ref(facts), index as u64)
             };
             self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
         }

@@ -78,6 +78,7 @@ fn the_default_agrees_bit_for_bit() {
 #[test]
 fn every_variant_agrees_bit_for_bit() {
     let base = Settings::default();
+    let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
     let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0 };
     for settings in [
         Settings { gate: None, seed: 9, ..base },
@@ -87,8 +88,8 @@ fn every_variant_agrees_bit_for_bit() {
         Settings { sampler: Sampler::AEs, ..base },
         Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..base },
         Settings { depth_test: None, ..base },
-        Settings { fovea_deg: 0.0, ..base },
-        Settings { fovea_deg: 20.0, ..base },
+        Settings { foveation: fovea(0.0), ..base },
+        Settings { foveation: fovea(20.0), ..base },
     ] {
         println!("{settings:?}");
         agree("occluder", settings, |v| v);

@@ -4,7 +4,7 @@ use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
 use afterimage::display::ViewGeometry;
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc, Timestamps};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
@@ -190,14 +190,10 @@ fn time(
         previous_from_current: None,
     }];
     let frame = Frame {
-        color: &inputs.color,
         depth: Some(&inputs.depth),
         motion: Some(&inputs.motion),
-        output: &inputs.output,
-        views: &views,
-        index,
-        reset: Reset::None,
         timestamps: clock.timestamps(),
+        ..Frame::new(&inputs.color, &inputs.output, &views, index)
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
