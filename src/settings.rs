@@ -9,6 +9,10 @@ use crate::kernel::{acuity, reservoir, wrs};
 pub enum Method {
     /// Nothing: the foveated frame as it came, non-finite pixels made black.
     None,
+    /// Temporal antialiasing, which knows nothing of gaze: the rival.
+    Taa,
+    /// Scale-matched reservoir: the sharpest sample of each surface point, shown while it explains what the renderer delivers.
+    Smr,
     /// Weighted reservoirs (Cantory et al., MIG 2025).
     #[default]
     Wrs,

@@ -4,6 +4,9 @@
 //! the number of threads.
 
 mod history;
+mod reprojection;
+mod smr_pass;
+mod taa_pass;
 mod wrs_pass;
 
 pub use history::History;
@@ -103,6 +106,9 @@ pub struct CpuAfterimage {
     desc: ContextDesc,
     settings: Settings,
     history: History,
+    surface: [Vec<Vec<[u32; 2]>>; 2],
+    chain: Vec<smr_pass::Chain>,
+    surface_filled: bool,
 }
 
 impl CpuAfterimage {
@@ -114,7 +120,8 @@ impl CpuAfterimage {
         settings.validate()?;
         desc.validate()?;
         let history = History::new(desc.size_px, desc.view_count, settings.uses_keys());
-        Ok(Self { desc, settings, history })
+        let plane = vec![vec![[0; 2]; desc.size_px[0] as usize * desc.size_px[1] as usize]; desc.view_count as usize];
+        Ok(Self { desc, settings, history, surface: [plane.clone(), plane], chain: vec![Default::default(); desc.view_count as usize], surface_filled: false })
     }
 
     /// What it was made for.
@@ -203,6 +210,35 @@ impl CpuAfterimage {
             Method::None => {
                 self.history.forget();
                 Ok(pass_through(frame, output))
+            }
+            Method::Taa | Method::Smr => {
+                let reset = frame.reset == Reset::All || !self.surface_filled;
+                let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+                let taa = taa_pass::TaaParams { alpha: env("ALPHA", 0.1), gamma: env("GAMMA", 1.0) };
+                let d = crate::kernel::matched::SmrParams::default();
+                let p = crate::kernel::matched::SmrParams {
+                    quality_width: env("QW", d.quality_width), accumulate: env("ACC", d.accumulate),
+                    accumulate_tolerance: env("AF", d.accumulate_tolerance), relight_from: env("T0", d.relight_from),
+                    relight_contrast: env("KC", d.relight_contrast), gate_from: env("G0", d.gate_from), gate_to: env("G1", d.gate_to),
+                    gate_contrast: env("GK", d.gate_contrast) };
+                for (i, view) in frame.views.iter().enumerate() {
+                    let constants = view.facts.constants(None, &self.settings, i, frame.index);
+                    let [past, next] = &mut self.surface;
+                    let at = reprojection::Reprojection::new(&self.desc, view, constants.depth_row, self.settings.depth_test, &past[i], reset);
+                    if self.settings.method == Method::Taa {
+                        taa_pass::run(&at, view.color, &mut next[i], &mut output[i], &taa);
+                    } else {
+                        let own;
+                        let lods = match view.lod { Some(l) => l, None => {
+                            own = Image::from_fn_parallel(self.desc.size_px, |[x, y]| self.settings.foveation.lod(crate::kernel::acuity::eccentricity_deg(view.facts.geometry.ray([x as f32, y as f32]), constants.gaze_ray)));
+                            &own } };
+                        smr_pass::run(&at, view.color, lods, &self.chain[i], &mut next[i], &mut output[i], &p, self.settings.foveation.filter == crate::foveation::Filter::Block);
+                        self.chain[i] = smr_pass::Chain::build(self.desc.size_px, &next[i], self.settings.foveation.rate_far.ilog2() + 3);
+                    }
+                }
+                self.surface.swap(0, 1);
+                self.surface_filled = true;
+                Ok(FrameStats::default())
             }
             Method::Wrs => {
                 let stats = wrs_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);

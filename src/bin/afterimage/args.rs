@@ -77,6 +77,10 @@ impl FilterName {
 pub enum MethodName {
     /// The foveated frame alone
     None,
+    /// Temporal antialiasing of the foveated frame
+    Taa,
+    /// Scale-matched reservoir
+    Smr,
     /// Weighted reservoirs: A-Chao with Bernoulli bias
     Wrs,
     /// Best level of detail ever shown; stills only
@@ -88,6 +92,8 @@ impl MethodName {
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
+            Self::Taa => "taa",
+            Self::Smr => "smr",
             Self::Wrs => "wrs",
             Self::Oracle => "oracle",
         }

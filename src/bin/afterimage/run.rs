@@ -227,6 +227,8 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
         }
         let kind = match method {
             MethodName::None => LaneKind::PostProcess(args.wrs.settings(Method::None, args.seed)),
+            MethodName::Taa => LaneKind::PostProcess(args.wrs.settings(Method::Taa, args.seed)),
+            MethodName::Smr => LaneKind::PostProcess(args.wrs.settings(Method::Smr, args.seed)),
             MethodName::Wrs => LaneKind::PostProcess(args.wrs.settings(Method::Wrs, args.seed)),
             MethodName::Oracle if info.still => LaneKind::Oracle,
             MethodName::Oracle => {
