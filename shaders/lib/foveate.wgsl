@@ -1,7 +1,6 @@
 //#use approx
 // Twin of src/kernel/foveate.rs; constants are explained there.
 
-const LN_2: f32 = 0.693147180559945309417;
 const SHARPEST_BLUR_PX: f32 = 0.125;
 const SAMPLE_LEVEL_BIAS: u32 = 2u;
 
@@ -38,7 +37,7 @@ fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest
 
 // foveate::blur_sigma_px
 fn blur_sigma_px(lod: f32) -> f32 {
-    return 0.5 * (exp(lod * LN_2) - 1.0);
+    return 0.5 * (exp2(lod) - 1.0);
 }
 
 struct GaussTap {

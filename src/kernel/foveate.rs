@@ -3,7 +3,7 @@
 
 use super::approx;
 use glam::Vec3;
-use std::f32::consts::{LN_2, LOG2_E};
+use std::f32::consts::LOG2_E;
 
 /// Standard deviation in pixels below which a blur is none: the weight of the next pixel is e^-32, far below the last bit of
 /// any colour.
@@ -51,7 +51,7 @@ pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, lar
 /// Standard deviation in pixels of the blur of level of detail `lod` in \[0, 8\]. Error below 5e-7 times 2^lod.
 #[inline]
 pub fn blur_sigma_px(lod: f32) -> f32 {
-    0.5 * (approx::exp(lod * LN_2) - 1.0)
+    0.5 * (approx::exp2(lod) - 1.0)
 }
 
 /// One tap of a Gaussian whose centre has weight 1, and what the next one follows from.

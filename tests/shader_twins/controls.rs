@@ -86,6 +86,6 @@ fn a_gaussian_of_another_width_is_caught() {
     caught(foveation::PROBES, "gauss_center", "exp(-0.5 / (s * s))", "exp(-0.50001 / (s * s))");
     caught(foveation::PROBES, "gauss_next", "tap.ratio * tap.ratio_step,", "tap.ratio * tap.ratio,");
     caught(foveation::PROBES, "gauss_radius", "u32(3.0 * sigma_px) + 1u", "u32(3.0 * sigma_px)");
-    caught(foveation::PROBES, "blur_sigma_px", "0.5 * (exp(", "0.50000006 * (exp(");
+    caught(foveation::PROBES, "blur_sigma_px", "0.5 * (exp2(", "0.50000006 * (exp2(");
     caught(foveation::PROBES, "blur_lod", "1.0 + 2.0 * sigma", "1.0 + sigma");
 }

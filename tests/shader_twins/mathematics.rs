@@ -37,6 +37,18 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "exp2",
+        module: "approx",
+        words: [1, 1],
+        wgsl: "out_f(exp2(in_f(0u)));",
+        rust: |r, o| o.f(approx::exp2(r.f(0))),
+        rows: || {
+            let steps: Vec<f32> = (-127..=128).map(|n| n as f32 - 0.5).collect();
+            one("exp2", &[finite(), around(&[-126.0, 127.0]), around(&steps)].concat(), |d| range(d, -130.0, 130.0))
+                .random("exp2, any", |d, row| row.push(finite_bits(d)))
+        },
+    },
+    Probe {
         name: "ln",
         module: "approx",
         words: [1, 1],

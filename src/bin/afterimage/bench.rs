@@ -4,6 +4,9 @@ use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
 use afterimage::display::ViewGeometry;
+use afterimage::error::{CreateError, FrameError};
+use afterimage::foveation::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::foveation::{Filter, Foveation};
 use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc, Timestamps};
 use afterimage::kernel::pack::half_bits;
@@ -42,7 +45,7 @@ pub struct BenchArgs {
 /// What can be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process: none, wrs, and a copy of the same bytes
+    /// The post-process (none, wrs), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
     Post,
 }
 
@@ -80,8 +83,37 @@ struct Inputs {
     output: Texture,
 }
 
-/// The passes, in the order in which each frame times them.
-const PASSES: [(&str, u32); 3] = [("copy", 48), ("none", 16), ("wrs", 48)];
+/// The passes, in the order in which each frame times them, and the bytes a pixel that they read and write; those of the simulators
+/// are counted in their shaders' headers.
+const PASSES: [(&str, u32); 6] = [("copy", 48), ("none", 16), ("wrs", 48), ("mip", 27), ("gauss", 48), ("block", 25)];
+
+/// What a pass runs on.
+enum Lane {
+    Copy(Afterimage),
+    Post(Afterimage),
+    Foveation(GpuFoveation),
+}
+
+impl Lane {
+    fn new(gpu: &Headless, size: [u32; 2], name: &str) -> Result<Self, CreateError> {
+        let mut settings = Settings::default();
+        let desc =
+            |settings| GpuDesc { context: ContextDesc::new(size), output_format: TextureFormat::Rgba16Float, settings };
+        let filter = match name {
+            "copy" => return Ok(Self::Copy(Afterimage::new(&gpu.device, &desc(settings))?)),
+            "none" => {
+                settings.method = Method::None;
+                return Ok(Self::Post(Afterimage::new(&gpu.device, &desc(settings))?));
+            }
+            "wrs" => return Ok(Self::Post(Afterimage::new(&gpu.device, &desc(settings))?)),
+            "mip" => Filter::Mip,
+            "gauss" => Filter::Gauss,
+            _ => Filter::Block,
+        };
+        settings.foveation = Foveation { filter, ..Foveation::default() };
+        Ok(Self::Foveation(GpuFoveation::new(&gpu.device, &desc(settings))?))
+    }
+}
 
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
@@ -95,16 +127,12 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     let watch = Stopwatch::start();
     let mut cold_start_ms = 0.0;
     for (name, _) in PASSES {
-        let method = if name == "none" { Method::None } else { Method::Wrs };
-        let settings = Settings { method, ..Settings::default() };
-        let context = ContextDesc::new(args.size);
-        let desc = GpuDesc { context, output_format: TextureFormat::Rgba16Float, settings };
-        lanes.push(Afterimage::new(&gpu.device, &desc)?);
+        lanes.push(Lane::new(&gpu, args.size, name)?);
     }
     let mut times: Vec<Vec<f64>> = vec![vec![]; PASSES.len()];
     for index in 0..WARM_UP + args.frames {
-        for (i, post) in lanes.iter_mut().enumerate() {
-            let ms = time(&gpu, &clock, &inputs, post, PASSES[i].0 == "copy", index)?;
+        for (i, lane) in lanes.iter_mut().enumerate() {
+            let ms = time(&gpu, &clock, &inputs, lane, args.size, index)?;
             if index >= WARM_UP {
                 times[i].push(ms);
             }
@@ -177,11 +205,10 @@ fn time(
     gpu: &Headless,
     clock: &Clock,
     inputs: &Inputs,
-    post: &mut Afterimage,
-    copy: bool,
+    lane: &mut Lane,
+    size: [u32; 2],
     index: u64,
 ) -> Result<f64, Failure> {
-    let size = post.desc().context.size_px;
     let turn = index as f32 * 0.1;
     let px = [0.5, 0.5].map(|v| v + 0.3 * if v > 0.0 { turn.sin() } else { turn.cos() });
     let views = [ViewFrame {
@@ -197,15 +224,30 @@ fn time(
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
-    if copy {
-        post.record_copy(&gpu.device, &mut encoder, &frame)?;
-    } else {
-        post.record(&gpu.device, &mut encoder, &frame)?;
-    }
+    record(gpu, &mut encoder, lane, &frame)?;
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
     Ok(clock.read_ms(gpu, &watch))
+}
+
+fn record(
+    gpu: &Headless,
+    encoder: &mut wgpu::CommandEncoder,
+    lane: &mut Lane,
+    frame: &Frame<'_>,
+) -> Result<(), FrameError> {
+    match lane {
+        Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame),
+        Lane::Post(post) => post.record(&gpu.device, encoder, frame),
+        Lane::Foveation(foveation) => {
+            let foveated = FoveationFrame {
+                timestamps: frame.timestamps,
+                ..FoveationFrame::new(frame.color, frame.output, frame.views)
+            };
+            foveation.record(&gpu.device, encoder, &foveated)
+        }
+    }
 }
 
 /// The device's clock, or the process's.
