@@ -7,7 +7,7 @@ use afterimage::error::{CreateError, FrameError};
 use afterimage::foveation::gpu::{FoveationFrame, GpuFoveation};
 use afterimage::foveation::{Filter, Foveation};
 use afterimage::frame::Gaze;
-use afterimage::gpu::GpuDesc;
+use afterimage::gpu::{GpuDesc, Timestamps, shader};
 use afterimage::kernel::pack::half_bits;
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -125,4 +125,45 @@ fn what_does_not_fit_is_refused_and_nothing_recorded() {
         assert!(message.contains(words), "{message}");
     }
     post.record(&device, &mut encoder, &good).unwrap();
+}
+
+#[test]
+fn the_device_times_all_passes_of_a_filter() {
+    let Some(adapter) = gpu::adapter() else { return };
+    if !adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        eprintln!("SKIPPED: the adapter has no timestamps");
+        return;
+    }
+    let request = wgpu::DeviceDescriptor {
+        required_features: wgpu::Features::TIMESTAMP_QUERY,
+        ..wgpu::DeviceDescriptor::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
+    let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
+    let mut rig = Rig::with_shaders(device, queue, &desc, |name| shader::compose(name).source);
+    let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
+        label: None,
+        ty: wgpu::QueryType::Timestamp,
+        count: 2,
+    });
+    let buffer = |usage| {
+        rig.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false })
+    };
+    let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+    let readback = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+    let scene = Scene::mono(nasty([640, 360], "timed"), [0.0, 0.0]);
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    let frame = FoveationFrame {
+        timestamps: Some(Timestamps { queries: &queries, begin: 0, end: 1 }),
+        ..FoveationFrame::new(&rig.full, &rig.output, &scene.views)
+    };
+    rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
+    encoder.resolve_query_set(&queries, 0..2, &resolved, 0);
+    encoder.copy_buffer_to_buffer(&resolved, 0, &readback, 0, 16);
+    rig.queue.submit([encoder.finish()]);
+    readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+    rig.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let ticks: Vec<u64> = bytemuck::cast_slice(&readback.get_mapped_range(..).unwrap()).to_vec();
+    println!("{} ticks of {} ns", ticks[1] - ticks[0], rig.queue.get_timestamp_period());
+    assert!(ticks[0] > 0 && ticks[1] > ticks[0]);
 }
