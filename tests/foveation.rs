@@ -6,6 +6,7 @@ mod common;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::{Filter, Foveation, Pyramid};
 use afterimage::image::Image;
+use afterimage::kernel::foveate;
 use approx::assert_abs_diff_eq;
 use common::Draws;
 use proptest::prelude::*;
@@ -145,6 +146,56 @@ fn h71_the_image_has_no_seam_at_the_rings() {
 }
 
 #[test]
+fn blurs_hold_their_stated_accuracy() {
+    let (mut lod_error, mut sigma_error, mut tap_error) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for i in 0..=20_000 {
+        let sigma = i as f32 * (127.5 / 20_000.0);
+        // One pixel a degree from 0 on: the eccentricity is the width.
+        let lod = f64::from(foveate::blur_lod(sigma, 0.0, 1.0, 1.0, 127.5));
+        let exact = (1.0 + 2.0 * f64::from(sigma)).log2();
+        lod_error = lod_error.max((lod - exact).abs());
+        let lod = i as f32 * (8.0 / 20_000.0);
+        let scale = f64::from(lod).exp2();
+        let error = f64::from(foveate::blur_sigma_px(lod)) - 0.5 * (scale - 1.0);
+        sigma_error = sigma_error.max(error.abs() / scale);
+    }
+    for i in 0..400 {
+        let sigma = 0.125 * 1000.0_f32.powf(i as f32 / 399.0);
+        let mut tap = foveate::gauss_center(sigma);
+        for d in 1..=foveate::gauss_radius(sigma) {
+            tap = foveate::gauss_next(tap);
+            let x = f64::from(d) / f64::from(sigma);
+            let error = (f64::from(tap.weight) - (-0.5 * x * x).exp()).abs();
+            tap_error = tap_error.max(error / (1.0 + f64::from(sigma * sigma)));
+        }
+    }
+    println!("errors: lod {lod_error:.1e}, sigma {sigma_error:.1e} of 2^lod, tap {tap_error:.1e} (1 + sigma^2)");
+    assert!(lod_error < 1e-6 && sigma_error < 5e-7 && tap_error < 1e-7);
+    assert_eq!((foveate::gauss_radius(0.0), foveate::gauss_radius(1.0), foveate::gauss_radius(7.5)), (0, 4, 23));
+}
+
+#[test]
+fn a_blurred_point_is_a_gaussian() {
+    // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard deviations.
+    let mut image = Image::filled([91, 91], [0.0; 3]);
+    image.pixels_mut()[45 * 91 + 45] = [1000.0, 100.0, 1.0];
+    let foveation = Foveation { filter: Filter::Gauss, ..Foveation::default() };
+    let out = foveate(&foveation, &image, [-1e5, 0.0]);
+    let sigma = 7.5_f64;
+    let radius = foveate::gauss_radius(sigma as f32) as i32;
+    let weight = |d: i32| if d.abs() <= radius { (-0.5 * f64::from(d * d) / (sigma * sigma)).exp() } else { 0.0 };
+    let total: f64 = (-radius..=radius).map(weight).sum();
+    for y in 0..91 {
+        for x in 0..91 {
+            let exact = weight(x - 45) * weight(y - 45) / (total * total);
+            for (v, peak) in out.at(x as usize, y as usize).iter().zip([1000.0, 100.0, 1.0]) {
+                assert_abs_diff_eq!(f64::from(*v) / peak, exact, epsilon = 1e-7);
+            }
+        }
+    }
+}
+
+#[test]
 fn blocks_are_aligned_nested_and_constant() {
     let image = noise([320, 180], "blocks");
     let foveation = Foveation { filter: Filter::Block, ..Foveation::default() };
@@ -217,6 +268,19 @@ fn a_bad_pixel_does_not_spread() {
         let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [0.0, 0.0]);
         for (i, c) in out.pixels().iter().enumerate() {
             assert!(c.iter().all(|v| v.is_finite()) || i == 20 * 64 + 33, "{filter:?}");
+        }
+    }
+    // Where the frame is coarse, wherever the eye looks, the pixel itself is black or blurred, too.
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        for x in 0..64 {
+            let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+            let geometry = ViewGeometry::flat([64, 64], 70.0).unwrap();
+            let gaze = [x as f32, 0.0];
+            let lods = foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze));
+            let out = foveate(&foveation, &image, gaze);
+            for (c, lod) in out.pixels().iter().zip(lods.pixels()) {
+                assert!(c.iter().all(|v| v.is_finite()) || *lod == 0.0, "{filter:?}");
+            }
         }
     }
 }

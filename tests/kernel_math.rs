@@ -72,7 +72,7 @@ fn h38_cbrt_is_within_4_ulp_and_exact_at_0_and_1() {
 }
 
 #[test]
-fn exp_and_ln_hold_their_stated_accuracy() {
+fn exp_exp2_and_ln_hold_their_stated_accuracy() {
     let worst_exp = (-870_000..880_000)
         .map(|i| i as f32 * 1e-4)
         .map(|x| (f64::from(approx::exp(x)) / f64::from(x).exp() - 1.0).abs())
@@ -84,9 +84,14 @@ fn exp_and_ln_hold_their_stated_accuracy() {
             (f64::from(approx::ln(x)) - exact).abs() / exact.abs().max(0.5)
         })
         .fold(0.0, f64::max);
-    println!("exp: {worst_exp:.2e} relative, ln: {worst_ln:.2e}");
-    assert!(worst_exp < 2e-7 && worst_ln < 2e-7);
+    let worst_exp2 = (-1_260_000..1_270_000)
+        .map(|i| i as f32 * 1e-4)
+        .map(|x| (f64::from(approx::exp2(x)) / f64::from(x).exp2() - 1.0).abs())
+        .fold(0.0, f64::max);
+    println!("exp: {worst_exp:.2e} relative, exp2: {worst_exp2:.2e} relative, ln: {worst_ln:.2e}");
+    assert!(worst_exp < 2e-7 && worst_exp2 < 2e-7 && worst_ln < 2e-7);
     assert_eq!(approx::exp(0.0), 1.0);
+    assert!((-126..=127).all(|n| approx::exp2(n as f32) == 2.0_f32.powi(n)));
     assert_eq!(approx::ln(1.0), 0.0);
 }
 

@@ -290,10 +290,16 @@ fn bench_times_every_pass_against_the_copy() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report = read_json(Path::new(&json));
     let passes = report["passes"].as_array().unwrap();
-    assert_eq!(passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(), ["copy", "none", "wrs"]);
+    assert_eq!(
+        passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["copy", "none", "wrs", "mip", "gauss", "block"]
+    );
     for pass in passes {
         assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
-        assert!(pass["bytes_per_pixel"].as_u64().unwrap() <= 48);
+        assert!((1..=48).contains(&pass["bytes_per_pixel"].as_u64().unwrap()));
+        assert!(
+            pass["ms_per_megapixel"].as_f64().unwrap() > 0.0 && pass["share_of_copy_bandwidth"].as_f64().unwrap() > 0.0
+        );
     }
     assert!(!report["adapter"].as_str().unwrap().is_empty() && report["cold_start_ms"].as_f64().unwrap() > 0.0);
     refuses(&["bench", "post", "--frames", "3"], &["30"]);

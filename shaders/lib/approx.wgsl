@@ -41,6 +41,17 @@ fn exp(exponent: f32) -> f32 {
     return ((p * r + 1.0) * r + 1.0) * scale;
 }
 
+// approx::exp2: 2^n times a polynomial of the remainder.
+fn exp2(exponent: f32) -> f32 {
+    let x = clamp(exponent, -126.0, 127.0);
+    let n = floor(x + 0.5);
+    let r = x - n;
+    let p = ((((1.5353362e-4 * r + 1.3398874e-3) * r + 9.618437e-3) * r + 5.5503325e-2) * r + 2.4022648e-1) * r
+        + 6.931472e-1;
+    let scale = bitcast<f32>(u32(i32(n) + 127) << 23u);
+    return (p * r + 1.0) * scale;
+}
+
 // approx::ln: exponent and a polynomial of the mantissa.
 fn ln(x: f32) -> f32 {
     let bits = bitcast<u32>(x);

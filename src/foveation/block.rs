@@ -4,10 +4,8 @@
 use super::{Foveation, Pyramid};
 use crate::display::ViewGeometry;
 use crate::image::Image;
-
-/// Textures are filtered for the shading rate, but not quite: the sample of a block of level l sees level l - 2, as a renderer's
-/// anisotropic filter with its usual bias does. What remains is aliasing, which is the point of this simulator.
-const SAMPLE_LEVEL_BIAS: usize = 2;
+use crate::kernel::{foveate, scrub};
+use glam::Vec3;
 
 /// Level of the coarsest aligned block around each pixel whose centre is far enough out; whole numbers.
 pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
@@ -15,9 +13,9 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
     let coarsest = foveation.max_level();
     let wants: Vec<Image<bool>> = (1..=coarsest)
         .map(|level| {
-            let blocks = size.map(|s| s.div_ceil(1 << level));
+            let blocks = size.map(|s| foveate::level_len(s, level));
             Image::from_fn_parallel(blocks, |block| {
-                let center = block_center(block, level, size);
+                let center = [0, 1].map(|i| foveate::block_center_px(block[i], level, size[i]));
                 foveation.lod(geometry.eccentricity_deg(center, gaze_px)) >= level as f32
             })
         })
@@ -28,24 +26,16 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
     })
 }
 
-/// Centre of a block in pixels, kept inside the image for blocks that its border cuts.
-fn block_center(block: [u32; 2], level: u32, size: [u32; 2]) -> [f32; 2] {
-    let edge = (1_u32 << level) as f32;
-    [0, 1].map(|i| ((block[i] as f32 + 0.5) * edge - 0.5).min((size[i] - 1) as f32))
-}
-
-/// Every pixel shows the sample of its block.
+/// Every pixel shows the sample of its block; non-finite samples are black, so that one bad pixel does not fill a block.
 pub fn render(pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
     let size = lods.size();
-    Image::from_fn_parallel(size, |[x, y]| {
-        let level = lods.at(x as usize, y as usize) as u32;
+    Image::from_fn_parallel(size, |px| {
+        let level = lods.at(px[0] as usize, px[1] as usize) as u32;
         if level == 0 {
-            return pyramid.level(0).at(x as usize, y as usize);
+            return pyramid.level(0).at(px[0] as usize, px[1] as usize);
         }
-        let center = block_center([x >> level, y >> level], level, size);
-        let source = (level as usize).saturating_sub(SAMPLE_LEVEL_BIAS);
-        let image = pyramid.level(source);
-        let [tx, ty] = center.map(|c| (c as usize) >> source);
-        image.at(tx.min(image.width() - 1), ty.min(image.height() - 1))
+        let [x, y] = [0, 1].map(|i| foveate::block_sample(px[i] >> level, level, size[i]) as usize);
+        let source = pyramid.level(foveate::block_sample_level(level) as usize);
+        scrub::color(Vec3::from(source.at(x, y))).0.to_array()
     })
 }

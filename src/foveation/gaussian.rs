@@ -2,56 +2,38 @@
 //! where the width is constant, and close to it where it changes slowly.
 
 use crate::image::Image;
-use crate::kernel::foveate::blur_sigma_px;
+use crate::kernel::{foveate, scrub};
 use glam::Vec3;
 
-/// Kernels are kept for widths in steps of this many pixels.
-const SIGMA_STEP_PX: f32 = 1.0 / 16.0;
-
-/// Half kernels by width: weight of the centre, then of each pixel to a side. Each whole kernel sums to 1.
-fn kernels(max_sigma: f32) -> Vec<Vec<f32>> {
-    let count = (max_sigma / SIGMA_STEP_PX).round() as usize + 1;
-    (0..count)
-        .map(|i| {
-            let sigma = (i as f32 * SIGMA_STEP_PX).max(1e-3);
-            let radius = (3.0 * sigma).ceil() as i32;
-            let mut weights: Vec<f32> = (0..=radius).map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp()).collect();
-            let sum = 2.0 * weights.iter().sum::<f32>() - weights[0];
-            weights.iter_mut().for_each(|w| *w /= sum);
-            weights
-        })
-        .collect()
-}
-
-/// The frame blurred by the width that belongs to each pixel's level of detail. Borders are continued by their last pixel.
+/// The frame blurred by the width that belongs to each pixel's level of detail. Borders are continued by their last pixel; pixels of
+/// level 0 are copied bit for bit, and others take non-finite ones for black.
 pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
-    let largest = lods.pixels().iter().copied().fold(0.0, f32::max);
-    let kernels = kernels(blur_sigma_px(largest));
-    let clean = full.map(|c| crate::kernel::scrub::color(Vec3::from(c)).0.to_array());
-    let across = blur_axis(&clean, lods, &kernels, true);
-    let mut blurred = blur_axis(&across, lods, &kernels, false);
-    for ((out, &lod), &sharp) in blurred.pixels_mut().iter_mut().zip(lods.pixels()).zip(full.pixels()) {
-        if lod <= 0.0 {
-            *out = sharp;
-        }
-    }
-    blurred
+    blur_axis(&blur_axis(full, lods, 0), lods, 1)
 }
 
-fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, kernels: &[Vec<f32>], horizontal: bool) -> Image<[f32; 3]> {
-    let last = if horizontal { image.width() } else { image.height() } as i32 - 1;
-    Image::from_fn_parallel(image.size(), |[x, y]| {
-        let sigma = blur_sigma_px(lods.at(x as usize, y as usize));
-        let kernel = &kernels[((sigma / SIGMA_STEP_PX).round() as usize).min(kernels.len() - 1)];
-        let center = if horizontal { x } else { y } as i32;
-        let tap = |offset: i32| {
-            let at = (center + offset).clamp(0, last) as usize;
-            Vec3::from(if horizontal { image.at(at, y as usize) } else { image.at(x as usize, at) })
-        };
-        let mut sum = tap(0) * kernel[0];
-        for (d, &w) in kernel.iter().enumerate().skip(1) {
-            sum += (tap(d as i32) + tap(-(d as i32))) * w;
+/// One pass, along x (0) or y (1).
+fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, axis: usize) -> Image<[f32; 3]> {
+    let last = i64::from(image.size()[axis]) - 1;
+    Image::from_fn_parallel(image.size(), |px| {
+        let [x, y] = px.map(|v| v as usize);
+        let lod = lods.at(x, y);
+        if lod <= 0.0 {
+            return image.at(x, y);
         }
-        sum.to_array()
+        let tap = |offset: i64| {
+            let mut at = [x, y];
+            at[axis] = (i64::from(px[axis]) + offset).clamp(0, last) as usize;
+            scrub::color(Vec3::from(image.at(at[0], at[1]))).0
+        };
+        let sigma_px = foveate::blur_sigma_px(lod);
+        let mut gauss = foveate::gauss_center(sigma_px);
+        let mut sum = tap(0);
+        let mut side = 0.0;
+        for d in 1..=i64::from(foveate::gauss_radius(sigma_px)) {
+            gauss = foveate::gauss_next(gauss);
+            side += gauss.weight;
+            sum += (tap(-d) + tap(d)) * gauss.weight;
+        }
+        (sum / (1.0 + 2.0 * side)).to_array()
     })
 }

@@ -1,8 +1,8 @@
 //! Box mip levels in linear light, right for odd sizes, and their bilinear and trilinear reading.
 
 use crate::image::Image;
+use crate::kernel::{foveate, scrub};
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// A full-rate frame and its coarser levels. Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to
 /// `(i + 1) * 2^l - 1`, as far as they exist.
@@ -17,7 +17,7 @@ impl Pyramid {
     pub fn new(full: Image<[f32; 3]>, max_level: u32) -> Self {
         let mut levels = vec![full];
         for _ in 0..max_level {
-            let next = halve(&levels[levels.len() - 1], levels.len() == 1);
+            let next = halve(&levels[levels.len() - 1]);
             levels.push(next);
         }
         Self { levels }
@@ -34,64 +34,47 @@ impl Pyramid {
     /// Bilinear reading of `level` at full-rate position `px` (pixel centres are integers), clamped at the borders.
     pub fn bilinear(&self, px: [f32; 2], level: usize) -> Vec3 {
         let image = &self.levels[level];
-        let scale = 1.0 / (1_u32 << level) as f32;
-        let [x, y] = px.map(|v| (v + 0.5) * scale - 0.5);
-        let (x0, fx) = split(x, image.width());
-        let (y0, fy) = split(y, image.height());
-        let x1 = (x0 + 1).min(image.width() - 1);
-        let y1 = (y0 + 1).min(image.height() - 1);
-        let at = |x, y| Vec3::from(image.at(x, y));
-        let top = mix(at(x0, y0), at(x1, y0), fx);
-        let bottom = mix(at(x0, y1), at(x1, y1), fx);
-        mix(top, bottom, fy)
+        let axis = |i: usize| {
+            let len = image.size()[i];
+            let (near, fraction) = foveate::split(foveate::level_coordinate(px[i], level as u32), len);
+            (near as usize, (near + 1).min(len - 1) as usize, fraction)
+        };
+        let ((x0, x1, fx), (y0, y1, fy)) = (axis(0), axis(1));
+        let row = |y| [Vec3::from(image.at(x0, y)), Vec3::from(image.at(x1, y))];
+        foveate::bilinear(row(y0), row(y1), [fx, fy])
     }
 
-    /// Linear blend of the two levels around `lod`, each read bilinearly. Whole levels are returned without arithmetic on the
-    /// other one, level 0 bit for bit.
+    /// Linear blend of the two levels around `lod`, each read bilinearly. Level 0 is returned bit for bit; blended with level 1, its
+    /// non-finite pixels count as black.
     pub fn trilinear(&self, px: [f32; 2], lod: f32) -> [f32; 3] {
-        let lod = lod.clamp(0.0, (self.levels.len() - 1) as f32);
-        let level = lod.floor();
-        let fraction = lod - level;
+        let (level, fraction) = foveate::split(lod, self.levels.len() as u32);
         let level = level as usize;
         let fine = if level == 0 {
-            Vec3::from(self.levels[0].at(px[0] as usize, px[1] as usize))
+            let full = self.levels[0].at(px[0] as usize, px[1] as usize);
+            if fraction == 0.0 {
+                return full;
+            }
+            scrub::color(Vec3::from(full)).0
         } else {
             self.bilinear(px, level)
         };
         if fraction == 0.0 {
             return fine.to_array();
         }
-        mix(fine, self.bilinear(px, level + 1), fraction).to_array()
+        foveate::blend(fine, self.bilinear(px, level + 1), fraction).to_array()
     }
 }
 
-/// Texel index and fraction of a continuous coordinate, clamped to the image.
-fn split(v: f32, len: usize) -> (usize, f32) {
-    let v = v.clamp(0.0, (len - 1) as f32);
-    let i = v.floor();
-    (i as usize, v - i)
-}
-
-fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
-    a + (b - a) * t
-}
-
-/// The next level: means of 2x2 texels; at odd borders means of the texels that exist.
-fn halve(image: &Image<[f32; 3]>, scrub: bool) -> Image<[f32; 3]> {
-    let size = image.size().map(|s| s.div_ceil(2));
-    let mut half = Image::filled(size, [0.0; 3]);
-    let texel = |x: usize, y: usize| {
-        let c = Vec3::from(image.at(x, y));
-        if scrub { crate::kernel::scrub::color(c).0 } else { c }
+/// The next level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which leaves the mean of those
+/// that exist.
+fn halve(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+    let size = image.size();
+    let texel = |x: u32, y: u32| {
+        let at = image.at(x.min(size[0] - 1) as usize, y.min(size[1] - 1) as usize);
+        scrub::color(Vec3::from(at)).0
     };
-    half.pixels_mut().par_chunks_mut(size[0].max(1) as usize).enumerate().for_each(|(y, row)| {
-        let (y0, y1) = (2 * y, (2 * y + 1).min(image.height() - 1));
-        for (x, out) in row.iter_mut().enumerate() {
-            // A missing texel is replaced by its neighbour, which leaves the mean of those that exist.
-            let (x0, x1) = (2 * x, (2 * x + 1).min(image.width() - 1));
-            let sum = texel(x0, y0) + texel(x1, y0) + texel(x0, y1) + texel(x1, y1);
-            *out = (sum * 0.25).to_array();
-        }
-    });
-    half
+    Image::from_fn_parallel(size.map(|s| foveate::level_len(s, 1)), |half| {
+        let [x, y] = half.map(|v| 2 * v);
+        foveate::mean_of_four(texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1)).to_array()
+    })
 }

@@ -9,6 +9,8 @@ mod block;
 #[cfg(feature = "lab")]
 mod gaussian;
 #[cfg(feature = "lab")]
+pub mod gpu;
+#[cfg(feature = "lab")]
 mod mip;
 
 #[cfg(feature = "lab")]
@@ -99,25 +101,41 @@ impl Foveation {
         self.rate_far.ilog2()
     }
 
+    fn fovea_radius_deg(&self) -> f32 {
+        0.5 * self.fovea_deg
+    }
+
+    fn mid_radius_deg(&self) -> f32 {
+        0.5 * self.mid_deg
+    }
+
+    fn lod_mid(&self) -> f32 {
+        self.rate_mid.ilog2() as f32
+    }
+
+    fn lod_far(&self) -> f32 {
+        self.rate_far.ilog2() as f32
+    }
+
+    /// Standard deviation of the Gaussian at the edge of the middle region in pixels.
+    fn sigma_mid_px(&self) -> f32 {
+        0.5 * (self.rate_mid - 1) as f32
+    }
+
+    /// Largest standard deviation of the Gaussian in pixels.
+    fn sigma_far_px(&self) -> f32 {
+        0.5 * (self.rate_far - 1) as f32
+    }
+
     /// Level of detail at eccentricity `e_deg`, before the filter's own quantisation.
     pub fn lod(&self, e_deg: f32) -> f32 {
+        let (fovea, mid) = (self.fovea_radius_deg(), self.mid_radius_deg());
         match self.filter {
             Filter::Off => 0.0,
-            Filter::Gauss => foveate::blur_lod(
-                e_deg,
-                0.5 * self.fovea_deg,
-                0.5 * self.mid_deg,
-                0.5 * (self.rate_mid - 1) as f32,
-                0.5 * (self.rate_far - 1) as f32,
-            ),
-            Filter::Mip | Filter::Block => foveate::region_lod(
-                e_deg,
-                0.5 * self.fovea_deg,
-                0.5 * self.mid_deg,
-                self.blend_deg,
-                self.rate_mid.ilog2() as f32,
-                self.rate_far.ilog2() as f32,
-            ),
+            Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.sigma_mid_px(), self.sigma_far_px()),
+            Filter::Mip | Filter::Block => {
+                foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
+            }
         }
     }
 

@@ -24,7 +24,7 @@ impl GpuDesc {
     }
 
     /// What the output format is called in WGSL.
-    pub(super) fn output_texel(&self) -> Result<&'static str, CreateError> {
+    pub(crate) fn output_texel(&self) -> Result<&'static str, CreateError> {
         match self.output_format {
             TextureFormat::Rgba16Float => Ok("rgba16float"),
             TextureFormat::Rgba32Float => Ok("rgba32float"),
@@ -34,7 +34,7 @@ impl GpuDesc {
     }
 
     /// Checks everything, the device's limits included.
-    pub(super) fn validate(&self, limits: &wgpu::Limits) -> Result<(), CreateError> {
+    pub(crate) fn validate(&self, limits: &wgpu::Limits) -> Result<(), CreateError> {
         self.settings.validate()?;
         self.context.validate()?;
         self.output_texel()?;

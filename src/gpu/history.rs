@@ -86,7 +86,7 @@ fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat) -> Textur
 }
 
 /// All layers of a texture as an array, mono frames too: shaders know only arrays.
-pub(super) fn array_view(texture: &Texture) -> TextureView {
+pub(crate) fn array_view(texture: &Texture) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
     texture.create_view(&TextureViewDescriptor {

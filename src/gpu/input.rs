@@ -38,7 +38,7 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
 }
 
 /// Size, layers, samples, usage.
-fn check_texture(
+pub(crate) fn check_texture(
     desc: &GpuDesc,
     input: &'static str,
     texture: &Texture,
@@ -73,7 +73,7 @@ fn check_texture(
 }
 
 /// Float or depth, with enough channels.
-fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Result<(), FrameError> {
+pub(crate) fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Result<(), FrameError> {
     let format = texture.format();
     let aspect = format.has_depth_aspect().then_some(TextureAspect::DepthOnly);
     let readable =

@@ -16,17 +16,21 @@ pub mod types;
 pub use desc::GpuDesc;
 pub use types::MAX_VIEWS;
 
+pub(crate) use history::array_view;
+#[cfg(feature = "lab")]
+pub(crate) use input::{check_readable, check_texture};
+
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{Exposure, Reset, ViewFrame, check_size};
 use crate::settings::{Method, Settings};
-use history::{History, array_view};
+use history::History;
 use pipeline::{Pipelines, Variant};
 use types::{FrameConstants, ViewConstants};
 use wgpu::util::DeviceExt;
 use wgpu::{BindGroupDescriptor, BindGroupEntry, BindingResource, CommandEncoder, Device, Texture, TextureView};
 
-/// Width of a workgroup: rows of 64 pixels. Also in `shaders/pass/wrs_pass.wgsl`.
-const WORKGROUP_WIDTH: u32 = 64;
+/// Width of a workgroup: rows of 64 pixels. Also in the shaders.
+pub(crate) const WORKGROUP_WIDTH: u32 = 64;
 
 /// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), one sample a
 /// pixel, and the usage `TEXTURE_BINDING`.

@@ -1,8 +1,8 @@
 //! Shaders as text: WGSL modules, put together by their `//#use` lines, each once.
 //!
 //! Every file under `shaders/` is valid WGSL syntax of its own; what it needs of other files it names in comment lines
-//! `//#use name` at its top. `lib/` holds functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` holds
-//! bindings, overrides and one entry point.
+//! `//#use name` at its top. `lib/` holds functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` and
+//! `foveation/` hold bindings, overrides and one entry point a file.
 
 /// One WGSL file.
 struct Module {
@@ -25,6 +25,11 @@ macro_rules! module {
 
 /// All of them.
 const MODULES: &[Module] = &[
+    module!("foveation", "block_show"),
+    module!("foveation", "foveated_views"),
+    module!("foveation", "gauss_axis"),
+    module!("foveation", "mip_level"),
+    module!("foveation", "mip_show"),
     module!("lib", "acuity"),
     module!("lib", "approx"),
     module!("lib", "color"),

@@ -1,5 +1,6 @@
 //! The structs that Rust fills are the structs that shaders read: names, order, offsets, sizes.
 
+use afterimage::foveation::gpu::types as foveation;
 use afterimage::gpu::shader;
 use afterimage::gpu::types::{FrameConstants, MAX_VIEWS, ViewConstants};
 use std::mem::offset_of;
@@ -31,5 +32,17 @@ fn constants_have_one_layout() {
     members.retain(|m| !m.0.starts_with("unused"));
     let mut view = rust!(ViewConstants: ray_scale, ray_offset, gaze_ray, depth_row, key);
     assert_eq!((members, size), (std::mem::take(&mut view.0), view.1));
+    assert!(composed.source.contains(&format!("array<ViewConstants, {MAX_VIEWS}>")));
+}
+
+#[test]
+fn constants_of_the_foveation_have_one_layout() {
+    let composed = shader::compose("foveated_views");
+    let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
+    let frame = rust!(foveation::FoveationConstants: size, coarsest, fovea_radius_deg, mid_radius_deg, blend_deg, mid, far,
+        views);
+    assert_eq!(wgsl(&module, "FoveationConstants"), frame);
+    let view = rust!(foveation::ViewConstants: ray_scale, ray_offset, gaze_ray);
+    assert_eq!(wgsl(&module, "ViewConstants"), view);
     assert!(composed.source.contains(&format!("array<ViewConstants, {MAX_VIEWS}>")));
 }

@@ -154,49 +154,11 @@ impl Rig {
     }
 
     fn write(&self, texture: &Texture, layer: usize, bytes: &[u8]) {
-        let [width, height] = self.context.size_px;
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let mut to = texture.as_image_copy();
-        to.origin.z = layer as u32;
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(bytes.len() as u32 / height),
-            rows_per_image: Some(height),
-        };
-        self.queue.write_texture(to, bytes, layout, size);
+        gpu::write_layer(&self.queue, texture, layer, bytes);
     }
 
-    /// All words of a texture with 32-bit channels, layer after layer.
     fn read_texture(&self, texture: &Texture) -> Vec<u32> {
-        let texel = texture.format().block_copy_size(None).unwrap();
-        let row = texture.width() * texel;
-        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let rows = texture.height() * texture.depth_or_array_layers();
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: u64::from(padded) * u64::from(rows),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(padded),
-            rows_per_image: Some(texture.height()),
-        };
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-            texture.size(),
-        );
-        self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        let mapped = buffer.get_mapped_range(..).expect("the readback is mapped");
-        mapped
-            .chunks_exact(padded as usize)
-            .flat_map(|r| bytemuck::cast_slice::<u8, u32>(&r[..row as usize]).to_vec())
-            .collect()
+        gpu::read_texture(&self.device, &self.queue, texture)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{gpu, mathematics, state};
+use crate::{foveation, gpu, mathematics, state};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -60,4 +60,32 @@ fn one_wrong_last_bit_is_caught() {
 #[test]
 fn an_unwritten_word_is_caught() {
     caught(state::PROBES, "unpack", "out_u(s.age);", "");
+}
+
+#[test]
+fn a_shifted_level_is_caught() {
+    caught(foveation::PROBES, "level_len", "(1u << level) - 1u) >> level", "(1u << level)) >> level");
+    caught(foveation::PROBES, "level_coordinate", "(127u - level)", "(126u - level)");
+    caught(foveation::PROBES, "block_sample", ">> block_sample_level(level)", ">> level");
+}
+
+#[test]
+fn swapped_bilinear_fractions_are_caught() {
+    caught(foveation::PROBES, "bilinear", "blend(top, bottom, fraction.y)", "blend(top, bottom, fraction.x)");
+    caught(foveation::PROBES, "blend", "a + (b - a) * t", "b + (a - b) * t");
+}
+
+#[test]
+fn a_wrong_border_is_caught() {
+    caught(foveation::PROBES, "split", "0.0, f32(len - 1u)", "0.0, f32(len)");
+    caught(foveation::PROBES, "block_center_px", "edge_px - 0.5, f32(len - 1u)", "edge_px - 0.5, f32(len)");
+}
+
+#[test]
+fn a_gaussian_of_another_width_is_caught() {
+    caught(foveation::PROBES, "gauss_center", "exp(-0.5 / (s * s))", "exp(-0.50001 / (s * s))");
+    caught(foveation::PROBES, "gauss_next", "tap.ratio * tap.ratio_step,", "tap.ratio * tap.ratio,");
+    caught(foveation::PROBES, "gauss_radius", "u32(3.0 * sigma_px) + 1u", "u32(3.0 * sigma_px)");
+    caught(foveation::PROBES, "blur_sigma_px", "0.5 * (exp2(", "0.50000006 * (exp2(");
+    caught(foveation::PROBES, "blur_lod", "1.0 + 2.0 * sigma", "1.0 + sigma");
 }

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{mathematics, state};
+use crate::{foveation, mathematics, state};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -24,8 +24,8 @@ fn depth_is_bit_equal_h41_h42_h44_h45_h46_h47() {
 }
 
 #[test]
-fn foveate_is_bit_equal_h71() {
-    check_module(mathematics::PROBES, "foveate");
+fn foveate_is_bit_equal_h69_h71() {
+    check_module(foveation::PROBES, "foveate");
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! Functions of numbers: approx, acuity, color, depth, foveate.
+//! Functions of numbers: approx, acuity, color, depth.
 
 use crate::probe::{Probe, Rows};
 use crate::values::*;
 use afterimage::kernel::depth::{DisparityMap, INVALID_DISPARITY};
-use afterimage::kernel::{acuity, approx, color, depth, foveate};
+use afterimage::kernel::{acuity, approx, color, depth};
 
 fn one(name: &'static str, table: &[u32], random: fn(&mut crate::common::Draws) -> u32) -> Rows {
     Rows::new(1).cross(&[table]).random(name, |d, row| row.push(random(d)))
@@ -34,6 +34,18 @@ pub const PROBES: &[Probe] = &[
             let steps: Vec<f32> = (-126..=128).map(|n| (n as f32 - 0.5) * std::f32::consts::LN_2).collect();
             one("exp", &[finite(), around(&[-87.0, 88.0]), around(&steps)].concat(), |d| range(d, -90.0, 90.0))
                 .random("exp, any", |d, row| row.push(finite_bits(d)))
+        },
+    },
+    Probe {
+        name: "exp2",
+        module: "approx",
+        words: [1, 1],
+        wgsl: "out_f(exp2(in_f(0u)));",
+        rust: |r, o| o.f(approx::exp2(r.f(0))),
+        rows: || {
+            let steps: Vec<f32> = (-127..=128).map(|n| n as f32 - 0.5).collect();
+            one("exp2", &[finite(), around(&[-126.0, 127.0]), around(&steps)].concat(), |d| range(d, -130.0, 130.0))
+                .random("exp2, any", |d, row| row.push(finite_bits(d)))
         },
     },
     Probe {
@@ -262,35 +274,6 @@ pub const PROBES: &[Probe] = &[
             Rows::new(5)
                 .cross(&[&taps, &taps, &taps, &taps, &taps])
                 .random("slope", |d, row| row.extend((0..5).map(|_| scaled(d, -20, 10))))
-        },
-    },
-    Probe {
-        name: "ramp",
-        module: "foveate",
-        words: [3, 1],
-        wgsl: "out_f(ramp(in_f(0u), in_f(1u), in_f(2u)));",
-        rust: |r, o| o.f(foveate::ramp(r.f(0), r.f(1), r.f(2))),
-        rows: || {
-            let x = [around(&[2.5, 5.0, 7.5, 0.5]), floats(&[0.0, 180.0])].concat();
-            Rows::new(3)
-                .cross(&[&x, &x, &floats(&[0.0, 0.5, 2.5, 1e-7])])
-                .random("ramp", |d, row| row.extend([range(d, 0.0, 30.0), range(d, 0.0, 20.0), range(d, 0.0, 10.0)]))
-        },
-    },
-    Probe {
-        name: "region_lod",
-        module: "foveate",
-        words: [6, 1],
-        wgsl: "out_f(region_lod(in_f(0u), in_f(1u), in_f(2u), in_f(3u), in_f(4u), in_f(5u)));",
-        rust: |r, o| o.f(foveate::region_lod(r.f(0), r.f(1), r.f(2), r.f(3), r.f(4), r.f(5))),
-        rows: || {
-            let e = [around(&[2.5, 5.0, 7.5, 20.0, 22.5]), floats(&[0.0, 180.0])].concat();
-            let lod = floats(&[0.0, 1.0, 2.0, 4.0]);
-            Rows::new(6)
-                .cross(&[&e, &floats(&[0.0, 2.5, 5.0]), &floats(&[5.0, 20.0]), &floats(&[0.0, 2.5]), &lod, &lod])
-                .random("region_lod", |d, row| {
-                    row.extend([60.0, 10.0, 30.0, 5.0, 3.0, 6.0].map(|most| range(d, 0.0, most)));
-                })
         },
     },
 ];

@@ -4,13 +4,16 @@ use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
 use afterimage::display::ViewGeometry;
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
+use afterimage::error::{CreateError, FrameError};
+use afterimage::foveation::Filter;
+use afterimage::foveation::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::frame::{Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc, Timestamps};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
 use afterimage::pipeline::Headless;
 use afterimage::report::clock::{Quartiles, Stopwatch};
-use afterimage::settings::{Method, Settings};
+use afterimage::settings::Method;
 use afterimage::whole_file::write_whole;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -42,7 +45,7 @@ pub struct BenchArgs {
 /// What can be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process: none, wrs, and a copy of the same bytes
+    /// The post-process (none, wrs), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
     Post,
 }
 
@@ -57,7 +60,8 @@ struct Report {
     frames: u64,
     /// What the times are: of the device, by timestamp queries, or of the process's CPU time on a software device.
     clock: &'static str,
-    /// From the first call to the first frame done: shader, pipeline, and what the driver compiles at the first dispatch.
+    /// Of the post-process and the copy, from the first call to the first frame done: shader, pipeline, and what the driver compiles
+    /// at the first dispatch.
     cold_start_ms: f64,
     passes: Vec<PassReport>,
 }
@@ -80,8 +84,55 @@ struct Inputs {
     output: Texture,
 }
 
-/// The passes, in the order in which each frame times them.
-const PASSES: [(&str, u32); 3] = [("copy", 48), ("none", 16), ("wrs", 48)];
+/// A pass to time.
+struct PassKind {
+    name: &'static str,
+    /// Read and written, as the pass's documentation counts them.
+    bytes_per_pixel: u32,
+    does: Does,
+}
+
+/// What a pass does.
+#[derive(Clone, Copy)]
+enum Does {
+    Copy,
+    Post(Method),
+    Foveate(Filter),
+}
+
+/// The passes, in the order in which each frame times them. The first is what the others are held against.
+const PASSES: [PassKind; 6] = [
+    PassKind { name: "copy", bytes_per_pixel: 48, does: Does::Copy },
+    PassKind { name: "none", bytes_per_pixel: 16, does: Does::Post(Method::None) },
+    PassKind { name: "wrs", bytes_per_pixel: 48, does: Does::Post(Method::Wrs) },
+    PassKind { name: "mip", bytes_per_pixel: 27, does: Does::Foveate(Filter::Mip) },
+    PassKind { name: "gauss", bytes_per_pixel: 48, does: Does::Foveate(Filter::Gauss) },
+    PassKind { name: "block", bytes_per_pixel: 25, does: Does::Foveate(Filter::Block) },
+];
+
+/// A pass at work.
+enum Lane {
+    Copy(Afterimage),
+    Post(Afterimage),
+    Foveate(GpuFoveation),
+}
+
+impl Lane {
+    fn new(gpu: &Headless, size: [u32; 2], does: Does) -> Result<Self, CreateError> {
+        let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
+        Ok(match does {
+            Does::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
+            Does::Post(method) => {
+                desc.settings.method = method;
+                Self::Post(Afterimage::new(&gpu.device, &desc)?)
+            }
+            Does::Foveate(filter) => {
+                desc.settings.foveation.filter = filter;
+                Self::Foveate(GpuFoveation::new(&gpu.device, &desc)?)
+            }
+        })
+    }
+}
 
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
@@ -92,25 +143,23 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     let clock = Clock::new(&gpu);
     let inputs = Inputs::new(&gpu, args.size);
     let mut lanes = vec![];
-    let watch = Stopwatch::start();
     let mut cold_start_ms = 0.0;
-    for (name, _) in PASSES {
-        let method = if name == "none" { Method::None } else { Method::Wrs };
-        let settings = Settings { method, ..Settings::default() };
-        let context = ContextDesc::new(args.size);
-        let desc = GpuDesc { context, output_format: TextureFormat::Rgba16Float, settings };
-        lanes.push(Afterimage::new(&gpu.device, &desc)?);
+    for pass in &PASSES {
+        let watch = Stopwatch::start();
+        let mut lane = Lane::new(&gpu, args.size, pass.does)?;
+        time(&gpu, &clock, &inputs, &mut lane, args.size, 0)?;
+        if !matches!(pass.does, Does::Foveate(_)) {
+            cold_start_ms += watch.wall_ms();
+        }
+        lanes.push(lane);
     }
     let mut times: Vec<Vec<f64>> = vec![vec![]; PASSES.len()];
-    for index in 0..WARM_UP + args.frames {
-        for (i, post) in lanes.iter_mut().enumerate() {
-            let ms = time(&gpu, &clock, &inputs, post, PASSES[i].0 == "copy", index)?;
+    for index in 1..WARM_UP + args.frames {
+        for (lane, times) in lanes.iter_mut().zip(&mut times) {
+            let ms = time(&gpu, &clock, &inputs, lane, args.size, index)?;
             if index >= WARM_UP {
-                times[i].push(ms);
+                times.push(ms);
             }
-        }
-        if index == 0 {
-            cold_start_ms = watch.wall_ms();
         }
     }
     let report = summarise(args, &gpu, &clock, cold_start_ms, &times);
@@ -125,13 +174,13 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
 fn summarise(args: &BenchArgs, gpu: &Headless, clock: &Clock, cold_start_ms: f64, times: &[Vec<f64>]) -> Report {
     let megapixels = f64::from(args.size[0]) * f64::from(args.size[1]) / 1e6;
     let median = |i: usize| Quartiles::of(&times[i]).map(|q| q.median);
-    let passes = PASSES.iter().enumerate().map(|(i, &(name, bytes_per_pixel))| PassReport {
-        name,
+    let passes = PASSES.iter().enumerate().map(|(i, pass)| PassReport {
+        name: pass.name,
         ms: Quartiles::of(&times[i]),
         ms_per_megapixel: median(i).map(|ms| ms / megapixels),
-        bytes_per_pixel,
+        bytes_per_pixel: pass.bytes_per_pixel,
         share_of_copy_bandwidth: (|| {
-            let copy_of_as_many = median(0)? * f64::from(bytes_per_pixel) / f64::from(PASSES[0].1);
+            let copy_of_as_many = median(0)? * f64::from(pass.bytes_per_pixel) / f64::from(PASSES[0].bytes_per_pixel);
             Some(copy_of_as_many / median(i)?)
         })(),
     });
@@ -169,7 +218,7 @@ fn print(report: &Report) {
             100.0 * share
         );
     }
-    say!("cold start, all passes: {:.0} ms", report.cold_start_ms);
+    say!("cold start of copy, none and wrs: {:.0} ms", report.cold_start_ms);
 }
 
 /// Milliseconds of one pass of one frame.
@@ -177,11 +226,10 @@ fn time(
     gpu: &Headless,
     clock: &Clock,
     inputs: &Inputs,
-    post: &mut Afterimage,
-    copy: bool,
+    lane: &mut Lane,
+    size: [u32; 2],
     index: u64,
 ) -> Result<f64, Failure> {
-    let size = post.desc().context.size_px;
     let turn = index as f32 * 0.1;
     let px = [0.5, 0.5].map(|v| v + 0.3 * if v > 0.0 { turn.sin() } else { turn.cos() });
     let views = [ViewFrame {
@@ -197,15 +245,30 @@ fn time(
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
-    if copy {
-        post.record_copy(&gpu.device, &mut encoder, &frame)?;
-    } else {
-        post.record(&gpu.device, &mut encoder, &frame)?;
-    }
+    record(gpu, &mut encoder, lane, &frame)?;
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
     Ok(clock.read_ms(gpu, &watch))
+}
+
+fn record(
+    gpu: &Headless,
+    encoder: &mut wgpu::CommandEncoder,
+    lane: &mut Lane,
+    frame: &Frame<'_>,
+) -> Result<(), FrameError> {
+    match lane {
+        Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame),
+        Lane::Post(post) => post.record(&gpu.device, encoder, frame),
+        Lane::Foveate(foveation) => {
+            let foveated = FoveationFrame {
+                timestamps: frame.timestamps,
+                ..FoveationFrame::new(frame.color, frame.output, frame.views)
+            };
+            foveation.record(&gpu.device, encoder, &foveated)
+        }
+    }
 }
 
 /// The device's clock, or the process's.

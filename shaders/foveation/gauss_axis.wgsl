@@ -1,0 +1,58 @@
+//#use foveate
+//#use foveated_views
+//#use scrub
+// Gaussian blur along one axis, with the width of the pixel it writes; run along x, then along y. Its twin on the CPU is
+// src/foveation/gaussian.rs: blur_axis. One invocation a pixel; z is the view.
+//
+// 2 gauss_radius + 1 reads a pixel, 47 at 7.5 pixels; 1 write, 2 with levels of detail. With a frame of 8 bytes a pixel and 16 bytes
+// between the axes, both together read 8 + 16 and write 16 + 8, and 4 more with levels of detail.
+
+// 0: along x; 1: along y.
+override AXIS: u32 = 0u;
+override WRITE_LOD: u32 = 0u;
+
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(3) var lod_out: texture_storage_2d_array<r32float, write>;
+
+// Borders are continued by their last pixel.
+fn tap(px: vec2<u32>, offset: i32, view: u32) -> vec3<f32> {
+    var at = vec2<i32>(px);
+    if AXIS == 0u {
+        at.x += offset;
+    } else {
+        at.y += offset;
+    }
+    at = clamp(at, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    return color(textureLoad(color_in, at, view, 0).xyz).color;
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let px = id.xy;
+    if px.x >= frame.size.x || px.y >= frame.size.y {
+        return;
+    }
+    let view = group.z;
+    let e_deg = eccentricity_at(vec2<f32>(px), view);
+    let lod = blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.mid, frame.far);
+    if WRITE_LOD != 0u {
+        textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
+    }
+    if lod <= 0.0 {
+        // Bit for bit, both times.
+        textureStore(color_out, px, view, vec4<f32>(textureLoad(color_in, px, view, 0).xyz, 1.0));
+        return;
+    }
+    let sigma_px = blur_sigma_px(lod);
+    let radius = i32(gauss_radius(sigma_px));
+    var gauss = gauss_center(sigma_px);
+    var sum = tap(px, 0, view);
+    var side = 0.0;
+    for (var d = 1; d <= radius; d++) {
+        gauss = gauss_next(gauss);
+        side += gauss.weight;
+        sum += (tap(px, -d, view) + tap(px, d, view)) * gauss.weight;
+    }
+    textureStore(color_out, px, view, vec4<f32>(sum / (1.0 + 2.0 * side), 1.0));
+}

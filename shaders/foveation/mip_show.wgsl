@@ -1,0 +1,67 @@
+//#use foveate
+//#use foveated_views
+//#use scrub
+// The frame as a renderer shows it that shades fewer pixels and upscales: a blend of the two mip levels around each pixel's level of
+// detail. Its twin on the CPU is src/foveation/mip.rs: Pyramid::trilinear. One invocation a pixel; z is the view.
+//
+// 9 reads a pixel at most: the pixel itself, 4 texels of each level; 1 write, 2 with levels of detail. Most of the picture reads the
+// two coarsest levels, under 1 byte a pixel; it writes 8, and 4 more with levels of detail.
+
+override WRITE_LOD: u32 = 0u;
+
+@group(0) @binding(1) var full: texture_2d_array<f32>;
+// Mip 0 is level 1. Mips may be larger than their levels.
+@group(0) @binding(2) var levels: texture_2d_array<f32>;
+@group(0) @binding(3) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(4) var lod_out: texture_storage_2d_array<r32float, write>;
+
+fn read_level(px: vec2<u32>, view: u32, level: u32) -> vec3<f32> {
+    let len = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
+    let x = split(level_coordinate(f32(px.x), level), len.x);
+    let y = split(level_coordinate(f32(px.y), level), len.y);
+    let near = vec2<u32>(x.whole, y.whole);
+    let next = min(near + 1u, len - 1u);
+    let mip = level - 1u;
+    return bilinear(
+        textureLoad(levels, near, view, mip).xyz,
+        textureLoad(levels, vec2<u32>(next.x, near.y), view, mip).xyz,
+        textureLoad(levels, vec2<u32>(near.x, next.y), view, mip).xyz,
+        textureLoad(levels, next, view, mip).xyz,
+        vec2<f32>(x.fraction, y.fraction),
+    );
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let px = id.xy;
+    if px.x >= frame.size.x || px.y >= frame.size.y {
+        return;
+    }
+    let view = group.z;
+    let e_deg = eccentricity_at(vec2<f32>(px), view);
+    let lod = region_lod(
+        e_deg,
+        frame.fovea_radius_deg,
+        frame.mid_radius_deg,
+        frame.blend_deg,
+        frame.mid,
+        frame.far,
+    );
+    if WRITE_LOD != 0u {
+        textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
+    }
+    let level = split(lod, frame.coarsest + 1u);
+    var shown: vec3<f32>;
+    if level.whole == 0u {
+        shown = textureLoad(full, px, view, 0).xyz;
+    } else {
+        shown = read_level(px, view, level.whole);
+    }
+    if level.fraction > 0.0 {
+        if level.whole == 0u {
+            shown = color(shown).color;
+        }
+        shown = blend(shown, read_level(px, view, level.whole + 1u), level.fraction);
+    }
+    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+}

@@ -1,0 +1,84 @@
+//! Every filter, size, rate and gaze, over frames with everything in them that frames should not have.
+
+use super::rig::*;
+use afterimage::foveation::{Filter, Foveation};
+
+const RATES: [[u32; 2]; 6] = [[1, 1], [1, 2], [2, 8], [8, 16], [16, 64], [64, 64]];
+
+/// Inside, at the border, in the corner, off screen, far away.
+fn gazes([w, h]: [u32; 2]) -> [[f32; 2]; 5] {
+    let [w, h] = [w as f32, h as f32];
+    [[0.3 * w, 0.6 * h], [w - 1.0, 0.5 * h], [-0.5, -0.5], [-0.7 * w, 1.5 * h], [1e6, -1e6]]
+}
+
+fn agree(filter: Filter, size: [u32; 2], rates: &[[u32; 2]]) {
+    let mut levels = std::collections::BTreeSet::new();
+    for &rates in rates {
+        let foveation = foveation(filter, rates);
+        let Some(mut rig) = Rig::new(&desc(size, 1, foveation)) else { return };
+        for gaze in gazes(size) {
+            let scene = Scene::mono(nasty(size, "frame"), gaze);
+            let cpu = scene.on_cpu(&foveation);
+            levels.extend(cpu.lods.iter().map(|l| f32::from_bits(*l) as u32));
+            let what = format!("{filter:?}, {size:?}, rates {rates:?}, gaze {gaze:?}");
+            assert_equal(&what, size, &rig.on_gpu(&scene), &cpu);
+        }
+    }
+    println!("{filter:?}, {size:?}: levels {levels:?}");
+}
+
+fn agree_at_odd_sizes(filter: Filter) {
+    for size in [[1, 1], [17, 1], [1, 33], [97, 61]] {
+        agree(filter, size, &RATES);
+    }
+    agree(filter, [640, 360], &[[8, 16], [4, 64]]);
+}
+
+#[test]
+fn mip_is_bit_equal_h69() {
+    agree_at_odd_sizes(Filter::Mip);
+    agree(Filter::Mip, [300, 200], &[[16, 256]]);
+}
+
+#[test]
+fn gauss_is_bit_equal() {
+    agree_at_odd_sizes(Filter::Gauss);
+}
+
+#[test]
+fn block_is_bit_equal() {
+    agree_at_odd_sizes(Filter::Block);
+    agree(Filter::Block, [300, 200], &[[16, 256]]);
+}
+
+#[test]
+fn off_copies_every_bit() {
+    agree(Filter::Off, [97, 61], &[[8, 16]]);
+}
+
+#[test]
+fn two_eyes_have_their_own_frame_geometry_and_gaze_h62() {
+    let size = [97, 61];
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        let foveation = foveation(filter, [4, 16]);
+        let Some(mut rig) = Rig::new(&desc(size, 2, foveation)) else { return };
+        for gazes in [[[20.0, 30.0], [70.0, 10.0]], [[-5.0, 0.0], [96.0, 60.0]]] {
+            let scene = Scene::stereo(size, gazes);
+            assert_equal(&format!("{filter:?}, {gazes:?}"), size, &rig.on_gpu(&scene), &scene.on_cpu(&foveation));
+        }
+    }
+}
+
+#[test]
+fn other_regions_are_bit_equal_h71() {
+    let size = [97, 61];
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        for (fovea_deg, mid_deg, blend_deg) in [(0.0, 0.0, 0.0), (0.0, 30.0, 10.0), (20.0, 20.0, 0.0), (7.3, 41.9, 3.7)]
+        {
+            let foveation = Foveation { filter, fovea_deg, mid_deg, blend_deg, ..Foveation::default() };
+            let Some(mut rig) = Rig::new(&desc(size, 1, foveation)) else { return };
+            let scene = Scene::mono(nasty(size, "regions"), [40.3, 22.8]);
+            assert_equal(&format!("{foveation:?}"), size, &rig.on_gpu(&scene), &scene.on_cpu(&foveation));
+        }
+    }
+}
