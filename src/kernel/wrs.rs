@@ -1,6 +1,6 @@
 //! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, forget, combine.
 
-use super::{color, reservoir};
+use super::{color, reservoir, scrub};
 use glam::Vec3;
 
 /// How a reservoir picks between its sample and the candidate.
@@ -113,8 +113,9 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
         BiasCode::Exponential => params.exponential_survival,
         BiasCode::Bernoulli => reservoir::bernoulli_survival(past.w_sum, weight),
     };
-    let survival = bias * gate_value;
-    let kept = past.w_sum * survival;
+    // Products may fall below the normal range, where some devices flush to zero: by the rule of weights, both do.
+    let survival = scrub::weight(bias * gate_value);
+    let kept = scrub::weight(past.w_sum * survival);
     let w_sum = kept + weight;
     let (take, log_key) = match params.sampler {
         SamplerCode::AChao => (kept == 0.0 || draw * w_sum < weight, 0.0),

@@ -18,7 +18,12 @@ fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
 fn a_lax_comparison_is_caught() {
     caught(state::PROBES, "combine", "draw * w_sum < w2", "draw * w_sum <= w2");
     caught(state::PROBES, "update", "draw * w_sum < w;", "draw * w_sum <= w;");
-    caught(state::PROBES, "step", "draw * w_sum < weight", "draw * w_sum <= weight");
+    caught(state::PROBES, "step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w");
+}
+
+#[test]
+fn h04_a_weight_below_the_normal_range_is_caught() {
+    caught(state::PROBES, "step", "weight(past.w_sum * survival)", "past.w_sum * survival");
 }
 
 #[test]
