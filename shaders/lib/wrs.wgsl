@@ -40,6 +40,21 @@ struct Decision {
     survival: f32,
 }
 
+// wrs::believe
+fn believe(past: Past, history_trust: f32, sampler_code: u32) -> Past {
+    let share = trust(history_trust);
+    var log_key = past.log_key;
+    if sampler_code == SAMPLER_A_ES {
+        log_key = a_es_decay(past.log_key, share);
+    }
+    return Past(past.color, weight(past.w_sum * share), log_key);
+}
+
+// wrs::expose
+fn expose(stored_color: vec3<f32>, ratio: f32) -> vec3<f32> {
+    return clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+}
+
 // wrs::gate (eq. 7): 1 - |dL|
 fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     return 1.0 - clamp((difference - offset) * inv_divisor, 0.0, 1.0);

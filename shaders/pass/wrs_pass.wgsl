@@ -5,7 +5,7 @@
 //#use rng
 //#use scrub
 //#use wrs
-// The fused pass of weighted reservoirs: scrub, reproject, flush, gate, bias, combine, store and show. Its twin on the CPU is
+// The fused pass of weighted reservoirs: scrub, reproject, flush, expose, gate, bias, combine, store and show. Its twin on the CPU is
 // src/cpu/wrs_pass.rs. One invocation a pixel; z is the view.
 
 // What the frame brings and the settings ask for. A pipeline's constants; switched off means not compiled.
@@ -13,6 +13,8 @@ override PASS_THROUGH: u32 = 0u;
 override COPY_ONLY: u32 = 0u;
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
+override HAS_TRUST: u32 = 1u;
+override HAS_EXPOSURE: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
@@ -46,6 +48,10 @@ struct FrameConstants {
     motion_scale: vec2<f32>,
     disparity_b: f32,
     disparity_flags: u32,
+    exposure: f32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
     views: array<ViewConstants, 4>,
 }
 
@@ -53,19 +59,20 @@ struct FrameConstants {
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
-@group(0) @binding(4) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(5) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(6) var past_keys: texture_2d_array<f32>;
-@group(0) @binding(7) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(8) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(9) var next_keys: texture_storage_2d_array<r32float, write>;
-@group(0) @binding(10) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(4) var trust_in: texture_2d_array<f32>;
+@group(0) @binding(5) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(6) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(7) var past_keys: texture_2d_array<f32>;
+@group(0) @binding(8) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(9) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(10) var next_keys: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(11) var color_out: texture_storage_2d_array<rgba16float, write>;
 
 // The history side of a pixel.
 struct History {
     verdict: u32,
-    stored: Stored,
-    log_key: f32,
+    past: Past,
+    age: u32,
 }
 
 fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
@@ -106,11 +113,14 @@ fn is_same_surface(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32,
     return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }
 
-// The reservoir that a pixel continues, and whether it may.
+fn no_history(verdict: u32) -> History {
+    return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u);
+}
+
+// The reservoir that a pixel continues and the age of its sample, or why it may not.
 fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32) -> History {
-    let empty = unpack(vec3<u32>(0u));
     if frame.reset != 0u {
-        return History(VERDICT_RESET, empty, LOWEST);
+        return no_history(VERDICT_RESET);
     }
     var motion = vec2<f32>(0.0);
     if HAS_MOTION != 0u {
@@ -118,23 +128,32 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32) -> H
     }
     let source = nearest(px.x, px.y, motion, frame.size);
     if source.verdict != VERDICT_VALID {
-        return History(source.verdict, empty, LOWEST);
+        return no_history(source.verdict);
     }
     let colors = textureLoad(past_colors, source.at, view, 0).xy;
     let stored = unpack(vec3<u32>(colors, textureLoad(past_weights, source.at, view, 0).x));
-    var log_key = LOWEST;
-    if SAMPLER == SAMPLER_A_ES {
-        log_key = textureLoad(past_keys, source.at, view, 0).x;
-    }
     if stored.w_sum == 0.0 {
-        return History(VERDICT_EMPTY, stored, log_key);
+        return no_history(VERDICT_EMPTY);
+    }
+    var past = Past(stored.color, stored.w_sum, LOWEST);
+    if SAMPLER == SAMPLER_A_ES {
+        past.log_key = textureLoad(past_keys, source.at, view, 0).x;
+    }
+    if HAS_TRUST != 0u {
+        past = believe(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);
+        if past.w_sum == 0.0 {
+            return no_history(VERDICT_DISTRUSTED);
+        }
     }
     if DEPTH_TEST != 0u {
         if !is_same_surface(px, view, ray, disparity_now, stored.disparity) {
-            return History(VERDICT_DISOCCLUDED, stored, log_key);
+            return no_history(VERDICT_DISOCCLUDED);
         }
     }
-    return History(VERDICT_VALID, stored, log_key);
+    if HAS_EXPOSURE != 0u {
+        past.color = expose(past.color, frame.exposure);
+    }
+    return History(VERDICT_VALID, past, stored.age);
 }
 
 // The same bytes in and out without the work between: what benches hold the pass against.
@@ -179,14 +198,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         disparity_now = disparity_at(px, view);
     }
     let history = history_of(px, view, ray, disparity_now);
-    let past_w = select(0.0, history.stored.w_sum, history.verdict == VERDICT_VALID);
-    let past = Past(history.stored.color, past_w, history.log_key);
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, frame.gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
-    let decision = step(candidate.color, candidate_w, past, params, draw);
+    let decision = step(candidate.color, candidate_w, history.past, params, draw);
 
-    let shown = select(history.stored.color, candidate.color, decision.take);
-    let age = select(min(history.stored.age + 1u, MAX_AGE), 0u, decision.take);
+    let shown = select(history.past.color, candidate.color, decision.take);
+    let age = select(min(history.age + 1u, MAX_AGE), 0u, decision.take);
     textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
     let words = pack(Stored(shown, disparity_now, decision.w_sum, age));
     textureStore(next_colors, px, view, vec4<u32>(words.xy, 0u, 0u));

@@ -15,6 +15,7 @@ use crate::image::Image;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
 use crate::settings::{Method, Settings};
+use crate::stats::FrameStats;
 use glam::Vec3;
 
 /// Inputs of one view of one frame.
@@ -59,41 +60,6 @@ impl<'a> CpuFrame<'a> {
     /// A frame that goes on from the previous one.
     pub fn new(views: &'a [CpuView<'a>], index: u64) -> Self {
         Self { views, index, reset: Reset::None, exposure: Exposure::Same }
-    }
-}
-
-/// Counts of one frame over all views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrameStats {
-    /// Pixels processed.
-    pub pixels: u64,
-    /// Pixels whose colour was NaN or infinite.
-    pub nonfinite: u64,
-    /// Pixels by what became of their history, indexed by [`Verdict`].
-    pub verdicts: [u64; Verdict::COUNT],
-    /// Pixels with a valid history whose sample the candidate replaced.
-    pub replaced: u64,
-}
-
-impl FrameStats {
-    /// Pixels that had a history and lost it: bad motion, off screen or disoccluded.
-    pub fn flushed(&self) -> u64 {
-        [Verdict::BadMotion, Verdict::OffScreen, Verdict::Disoccluded].iter().map(|&v| self.verdicts[v as usize]).sum()
-    }
-
-    /// Pixels that kept their history, to combine it with the candidate.
-    pub fn valid(&self) -> u64 {
-        self.verdicts[Verdict::Valid as usize]
-    }
-
-    pub(crate) fn add(mut self, other: Self) -> Self {
-        self.pixels += other.pixels;
-        self.nonfinite += other.nonfinite;
-        self.replaced += other.replaced;
-        for (sum, v) in self.verdicts.iter_mut().zip(other.verdicts) {
-            *sum += v;
-        }
-        self
     }
 }
 
@@ -170,7 +136,7 @@ impl CpuAfterimage {
     }
 
     /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float colour
-    /// (8), half-float motion (4), depth (4). The depth test's extra taps are not counted: they are neighbours', and few.
+    /// (8), half-float motion (4), depth (4), trust (1). The depth test's extra taps are not counted: they are neighbours', and few.
     pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
         let (color, output) = (8, 8);
         if self.settings.method == Method::None {
@@ -179,7 +145,8 @@ impl CpuAfterimage {
         let history = 2 * if self.settings.uses_keys() { 16 } else { 12 };
         let depth = if view.depth.is_some() { 4 } else { 0 };
         let motion = if view.motion.is_some() { 4 } else { 0 };
-        color + depth + motion + history + output
+        let trust = if view.trust.is_some() { 1 } else { 0 };
+        color + depth + motion + trust + history + output
     }
 
     /// Bytes held between frames.
@@ -230,6 +197,8 @@ impl CpuAfterimage {
                 ("colour", Some(view.color.size())),
                 ("depth", view.depth.map(Image::size)),
                 ("motion", view.motion.map(Image::size)),
+                ("trust", view.trust.map(Image::size)),
+                ("lod", view.lod.map(Image::size)),
                 ("output", Some(output[i].size())),
                 ("trace", trace.map(|t| t[i].size())),
             ];
@@ -240,7 +209,7 @@ impl CpuAfterimage {
             }
             view.facts.check(i, &self.desc)?;
         }
-        Ok(())
+        frame.exposure.check()
     }
 }
 

@@ -24,6 +24,13 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
         check_texture(desc, "motion", motion, read)?;
         check_readable("motion", motion, 2)?;
     }
+    for (input, texture) in [("trust", frame.trust), ("lod", frame.lod)] {
+        if let Some(texture) = texture {
+            check_texture(desc, input, texture, read)?;
+            check_readable(input, texture, 1)?;
+        }
+    }
+    frame.exposure.check()?;
     check_texture(desc, "output", frame.output, TextureUsages::STORAGE_BINDING)?;
     if frame.output.format() == desc.output_format {
         Ok(())
@@ -83,7 +90,8 @@ fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Resul
         return Ok(());
     }
     let expected = match channels {
-        1 => "a depth format or R32Float",
+        1 if input == "depth" => "a depth format or R32Float",
+        1 => "a float or normalised format, such as R8Unorm or R16Float",
         2 => "Rg16Float, Rg32Float or wider",
         _ => "a float or normalised format with red, green and blue, such as Rgba16Float",
     };

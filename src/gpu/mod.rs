@@ -175,7 +175,7 @@ impl Afterimage {
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<(), FrameError> {
-        let variant = Variant::new(&self.desc.settings, frame.depth.is_some(), frame.motion.is_some());
+        let variant = Variant::new(&self.desc.settings, frame);
         self.record_variant(device, encoder, frame, variant)
     }
 
@@ -198,7 +198,7 @@ impl Afterimage {
                 expected: "both, to move all bytes",
             });
         }
-        let variant = Variant::copy(&self.desc.settings);
+        let variant = Variant::copy(&self.desc.settings, frame);
         self.record_variant(device, encoder, frame, variant)
     }
 
@@ -219,12 +219,14 @@ impl Afterimage {
         let color = array_view(frame.color);
         let depth = frame.depth.map_or_else(|| self.dummies.float.clone(), array_view);
         let motion = frame.motion.map_or_else(|| self.dummies.float.clone(), array_view);
+        let trust = frame.trust.map_or_else(|| self.dummies.float.clone(), array_view);
         let output = array_view(frame.output);
         let (past, next) = self.history.split();
         let views = [
             &color,
             &depth,
             &motion,
+            &trust,
             &past.views[0],
             &past.views[1],
             past.views.get(2).unwrap_or(&self.dummies.float),
@@ -282,6 +284,7 @@ impl Afterimage {
             motion_scale: self.desc.context.motion.to_internal(self.desc.context.size_px),
             disparity_b: disparity.b,
             disparity_flags: u32::from(disparity.invert) | u32::from(disparity.clamp) << 1,
+            exposure: frame.exposure.factor().unwrap_or(1.0),
             ..FrameConstants::default()
         };
         for (i, (view, held)) in frame.views.iter().zip(&mut self.history.held_gaze).enumerate() {

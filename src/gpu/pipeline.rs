@@ -1,5 +1,6 @@
 //! Pipelines: one shader, specialised by `override` constants to what a frame brings and what the settings ask for.
 
+use super::Frame;
 use super::desc::GpuDesc;
 use super::shader;
 use crate::error::CreateError;
@@ -20,6 +21,8 @@ pub(super) struct Variant {
     copy_only: bool,
     has_depth: bool,
     has_motion: bool,
+    has_trust: bool,
+    has_exposure: bool,
     depth_test: bool,
     keys: bool,
     bias: u32,
@@ -27,13 +30,16 @@ pub(super) struct Variant {
 }
 
 impl Variant {
-    pub fn new(settings: &Settings, has_depth: bool, has_motion: bool) -> Self {
+    pub fn new(settings: &Settings, frame: &Frame<'_>) -> Self {
+        let has_depth = frame.depth.is_some();
         let params = settings.wrs_params();
         Self {
             pass_through: settings.method == Method::None,
             copy_only: false,
             has_depth,
-            has_motion,
+            has_motion: frame.motion.is_some(),
+            has_trust: frame.trust.is_some(),
+            has_exposure: frame.exposure.factor().is_some(),
             depth_test: has_depth && settings.depth_test.is_some(),
             keys: settings.uses_keys(),
             bias: params.bias as u32,
@@ -42,18 +48,20 @@ impl Variant {
     }
 
     /// The pass that moves the same bytes as the method with depth and motion, and computes nothing.
-    pub fn copy(settings: &Settings) -> Self {
-        Self { copy_only: true, ..Self::new(settings, true, true) }
+    pub fn copy(settings: &Settings, frame: &Frame<'_>) -> Self {
+        Self { copy_only: true, ..Self::new(settings, frame) }
     }
 
     /// Values of the shader's overrides.
-    fn constants(self) -> [(&'static str, f64); 8] {
+    fn constants(self) -> [(&'static str, f64); 10] {
         let flag = |on: bool| f64::from(u8::from(on));
         [
             ("PASS_THROUGH", flag(self.pass_through)),
             ("COPY_ONLY", flag(self.copy_only)),
             ("HAS_DEPTH", flag(self.has_depth)),
             ("HAS_MOTION", flag(self.has_motion)),
+            ("HAS_TRUST", flag(self.has_trust)),
+            ("HAS_EXPOSURE", flag(self.has_exposure)),
             ("DEPTH_TEST", flag(self.depth_test)),
             ("SAMPLER", flag(self.keys)),
             ("BIAS", f64::from(self.bias)),
@@ -129,6 +137,7 @@ fn entries(output: TextureFormat) -> Vec<BindGroupLayoutEntry> {
         BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
     let types = [
         uniform,
+        sampled(float),
         sampled(float),
         sampled(float),
         sampled(float),

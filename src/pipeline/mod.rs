@@ -4,7 +4,7 @@ mod gpu_lane;
 
 pub use gpu_lane::Headless;
 
-use crate::cpu::{CpuAfterimage, CpuFrame, CpuView, FrameStats, PixelTrace};
+use crate::cpu::{CpuAfterimage, CpuFrame, CpuView, PixelTrace};
 use crate::display::ViewGeometry;
 use crate::error::{CreateError, FrameError};
 use crate::foveation::{Foveation, Pyramid};
@@ -14,6 +14,7 @@ use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
 use crate::settings::{Method, Settings};
 use crate::source::SourceFrame;
+use crate::stats::FrameStats;
 use gpu_lane::{GpuLane, LaneInput};
 use std::sync::Arc;
 

@@ -45,6 +45,7 @@ fn verdict_color(verdict: Verdict) -> [f32; 3] {
         Verdict::OffScreen => [1.0, 0.55, 0.1],
         Verdict::Empty => [1.0, 1.0, 0.3],
         Verdict::Disoccluded => [1.0, 0.1, 0.1],
+        Verdict::Distrusted => [0.1, 0.9, 0.9],
     }
 }
 

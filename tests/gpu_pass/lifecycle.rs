@@ -6,7 +6,7 @@ use super::rig::{Rig, View, make_texture};
 use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::display::ViewGeometry;
 use afterimage::error::{CreateError, FrameError};
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::image::Image;
 use afterimage::settings::{Sampler, Settings};
@@ -38,6 +38,7 @@ fn noise_view(name: &str, desc: &ContextDesc) -> View {
             let m = if (x / 8 + y / 8) % 2 == 0 { [16.0, -1.0] } else { [-0.5, 2.5] };
             [m[0] / scale[0], m[1] / scale[1]]
         })),
+        trust: None,
     }
 }
 
@@ -149,6 +150,14 @@ fn good_bad_good_equals_good_good() {
         Frame { color: &narrow, ..good },
         Frame { motion: Some(&narrow), ..good },
         Frame { depth: Some(&integer), ..good },
+        Frame { trust: Some(&integer), ..good },
+        Frame { trust: Some(&small), ..good },
+        Frame { lod: Some(&integer), ..good },
+        Frame { lod: Some(&unbound), ..good },
+        Frame { exposure: Exposure::Changed { ratio: 0.0 }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: f32::INFINITY }, ..good },
         Frame { output: &wrong_output, ..good },
         Frame { output: &color, ..good },
         Frame { views: &[], ..good },

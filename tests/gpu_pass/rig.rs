@@ -2,7 +2,7 @@
 
 use super::gpu;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView, PixelTrace};
-use afterimage::frame::{ContextDesc, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Exposure, Reset, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::image::Image;
 use afterimage::settings::Settings;
@@ -15,6 +15,7 @@ pub struct View {
     pub color: Image<[f32; 3]>,
     pub depth: Option<Image<f32>>,
     pub motion: Option<Image<[f32; 2]>>,
+    pub trust: Option<Image<f32>>,
 }
 
 /// A device with textures of one size, and both executors.
@@ -24,9 +25,12 @@ pub struct Rig {
     pub context: ContextDesc,
     pub cpu: CpuAfterimage,
     pub gpu: Afterimage,
+    /// Of the frames to come.
+    pub exposure: Exposure,
     color: Texture,
     depth: Texture,
     motion: Texture,
+    trust: Texture,
     pub output: Texture,
 }
 
@@ -50,7 +54,9 @@ impl Rig {
             color: texture(TextureFormat::Rgba32Float, read),
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg32Float, read),
+            trust: texture(TextureFormat::R32Float, read),
             output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            exposure: Exposure::Same,
             context,
             device,
             queue,
@@ -63,9 +69,14 @@ impl Rig {
         let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
         let cpu_views: Vec<_> = views
             .iter()
-            .map(|v| CpuView { depth: v.depth.as_ref(), motion: v.motion.as_ref(), ..CpuView::new(v.facts, &v.color) })
+            .map(|v| CpuView {
+                depth: v.depth.as_ref(),
+                motion: v.motion.as_ref(),
+                trust: v.trust.as_ref(),
+                ..CpuView::new(v.facts, &v.color)
+            })
             .collect();
-        let frame = CpuFrame { reset, ..CpuFrame::new(&cpu_views, index) };
+        let frame = CpuFrame { reset, exposure: self.exposure, ..CpuFrame::new(&cpu_views, index) };
         self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: self.cpu.history().words().to_vec() }, trace)
@@ -77,6 +88,8 @@ impl Rig {
         let frame = Frame {
             depth: views[0].depth.is_some().then_some(&self.depth),
             motion: views[0].motion.is_some().then_some(&self.motion),
+            trust: views[0].trust.is_some().then_some(&self.trust),
+            exposure: self.exposure,
             reset,
             ..Frame::new(&self.color, &self.output, &facts, index)
         };
@@ -149,6 +162,9 @@ impl Rig {
             }
             if let Some(motion) = &view.motion {
                 self.write(&self.motion, layer, bytemuck::cast_slice(motion.pixels()));
+            }
+            if let Some(trust) = &view.trust {
+                self.write(&self.trust, layer, bytemuck::cast_slice(trust.pixels()));
             }
         }
     }

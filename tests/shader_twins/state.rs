@@ -133,6 +133,19 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(1).cross(&[&any()]).random("weight", |d, row| row.push(bits(d))),
     },
     Probe {
+        name: "trust",
+        module: "scrub",
+        words: [1, 1],
+        wgsl: "out_f(trust(in_f(0u)));",
+        rust: |r, o| o.f(scrub::trust(r.f(0))),
+        rows: || {
+            Rows::new(1)
+                .cross(&[&[any(), around(&[1.0])].concat()])
+                .random("trust", |d, row| row.push(bits(d)))
+                .random("trust, shares", |d, row| row.push(range(d, -0.5, 1.5)))
+        },
+    },
+    Probe {
         name: "pcg4d",
         module: "rng",
         words: [4, 4],
@@ -388,6 +401,46 @@ pub const PROBES: &[Probe] = &[
             Rows::new(2)
                 .cross(&[&keys, &survivals])
                 .random("a_es_decay", |d, row| row.extend([scaled(d, -20, 20) | 1 << 31, range(d, 0.0, 1.0)]))
+        },
+    },
+    Probe {
+        name: "believe",
+        module: "wrs",
+        words: [4, 2],
+        wgsl: "let p = believe(Past(vec3<f32>(0.0), in_f(0u), in_f(1u)), in_f(2u), in_u(3u)); out_f(p.w_sum); out_f(p.log_key);",
+        rust: |r, o| {
+            let past = Past { w_sum: r.f(0), log_key: r.f(1), ..Past::EMPTY };
+            let believed = wrs::believe(past, r.f(2), [SamplerCode::AChao, SamplerCode::AEs][r.u(3) as usize]);
+            o.f(believed.w_sum);
+            o.f(believed.log_key);
+        },
+        rows: || {
+            let keys = floats(&[0.0, -1e-8, -1.0, -1e30, f32::MIN]);
+            Rows::new(4)
+                .cross(&[&normal(), &keys, &any(), &[0, 1]])
+                .random("believe", |d, row| {
+                    row.extend([scaled(d, -10, 10), signed(d, -10, 10) | 1 << 31, range(d, 0.0, 1.0), d.bits() & 1]);
+                })
+                .within(|r| r.f(0) <= pack::MAX_W_SUM)
+        },
+    },
+    Probe {
+        name: "expose",
+        module: "wrs",
+        words: [4, 3],
+        wgsl: "out_v(expose(in_v(0u), in_f(3u)));",
+        rust: |r, o| o.v(wrs::expose(r.v(0), r.f(3))),
+        rows: || {
+            // As unpack leaves colours, and ratios as frames have them.
+            let halves: Vec<u32> = (0..65536).filter(|h| h & 0x7c00 != 0x7c00).collect();
+            let half = |d: &mut Draws| pack::half_value(halves[d.bits() as usize % halves.len()]).to_bits();
+            Rows::new(4).random("expose", |d, row| row.extend([half(d), half(d), half(d), scaled(d, -40, 40)])).random(
+                "expose, by stops",
+                |d, row| {
+                    let ratio = 2.0_f32.powi(d.bits() as i32 % 17).to_bits();
+                    row.extend([half(d), half(d), half(d), ratio]);
+                },
+            )
         },
     },
     Probe {
