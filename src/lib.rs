@@ -78,4 +78,5 @@ pub mod warning;
 #[cfg(feature = "lab")]
 pub mod whole_file;
 
+pub use kernel::debug_view::DebugView;
 pub use settings::Settings;

@@ -3,6 +3,10 @@
 use crate::kernel::reproject::Verdict;
 use crate::warning::Warning;
 
+/// Bytes of the counters that [`Frame::counters`](crate::gpu::Frame::counters) of the GPU executor adds up: words of 32 bits, little
+/// endian, for [`FrameStats::from_counters`].
+pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
+
 /// Counts of one frame over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
@@ -21,6 +25,26 @@ pub struct FrameStats {
 }
 
 impl FrameStats {
+    /// What a GPU counted: the first [`COUNTERS_BYTES`] of the counters, read back. `None` if there are fewer.
+    pub fn from_counters(bytes: &[u8]) -> Option<Self> {
+        let words: Vec<u64> = bytes
+            .get(..COUNTERS_BYTES as usize)?
+            .chunks_exact(4)
+            .map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
+            .collect();
+        // In the order of shaders/pass/wrs_pass.wgsl. Each pixel has one verdict.
+        let mut stats = Self {
+            nonfinite: words[0],
+            bad_depth: words[1],
+            bad_trust: words[2],
+            replaced: words[3],
+            ..Self::default()
+        };
+        stats.verdicts.copy_from_slice(&words[4..]);
+        stats.pixels = stats.verdicts.iter().sum();
+        Some(stats)
+    }
+
     /// Pixels that had a history and lost it, or might have: bad motion, off screen, disoccluded, distrusted.
     pub fn flushed(&self) -> u64 {
         Verdict::FLUSHED.iter().map(|&v| self.verdicts[v as usize]).sum()

@@ -1,4 +1,5 @@
 //#use acuity
+//#use debug_view
 //#use depth
 //#use pack
 //#use reproject
@@ -19,6 +20,9 @@ override DEPTH_TEST: u32 = 1u;
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
+override COUNT: u32 = 0u;
+// 0, or a VIEW_* code: show what would be decided, and decide nothing.
+override VIEW: u32 = 0u;
 
 // src/gpu/types.rs: ViewConstants
 struct ViewConstants {
@@ -67,6 +71,18 @@ struct FrameConstants {
 @group(0) @binding(9) var next_weights: texture_storage_2d_array<r32uint, write>;
 @group(0) @binding(10) var next_keys: texture_storage_2d_array<r32float, write>;
 @group(0) @binding(11) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(12) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
+
+// Words of the counters; src/stats.rs reads them.
+const COUNT_NONFINITE: u32 = 0u;
+const COUNT_BAD_DEPTH: u32 = 1u;
+const COUNT_BAD_TRUST: u32 = 2u;
+const COUNT_REPLACED: u32 = 3u;
+const COUNT_VERDICTS: u32 = 4u;
+const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
+
+// A workgroup's counts, so that few atomics leave it.
+var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
 // The history side of a pixel.
 struct History {
@@ -113,18 +129,22 @@ fn is_same_surface(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32,
     return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }
 
+fn count_if(condition: bool, word: u32) {
+    if COUNT != 0u {
+        if condition {
+            atomicAdd(&group_counters[word], 1u);
+        }
+    }
+}
+
 fn no_history(verdict: u32) -> History {
     return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u);
 }
 
 // The reservoir that a pixel continues and the age of its sample, or why it may not.
-fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, disparity_now: f32) -> History {
+fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> History {
     if frame.reset != 0u {
         return no_history(VERDICT_RESET);
-    }
-    var motion = vec2<f32>(0.0);
-    if HAS_MOTION != 0u {
-        motion = textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
     }
     let source = nearest(px.x, px.y, motion, frame.size);
     if source.verdict != VERDICT_VALID {
@@ -169,21 +189,22 @@ fn copy_only(px: vec2<u32>, view: u32, shown: vec3<f32>) {
     textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
 }
 
-@compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let px = id.xy;
-    // From the workgroup, not the invocation: uniform, so that its constants are loaded once.
-    let view = group.z;
-    if px.x >= frame.size.x || px.y >= frame.size.y {
-        return;
-    }
+fn pixel(px: vec2<u32>, view: u32) {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    if PASS_THROUGH != 0u {
-        textureStore(color_out, px, view, vec4<f32>(candidate.color, 1.0));
-        return;
-    }
     if COPY_ONLY != 0u {
         copy_only(px, view, candidate.color);
+        return;
+    }
+    count_if(!candidate.usable, COUNT_NONFINITE);
+    var motion = vec2<f32>(0.0);
+    if HAS_MOTION != 0u {
+        motion = textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
+    }
+    if PASS_THROUGH != 0u {
+        // Never a constant: compilers fold colours of constants with other roundings.
+        let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
+        count_if(true, COUNT_VERDICTS + verdict);
+        show(px, view, candidate.color, PixelTrace(0.0, 0.0, 0u, 0.0, verdict, 1.0, true, motion));
         return;
     }
     let constants = frame.views[view];
@@ -196,19 +217,62 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     var disparity_now = INVALID_DISPARITY;
     if HAS_DEPTH != 0u {
         disparity_now = disparity_at(px, view);
+        count_if(disparity_now == INVALID_DISPARITY, COUNT_BAD_DEPTH);
     }
-    let history = history_of(px, view, ray, disparity_now);
+    if HAS_TRUST != 0u {
+        count_if(!is_finite(textureLoad(trust_in, px, view, 0).x), COUNT_BAD_TRUST);
+    }
+    let history = history_of(px, view, ray, motion, disparity_now);
+    let valid = history.verdict == VERDICT_VALID;
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, frame.gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
     let decision = step(candidate.color, candidate_w, history.past, params, draw);
+    count_if(true, COUNT_VERDICTS + history.verdict);
+    count_if(valid && decision.take, COUNT_REPLACED);
 
     let shown = select(history.past.color, candidate.color, decision.take);
     let age = select(min(history.age + 1u, MAX_AGE), 0u, decision.take);
-    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    let survival = select(0.0, decision.survival, valid);
+    let traced =
+        PixelTrace(candidate_w, decision.w_sum, age, survival, history.verdict, decision.gate, decision.take, motion);
+    show(px, view, shown, traced);
+    if VIEW != 0u {
+        return;
+    }
     let words = pack(Stored(shown, disparity_now, decision.w_sum, age));
     textureStore(next_colors, px, view, vec4<u32>(words.xy, 0u, 0u));
     textureStore(next_weights, px, view, vec4<u32>(words.z, 0u, 0u, 0u));
     if SAMPLER == SAMPLER_A_ES {
         textureStore(next_keys, px, view, vec4<f32>(decision.log_key, 0.0, 0.0, 0.0));
+    }
+}
+
+// The frame, or what was decided about it.
+fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
+    if VIEW != 0u {
+        textureStore(color_out, px, view, vec4<f32>(view_color(VIEW, traced), 1.0));
+    } else {
+        textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    }
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        // The view from the workgroup, not the invocation: uniform, so that its constants are loaded once.
+        pixel(id.xy, group.z);
+    }
+    if COUNT != 0u {
+        workgroupBarrier();
+        if lane < COUNTERS {
+            let n = atomicLoad(&group_counters[lane]);
+            if n > 0u {
+                atomicAdd(&counters[lane], n);
+            }
+        }
     }
 }

@@ -7,11 +7,11 @@ mod history;
 mod wrs_pass;
 
 pub use history::History;
-pub use wrs_pass::PixelTrace;
 
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Exposure, Reset, ViewFrame, check_size};
 use crate::image::Image;
+use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
 use crate::settings::{Method, Settings};
@@ -138,15 +138,8 @@ impl CpuAfterimage {
     /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float colour
     /// (8), half-float motion (4), depth (4), trust (1). The depth test's extra taps are not counted: they are neighbours', and few.
     pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
-        let (color, output) = (8, 8);
-        if self.settings.method == Method::None {
-            return color + output;
-        }
-        let history = 2 * if self.settings.uses_keys() { 16 } else { 12 };
-        let depth = if view.depth.is_some() { 4 } else { 0 };
-        let motion = if view.motion.is_some() { 4 } else { 0 };
-        let trust = if view.trust.is_some() { 1 } else { 0 };
-        color + depth + motion + trust + history + output
+        let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
+        self.settings.traffic_bytes_per_pixel(given)
     }
 
     /// Bytes held between frames.
@@ -155,7 +148,7 @@ impl CpuAfterimage {
     }
 
     /// Processes one frame into `output`, one image of the context's size a view. `trace`, if given, receives what was decided
-    /// at each pixel (one image a view), for debug views.
+    /// at each pixel (one image a view), which [`view_color`](crate::kernel::debug_view::view_color) makes visible.
     ///
     /// # Errors
     /// If sizes or counts do not match the context; then nothing is written and the history is as before.
@@ -169,7 +162,7 @@ impl CpuAfterimage {
         match self.settings.method {
             Method::None => {
                 self.history.forget();
-                Ok(pass_through(frame, output))
+                Ok(pass_through(&self.desc, frame, output, trace))
             }
             Method::Wrs => {
                 let stats = wrs_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
@@ -214,13 +207,27 @@ impl CpuAfterimage {
 }
 
 /// Method `none`: what came, scrubbed.
-fn pass_through(frame: &CpuFrame<'_>, output: &mut [Image<[f32; 3]>]) -> FrameStats {
+fn pass_through(
+    desc: &ContextDesc,
+    frame: &CpuFrame<'_>,
+    output: &mut [Image<[f32; 3]>],
+    mut trace: Option<&mut [Image<PixelTrace>]>,
+) -> FrameStats {
     let mut stats = FrameStats::default();
-    for (view, out) in frame.views.iter().zip(output) {
+    let factors = desc.motion.to_internal(desc.size_px);
+    for (i, (view, out)) in frame.views.iter().zip(output).enumerate() {
         for (src, dst) in view.color.pixels().iter().zip(out.pixels_mut()) {
             let (color, valid) = scrub::color(Vec3::from(*src));
             *dst = color.to_array();
             stats.nonfinite += u64::from(!valid);
+        }
+        if let Some(trace) = &mut trace {
+            trace[i] = match view.motion {
+                Some(motion) => {
+                    motion.map(|m| PixelTrace { motion: wrs_pass::scale(m, factors), ..PixelTrace::default() })
+                }
+                None => Image::filled(desc.size_px, PixelTrace::default()),
+            };
         }
         stats.pixels += view.color.pixels().len() as u64;
     }

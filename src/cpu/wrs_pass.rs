@@ -7,6 +7,7 @@ use super::history::{History, PastView};
 use super::{CpuFrame, CpuView};
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
+use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::{self, DisparityMap};
 use crate::kernel::pack::{self, Stored};
 use crate::kernel::reproject::{self, Verdict};
@@ -17,31 +18,6 @@ use crate::settings::{DepthTest, Settings};
 use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
-
-/// What was decided at a pixel; the material of debug views.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelTrace {
-    /// Weight of the candidate, in \[0, 1\].
-    pub weight: f32,
-    /// Weight sum after the frame.
-    pub w_sum: f32,
-    /// Frames since the shown sample was shaded, up to 255.
-    pub age: u32,
-    /// Share of the history's weight that survived, in \[0, 1\]; 0 without history.
-    pub survival: f32,
-    /// What became of the history.
-    pub verdict: Verdict,
-    /// Gate value in \[0, 1\]; 1: candidate and history look alike.
-    pub gate: f32,
-    /// The candidate was chosen.
-    pub take: bool,
-}
-
-impl Default for PixelTrace {
-    fn default() -> Self {
-        Self { weight: 0.0, w_sum: 0.0, age: 0, survival: 0.0, verdict: Verdict::Reset, gate: 1.0, take: true }
-    }
-}
 
 /// Constants of one view of one frame.
 struct ViewPass<'a> {
@@ -137,6 +113,12 @@ fn split_rows<'a>(
         .collect()
 }
 
+/// A motion vector in the internal form.
+#[inline(always)]
+pub(super) fn scale(motion: [f32; 2], factors: [f32; 2]) -> [f32; 2] {
+    [motion[0] * factors[0], motion[1] * factors[1]]
+}
+
 impl ViewPass<'_> {
     fn row(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats { pixels: u64::from(self.size[0]), ..FrameStats::default() };
@@ -153,7 +135,8 @@ impl ViewPass<'_> {
         let ray = self.view.facts.geometry.ray([x as f32, y as f32]);
         let weight = if usable { self.weight(ray) } else { 0.0 };
         let disparity = self.disparity(x, y);
-        let (verdict, past, past_age) = match self.history(x, y, ray, disparity) {
+        let motion = self.motion(x, y);
+        let (verdict, past, past_age) = match self.history(x, y, ray, motion, disparity) {
             Ok((past, age)) => (Verdict::Valid, past, age),
             Err(verdict) => (verdict, Past::EMPTY, 0),
         };
@@ -175,6 +158,7 @@ impl ViewPass<'_> {
                 verdict,
                 gate: decision.gate,
                 take: decision.take,
+                motion,
             };
         }
         stats.nonfinite += u64::from(!usable);
@@ -198,16 +182,17 @@ impl ViewPass<'_> {
         }
     }
 
+    #[inline(always)]
+    fn motion(&self, x: u32, y: u32) -> [f32; 2] {
+        self.view.motion.map_or([0.0; 2], |m| scale(m.at(x as usize, y as usize), self.motion_scale))
+    }
+
     /// The reservoir that pixel (x, y) continues and the age of its sample, or why it may not.
     #[inline(always)]
-    fn history(&self, x: u32, y: u32, ray: Vec3, disparity: f32) -> Result<(Past, u32), Verdict> {
+    fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<(Past, u32), Verdict> {
         if self.reset {
             return Err(Verdict::Reset);
         }
-        let motion = self.view.motion.map_or([0.0; 2], |m| {
-            let v = m.at(x as usize, y as usize);
-            [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
-        });
         let [qx, qy] = reproject::nearest(x, y, motion, self.size)?;
         let at = qy as usize * self.size[0] as usize + qx as usize;
         let stored = pack::unpack(self.past.words[at]);

@@ -2,7 +2,8 @@
 
 use super::{Frame, GpuDesc};
 use crate::error::FrameError;
-use wgpu::{Texture, TextureAspect, TextureSampleType, TextureUsages};
+use crate::stats::COUNTERS_BYTES;
+use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureSampleType, TextureUsages};
 
 /// Checks a frame against what the context was made for.
 pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
@@ -31,6 +32,9 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
         }
     }
     frame.exposure.check()?;
+    if let Some(counters) = frame.counters {
+        check_counters(counters)?;
+    }
     check_texture(desc, "output", frame.output, TextureUsages::STORAGE_BINDING)?;
     if frame.output.format() == desc.output_format {
         Ok(())
@@ -75,6 +79,18 @@ fn check_texture(
             "the usage TEXTURE_BINDING"
         };
         return Err(refuse(input, texture, "without the usage it needs".into(), expected));
+    }
+    Ok(())
+}
+
+/// Room, and what clearing and adding need.
+fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
+    let refuse = |problem, expected| Err(FrameError::Buffer { input: "counters", problem, expected });
+    if buffer.size() < COUNTERS_BYTES {
+        return refuse(format!("of {} bytes", buffer.size()), "at least COUNTERS_BYTES");
+    }
+    if !buffer.usage().contains(BufferUsages::STORAGE | BufferUsages::COPY_DST) {
+        return refuse(format!("with the usages {:?}", buffer.usage()), "the usages STORAGE and COPY_DST");
     }
     Ok(())
 }

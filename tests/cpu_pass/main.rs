@@ -11,11 +11,12 @@ mod trust;
 mod views;
 
 use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView, PixelTrace};
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::display::ViewGeometry;
 use afterimage::error::FrameError;
 use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
 use afterimage::image::Image;
+use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::reproject::Verdict;
 use afterimage::settings::{Bias, DepthTest, Method, Sampler, Settings};
 use afterimage::stats::FrameStats;

@@ -1,12 +1,14 @@
 //! The same frames through both executors, and what comes back from the device.
 
 use super::gpu;
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView, PixelTrace};
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::frame::{ContextDesc, Exposure, Reset, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::image::Image;
+use afterimage::kernel::debug_view::{DebugView, PixelTrace};
 use afterimage::settings::Settings;
-use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
+use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 
 /// Images of one view of one frame.
 #[derive(Clone)]
@@ -32,6 +34,7 @@ pub struct Rig {
     motion: Texture,
     trust: Texture,
     pub output: Texture,
+    counters: Buffer,
 }
 
 /// What an executor made of a frame: shown colours and packed reservoirs, view after view.
@@ -39,6 +42,7 @@ pub struct Rig {
 pub struct Made {
     pub shown: Vec<[u32; 3]>,
     pub words: Vec<[u32; 3]>,
+    pub stats: FrameStats,
 }
 
 impl Rig {
@@ -56,6 +60,12 @@ impl Rig {
             motion: texture(TextureFormat::Rg32Float, read),
             trust: texture(TextureFormat::R32Float, read),
             output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            counters: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("counters"),
+                size: COUNTERS_BYTES,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
             exposure: Exposure::Same,
             context,
             device,
@@ -77,12 +87,29 @@ impl Rig {
             })
             .collect();
         let frame = CpuFrame { reset, exposure: self.exposure, ..CpuFrame::new(&cpu_views, index) };
-        self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
+        let stats = self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: self.cpu.history().words().to_vec() }, trace)
+        (Made { shown, words: self.cpu.history().words().to_vec(), stats }, trace)
     }
 
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
+        self.record(index, reset, views, true, None);
+        self.read()
+    }
+
+    /// As `on_gpu`, without counting.
+    pub fn on_gpu_uncounted(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
+        self.record(index, reset, views, false, None);
+        self.read()
+    }
+
+    /// What `on_gpu` would decide; shown colours alone.
+    pub fn decisions(&mut self, index: u64, reset: Reset, views: &[View], view: DebugView) -> Vec<[u32; 3]> {
+        self.record(index, reset, views, true, Some(view));
+        self.read().shown
+    }
+
+    fn record(&mut self, index: u64, reset: Reset, views: &[View], count: bool, view: Option<DebugView>) {
         self.upload(views);
         let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
         let frame = Frame {
@@ -90,15 +117,18 @@ impl Rig {
             motion: views[0].motion.is_some().then_some(&self.motion),
             trust: views[0].trust.is_some().then_some(&self.trust),
             exposure: self.exposure,
+            counters: count.then_some(&self.counters),
             reset,
             ..Frame::new(&self.color, &self.output, &facts, index)
         };
         gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
-            self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
+            match view {
+                None => self.gpu.record(&self.device, &mut encoder, &frame).unwrap(),
+                Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, view).unwrap(),
+            };
             self.queue.submit([encoder.finish()]);
         });
-        self.read()
     }
 
     /// The same images twice, with different facts, recorded into one encoder.
@@ -109,6 +139,7 @@ impl Rig {
             let frame = Frame {
                 depth: Some(&self.depth),
                 motion: Some(&self.motion),
+                counters: Some(&self.counters),
                 ..Frame::new(&self.color, &self.output, std::slice::from_ref(facts), index as u64)
             };
             self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
@@ -150,7 +181,29 @@ impl Rig {
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: colors.chunks_exact(2).zip(weights).map(|(c, w)| [c[0], c[1], w]).collect(),
+            stats: self.read_counters(),
         }
+    }
+
+    fn read_counters(&self) -> FrameStats {
+        let readback = self.readback(COUNTERS_BYTES);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &readback, 0, COUNTERS_BYTES);
+        FrameStats::from_counters(&self.bytes(encoder, &readback)).unwrap()
+    }
+
+    fn readback(&self, size: u64) -> Buffer {
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let desc = wgpu::BufferDescriptor { label: Some("readback"), size, usage, mapped_at_creation: false };
+        self.device.create_buffer(&desc)
+    }
+
+    /// What a readback buffer holds after what was recorded.
+    fn bytes(&self, encoder: wgpu::CommandEncoder, buffer: &Buffer) -> Vec<u8> {
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        buffer.get_mapped_range(..).expect("the readback is mapped").to_vec()
     }
 
     fn upload(&self, views: &[View]) {
@@ -188,12 +241,7 @@ impl Rig {
         let row = texture.width() * texel;
         let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let rows = texture.height() * texture.depth_or_array_layers();
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: u64::from(padded) * u64::from(rows),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let buffer = self.readback(u64::from(padded) * u64::from(rows));
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(padded),
@@ -205,11 +253,7 @@ impl Rig {
             wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
             texture.size(),
         );
-        self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        let mapped = buffer.get_mapped_range(..).expect("the readback is mapped");
-        mapped
+        self.bytes(encoder, &buffer)
             .chunks_exact(padded as usize)
             .flat_map(|r| bytemuck::cast_slice::<u8, u32>(&r[..row as usize]).to_vec())
             .collect()

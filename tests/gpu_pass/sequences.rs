@@ -8,11 +8,11 @@ use afterimage::image::Image;
 use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler, Settings};
 use afterimage::source::{AnalyticSource, FrameSource};
 
-const SIZE: [u32; 2] = [150, 84];
+pub const SIZE: [u32; 2] = [150, 84];
 const FRAMES: u64 = 40;
 
 /// Frame `index` of a scene as a foveating renderer would deliver it, damaged here and there.
-fn view(source: &mut AnalyticSource, index: u64) -> View {
+pub fn view(source: &mut AnalyticSource, index: u64) -> View {
     let mut draws = Draws::new(&format!("damage {index}"));
     let frame = source.frame(index).unwrap();
     let geometry = *source.view();
@@ -39,12 +39,12 @@ fn view(source: &mut AnalyticSource, index: u64) -> View {
 }
 
 /// A mask that moves over the frame: full trust, none, some, and numbers that are none.
-fn trust(index: u64) -> Image<f32> {
+pub fn trust(index: u64) -> Image<f32> {
     let values = [1.0, 1.0, 0.7, 1.0, 0.25, 0.0, 1.5, f32::NAN, -0.5, 1.0, f32::INFINITY, 1e-30];
     Image::from_fn(SIZE, |[x, y]| values[(x / 7 + y / 5 + index as u32 / 4) as usize % values.len()])
 }
 
-fn reset(index: u64) -> Reset {
+pub fn reset(index: u64) -> Reset {
     if index == 24 { Reset::All } else { Reset::None }
 }
 
@@ -68,6 +68,7 @@ fn agree_exposed(
         let views = [change(index, view(&mut source, index))];
         let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
         let gpu = rig.on_gpu(index, reset(index), &views);
+        assert_eq!(gpu.stats, cpu.stats, "{scene}, frame {index}: counted");
         for (i, t) in trace[0].pixels().iter().enumerate() {
             let [x, y] = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
             let decision = |words: [u32; 3]| words[2] & 0xff;
@@ -147,6 +148,7 @@ fn method_none_shows_the_scrubbed_frame() {
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     for index in 0..3 {
         let views = [view(&mut source, index)];
-        assert_eq!(rig.on_gpu(index, Reset::None, &views).shown, rig.on_cpu(index, Reset::None, &views).0.shown);
+        let (gpu, cpu) = (rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
+        assert_eq!((gpu.shown, gpu.stats), (cpu.shown, cpu.stats));
     }
 }

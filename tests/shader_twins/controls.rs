@@ -38,6 +38,24 @@ fn a_flipped_motion_sign_is_caught() {
 }
 
 #[test]
+fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
+    caught(state::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
+    caught(state::PROBES, "trust", "return 1.0;", "return t;");
+    caught(
+        state::PROBES,
+        "expose",
+        "clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF))",
+        "stored_color * ratio",
+    );
+}
+
+#[test]
+fn a_wrong_colour_of_a_decision_is_caught() {
+    caught(state::PROBES, "view_color", "srgb_decode(encoded.x)", "encoded.x");
+    caught(state::PROBES, "motion_color", "clamp(-motion.x", "clamp(motion.x");
+}
+
+#[test]
 fn draws_without_the_shift_are_caught() {
     caught(state::PROBES, "unit_draw", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)");
     caught(state::PROBES, "bits", "v = v ^ (v >> vec4<u32>(16u));", "");
