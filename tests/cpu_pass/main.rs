@@ -5,6 +5,7 @@ mod common;
 
 mod depth;
 mod lifecycle;
+mod light;
 mod nan;
 mod reprojection;
 mod trust;
