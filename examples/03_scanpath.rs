@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let none = Settings { method: Method::None, ..Settings::default() };
     let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
-    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, false, &Backend::Cpu)?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Cpu)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
     for index in 0..60 {
         let frame = source.frame(index)?;

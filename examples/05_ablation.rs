@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         lanes.pop();
     }
     let kinds: Vec<_> = lanes.iter().map(|l| l.1).collect();
-    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, false, &Backend::Cpu)?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let mut scorers = vec![Scorer::without_ssim(); lanes.len()];
     println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
     for index in 0..frames {

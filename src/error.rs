@@ -98,6 +98,16 @@ pub enum FrameError {
         /// What is accepted.
         expected: &'static str,
     },
+    /// A buffer that cannot be bound as what it is given for.
+    #[error("{input} is a buffer {problem}: expected {expected}")]
+    Buffer {
+        /// Which input.
+        input: &'static str,
+        /// What is wrong with it.
+        problem: String,
+        /// What is accepted.
+        expected: &'static str,
+    },
     /// A number of the frame's description is not usable.
     #[error("{what} of view {view} is {found}: expected {expected}")]
     Value {

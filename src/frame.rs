@@ -132,6 +132,30 @@ pub enum Exposure {
     },
 }
 
+impl Exposure {
+    /// Refuses a ratio that is no ratio.
+    pub(crate) fn check(self) -> Result<(), FrameError> {
+        match self {
+            Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => Err(FrameError::Value {
+                what: "exposure ratio",
+                view: 0,
+                found: ratio.to_string(),
+                expected: "this frame's exposure over the previous frame's: above 0 and finite",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The factor on stored colours, if there is one. Limited to where halves can follow ([`expose`](crate::kernel::wrs::expose)).
+    pub(crate) fn factor(self) -> Option<f32> {
+        const LIMIT: f32 = (1_u64 << 40) as f32;
+        match self {
+            Self::Same => None,
+            Self::Changed { ratio } => Some(ratio.clamp(1.0 / LIMIT, LIMIT)),
+        }
+    }
+}
+
 /// Facts that hold from creation on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContextDesc {

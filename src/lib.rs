@@ -44,6 +44,7 @@
 //!
 //! - [`settings`]: what can be tuned, what more and less of it does.
 //! - [`frame`], [`convention`], [`display`]: what the caller says about a frame, and in which conventions.
+//! - [`stats`], [`warning`]: what a frame came to, and what was odd about it.
 //! - [`gpu`] and [`cpu`]: the two executors of the same pass, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
 //!   they share, one function a formula.
 //! - With the feature `lab`: `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
@@ -72,7 +73,10 @@ pub mod scanpath;
 pub mod settings;
 #[cfg(feature = "lab")]
 pub mod source;
+pub mod stats;
+pub mod warning;
 #[cfg(feature = "lab")]
 pub mod whole_file;
 
+pub use kernel::debug_view::DebugView;
 pub use settings::Settings;

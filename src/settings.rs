@@ -148,6 +148,17 @@ impl Settings {
         self.sampler == Sampler::AEs
     }
 
+    /// Bytes that the pass reads and writes a pixel, for which of depth, motion and trust are given, stored as engines store them.
+    pub(crate) fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
+        let (color, output) = (8, 8);
+        if self.method == Method::None {
+            return color + output;
+        }
+        let history = 2 * if self.uses_keys() { 16 } else { 12 };
+        let inputs: u32 = given.iter().zip([4, 4, 1]).map(|(&given, bytes)| if given { bytes } else { 0 }).sum();
+        color + inputs + history + output
+    }
+
     /// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
     pub(crate) fn inv_density_at_fovea(&self) -> f32 {
         1.0 / acuity::cell_density(0.5 * self.foveation.fovea_deg)

@@ -65,7 +65,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcom
     let view = ViewGeometry::flat(info.size, hfov).unwrap();
     let scanpath = read_csv(data(clip.scanpath).unwrap()).unwrap();
     let gaze = FrameGaze::new(&scanpath, &view, clip.map, clip.start_s, 60.0).unwrap();
-    let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, false, &Backend::Cpu).unwrap();
+    let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, &[], &Backend::Cpu).unwrap();
     let mut scorers = vec![Scorer::default(); lanes.len()];
     let mut last = vec![];
     let (mut flushed, mut pixels) = (0, 0);

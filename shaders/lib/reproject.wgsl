@@ -10,7 +10,8 @@ const VERDICT_BAD_MOTION: u32 = 2u;
 const VERDICT_OFF_SCREEN: u32 = 3u;
 const VERDICT_EMPTY: u32 = 4u;
 const VERDICT_DISOCCLUDED: u32 = 5u;
-const VERDICT_COUNT: u32 = 6u;
+const VERDICT_DISTRUSTED: u32 = 6u;
+const VERDICT_COUNT: u32 = 7u;
 
 // `at` is (0, 0) unless the verdict is VERDICT_VALID.
 struct Reprojection {

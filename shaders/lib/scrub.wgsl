@@ -20,6 +20,15 @@ fn color(c: vec3<f32>) -> Scrubbed {
     return Scrubbed(vec3<f32>(0.0), false);
 }
 
+// scrub::trust: positive floats are in the order of their bits, infinity last and NaNs beyond it.
+fn trust(t: f32) -> f32 {
+    let bits = bitcast<u32>(t);
+    if bits >= 0x3f800000u && bits <= 0x7f800000u {
+        return 1.0;
+    }
+    return select(0.0, t, bits >= 0x00800000u && bits < 0x3f800000u);
+}
+
 // scrub::weight: kept from the smallest normal float to the largest finite one.
 fn weight(w: f32) -> f32 {
     let bits = bitcast<u32>(w);

@@ -1,5 +1,6 @@
 //#use color
 //#use reservoir
+//#use scrub
 // Twin of src/kernel/wrs.rs: gate, forget, combine.
 
 // wrs::SamplerCode
@@ -39,6 +40,21 @@ struct Decision {
     survival: f32,
 }
 
+// wrs::believe
+fn believe(past: Past, history_trust: f32, sampler_code: u32) -> Past {
+    let share = trust(history_trust);
+    var log_key = past.log_key;
+    if sampler_code == SAMPLER_A_ES {
+        log_key = a_es_decay(past.log_key, share);
+    }
+    return Past(past.color, weight(past.w_sum * share), log_key);
+}
+
+// wrs::expose
+fn expose(stored_color: vec3<f32>, ratio: f32) -> vec3<f32> {
+    return clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+}
+
 // wrs::gate (eq. 7): 1 - |dL|
 fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     return 1.0 - clamp((difference - offset) * inv_divisor, 0.0, 1.0);
@@ -58,9 +74,9 @@ fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
 }
 
 // wrs::step: eq. 7, then Alg. 2 with the candidate as second reservoir.
-fn step(candidate: vec3<f32>, weight: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
+fn step(candidate: vec3<f32>, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
     var gate_value = 1.0;
-    if weight > 0.0 && past.w_sum > 0.0 {
+    if candidate_w > 0.0 && past.w_sum > 0.0 {
         let d = difference(candidate, past.color, params.gate_code);
         gate_value = gate(d, params.gate_offset, params.inv_gate_divisor);
     }
@@ -69,16 +85,17 @@ fn step(candidate: vec3<f32>, weight: f32, past: Past, params: WrsParams, draw: 
     if params.bias_code == BIAS_EXPONENTIAL {
         bias = params.exponential_survival;
     } else if params.bias_code == BIAS_BERNOULLI {
-        bias = bernoulli_survival(past.w_sum, weight);
+        bias = bernoulli_survival(past.w_sum, candidate_w);
     }
-    let survival = bias * gate_value;
-    let kept = past.w_sum * survival;
-    let w_sum = kept + weight;
+    // Products below the normal range count as 0 by the rule of weights, whether the device flushes them or not.
+    let survival = weight(bias * gate_value);
+    let kept = weight(past.w_sum * survival);
+    let w_sum = kept + candidate_w;
     if params.sampler_code == SAMPLER_A_CHAO {
-        return Decision(kept == 0.0 || draw * w_sum < weight, w_sum, 0.0, gate_value, survival);
+        return Decision(kept == 0.0 || draw * w_sum < candidate_w, w_sum, 0.0, gate_value, survival);
     }
     let old_key = a_es_decay(past.log_key, survival);
-    let new_key = a_es_log_key(draw, weight);
+    let new_key = a_es_log_key(draw, candidate_w);
     let take = kept == 0.0 || new_key > old_key;
     return Decision(take, w_sum, select(old_key, new_key, take), gate_value, survival);
 }

@@ -10,14 +10,15 @@ mod taa_pass;
 mod wrs_pass;
 
 pub use history::History;
-pub use wrs_pass::PixelTrace;
 
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Exposure, Reset, ViewFrame, check_size};
 use crate::image::Image;
+use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub;
 use crate::settings::{Method, Settings};
+use crate::stats::FrameStats;
 use glam::Vec3;
 
 /// Inputs of one view of one frame.
@@ -65,41 +66,6 @@ impl<'a> CpuFrame<'a> {
     }
 }
 
-/// Counts of one frame over all views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrameStats {
-    /// Pixels processed.
-    pub pixels: u64,
-    /// Pixels whose colour was NaN or infinite.
-    pub nonfinite: u64,
-    /// Pixels by what became of their history, indexed by [`Verdict`].
-    pub verdicts: [u64; Verdict::COUNT],
-    /// Pixels with a valid history whose sample the candidate replaced.
-    pub replaced: u64,
-}
-
-impl FrameStats {
-    /// Pixels that had a history and lost it: bad motion, off screen or disoccluded.
-    pub fn flushed(&self) -> u64 {
-        [Verdict::BadMotion, Verdict::OffScreen, Verdict::Disoccluded].iter().map(|&v| self.verdicts[v as usize]).sum()
-    }
-
-    /// Pixels that kept their history, to combine it with the candidate.
-    pub fn valid(&self) -> u64 {
-        self.verdicts[Verdict::Valid as usize]
-    }
-
-    pub(crate) fn add(mut self, other: Self) -> Self {
-        self.pixels += other.pixels;
-        self.nonfinite += other.nonfinite;
-        self.replaced += other.replaced;
-        for (sum, v) in self.verdicts.iter_mut().zip(other.verdicts) {
-            *sum += v;
-        }
-        self
-    }
-}
-
 /// The post-process on the CPU. Owns nothing but settings and history.
 #[derive(Clone, Debug)]
 pub struct CpuAfterimage {
@@ -121,7 +87,14 @@ impl CpuAfterimage {
         desc.validate()?;
         let history = History::new(desc.size_px, desc.view_count, settings.uses_keys());
         let plane = vec![vec![[0; 2]; desc.size_px[0] as usize * desc.size_px[1] as usize]; desc.view_count as usize];
-        Ok(Self { desc, settings, history, surface: [plane.clone(), plane], chain: vec![Default::default(); desc.view_count as usize], surface_filled: false })
+        Ok(Self {
+            desc,
+            settings,
+            history,
+            surface: [plane.clone(), plane],
+            chain: vec![Default::default(); desc.view_count as usize],
+            surface_filled: false,
+        })
     }
 
     /// What it was made for.
@@ -177,16 +150,10 @@ impl CpuAfterimage {
     }
 
     /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float colour
-    /// (8), half-float motion (4), depth (4). The depth test's extra taps are not counted: they are neighbours', and few.
+    /// (8), half-float motion (4), depth (4), trust (1). The depth test's extra taps are not counted: they are neighbours', and few.
     pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
-        let (color, output) = (8, 8);
-        if self.settings.method == Method::None {
-            return color + output;
-        }
-        let history = 2 * if self.settings.uses_keys() { 16 } else { 12 };
-        let depth = if view.depth.is_some() { 4 } else { 0 };
-        let motion = if view.motion.is_some() { 4 } else { 0 };
-        color + depth + motion + history + output
+        let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
+        self.settings.traffic_bytes_per_pixel(given)
     }
 
     /// Bytes held between frames.
@@ -195,7 +162,7 @@ impl CpuAfterimage {
     }
 
     /// Processes one frame into `output`, one image of the context's size a view. `trace`, if given, receives what was decided
-    /// at each pixel (one image a view), for debug views.
+    /// at each pixel (one image a view), which [`view_color`](crate::kernel::debug_view::view_color) makes visible.
     ///
     /// # Errors
     /// If sizes or counts do not match the context; then nothing is written and the history is as before.
@@ -209,7 +176,7 @@ impl CpuAfterimage {
         match self.settings.method {
             Method::None => {
                 self.history.forget();
-                Ok(pass_through(frame, output))
+                Ok(pass_through(&self.desc, frame, output, trace))
             }
             Method::Taa | Method::Smr => {
                 let reset = frame.reset == Reset::All || !self.surface_filled;
@@ -217,23 +184,57 @@ impl CpuAfterimage {
                 let taa = taa_pass::TaaParams { alpha: env("ALPHA", 0.1), gamma: env("GAMMA", 1.0) };
                 let d = crate::kernel::matched::SmrParams::default();
                 let p = crate::kernel::matched::SmrParams {
-                    quality_width: env("QW", d.quality_width), accumulate: env("ACC", d.accumulate),
-                    accumulate_tolerance: env("AF", d.accumulate_tolerance), relight_from: env("T0", d.relight_from),
-                    relight_contrast: env("KC", d.relight_contrast), gate_from: env("G0", d.gate_from), gate_to: env("G1", d.gate_to),
-                    gate_contrast: env("GK", d.gate_contrast) };
+                    quality_width: env("QW", d.quality_width),
+                    accumulate: env("ACC", d.accumulate),
+                    accumulate_tolerance: env("AF", d.accumulate_tolerance),
+                    relight_from: env("T0", d.relight_from),
+                    relight_contrast: env("KC", d.relight_contrast),
+                    gate_from: env("G0", d.gate_from),
+                    gate_to: env("G1", d.gate_to),
+                    gate_contrast: env("GK", d.gate_contrast),
+                };
                 for (i, view) in frame.views.iter().enumerate() {
                     let constants = view.facts.constants(None, &self.settings, i, frame.index);
                     let [past, next] = &mut self.surface;
-                    let at = reprojection::Reprojection::new(&self.desc, view, constants.depth_row, self.settings.depth_test, &past[i], reset);
+                    let at = reprojection::Reprojection::new(
+                        &self.desc,
+                        view,
+                        constants.depth_row,
+                        self.settings.depth_test,
+                        &past[i],
+                        reset,
+                    );
                     if self.settings.method == Method::Taa {
                         taa_pass::run(&at, view.color, &mut next[i], &mut output[i], &taa);
                     } else {
                         let own;
-                        let lods = match view.lod { Some(l) => l, None => {
-                            own = Image::from_fn_parallel(self.desc.size_px, |[x, y]| self.settings.foveation.lod(crate::kernel::acuity::eccentricity_deg(view.facts.geometry.ray([x as f32, y as f32]), constants.gaze_ray)));
-                            &own } };
-                        smr_pass::run(&at, view.color, lods, &self.chain[i], &mut next[i], &mut output[i], &p, self.settings.foveation.filter == crate::foveation::Filter::Block);
-                        self.chain[i] = smr_pass::Chain::build(self.desc.size_px, &next[i], self.settings.foveation.rate_far.ilog2() + 3);
+                        let lods = match view.lod {
+                            Some(l) => l,
+                            None => {
+                                own = Image::from_fn_parallel(self.desc.size_px, |[x, y]| {
+                                    self.settings.foveation.lod(crate::kernel::acuity::eccentricity_deg(
+                                        view.facts.geometry.ray([x as f32, y as f32]),
+                                        constants.gaze_ray,
+                                    ))
+                                });
+                                &own
+                            }
+                        };
+                        smr_pass::run(
+                            &at,
+                            view.color,
+                            lods,
+                            &self.chain[i],
+                            &mut next[i],
+                            &mut output[i],
+                            &p,
+                            self.settings.foveation.filter == crate::foveation::Filter::Block,
+                        );
+                        self.chain[i] = smr_pass::Chain::build(
+                            self.desc.size_px,
+                            &next[i],
+                            self.settings.foveation.rate_far.ilog2() + 3,
+                        );
                     }
                 }
                 self.surface.swap(0, 1);
@@ -266,6 +267,8 @@ impl CpuAfterimage {
                 ("colour", Some(view.color.size())),
                 ("depth", view.depth.map(Image::size)),
                 ("motion", view.motion.map(Image::size)),
+                ("trust", view.trust.map(Image::size)),
+                ("lod", view.lod.map(Image::size)),
                 ("output", Some(output[i].size())),
                 ("trace", trace.map(|t| t[i].size())),
             ];
@@ -276,18 +279,32 @@ impl CpuAfterimage {
             }
             view.facts.check(i, &self.desc)?;
         }
-        Ok(())
+        frame.exposure.check()
     }
 }
 
 /// Method `none`: what came, scrubbed.
-fn pass_through(frame: &CpuFrame<'_>, output: &mut [Image<[f32; 3]>]) -> FrameStats {
+fn pass_through(
+    desc: &ContextDesc,
+    frame: &CpuFrame<'_>,
+    output: &mut [Image<[f32; 3]>],
+    mut trace: Option<&mut [Image<PixelTrace>]>,
+) -> FrameStats {
     let mut stats = FrameStats::default();
-    for (view, out) in frame.views.iter().zip(output) {
+    let factors = desc.motion.to_internal(desc.size_px);
+    for (i, (view, out)) in frame.views.iter().zip(output).enumerate() {
         for (src, dst) in view.color.pixels().iter().zip(out.pixels_mut()) {
             let (color, valid) = scrub::color(Vec3::from(*src));
             *dst = color.to_array();
             stats.nonfinite += u64::from(!valid);
+        }
+        if let Some(trace) = &mut trace {
+            trace[i] = match view.motion {
+                Some(motion) => {
+                    motion.map(|m| PixelTrace { motion: wrs_pass::scale(m, factors), ..PixelTrace::default() })
+                }
+                None => Image::filled(desc.size_px, PixelTrace::default()),
+            };
         }
         stats.pixels += view.color.pixels().len() as u64;
     }

@@ -89,16 +89,23 @@ pub(super) fn run(
             let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
             let need = env("EN", 0.0);
             let mut bad = false;
-            if need > 0.0 && let Some(m) = at.motion {
+            if need > 0.0
+                && let Some(m) = at.motion
+            {
                 let own = m.at(x, y);
                 let t = env("ET", 0.5) + env("ETR", 0.1) * (own[0].abs() + own[1].abs());
                 let agrees = |dx: i32, dy: i32| {
-                    let o = m.at((x as i32 + dx).clamp(0, w as i32 - 1) as usize, (y as i32 + dy).clamp(0, at.size[1] as i32 - 1) as usize);
+                    let o = m.at(
+                        (x as i32 + dx).clamp(0, w as i32 - 1) as usize,
+                        (y as i32 + dy).clamp(0, at.size[1] as i32 - 1) as usize,
+                    );
                     if (o[0] - own[0]).abs() <= t && (o[1] - own[1]).abs() <= t { 1.0_f32 } else { 0.0 }
                 };
                 bad = agrees(1, 0) + agrees(-1, 0) + agrees(0, 1) + agrees(0, -1) < need;
             }
-            if bad { shown_lod = shown_lod.max(env("EL", 8.0)); }
+            if bad {
+                shown_lod = shown_lod.max(env("EL", 8.0));
+            }
             if lod > 0.0 && !(bad && env("ES", 1.0) > 0.0) {
                 if let Ok(source) = at.source(xu, yu, disparity) {
                     let h = at.resample(&source);
@@ -112,7 +119,20 @@ pub(super) fn run(
                             scrub::color(Vec3::from(color.at(px, py))).0
                         };
                         let coarse = (tap(-1., -1.) + tap(1., -1.) + tap(-1., 1.) + tap(1., 1.)) * 0.25;
-                        let wide = if block { (tap(-2., -2.) + tap(2., -2.) + tap(-2., 2.) + tap(2., 2.) + tap(0., 2.)+tap(2., 0.) + tap(0., -2.) + tap(-2., 0.)+tap(0.,0.)) * (1.0/9.0) } else { coarse };
+                        let wide = if block {
+                            (tap(-2., -2.)
+                                + tap(2., -2.)
+                                + tap(-2., 2.)
+                                + tap(2., 2.)
+                                + tap(0., 2.)
+                                + tap(2., 0.)
+                                + tap(0., -2.)
+                                + tap(-2., 0.)
+                                + tap(0., 0.))
+                                * (1.0 / 9.0)
+                        } else {
+                            coarse
+                        };
                         let e = Evidence {
                             candidate: c,
                             seen: if block { coarse } else { c },

@@ -8,9 +8,18 @@ use crate::kernel::taa;
 use glam::Vec3;
 use rayon::prelude::*;
 
-pub struct TaaParams { pub alpha: f32, pub gamma: f32 }
+pub struct TaaParams {
+    pub alpha: f32,
+    pub gamma: f32,
+}
 
-pub(super) fn run(at: &Reprojection<'_>, color: &Image<[f32; 3]>, words: &mut [[u32; 2]], out: &mut Image<[f32; 3]>, p: &TaaParams) {
+pub(super) fn run(
+    at: &Reprojection<'_>,
+    color: &Image<[f32; 3]>,
+    words: &mut [[u32; 2]],
+    out: &mut Image<[f32; 3]>,
+    p: &TaaParams,
+) {
     let w = at.size[0] as usize;
     out.pixels_mut().par_chunks_mut(w).zip(words.par_chunks_mut(w)).enumerate().for_each(|(y, (out, words))| {
         for x in 0..w {

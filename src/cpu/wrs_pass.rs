@@ -1,12 +1,13 @@
-//! The fused pass of weighted reservoirs: scrub, reproject, flush, gate, bias, combine, store and show.
+//! The fused pass of weighted reservoirs: scrub, reproject, flush, expose, gate, bias, combine, store and show.
 //!
 //! Each pixel reads its colour, motion, depth and one reservoir (and four more depths where the depth test is close), and
 //! writes one reservoir and one colour: 48 bytes with half-float colour and motion.
 
 use super::history::{History, PastView};
-use super::{CpuFrame, CpuView, FrameStats};
+use super::{CpuFrame, CpuView};
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
+use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::{self, DisparityMap};
 use crate::kernel::pack::{self, Stored};
 use crate::kernel::reproject::{self, Verdict};
@@ -14,33 +15,9 @@ use crate::kernel::rng;
 use crate::kernel::wrs::{self, Past, WrsParams};
 use crate::kernel::{acuity, scrub};
 use crate::settings::{DepthTest, Settings};
+use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
-
-/// What was decided at a pixel; the material of debug views.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelTrace {
-    /// Weight of the candidate, in \[0, 1\].
-    pub weight: f32,
-    /// Weight sum after the frame.
-    pub w_sum: f32,
-    /// Frames since the shown sample was shaded, up to 255.
-    pub age: u32,
-    /// Share of the history's weight that survived, in \[0, 1\]; 0 without history.
-    pub survival: f32,
-    /// What became of the history.
-    pub verdict: Verdict,
-    /// Gate value in \[0, 1\]; 1: candidate and history look alike.
-    pub gate: f32,
-    /// The candidate was chosen.
-    pub take: bool,
-}
-
-impl Default for PixelTrace {
-    fn default() -> Self {
-        Self { weight: 0.0, w_sum: 0.0, age: 0, survival: 0.0, verdict: Verdict::Reset, gate: 1.0, take: true }
-    }
-}
 
 /// Constants of one view of one frame.
 struct ViewPass<'a> {
@@ -56,6 +33,8 @@ struct ViewPass<'a> {
     /// Third row of the current-to-previous view transform.
     depth_row: [f32; 4],
     depth_test: Option<DepthTest>,
+    /// Factor on stored colours.
+    exposure: Option<f32>,
     reset: bool,
     frame_low: u32,
     key: u32,
@@ -95,6 +74,7 @@ pub(super) fn run(
             disparity_map: desc.depth.disparity_map(),
             depth_row: constants.depth_row,
             depth_test: settings.depth_test.filter(|_| view.depth.is_some()),
+            exposure: frame.exposure.factor(),
             reset,
             frame_low: frame.index as u32,
             key: constants.key,
@@ -133,6 +113,12 @@ fn split_rows<'a>(
         .collect()
 }
 
+/// A motion vector in the internal form.
+#[inline(always)]
+pub(super) fn scale(motion: [f32; 2], factors: [f32; 2]) -> [f32; 2] {
+    [motion[0] * factors[0], motion[1] * factors[1]]
+}
+
 impl ViewPass<'_> {
     fn row(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats { pixels: u64::from(self.size[0]), ..FrameStats::default() };
@@ -149,14 +135,15 @@ impl ViewPass<'_> {
         let ray = self.view.facts.geometry.ray([x as f32, y as f32]);
         let weight = if usable { self.weight(ray) } else { 0.0 };
         let disparity = self.disparity(x, y);
-        let (verdict, stored, log_key) = self.history(x, y, ray, disparity);
-        let past =
-            Past { color: stored.color, w_sum: if verdict == Verdict::Valid { stored.w_sum } else { 0.0 }, log_key };
+        let motion = self.motion(x, y);
+        let (verdict, past, past_age) = match self.history(x, y, ray, motion, disparity) {
+            Ok((past, age)) => (Verdict::Valid, past, age),
+            Err(verdict) => (verdict, Past::EMPTY, 0),
+        };
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.key));
         let decision = wrs::step(candidate, weight, past, &self.params, draw);
 
-        let (color, age) =
-            if decision.take { (candidate, 0) } else { (stored.color, (stored.age + 1).min(pack::MAX_AGE)) };
+        let (color, age) = if decision.take { (candidate, 0) } else { (past.color, (past_age + 1).min(pack::MAX_AGE)) };
         row.out[i] = color.to_array();
         row.words[i] = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
         if let Some(keys) = &mut row.log_keys {
@@ -171,9 +158,12 @@ impl ViewPass<'_> {
                 verdict,
                 gate: decision.gate,
                 take: decision.take,
+                motion,
             };
         }
         stats.nonfinite += u64::from(!usable);
+        stats.bad_depth += u64::from(self.view.depth.is_some() && disparity == depth::INVALID_DISPARITY);
+        stats.bad_trust += u64::from(self.view.trust.is_some_and(|t| !scrub::is_finite(t.at(i, y as usize))));
         stats.verdicts[verdict as usize] += 1;
         stats.replaced += u64::from(verdict == Verdict::Valid && decision.take);
     }
@@ -192,33 +182,40 @@ impl ViewPass<'_> {
         }
     }
 
-    /// The reservoir that pixel (x, y) continues, and whether it may.
     #[inline(always)]
-    fn history(&self, x: u32, y: u32, ray: Vec3, disparity: f32) -> (Verdict, Stored, f32) {
-        let empty = pack::unpack([0; 3]);
+    fn motion(&self, x: u32, y: u32) -> [f32; 2] {
+        self.view.motion.map_or([0.0; 2], |m| scale(m.at(x as usize, y as usize), self.motion_scale))
+    }
+
+    /// The reservoir that pixel (x, y) continues and the age of its sample, or why it may not.
+    #[inline(always)]
+    fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<(Past, u32), Verdict> {
         if self.reset {
-            return (Verdict::Reset, empty, f32::MIN);
+            return Err(Verdict::Reset);
         }
-        let motion = self.view.motion.map_or([0.0; 2], |m| {
-            let v = m.at(x as usize, y as usize);
-            [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
-        });
-        let [qx, qy] = match reproject::nearest(x, y, motion, self.size) {
-            Ok(q) => q,
-            Err(verdict) => return (verdict, empty, f32::MIN),
-        };
+        let [qx, qy] = reproject::nearest(x, y, motion, self.size)?;
         let at = qy as usize * self.size[0] as usize + qx as usize;
         let stored = pack::unpack(self.past.words[at]);
-        let log_key = self.past.log_keys.get(at).copied().unwrap_or(f32::MIN);
         if stored.w_sum == 0.0 {
-            return (Verdict::Empty, stored, log_key);
+            return Err(Verdict::Empty);
         }
-        let same = match self.depth_test {
-            Some(test) => self.same_surface(x, y, ray, disparity, stored.disparity, test),
-            None => true,
-        };
-        let verdict = if same { Verdict::Valid } else { Verdict::Disoccluded };
-        (verdict, stored, log_key)
+        let log_key = self.past.log_keys.get(at).copied().unwrap_or(f32::MIN);
+        let mut past = Past { color: stored.color, w_sum: stored.w_sum, log_key };
+        if let Some(trust) = self.view.trust {
+            past = wrs::believe(past, trust.at(x as usize, y as usize), self.params.sampler);
+            if past.w_sum == 0.0 {
+                return Err(Verdict::Distrusted);
+            }
+        }
+        if let Some(test) = self.depth_test
+            && !self.same_surface(x, y, ray, disparity, stored.disparity, test)
+        {
+            return Err(Verdict::Disoccluded);
+        }
+        if let Some(ratio) = self.exposure {
+            past.color = wrs::expose(past.color, ratio);
+        }
+        Ok((past, stored.age))
     }
 
     #[inline(always)]

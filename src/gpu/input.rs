@@ -2,7 +2,8 @@
 
 use super::{Frame, GpuDesc};
 use crate::error::FrameError;
-use wgpu::{Texture, TextureAspect, TextureSampleType, TextureUsages};
+use crate::stats::COUNTERS_BYTES;
+use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureSampleType, TextureUsages};
 
 /// Checks a frame against what the context was made for.
 pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
@@ -23,6 +24,16 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
     if let Some(motion) = frame.motion {
         check_texture(desc, "motion", motion, read)?;
         check_readable("motion", motion, 2)?;
+    }
+    for (input, texture) in [("trust", frame.trust), ("lod", frame.lod)] {
+        if let Some(texture) = texture {
+            check_texture(desc, input, texture, read)?;
+            check_readable(input, texture, 1)?;
+        }
+    }
+    frame.exposure.check()?;
+    if let Some(counters) = frame.counters {
+        check_counters(counters)?;
     }
     check_texture(desc, "output", frame.output, TextureUsages::STORAGE_BINDING)?;
     if frame.output.format() == desc.output_format {
@@ -72,6 +83,18 @@ pub(crate) fn check_texture(
     Ok(())
 }
 
+/// Room, and what clearing and adding need.
+fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
+    let refuse = |problem, expected| Err(FrameError::Buffer { input: "counters", problem, expected });
+    if buffer.size() < COUNTERS_BYTES {
+        return refuse(format!("of {} bytes", buffer.size()), "at least COUNTERS_BYTES");
+    }
+    if !buffer.usage().contains(BufferUsages::STORAGE | BufferUsages::COPY_DST) {
+        return refuse(format!("with the usages {:?}", buffer.usage()), "the usages STORAGE and COPY_DST");
+    }
+    Ok(())
+}
+
 /// Float or depth, with enough channels.
 pub(crate) fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Result<(), FrameError> {
     let format = texture.format();
@@ -83,7 +106,8 @@ pub(crate) fn check_readable(input: &'static str, texture: &Texture, channels: u
         return Ok(());
     }
     let expected = match channels {
-        1 => "a depth format or R32Float",
+        1 if input == "depth" => "a depth format or R32Float",
+        1 => "a float or normalised format, such as R8Unorm or R16Float",
         2 => "Rg16Float, Rg32Float or wider",
         _ => "a float or normalised format with red, green and blue, such as Rgba16Float",
     };

@@ -3,7 +3,9 @@
 //! The caller owns device, queue, encoder, every input and output texture, and submission; [`Afterimage`] owns nothing but
 //! history and constants. [`Afterimage::record`] never submits, polls, maps or waits.
 
+mod bindings;
 mod desc;
+mod frame;
 mod history;
 mod input;
 mod pipeline;
@@ -14,6 +16,7 @@ pub mod shader;
 pub mod types;
 
 pub use desc::GpuDesc;
+pub use frame::{Frame, Recorded, Timestamps};
 pub use types::MAX_VIEWS;
 
 pub(crate) use history::array_view;
@@ -21,92 +24,34 @@ pub(crate) use history::array_view;
 pub(crate) use input::{check_readable, check_texture};
 
 use crate::error::{CreateError, FrameError, SettingsError};
-use crate::frame::{Exposure, Reset, ViewFrame, check_size};
+use crate::frame::{Reset, check_size};
+use crate::kernel::debug_view::DebugView;
 use crate::settings::{Method, Settings};
+use crate::stats::COUNTERS_BYTES;
+use bindings::Bindings;
 use history::History;
 use pipeline::{Pipelines, Variant};
 use types::{FrameConstants, ViewConstants};
-use wgpu::util::DeviceExt;
-use wgpu::{BindGroupDescriptor, BindGroupEntry, BindingResource, CommandEncoder, Device, Texture, TextureView};
+use wgpu::{CommandEncoder, Device, Texture};
 
 /// Width of a workgroup: rows of 64 pixels. Also in the shaders.
 pub(crate) const WORKGROUP_WIDTH: u32 = 64;
-
-/// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), one sample a
-/// pixel, and the usage `TEXTURE_BINDING`.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
-    /// The foveated frame: linear colour, any float format.
-    pub color: &'a Texture,
-    /// Depth in the context's convention: a depth format or `R32Float`. `None` switches the depth test off.
-    pub depth: Option<&'a Texture>,
-    /// Motion in the context's convention: `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves.
-    pub motion: Option<&'a Texture>,
-    /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
-    /// reflections). Any float or normalised format. `None`: 1 everywhere.
-    pub trust: Option<&'a Texture>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels, any float format. `None`: as
-    /// [`Settings::foveation`] has it.
-    pub lod: Option<&'a Texture>,
-    /// What the user will see: the context's output format, usage `STORAGE_BINDING`.
-    pub output: &'a Texture,
-    /// One entry a view.
-    pub views: &'a [ViewFrame],
-    /// Frame counter; the random numbers follow it.
-    pub index: u64,
-    /// Whether the history still holds.
-    pub reset: Reset,
-    /// How bright its numbers are against the previous frame's.
-    pub exposure: Exposure,
-    /// Where the device writes when the pass begins and ends, if the caller wants to time it. Needs
-    /// `Features::TIMESTAMP_QUERY`.
-    pub timestamps: Option<Timestamps<'a>>,
-}
-
-impl<'a> Frame<'a> {
-    /// A frame that goes on from the previous one, without optional inputs.
-    pub fn new(color: &'a Texture, output: &'a Texture, views: &'a [ViewFrame], index: u64) -> Self {
-        Self {
-            color,
-            depth: None,
-            motion: None,
-            trust: None,
-            lod: None,
-            output,
-            views,
-            index,
-            reset: Reset::None,
-            exposure: Exposure::Same,
-            timestamps: None,
-        }
-    }
-}
-
-/// Two queries of a set of the caller's that the device writes its clock to.
-#[derive(Clone, Copy, Debug)]
-pub struct Timestamps<'a> {
-    /// A set of `QueryType::Timestamp`.
-    pub queries: &'a wgpu::QuerySet,
-    /// Index of the query written when the pass begins.
-    pub begin: u32,
-    /// Index of the query written when it ends.
-    pub end: u32,
-}
 
 /// The post-process on the GPU.
 #[derive(Debug)]
 pub struct Afterimage {
     desc: GpuDesc,
+    bindings: Bindings,
     pipelines: Pipelines,
     history: History,
-    dummies: Dummies,
 }
 
-/// What is bound where there is no input: 1x1 textures that no specialised shader reads.
-#[derive(Debug)]
-struct Dummies {
-    float: TextureView,
-    key_out: TextureView,
+/// What a frame comes to before any pixel is looked at.
+struct Prepared {
+    constants: FrameConstants,
+    /// Where the eyes are taken to look; to be held from then on.
+    gaze_px: Vec<Option<[f32; 2]>>,
+    recorded: Recorded,
 }
 
 impl Afterimage {
@@ -116,11 +61,12 @@ impl Afterimage {
     /// If a setting or fact is out of range, or the device cannot do it.
     pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
         desc.validate(&device.limits())?;
+        let bindings = Bindings::new(device, desc.output_format);
         Ok(Self {
             desc: *desc,
-            pipelines: Pipelines::new(device, desc)?,
+            pipelines: Pipelines::new(device, desc, &bindings)?,
+            bindings,
             history: History::new(device, &desc.context, desc.settings.uses_keys()),
-            dummies: Dummies::new(device),
         })
     }
 
@@ -169,18 +115,35 @@ impl Afterimage {
         &self.history.split().0.textures
     }
 
-    /// Records one frame into `encoder`.
+    /// Records one frame into `encoder`. What is odd about it, and no error, comes back; it may be ignored.
     ///
     /// # Errors
-    /// If a texture or number does not fit the context; then nothing was recorded and no state has moved.
+    /// If a texture, buffer or number does not fit the context; then nothing was recorded and no state has moved.
     pub fn record(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
-    ) -> Result<(), FrameError> {
-        let variant = Variant::new(&self.desc.settings, frame.depth.is_some(), frame.motion.is_some());
-        self.record_variant(device, encoder, frame, variant)
+    ) -> Result<Recorded, FrameError> {
+        self.record_and_keep(device, encoder, frame, Variant::new(&self.desc.settings, frame))
+    }
+
+    /// Records a picture of what [`record`](Self::record) of the same frame would decide, in linear light, into the frame's output.
+    /// No state moves and nothing is counted: call it before `record`, with another output.
+    ///
+    /// # Errors
+    /// As for `record`.
+    pub fn record_view(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        view: DebugView,
+    ) -> Result<Recorded, FrameError> {
+        input::check(&self.desc, frame)?;
+        let prepared = self.prepare(frame);
+        self.dispatch(device, encoder, frame, Variant::view(&self.desc.settings, frame, view), &prepared.constants);
+        Ok(prepared.recorded)
     }
 
     /// Records a pass that reads and writes what [`record`](Self::record) would with depth and motion, and computes nothing:
@@ -193,7 +156,7 @@ impl Afterimage {
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
-    ) -> Result<(), FrameError> {
+    ) -> Result<Recorded, FrameError> {
         if frame.depth.is_none() || frame.motion.is_none() {
             return Err(FrameError::Value {
                 what: "depth or motion",
@@ -202,70 +165,56 @@ impl Afterimage {
                 expected: "both, to move all bytes",
             });
         }
-        let variant = Variant::copy(&self.desc.settings);
-        self.record_variant(device, encoder, frame, variant)
+        self.record_and_keep(device, encoder, frame, Variant::copy(&self.desc.settings, frame))
     }
 
-    fn record_variant(
+    fn record_and_keep(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
         variant: Variant,
-    ) -> Result<(), FrameError> {
+    ) -> Result<Recorded, FrameError> {
         input::check(&self.desc, frame)?;
-        let constants = self.constants(frame);
-        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("afterimage constants"),
-            contents: bytemuck::bytes_of(&constants),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let color = array_view(frame.color);
-        let depth = frame.depth.map_or_else(|| self.dummies.float.clone(), array_view);
-        let motion = frame.motion.map_or_else(|| self.dummies.float.clone(), array_view);
-        let output = array_view(frame.output);
-        let (past, next) = self.history.split();
-        let views = [
-            &color,
-            &depth,
-            &motion,
-            &past.views[0],
-            &past.views[1],
-            past.views.get(2).unwrap_or(&self.dummies.float),
-            &next.views[0],
-            &next.views[1],
-            next.views.get(2).unwrap_or(&self.dummies.key_out),
-            &output,
-        ];
-        let mut entries = vec![BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
-        entries.extend(
-            views.into_iter().enumerate().map(|(i, view)| BindGroupEntry {
-                binding: i as u32 + 1,
-                resource: BindingResource::TextureView(view),
-            }),
-        );
-        let group = device.create_bind_group(&BindGroupDescriptor {
+        let prepared = self.prepare(frame);
+        if let Some(counters) = frame.counters {
+            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
+        }
+        self.dispatch(device, encoder, frame, variant, &prepared.constants);
+        if self.desc.settings.method == Method::None {
+            self.history.forget();
+        } else {
+            self.history.held_gaze = prepared.gaze_px;
+            self.history.swap();
+        }
+        Ok(prepared.recorded)
+    }
+
+    fn dispatch(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        variant: Variant,
+        constants: &FrameConstants,
+    ) {
+        let group = self.bindings.group(device, frame, constants, &self.history);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("afterimage wrs"),
-            layout: &self.pipelines.bindings,
-            entries: &entries,
+            timestamp_writes: frame.timestamps.map(|t| wgpu::ComputePassTimestampWrites {
+                query_set: t.queries,
+                beginning_of_pass_write_index: Some(t.begin),
+                end_of_pass_write_index: Some(t.end),
+            }),
         });
-        let mut pass = encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("afterimage wrs"), timestamp_writes: None });
         pass.set_pipeline(self.pipelines.get(device, variant));
         pass.set_bind_group(0, &group, &[]);
         let [width, height] = self.desc.context.size_px;
         pass.dispatch_workgroups(width.div_ceil(WORKGROUP_WIDTH), height, self.desc.context.view_count);
-        drop(pass);
-        if self.desc.settings.method == Method::None {
-            self.history.forget();
-        } else {
-            self.history.swap();
-        }
-        Ok(())
     }
 
-    /// The frame's constants. Remembers where the eyes look.
-    fn constants(&mut self, frame: &Frame<'_>) -> FrameConstants {
+    /// What a frame comes to before any pixel is looked at.
+    fn prepare(&self, frame: &Frame<'_>) -> Prepared {
         let settings = &self.desc.settings;
         let params = settings.wrs_params();
         let disparity = self.desc.context.depth.disparity_map();
@@ -286,11 +235,15 @@ impl Afterimage {
             motion_scale: self.desc.context.motion.to_internal(self.desc.context.size_px),
             disparity_b: disparity.b,
             disparity_flags: u32::from(disparity.invert) | u32::from(disparity.clamp) << 1,
+            exposure: frame.exposure.factor().unwrap_or(1.0),
             ..FrameConstants::default()
         };
-        for (i, (view, held)) in frame.views.iter().zip(&mut self.history.held_gaze).enumerate() {
+        let mut recorded = Recorded::default();
+        let mut gaze_px = vec![];
+        for (i, (view, held)) in frame.views.iter().zip(&self.history.held_gaze).enumerate() {
             let prepared = view.constants(*held, settings, i, frame.index);
-            *held = Some(prepared.gaze_px);
+            recorded.note(i, view, *held);
+            gaze_px.push(Some(prepared.gaze_px));
             let (ray_scale, ray_offset) = view.geometry.scale_offset();
             constants.views[i] = ViewConstants {
                 ray_scale,
@@ -301,28 +254,6 @@ impl Afterimage {
                 unused: [0; 3],
             };
         }
-        constants
-    }
-}
-
-impl Dummies {
-    fn new(device: &Device) -> Self {
-        let texture = |format, usage| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("afterimage absent input"),
-                size: wgpu::Extent3d::default(),
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            });
-            array_view(&texture)
-        };
-        Self {
-            float: texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING),
-            key_out: texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::STORAGE_BINDING),
-        }
+        Prepared { constants, gaze_px, recorded }
     }
 }

@@ -1,16 +1,16 @@
 //! Pipelines: one shader, specialised by `override` constants to what a frame brings and what the settings ask for.
 
+use super::bindings::Bindings;
 use super::desc::GpuDesc;
-use super::shader;
+use super::{Frame, shader};
 use crate::error::CreateError;
+use crate::kernel::debug_view::DebugView;
 use crate::kernel::wrs::GateCode;
 use crate::settings::{Method, Settings};
 use std::collections::HashMap;
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BufferBindingType, ComputePipeline,
-    ComputePipelineDescriptor, Device, PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor,
-    ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, StorageTextureAccess, TextureFormat,
-    TextureSampleType, TextureViewDimension,
+    ComputePipeline, ComputePipelineDescriptor, Device, PipelineCompilationOptions, PipelineLayout,
+    PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource,
 };
 
 /// What a pipeline is specialised to. Absent inputs are switched off, not read as zeros.
@@ -20,59 +20,76 @@ pub(super) struct Variant {
     copy_only: bool,
     has_depth: bool,
     has_motion: bool,
+    has_trust: bool,
+    has_exposure: bool,
     depth_test: bool,
     keys: bool,
     bias: u32,
     gate: u32,
+    count: bool,
+    view: Option<DebugView>,
 }
 
 impl Variant {
-    pub fn new(settings: &Settings, has_depth: bool, has_motion: bool) -> Self {
+    pub fn new(settings: &Settings, frame: &Frame<'_>) -> Self {
+        let has_depth = frame.depth.is_some();
         let params = settings.wrs_params();
         Self {
             pass_through: settings.method == Method::None,
             copy_only: false,
             has_depth,
-            has_motion,
+            has_motion: frame.motion.is_some(),
+            has_trust: frame.trust.is_some(),
+            has_exposure: frame.exposure.factor().is_some(),
             depth_test: has_depth && settings.depth_test.is_some(),
             keys: settings.uses_keys(),
             bias: params.bias as u32,
             gate: if settings.gate.is_some() { params.gate as u32 } else { GateCode::Off as u32 },
+            count: frame.counters.is_some(),
+            view: None,
         }
     }
 
     /// The pass that moves the same bytes as the method with depth and motion, and computes nothing.
-    pub fn copy(settings: &Settings) -> Self {
-        Self { copy_only: true, ..Self::new(settings, true, true) }
+    pub fn copy(settings: &Settings, frame: &Frame<'_>) -> Self {
+        Self { copy_only: true, count: false, ..Self::new(settings, frame) }
+    }
+
+    /// The pass that shows what would be decided, and stores nothing.
+    pub fn view(settings: &Settings, frame: &Frame<'_>, view: DebugView) -> Self {
+        Self { view: Some(view), count: false, ..Self::new(settings, frame) }
     }
 
     /// Values of the shader's overrides.
-    fn constants(self) -> [(&'static str, f64); 8] {
+    fn constants(self) -> [(&'static str, f64); 12] {
         let flag = |on: bool| f64::from(u8::from(on));
         [
             ("PASS_THROUGH", flag(self.pass_through)),
             ("COPY_ONLY", flag(self.copy_only)),
             ("HAS_DEPTH", flag(self.has_depth)),
             ("HAS_MOTION", flag(self.has_motion)),
+            ("HAS_TRUST", flag(self.has_trust)),
+            ("HAS_EXPOSURE", flag(self.has_exposure)),
             ("DEPTH_TEST", flag(self.depth_test)),
             ("SAMPLER", flag(self.keys)),
             ("BIAS", f64::from(self.bias)),
             ("GATE", f64::from(self.gate)),
+            ("COUNT", flag(self.count)),
+            ("VIEW", self.view.map_or(0.0, |v| f64::from(v as u32))),
         ]
     }
 }
 
-/// The shader, its bindings, and the pipelines made of it so far.
+/// The shader, and the pipelines made of it so far.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub bindings: BindGroupLayout,
     layout: PipelineLayout,
     module: ShaderModule,
     made: HashMap<Variant, ComputePipeline>,
 }
 
 impl Pipelines {
-    pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
+    pub fn new(device: &Device, desc: &GpuDesc, bindings: &Bindings) -> Result<Self, CreateError> {
         // The texel format of a storage texture is part of the text in WGSL.
         let source = shader::compose("wrs_pass").source.replace(
             "texture_storage_2d_array<rgba16float",
@@ -82,16 +99,12 @@ impl Pipelines {
             label: Some("afterimage wrs"),
             source: ShaderSource::Wgsl(source.into()),
         });
-        let bindings = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-            label: Some("afterimage wrs"),
-            entries: &entries(desc.output_format),
-        });
         let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
             label: Some("afterimage wrs"),
-            bind_group_layouts: &[Some(&bindings)],
+            bind_group_layouts: &[Some(&bindings.layout)],
             ..PipelineLayoutDescriptor::default()
         });
-        Ok(Self { bindings, layout, module, made: HashMap::new() })
+        Ok(Self { layout, module, made: HashMap::new() })
     }
 
     /// The pipeline of a variant, made at its first use.
@@ -104,47 +117,11 @@ impl Pipelines {
                 entry_point: Some("main"),
                 compilation_options: PipelineCompilationOptions {
                     constants: &variant.constants(),
-                    ..PipelineCompilationOptions::default()
+                    // Only counting has memory of the workgroup's; zeroing it means waiting for each other.
+                    zero_initialize_workgroup_memory: variant.count,
                 },
                 cache: None,
             })
         })
     }
-}
-
-/// Bindings of `shaders/pass/wrs_pass.wgsl`, in its order.
-fn entries(output: TextureFormat) -> Vec<BindGroupLayoutEntry> {
-    let float = TextureSampleType::Float { filterable: false };
-    let sampled = |sample_type| BindingType::Texture {
-        sample_type,
-        view_dimension: TextureViewDimension::D2Array,
-        multisampled: false,
-    };
-    let storage = |format| BindingType::StorageTexture {
-        access: StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: TextureViewDimension::D2Array,
-    };
-    let uniform =
-        BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
-    let types = [
-        uniform,
-        sampled(float),
-        sampled(float),
-        sampled(float),
-        sampled(TextureSampleType::Uint),
-        sampled(TextureSampleType::Uint),
-        sampled(float),
-        storage(TextureFormat::Rg32Uint),
-        storage(TextureFormat::R32Uint),
-        storage(TextureFormat::R32Float),
-        storage(output),
-    ];
-    let entry = |(binding, ty): (usize, BindingType)| BindGroupLayoutEntry {
-        binding: binding as u32,
-        visibility: ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    };
-    types.into_iter().enumerate().map(entry).collect()
 }

@@ -33,6 +33,7 @@ const MODULES: &[Module] = &[
     module!("lib", "acuity"),
     module!("lib", "approx"),
     module!("lib", "color"),
+    module!("lib", "debug_view"),
     module!("lib", "depth"),
     module!("lib", "foveate"),
     module!("lib", "pack"),

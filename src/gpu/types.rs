@@ -55,6 +55,10 @@ pub struct FrameConstants {
     pub disparity_b: f32,
     /// Bit 0: `DisparityMap::invert`; bit 1: `DisparityMap::clamp`.
     pub disparity_flags: u32,
+    /// Factor on stored colours.
+    pub exposure: f32,
+    /// To a multiple of 16 bytes.
+    pub unused: [u32; 3],
     /// One entry a view.
     pub views: [ViewConstants; MAX_VIEWS],
 }

@@ -68,7 +68,8 @@ pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bo
 }
 
 /// How much the surface at pixel (`x`, `y`) of an image of `size` changes its disparity from pixel to pixel, both axes together.
-/// `at` reads a disparity; its invalid ones are ignored. Planes give the same everywhere.
+/// `at` reads a disparity; its invalid ones are ignored. Planes give the same everywhere. WGSL has no readers: there it is a loop
+/// in the pass.
 #[inline]
 pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f32 {
     let tap = |inside: bool, x: u32, y: u32| {
@@ -86,7 +87,7 @@ pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f3
 /// silhouette on one side does not count as slope, and 0 where the pixel is higher or lower than both, as a wire is. A
 /// neighbour that is missing or invalid is ignored.
 #[inline]
-fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
+pub fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = center - before;
     let ahead = after - center;
     match (before >= 0.0, after >= 0.0) {

@@ -7,6 +7,7 @@
 pub mod acuity;
 pub mod approx;
 pub mod color;
+pub mod debug_view;
 pub mod depth;
 pub mod foveate;
 pub mod matched;

@@ -21,11 +21,16 @@ pub enum Verdict {
     Empty = 4,
     /// Another surface was there: the depth differs.
     Disoccluded = 5,
+    /// The caller's trust mask forbids it.
+    Distrusted = 6,
 }
 
 impl Verdict {
     /// Number of verdicts; codes are below it.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
+
+    /// Those that take a history away which there may have been: what counts as flushed.
+    pub const FLUSHED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }
 
 /// The texel that holds the history of pixel (`x`, `y`): nearest to where it was. A position is inside the previous frame

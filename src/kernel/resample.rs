@@ -5,12 +5,7 @@
 #[inline]
 pub fn catmull_rom(t: f32) -> [f32; 4] {
     let t2 = t * t;
-    [
-        ((1.0 - 0.5 * t) * t - 0.5) * t,
-        (1.5 * t - 2.5) * t2 + 1.0,
-        ((2.0 - 1.5 * t) * t + 0.5) * t,
-        (0.5 * t - 0.5) * t2,
-    ]
+    [((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t2 + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t, (0.5 * t - 0.5) * t2]
 }
 
 /// Whole texel below a coordinate and what is left of it, in \[0, 1).

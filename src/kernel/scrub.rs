@@ -22,6 +22,17 @@ pub fn color(c: Vec3) -> (Vec3, bool) {
     }
 }
 
+/// A trust: at least 0 and at most 1. What is NaN, below 0 or so small that hardware may flush it to zero counts as 0.
+#[inline]
+pub fn trust(t: f32) -> f32 {
+    // Positive floats are in the order of their bits, infinity last and NaNs beyond it.
+    match t.to_bits() {
+        0x0080_0000..0x3f80_0000 => t,
+        0x3f80_0000..=0x7f80_0000 => 1.0,
+        _ => 0.0,
+    }
+}
+
 /// A weight or weight sum: what is NaN, infinite, negative or so small that hardware may flush it to zero counts as 0.
 #[inline]
 pub fn weight(w: f32) -> f32 {

@@ -1,5 +1,6 @@
 //! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, forget, combine.
 
+use super::scrub::{self, MAX_HALF};
 use super::{color, reservoir};
 use glam::Vec3;
 
@@ -65,6 +66,11 @@ pub struct Past {
     pub log_key: f32,
 }
 
+impl Past {
+    /// None at all.
+    pub const EMPTY: Self = Self { color: Vec3::ZERO, w_sum: 0.0, log_key: f32::MIN };
+}
+
 /// What was decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
@@ -78,6 +84,25 @@ pub struct Decision {
     pub gate: f32,
     /// Share of the history's weight sum that survived, gate and bias together.
     pub survival: f32,
+}
+
+/// The history as far as it is trusted: all its weights times `trust` ([`scrub::trust`]), before gate and bias. Nothing is left
+/// of it (a sum of 0) at a trust of 0.
+#[inline]
+pub fn believe(past: Past, trust: f32, sampler: SamplerCode) -> Past {
+    let share = scrub::trust(trust);
+    let log_key = match sampler {
+        SamplerCode::AChao => past.log_key,
+        SamplerCode::AEs => reservoir::a_es_decay(past.log_key, share),
+    };
+    Past { color: past.color, w_sum: scrub::weight(past.w_sum * share), log_key }
+}
+
+/// A stored colour under this frame's exposure: times `ratio`, kept within halves. `ratio` from 2^-40 to 2^40, beyond which
+/// every half leaves the halves, so that no product leaves the normal floats.
+#[inline]
+pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
+    (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
 }
 
 /// `1 - |dL|` of eq. 7: 1 up to `offset`, 0 from `offset + 1 / inv_divisor` on. `difference` in Delta E.
@@ -113,8 +138,9 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
         BiasCode::Exponential => params.exponential_survival,
         BiasCode::Bernoulli => reservoir::bernoulli_survival(past.w_sum, weight),
     };
-    let survival = bias * gate_value;
-    let kept = past.w_sum * survival;
+    // Products may fall below the normal range, where some devices flush to zero: by the rule of weights, both do.
+    let survival = scrub::weight(bias * gate_value);
+    let kept = scrub::weight(past.w_sum * survival);
     let w_sum = kept + weight;
     let (take, log_key) = match params.sampler {
         SamplerCode::AChao => (kept == 0.0 || draw * w_sum < weight, 0.0),

@@ -4,16 +4,18 @@ mod gpu_lane;
 
 pub use gpu_lane::Headless;
 
-use crate::cpu::{CpuAfterimage, CpuFrame, CpuView, FrameStats, PixelTrace};
+use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use crate::display::ViewGeometry;
 use crate::error::{CreateError, FrameError};
 use crate::foveation::{Foveation, Pyramid};
 use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use crate::image::Image;
+use crate::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
 use crate::settings::{Method, Settings};
 use crate::source::SourceFrame;
+use crate::stats::FrameStats;
 use gpu_lane::{GpuLane, LaneInput};
 use std::sync::Arc;
 
@@ -39,8 +41,8 @@ pub struct Shown {
     pub stats: FrameStats,
     /// Bytes that the pass reads and writes a pixel; `None` for the oracle.
     pub traffic_bytes_per_pixel: Option<u32>,
-    /// Pixel decisions, if asked for.
-    pub trace: Option<Image<PixelTrace>>,
+    /// Pictures of pixel decisions, linear, in the order in which they were asked for; none for the oracle.
+    pub debug: Vec<Image<[f32; 3]>>,
 }
 
 /// One frame, foveated, and what each lane made of it.
@@ -85,12 +87,12 @@ pub struct Pipeline {
     held_gaze: Option<[f32; 2]>,
     still: Option<Pyramid>,
     is_still: bool,
-    trace: bool,
+    debug: Vec<DebugView>,
 }
 
 impl Pipeline {
     /// A pipeline for frames of `geometry`'s size. `is_still`: all frames are the same picture, whose mip levels are then
-    /// built once. `trace`: keep pixel decisions.
+    /// built once. `debug`: pixel decisions to draw.
     ///
     /// # Errors
     /// If a setting is out of range, or the device cannot do it.
@@ -99,7 +101,7 @@ impl Pipeline {
         foveation: Foveation,
         lanes: &[LaneKind],
         is_still: bool,
-        trace: bool,
+        debug: &[DebugView],
         backend: &Backend,
     ) -> Result<Self, CreateError> {
         foveation.validate()?;
@@ -125,7 +127,7 @@ impl Pipeline {
             held_gaze: None,
             still: None,
             is_still,
-            trace,
+            debug: debug.to_vec(),
         })
     }
 
@@ -165,7 +167,7 @@ impl Pipeline {
         let mut shown = vec![];
         for lane in &mut self.lanes {
             shown.push(match lane {
-                Executor::PostProcess(post) => post_process(post, &cpu_frame, self.trace)?,
+                Executor::PostProcess(post) => post_process(post, &cpu_frame, &self.debug)?,
                 Executor::Gpu(lane) => post_process_on_gpu(
                     lane,
                     &LaneInput {
@@ -176,6 +178,7 @@ impl Pipeline {
                         index,
                         reset,
                     },
+                    &self.debug,
                 )?,
                 Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),
             });
@@ -197,10 +200,10 @@ impl Pipeline {
     }
 }
 
-fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, trace: bool) -> Result<Shown, FrameError> {
+fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, debug: &[DebugView]) -> Result<Shown, FrameError> {
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
-    let mut traces = trace.then(|| [Image::filled(size, PixelTrace::default())]);
+    let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
     let watch = Stopwatch::start();
     let stats = post.process(frame, &mut output, traces.as_mut().map(|t| &mut t[..]))?;
     let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
@@ -211,20 +214,21 @@ fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, trace: bool) -> 
         cpu_ms,
         stats,
         traffic_bytes_per_pixel: Some(post.traffic_bytes_per_pixel(&frame.views[0])),
-        trace: traces.map(|[t]| t),
+        debug: traces.map_or_else(Vec::new, |[trace]| {
+            debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()
+        }),
     })
 }
 
-/// On a GPU nothing is counted, and no decisions come back.
-fn post_process_on_gpu(lane: &mut GpuLane, input: &LaneInput<'_>) -> Result<Shown, FrameError> {
-    let made = lane.process(input)?;
+fn post_process_on_gpu(lane: &mut GpuLane, input: &LaneInput<'_>, debug: &[DebugView]) -> Result<Shown, FrameError> {
+    let made = lane.process(input, debug)?;
     Ok(Shown {
         image: made.image,
         wall_ms: made.wall_ms,
         cpu_ms: made.cpu_ms,
-        stats: FrameStats::default(),
-        traffic_bytes_per_pixel: None,
-        trace: None,
+        stats: made.stats,
+        traffic_bytes_per_pixel: Some(made.traffic_bytes_per_pixel),
+        debug: made.debug,
     })
 }
 
@@ -241,6 +245,6 @@ fn oracle(best: &mut Option<Image<f32>>, lods: &Image<f32>, foveation: &Foveatio
         cpu_ms: watch.cpu_ms(),
         stats: FrameStats::default(),
         traffic_bytes_per_pixel: None,
-        trace: None,
+        debug: vec![],
     }
 }

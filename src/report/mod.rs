@@ -2,7 +2,5 @@
 
 mod canvas;
 pub mod clock;
-pub mod debug_view;
-mod heat;
 pub mod picture;
 pub mod sheet;

@@ -1,10 +1,10 @@
 //! The contact sheet: reference and methods side by side, their errors, and a close look at a place the eye has left.
 
 use super::canvas::{CHAR_PX, Canvas, LINE_PX};
-use super::heat;
 use super::picture::to_rgb8;
 use crate::display::ViewGeometry;
 use crate::image::Image;
+use crate::kernel::debug_view::heat;
 use crate::metric::Scores;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
@@ -123,7 +123,7 @@ impl Sheet<'_> {
             let r = reference.pixels()[i];
             i += 1;
             let sum: f32 = c.iter().zip(r).map(|(a, b)| (a - b).abs()).sum();
-            heat::color((sum / 3.0 * 4.0).min(1.0))
+            heat((sum / 3.0 * 4.0).min(1.0)).to_array()
         });
         canvas.put(&fit(&to_rgb8(&errors), panel), at[0], at[1]);
     }

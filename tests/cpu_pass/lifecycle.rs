@@ -72,6 +72,8 @@ fn a_frame_that_is_refused_changes_nothing() {
     for (view, out_size) in [
         (CpuView { color: &small, ..view }, SIZE),
         (CpuView { depth: Some(&depth), ..view }, SIZE),
+        (CpuView { trust: Some(&depth), ..view }, SIZE),
+        (CpuView { lod: Some(&depth), ..view }, SIZE),
         (CpuView { facts: matrix, ..view }, SIZE),
         (view, [9, 9]),
     ] {
@@ -81,6 +83,12 @@ fn a_frame_that_is_refused_changes_nothing() {
         assert!(out[0].pixels().iter().all(|&c| c == [0.5; 3]), "nothing was written");
     }
     assert_eq!(bad(view, &mut [], &mut mixed), FrameError::ViewCount { found: 0, expected: 1 });
+    for ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let views = [view];
+        let frame = CpuFrame { exposure: Exposure::Changed { ratio }, ..CpuFrame::new(&views, 3) };
+        let error = mixed.process(&frame, &mut [right.clone()], None).unwrap_err();
+        assert!(matches!(error, FrameError::Value { what: "exposure ratio", .. }), "{error}");
+    }
     assert_eq!(mixed.history().words(), words);
     got.extend(run(&mut mixed, 3..6));
     assert_eq!(got, expected);

@@ -5,18 +5,23 @@ mod common;
 
 mod depth;
 mod lifecycle;
+mod light;
 mod nan;
 mod reprojection;
+mod trust;
 mod views;
 
 use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView, FrameStats, PixelTrace};
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::display::ViewGeometry;
 use afterimage::error::FrameError;
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
 use afterimage::image::Image;
+use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::reproject::Verdict;
 use afterimage::settings::{Bias, DepthTest, Method, Sampler, Settings};
+use afterimage::stats::FrameStats;
+use afterimage::warning::Warning;
 use common::Draws;
 use proptest::prelude::*;
 
@@ -34,23 +39,34 @@ fn noise(size: [u32; 2], name: &str) -> Color {
 }
 
 /// One view with everything given.
+#[derive(Clone)]
 struct Input {
     color: Color,
     depth: Option<Image<f32>>,
     motion: Option<Image<[f32; 2]>>,
+    trust: Option<Image<f32>>,
     gaze: Gaze,
     camera: Option<[[f32; 4]; 4]>,
 }
 
 impl Input {
     fn still(color: Color) -> Self {
-        Self { color, depth: None, motion: None, gaze: Gaze::At { px: [20.0, 20.0] }, camera: None }
+        Self { color, depth: None, motion: None, trust: None, gaze: Gaze::At { px: [20.0, 20.0] }, camera: None }
+    }
+
+    fn without_trust(&self) -> Self {
+        Self { trust: None, ..self.clone() }
     }
 
     fn view(&self) -> CpuView<'_> {
         let geometry = geometry(self.color.size());
         let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
-        CpuView { depth: self.depth.as_ref(), motion: self.motion.as_ref(), ..CpuView::new(facts, &self.color) }
+        CpuView {
+            depth: self.depth.as_ref(),
+            motion: self.motion.as_ref(),
+            trust: self.trust.as_ref(),
+            ..CpuView::new(facts, &self.color)
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod common;
 #[path = "../common/gpu.rs"]
 mod gpu;
 
+mod decisions;
 mod layout;
 mod lifecycle;
 mod rig;

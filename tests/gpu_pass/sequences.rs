@@ -3,15 +3,16 @@
 use super::common::Draws;
 use super::rig::{Rig, View};
 use afterimage::foveation::{Foveation, Pyramid};
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::image::Image;
 use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler, Settings};
 use afterimage::source::{AnalyticSource, FrameSource};
 
-const SIZE: [u32; 2] = [150, 84];
+pub const SIZE: [u32; 2] = [150, 84];
 const FRAMES: u64 = 40;
 
 /// Frame `index` of a scene as a foveating renderer would deliver it, damaged here and there.
-fn view(source: &mut AnalyticSource, index: u64) -> View {
+pub fn view(source: &mut AnalyticSource, index: u64) -> View {
     let mut draws = Draws::new(&format!("damage {index}"));
     let frame = source.frame(index).unwrap();
     let geometry = *source.view();
@@ -34,22 +35,40 @@ fn view(source: &mut AnalyticSource, index: u64) -> View {
     }
     let gaze = if (13..17).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { geometry, gaze, previous_from_current: frame.previous_from_current };
-    View { facts, color, depth: Some(depth), motion: Some(motion) }
+    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None }
 }
 
-fn reset(index: u64) -> Reset {
+/// A mask that moves over the frame: full trust, none, some, and numbers that are none.
+pub fn trust(index: u64) -> Image<f32> {
+    let values = [1.0, 1.0, 0.7, 1.0, 0.25, 0.0, 1.5, f32::NAN, -0.5, 1.0, f32::INFINITY, 1e-30];
+    Image::from_fn(SIZE, |[x, y]| values[(x / 7 + y / 5 + index as u32 / 4) as usize % values.len()])
+}
+
+pub fn reset(index: u64) -> Reset {
     if index == 24 { Reset::All } else { Reset::None }
 }
 
 /// Runs a scene through both and compares every word.
 fn agree(scene: &str, settings: Settings, change: impl Fn(View) -> View) {
+    agree_exposed(scene, settings, |_| Exposure::Same, |_, view| change(view));
+}
+
+/// The same with exposures, and changes by frame.
+fn agree_exposed(
+    scene: &str,
+    settings: Settings,
+    exposure: impl Fn(u64) -> Exposure,
+    change: impl Fn(u64, View) -> View,
+) {
     let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap();
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     let (mut flushed, mut kept) = (0, 0);
     for index in 0..FRAMES {
-        let views = [change(view(&mut source, index))];
+        rig.exposure = exposure(index);
+        let views = [change(index, view(&mut source, index))];
         let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
         let gpu = rig.on_gpu(index, reset(index), &views);
+        assert_eq!(gpu.stats, cpu.stats, "{scene}, frame {index}: counted");
         for (i, t) in trace[0].pixels().iter().enumerate() {
             let [x, y] = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
             let decision = |words: [u32; 3]| words[2] & 0xff;
@@ -105,12 +124,31 @@ fn absent_inputs_are_switched_off() {
 }
 
 #[test]
+fn trust_and_exposure_agree_bit_for_bit() {
+    let base = Settings::default();
+    // Some stops up and down, thirds of stops, a fade to nothing, and no change.
+    let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
+    let exposure = |index: u64| match index % 4 {
+        0 => Exposure::Same,
+        _ => Exposure::Changed { ratio: ratios[index as usize % ratios.len()] },
+    };
+    for settings in [base, Settings { gate: None, ..base }, Settings { sampler: Sampler::AEs, gate: None, ..base }] {
+        println!("{settings:?}");
+        agree_exposed("occluder", settings, exposure, |_, v| v);
+        let masked = |index, v| View { trust: Some(trust(index)), ..v };
+        agree_exposed("occluder", settings, |_| Exposure::Same, masked);
+        agree_exposed("lateral", settings, exposure, |index, v| View { depth: None, ..masked(index, v) });
+    }
+}
+
+#[test]
 fn method_none_shows_the_scrubbed_frame() {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
     let settings = Settings { method: Method::None, ..Settings::default() };
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     for index in 0..3 {
         let views = [view(&mut source, index)];
-        assert_eq!(rig.on_gpu(index, Reset::None, &views).shown, rig.on_cpu(index, Reset::None, &views).0.shown);
+        let (gpu, cpu) = (rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
+        assert_eq!((gpu.shown, gpu.stats), (cpu.shown, cpu.stats));
     }
 }

@@ -52,6 +52,9 @@ fn h04_denormal_weights_count_as_0_everywhere() {
     let mut r = Reservoir::default();
     assert!(!reservoir::update(&mut r, 1e-40, 0.0) && r.w_sum == 0.0);
     assert_eq!(pack::unpack(pack::pack(stored(1e-40, 0))).w_sum, 0.0);
+    // What survival makes so small is gone for any draw, not only on devices that flush it.
+    let d = step(&PAPER, 4.0 * f32::MIN_POSITIVE, 0.5, 16_777_215.0 / 16_777_216.0);
+    assert!(d.take && d.w_sum == 0.5);
 }
 
 #[test]

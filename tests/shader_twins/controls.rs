@@ -18,7 +18,12 @@ fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
 fn a_lax_comparison_is_caught() {
     caught(state::PROBES, "combine", "draw * w_sum < w2", "draw * w_sum <= w2");
     caught(state::PROBES, "update", "draw * w_sum < w;", "draw * w_sum <= w;");
-    caught(state::PROBES, "step", "draw * w_sum < weight", "draw * w_sum <= weight");
+    caught(state::PROBES, "step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w");
+}
+
+#[test]
+fn h04_a_weight_below_the_normal_range_is_caught() {
+    caught(state::PROBES, "step", "weight(past.w_sum * survival)", "past.w_sum * survival");
 }
 
 #[test]
@@ -30,6 +35,24 @@ fn a_weight_one_percent_off_is_caught() {
 fn a_flipped_motion_sign_is_caught() {
     caught(state::PROBES, "nearest", "f32(x) + motion.x", "f32(x) - motion.x");
     caught(state::PROBES, "nearest", "f32(y) + motion.y", "f32(y) - motion.y");
+}
+
+#[test]
+fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
+    caught(state::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
+    caught(state::PROBES, "trust", "return 1.0;", "return t;");
+    caught(
+        state::PROBES,
+        "expose",
+        "clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF))",
+        "stored_color * ratio",
+    );
+}
+
+#[test]
+fn a_wrong_colour_of_a_decision_is_caught() {
+    caught(state::PROBES, "view_color", "srgb_decode(encoded.x)", "encoded.x");
+    caught(state::PROBES, "motion_color", "clamp(-motion.x", "clamp(motion.x");
 }
 
 #[test]

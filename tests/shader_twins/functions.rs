@@ -19,6 +19,11 @@ fn color_is_bit_equal_h30_h31_h32_h33_h36_h37_h38() {
 }
 
 #[test]
+fn debug_view_is_bit_equal() {
+    check_module(state::PROBES, "debug_view");
+}
+
+#[test]
 fn depth_is_bit_equal_h41_h42_h44_h45_h46_h47() {
     check_module(mathematics::PROBES, "depth");
 }

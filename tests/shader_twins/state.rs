@@ -3,11 +3,14 @@
 use crate::common::Draws;
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
+use afterimage::DebugView;
+use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack::Stored;
+use afterimage::kernel::reproject::Verdict;
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::rng::Purpose;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
-use afterimage::kernel::{pack, reproject, reservoir, rng, scrub, wrs};
+use afterimage::kernel::{debug_view, pack, reproject, reservoir, rng, scrub, wrs};
 
 fn stored(r: &Row<'_>) -> Stored {
     Stored { color: r.v(0), disparity: r.f(3), w_sum: r.f(4), age: r.u(5) }
@@ -97,7 +100,90 @@ fn step_rows() -> Rows {
         .within(|r| r.f(9) == 0.0 || r.f(9) >= f32::MIN_POSITIVE)
 }
 
+fn verdict(code: u32) -> Verdict {
+    let verdicts = [
+        Verdict::Valid,
+        Verdict::Reset,
+        Verdict::BadMotion,
+        Verdict::OffScreen,
+        Verdict::Empty,
+        Verdict::Disoccluded,
+        Verdict::Distrusted,
+    ];
+    assert!(verdicts.iter().enumerate().all(|(i, &v)| v as usize == i) && verdicts.len() == Verdict::COUNT);
+    verdicts[code as usize]
+}
+
+fn traced(r: &Row<'_>) -> PixelTrace {
+    PixelTrace {
+        w_sum: r.f(0),
+        age: r.u(1),
+        survival: r.f(2),
+        verdict: verdict(r.u(3)),
+        gate: r.f(4),
+        motion: [r.f(5), r.f(6)],
+        ..PixelTrace::default()
+    }
+}
+
 pub const PROBES: &[Probe] = &[
+    Probe {
+        name: "heat",
+        module: "debug_view",
+        words: [1, 3],
+        wgsl: "out_v(heat(in_f(0u)));",
+        rust: |r, o| o.v(debug_view::heat(r.f(0))),
+        rows: || {
+            let table = [any(), around(&[0.2, 0.4, 0.6, 0.8, 1.0])].concat();
+            Rows::new(1).cross(&[&table]).random("heat", |d, row| row.push(range(d, -0.2, 1.2)))
+        },
+    },
+    Probe {
+        name: "verdict_color",
+        module: "debug_view",
+        words: [1, 3],
+        wgsl: "out_v(verdict_color(in_u(0u)));",
+        rust: |r, o| o.v(debug_view::verdict_color(verdict(r.u(0)))),
+        rows: || Rows::new(1).cross(&[&(0..Verdict::COUNT as u32).collect::<Vec<_>>()]),
+    },
+    Probe {
+        name: "motion_color",
+        module: "debug_view",
+        words: [2, 3],
+        wgsl: "out_v(motion_color(vec2<f32>(in_f(0u), in_f(1u))));",
+        rust: |r, o| o.v(debug_view::motion_color([r.f(0), r.f(1)])),
+        rows: || {
+            let table = [any(), around(&[16.0, -16.0])].concat();
+            Rows::new(2)
+                .cross(&[&table, &table])
+                .random("motion_color", |d, row| row.extend([range(d, -20.0, 20.0), range(d, -20.0, 20.0)]))
+        },
+    },
+    Probe {
+        name: "view_color",
+        module: "debug_view",
+        words: [8, 3],
+        wgsl: "out_v(view_color(in_u(7u), PixelTrace(0.0, in_f(0u), in_u(1u), in_f(2u), in_u(3u), in_f(4u), true, vec2<f32>(in_f(5u), in_f(6u)))));",
+        rust: |r, o| {
+            let views = [
+                DebugView::Weight,
+                DebugView::Age,
+                DebugView::Survival,
+                DebugView::Flush,
+                DebugView::Gate,
+                DebugView::Motion,
+            ];
+            let view = views[r.u(7) as usize - 1];
+            assert_eq!(view as u32, r.u(7));
+            o.v(debug_view::view_color(view, &traced(r)));
+        },
+        rows: || {
+            Rows::new(8).random("view_color", |d, row| {
+                row.extend([scaled(d, -126, 100), d.bits() % 256, range(d, 0.0, 1.0), d.bits() % 7]);
+                row.extend([range(d, 0.0, 1.0), range(d, -20.0, 20.0), range(d, -20.0, 20.0), 1 + d.bits() % 6]);
+            })
+        },
+    },
     Probe {
         name: "is_finite",
         module: "scrub",
@@ -131,6 +217,19 @@ pub const PROBES: &[Probe] = &[
         wgsl: "out_f(weight(in_f(0u)));",
         rust: |r, o| o.f(scrub::weight(r.f(0))),
         rows: || Rows::new(1).cross(&[&any()]).random("weight", |d, row| row.push(bits(d))),
+    },
+    Probe {
+        name: "trust",
+        module: "scrub",
+        words: [1, 1],
+        wgsl: "out_f(trust(in_f(0u)));",
+        rust: |r, o| o.f(scrub::trust(r.f(0))),
+        rows: || {
+            Rows::new(1)
+                .cross(&[&[any(), around(&[1.0])].concat()])
+                .random("trust", |d, row| row.push(bits(d)))
+                .random("trust, shares", |d, row| row.push(range(d, -0.5, 1.5)))
+        },
     },
     Probe {
         name: "pcg4d",
@@ -388,6 +487,46 @@ pub const PROBES: &[Probe] = &[
             Rows::new(2)
                 .cross(&[&keys, &survivals])
                 .random("a_es_decay", |d, row| row.extend([scaled(d, -20, 20) | 1 << 31, range(d, 0.0, 1.0)]))
+        },
+    },
+    Probe {
+        name: "believe",
+        module: "wrs",
+        words: [4, 2],
+        wgsl: "let p = believe(Past(vec3<f32>(0.0), in_f(0u), in_f(1u)), in_f(2u), in_u(3u)); out_f(p.w_sum); out_f(p.log_key);",
+        rust: |r, o| {
+            let past = Past { w_sum: r.f(0), log_key: r.f(1), ..Past::EMPTY };
+            let believed = wrs::believe(past, r.f(2), [SamplerCode::AChao, SamplerCode::AEs][r.u(3) as usize]);
+            o.f(believed.w_sum);
+            o.f(believed.log_key);
+        },
+        rows: || {
+            let keys = floats(&[0.0, -1e-8, -1.0, -1e30, f32::MIN]);
+            Rows::new(4)
+                .cross(&[&normal(), &keys, &any(), &[0, 1]])
+                .random("believe", |d, row| {
+                    row.extend([scaled(d, -10, 10), signed(d, -10, 10) | 1 << 31, range(d, 0.0, 1.0), d.bits() & 1]);
+                })
+                .within(|r| r.f(0) <= pack::MAX_W_SUM)
+        },
+    },
+    Probe {
+        name: "expose",
+        module: "wrs",
+        words: [4, 3],
+        wgsl: "out_v(expose(in_v(0u), in_f(3u)));",
+        rust: |r, o| o.v(wrs::expose(r.v(0), r.f(3))),
+        rows: || {
+            // As unpack leaves colours, and ratios as frames have them.
+            let halves: Vec<u32> = (0..65536).filter(|h| h & 0x7c00 != 0x7c00).collect();
+            let half = |d: &mut Draws| pack::half_value(halves[d.bits() as usize % halves.len()]).to_bits();
+            Rows::new(4).random("expose", |d, row| row.extend([half(d), half(d), half(d), scaled(d, -40, 40)])).random(
+                "expose, by stops",
+                |d, row| {
+                    let ratio = 2.0_f32.powi(d.bits() as i32 % 17).to_bits();
+                    row.extend([half(d), half(d), half(d), ratio]);
+                },
+            )
         },
     },
     Probe {

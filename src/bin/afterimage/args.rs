@@ -1,7 +1,7 @@
 //! Options that several subcommands share, and how their values are read.
 
+use afterimage::DebugView;
 use afterimage::foveation::{Filter, Foveation};
-use afterimage::report::debug_view::DebugView;
 use afterimage::settings::{Bias, DepthTest, Gate, Method, Sampler, Settings};
 use clap::{Args, ValueEnum};
 

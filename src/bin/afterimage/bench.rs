@@ -259,8 +259,8 @@ fn record(
     frame: &Frame<'_>,
 ) -> Result<(), FrameError> {
     match lane {
-        Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame),
-        Lane::Post(post) => post.record(&gpu.device, encoder, frame),
+        Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame).map(|_| ()),
+        Lane::Post(post) => post.record(&gpu.device, encoder, frame).map(|_| ()),
         Lane::Foveate(foveation) => {
             let foveated = FoveationFrame {
                 timestamps: frame.timestamps,

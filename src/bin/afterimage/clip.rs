@@ -3,13 +3,13 @@
 use crate::args::{DebugName, FormatName};
 use crate::failure::Failure;
 use crate::output::Output;
+use afterimage::DebugView;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
 use afterimage::metric::{self, FrameErrors, Scorer, Scores, psnr_db};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline, Shown, Step};
 use afterimage::report::clock::Quartiles;
-use afterimage::report::debug_view;
 use afterimage::report::picture::to_rgb8;
 use afterimage::report::sheet::{Column, Sheet};
 use afterimage::source::{FrameSource, SourceFrame};
@@ -100,8 +100,8 @@ impl Clip {
     pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
         let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
         let is_still = source.info().still;
-        let trace = !self.debug.is_empty();
-        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, trace, &self.backend)?;
+        let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
         let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
         let mut foveation_ms = vec![];
         let mut gaze_px = vec![];
@@ -156,16 +156,13 @@ impl Clip {
             .par_iter_mut()
             .zip(&self.lanes)
             .zip(&step.shown)
-            .map(|((lane, (name, kind)), shown)| {
+            .map(|((lane, (name, _)), shown)| {
                 let encoded = metric::encode(&shown.image, self.exposure_ev);
                 lane.push(frame, reference, &encoded, shown, step);
                 out.frame(name, index, &shown.image, &encoded, self.format)?;
-                if let (Some(trace), LaneKind::PostProcess(_)) = (&shown.trace, kind) {
-                    for debug in &self.debug {
-                        let picture = debug_view::picture(debug.view(), trace, frame.motion.as_ref());
-                        let folder = format!("debug/{name}/{}", debug.name());
-                        out.picture(&folder, index, &to_rgb8(&picture))?;
-                    }
+                for (debug, picture) in self.debug.iter().zip(&shown.debug) {
+                    let folder = format!("debug/{name}/{}", debug.name());
+                    out.picture(&folder, index, &to_rgb8(&metric::encode(picture, 0.0)))?;
                 }
                 Ok(encoded)
             })

@@ -196,9 +196,6 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
 /// What can be wrong before anything is opened.
 fn check(args: &RunArgs) -> Result<(), Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    if args.backend == BackendName::Gpu && !args.debug.is_empty() {
-        return refuse("--debug: decisions are only read back from the CPU; use --backend cpu".into());
-    }
     if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
         return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
     }
@@ -271,8 +268,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             write_reference: args.reference,
             debug: args.debug.clone(),
             backend_note: match (args.backend, &backend) {
-                (BackendName::Auto, Backend::Cpu) if args.debug.is_empty() => "; no GPU was found",
-                (BackendName::Auto, Backend::Cpu) => "; decisions are only read back from it",
+                (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
             },
             backend,
@@ -294,9 +290,7 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 /// Chooses what computes, and says so.
 fn backend(args: &RunArgs) -> Result<Backend, Failure> {
-    // Decisions are only read back from the CPU.
-    let wanted = if args.debug.is_empty() { args.backend } else { BackendName::Cpu };
-    let found = match wanted {
+    let found = match args.backend {
         BackendName::Cpu => None,
         BackendName::Auto => Headless::find(false),
         BackendName::Gpu => Some(

@@ -1,0 +1,83 @@
+//#use color
+//#use reproject
+//#use scrub
+// Twin of src/kernel/debug_view.rs: what was decided at a pixel, as a colour.
+
+// debug_view::DebugView
+const VIEW_WEIGHT: u32 = 1u;
+const VIEW_AGE: u32 = 2u;
+const VIEW_SURVIVAL: u32 = 3u;
+const VIEW_FLUSH: u32 = 4u;
+const VIEW_GATE: u32 = 5u;
+const VIEW_MOTION: u32 = 6u;
+
+struct PixelTrace {
+    weight: f32,
+    w_sum: f32,
+    age: u32,
+    survival: f32,
+    verdict: u32,
+    gate: f32,
+    take: bool,
+    motion: vec2<f32>,
+}
+
+const NO_NUMBER = vec3<f32>(0.0, 1.0, 0.0);
+
+// debug_view::heat, sRGB-encoded
+fn heat(value: f32) -> vec3<f32> {
+    if !is_finite(value) {
+        return NO_NUMBER;
+    }
+    var stops = array<vec3<f32>, 6>(
+        vec3<f32>(0.0, 0.0, 0.0),
+        vec3<f32>(0.23, 0.04, 0.42),
+        vec3<f32>(0.62, 0.13, 0.40),
+        vec3<f32>(0.93, 0.38, 0.18),
+        vec3<f32>(0.98, 0.75, 0.25),
+        vec3<f32>(1.0, 1.0, 0.95),
+    );
+    let position = 5.0 * clamp(value, 0.0, 1.0);
+    let i = min(u32(position), 4u);
+    let t = position - f32(i);
+    return stops[i] + (stops[i + 1u] - stops[i]) * t;
+}
+
+// debug_view::verdict_color, sRGB-encoded
+fn verdict_color(verdict: u32) -> vec3<f32> {
+    switch verdict {
+        case VERDICT_VALID: { return vec3<f32>(0.35, 0.35, 0.35); }
+        case VERDICT_RESET: { return vec3<f32>(0.2, 0.4, 1.0); }
+        case VERDICT_BAD_MOTION: { return vec3<f32>(1.0, 0.2, 1.0); }
+        case VERDICT_OFF_SCREEN: { return vec3<f32>(1.0, 0.55, 0.1); }
+        case VERDICT_EMPTY: { return vec3<f32>(1.0, 1.0, 0.3); }
+        case VERDICT_DISOCCLUDED: { return vec3<f32>(1.0, 0.1, 0.1); }
+        default: { return vec3<f32>(0.1, 0.9, 0.9); }
+    }
+}
+
+// debug_view::motion_color, sRGB-encoded
+fn motion_color(motion: vec2<f32>) -> vec3<f32> {
+    if !(is_finite(motion.x) && is_finite(motion.y)) {
+        return NO_NUMBER;
+    }
+    let x = clamp(-motion.x / 16.0, -1.0, 1.0);
+    let y = clamp(-motion.y / 16.0, -1.0, 1.0);
+    let towards = 0.5 - 0.25 * x;
+    let shown = vec3<f32>(0.5 + 0.5 * x, towards + 0.43 * y, towards - 0.43 * y);
+    return clamp(shown, vec3<f32>(0.0), vec3<f32>(1.0));
+}
+
+// debug_view::view_color, linear
+fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
+    var encoded = vec3<f32>(traced.gate);
+    switch view {
+        case VIEW_WEIGHT: { encoded = heat(traced.w_sum / 16.0); }
+        case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) / 255.0)); }
+        case VIEW_SURVIVAL: { encoded = heat(traced.survival); }
+        case VIEW_FLUSH: { encoded = verdict_color(traced.verdict); }
+        case VIEW_MOTION: { encoded = motion_color(traced.motion); }
+        default: {}
+    }
+    return vec3<f32>(srgb_decode(encoded.x), srgb_decode(encoded.y), srgb_decode(encoded.z));
+}

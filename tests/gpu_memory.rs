@@ -1,0 +1,62 @@
+//! Ten thousand frames with resizes leak nothing. Alone in its file, for a process of its own: other tests' memory comes and goes.
+#![cfg(feature = "gpu")]
+
+#[path = "common/gpu.rs"]
+mod gpu;
+
+use afterimage::display::ViewGeometry;
+use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use wgpu::{TextureFormat, TextureUsages};
+
+/// Resident memory of this process in MiB, where the system tells.
+fn resident_mib() -> Option<f64> {
+    let pages: f64 = std::fs::read_to_string("/proc/self/statm").ok()?.split(' ').nth(1)?.parse().ok()?;
+    Some(pages * 4096.0 / f64::from(1 << 20))
+}
+
+#[test]
+fn ten_thousand_frames_with_resizes_leak_nothing() {
+    let Some((device, queue)) = gpu::device() else { return };
+    let desc = GpuDesc::new([24, 16], TextureFormat::Rgba16Float);
+    let mut post = Afterimage::new(&device, &desc).unwrap();
+    let mut after_warm_up = None;
+    let mut textures = None;
+    for index in 0..10_000_u64 {
+        if index % 97 == 0 {
+            let size = [16 + (index / 97 % 40) as u32, 24 - (index / 97 % 9) as u32];
+            post.resize(&device, size).unwrap();
+            let make = |usage| {
+                device.create_texture(&wgpu::TextureDescriptor {
+                    label: None,
+                    size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: TextureFormat::Rgba16Float,
+                    usage,
+                    view_formats: &[],
+                })
+            };
+            textures = Some((make(TextureUsages::TEXTURE_BINDING), make(TextureUsages::STORAGE_BINDING)));
+        }
+        let (color, output) = textures.as_ref().unwrap();
+        let geometry = ViewGeometry::flat(post.desc().context.size_px, 70.0).unwrap();
+        let views = [ViewFrame { geometry, gaze: Gaze::Lost, previous_from_current: None }];
+        let frame = Frame::new(color, output, &views, index);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        post.record(&device, &mut encoder, &frame).unwrap();
+        queue.submit([encoder.finish()]);
+        if index % 50 == 0 {
+            device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        }
+        if index == 2_000 {
+            after_warm_up = resident_mib();
+        }
+    }
+    if let (Some(before), Some(after)) = (after_warm_up, resident_mib()) {
+        println!("resident after 2,000 frames {before:.1} MiB, after 10,000 {after:.1} MiB");
+        // A leak of a kilobyte a frame would be 8 MiB.
+        assert!(after - before < 4.0);
+    }
+}
