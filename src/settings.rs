@@ -1,8 +1,8 @@
 //! Tunables of the post-process, with units, ranges and what more and less does.
 
 use crate::error::SettingsError;
-use crate::foveation::Foveation;
-use crate::kernel::{acuity, reservoir, wrs};
+use crate::foveation::{Filter, Foveation};
+use crate::kernel::{acuity, matched, reservoir, wrs};
 
 /// What the post-process does with history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,14 +89,35 @@ impl Default for DepthTest {
     }
 }
 
-/// All tunables. The default is the paper's method.
+/// Tunables of the scale-matched reservoir.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smr {
+    /// Share of equally coarse history in what is shown, in \[0, 0.98\]. More calms the crawling of coarse blocks under motion and
+    /// lags behind light. Default 0.9.
+    pub accumulate: f32,
+    /// Factor on the differences of candidate and history that are tolerated, in \[0.1, 10\]. More keeps detail through noise and
+    /// imprecise vectors, less lets go of it sooner. Default 1.
+    pub tolerance: f32,
+    /// Whether history follows changes of light by its gain. Default true.
+    pub relight: bool,
+}
+
+impl Default for Smr {
+    fn default() -> Self {
+        Self { accumulate: 0.9, tolerance: 1.0, relight: true }
+    }
+}
+
+/// All tunables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// What is done with history.
     pub method: Method,
     /// How the renderer foveates: where its frame is how coarse. Candidates inside the fovea have weight 1.
     pub foveation: Foveation,
-    /// Sampler.
+    /// Tunables of [`Method::Smr`].
+    pub smr: Smr,
+    /// Sampler of [`Method::Wrs`].
     pub sampler: Sampler,
     /// How history is forgotten.
     pub bias: Bias,
@@ -113,6 +134,7 @@ impl Default for Settings {
         Self {
             method: Method::default(),
             foveation: Foveation::default(),
+            smr: Smr::default(),
             sampler: Sampler::default(),
             bias: Bias::default(),
             gate: Some(Gate::default()),
@@ -129,6 +151,8 @@ impl Settings {
     /// Names the first setting outside its range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.foveation.validate()?;
+        check("smr.accumulate", self.smr.accumulate, 0.0..=0.98, "")?;
+        check("smr.tolerance", self.smr.tolerance, 0.1..=10.0, "")?;
         if let Bias::Exponential { lambda } = self.bias {
             check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
         }
@@ -146,6 +170,33 @@ impl Settings {
     /// Whether reservoirs need a key besides their weight sum.
     pub(crate) fn uses_keys(&self) -> bool {
         self.sampler == Sampler::AEs
+    }
+
+    /// What the method keeps between frames.
+    pub(crate) fn history_layout(&self) -> HistoryLayout {
+        match self.method {
+            Method::None => HistoryLayout::Nothing,
+            Method::Wrs => HistoryLayout::Reservoirs { keys: self.uses_keys() },
+            Method::Taa => HistoryLayout::Surfaces { levels: 0 },
+            // Two beyond the candidate's: one for its contrast, one to blend with; blocks are compared one level coarser.
+            Method::Smr => {
+                let shift = if self.foveation.filter == Filter::Block { 3 } else { 2 };
+                HistoryLayout::Surfaces { levels: self.foveation.max_level() + shift }
+            }
+        }
+    }
+
+    /// The kernel's form of smr's tunables.
+    pub(crate) fn smr_params(&self) -> matched::SmrParams {
+        let blocks = self.foveation.filter == Filter::Block;
+        matched::SmrParams {
+            accumulate: self.smr.accumulate,
+            // Coarse history is only a mean, so a stricter fit costs little, but the noise of point samples needs the mean.
+            accumulate_tolerance: if blocks { 1.0 } else { 0.5 },
+            tolerance: self.smr.tolerance,
+            blocks,
+            relight: self.smr.relight,
+        }
     }
 
     /// Bytes that the pass reads and writes a pixel, for which of depth, motion and trust are given, stored as engines store them.
@@ -188,6 +239,23 @@ impl Settings {
             inv_gate_divisor: 1.0 / gate.divisor,
         }
     }
+}
+
+/// What is kept between frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum HistoryLayout {
+    /// Nothing.
+    Nothing,
+    /// Packed reservoirs ([`pack`](crate::kernel::pack)), and keys for A-ES.
+    Reservoirs {
+        /// Whether there are keys.
+        keys: bool,
+    },
+    /// Packed surfaces ([`surface`](crate::kernel::surface)), and coarser levels of them.
+    Surfaces {
+        /// Levels beyond the full-rate one.
+        levels: u32,
+    },
 }
 
 /// Refuses a number outside `range`, NaN included.

@@ -1,8 +1,12 @@
 //! The state between frames: one type owns both halves of the ping-pong and swaps them itself.
 
-/// Reservoirs of all views, this frame's and the last one's. 24 bytes a pixel and view, 32 with A-ES keys.
+use super::chain::Chain;
+use crate::settings::HistoryLayout;
+
+/// What is remembered of all views, this frame's and the last one's. What a method does not use is empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
+    layout: HistoryLayout,
     view_len: usize,
     previous: Plane,
     current: Plane,
@@ -10,30 +14,54 @@ pub struct History {
     held_gaze: Vec<Option<[f32; 2]>>,
 }
 
-/// Packed reservoirs of all views, view after view, and their A-ES keys if any.
+/// All views, view after view.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Plane {
-    pub words: Vec<[u32; 3]>,
-    pub log_keys: Vec<f32>,
+struct Plane {
+    reservoirs: Vec<[u32; 3]>,
+    log_keys: Vec<f32>,
+    surfaces: Vec<[u32; 2]>,
+    chains: Vec<Chain>,
 }
 
 impl Plane {
-    fn new(len: usize, keys: bool) -> Self {
-        Self { words: vec![[0; 3]; len], log_keys: vec![0.0; if keys { len } else { 0 }] }
+    fn new(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Self {
+        let len = size_px[0] as usize * size_px[1] as usize * view_count as usize;
+        let when = |used: bool| if used { len } else { 0 };
+        let keyed = layout == HistoryLayout::Reservoirs { keys: true };
+        let levels = match layout {
+            HistoryLayout::Surfaces { levels } => levels,
+            _ => 0,
+        };
+        Self {
+            reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
+            log_keys: vec![0.0; when(keyed)],
+            surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. }))],
+            chains: vec![Chain::new(size_px, levels); if levels > 0 { view_count as usize } else { 0 }],
+        }
+    }
+
+    fn memory_bytes(&self) -> usize {
+        size_of_val(&self.reservoirs[..])
+            + size_of_val(&self.log_keys[..])
+            + size_of_val(&self.surfaces[..])
+            + self.chains.iter().map(Chain::memory_bytes).sum::<usize>()
     }
 }
 
 impl History {
-    pub(super) fn new(size_px: [u32; 2], view_count: u32, keys: bool) -> Self {
-        let view_len = size_px[0] as usize * size_px[1] as usize;
-        let len = view_len * view_count as usize;
+    pub(super) fn new(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Self {
         Self {
-            view_len,
-            previous: Plane::new(len, keys),
-            current: Plane::new(len, keys),
+            layout,
+            view_len: size_px[0] as usize * size_px[1] as usize,
+            previous: Plane::new(size_px, view_count, layout),
+            current: Plane::new(size_px, view_count, layout),
             filled: false,
             held_gaze: vec![None; view_count as usize],
         }
+    }
+
+    pub(super) fn layout(&self) -> HistoryLayout {
+        self.layout
     }
 
     pub(super) fn forget(&mut self) {
@@ -56,29 +84,53 @@ impl History {
         &mut self.held_gaze[view]
     }
 
-    /// The past of `view` to read, and the rows to write.
+    /// The past reservoirs of `view` to read, and the rows to write.
     pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, &mut [[u32; 3]], &mut [f32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let keys = if self.previous.log_keys.is_empty() { 0..0 } else { range.clone() };
-        let past =
-            PastView { words: &self.previous.words[range.clone()], log_keys: &self.previous.log_keys[keys.clone()] };
-        (past, &mut self.current.words[range], &mut self.current.log_keys[keys])
+        let past = PastView {
+            words: &self.previous.reservoirs[range.clone()],
+            log_keys: &self.previous.log_keys[keys.clone()],
+        };
+        (past, &mut self.current.reservoirs[range], &mut self.current.log_keys[keys])
     }
 
-    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)).
+    /// The past surfaces of `view` to read, and the rows to write.
+    pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, &mut [[u32; 2]]) {
+        let range = view * self.view_len..(view + 1) * self.view_len;
+        let past =
+            PastSurfaces { words: &self.previous.surfaces[range.clone()], chain: self.previous.chains.get(view) };
+        (past, &mut self.current.surfaces[range])
+    }
+
+    /// Builds the coarser levels of what was written of `view`.
+    pub(super) fn build_chain(&mut self, view: usize) {
+        let range = view * self.view_len..(view + 1) * self.view_len;
+        if let Some(chain) = self.current.chains.get_mut(view) {
+            chain.build(&self.current.surfaces[range]);
+        }
+    }
+
+    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty but for wrs.
     pub fn words(&self) -> &[[u32; 3]] {
-        &self.previous.words
+        &self.previous.reservoirs
+    }
+
+    /// Packed surfaces of the last processed frame, view after view ([`surface`](crate::kernel::surface)); empty but for taa and
+    /// smr.
+    pub fn surfaces(&self) -> &[[u32; 2]] {
+        &self.previous.surfaces
     }
 
     pub(super) fn restore(&mut self, words: &[[u32; 3]]) {
-        self.previous.words.copy_from_slice(words);
+        self.previous.reservoirs.copy_from_slice(words);
         self.previous.log_keys.fill(f32::MIN);
         self.filled = true;
     }
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
-        [&self.previous, &self.current].iter().map(|p| size_of_val(&p.words[..]) + size_of_val(&p.log_keys[..])).sum()
+        self.previous.memory_bytes() + self.current.memory_bytes()
     }
 }
 
@@ -87,4 +139,11 @@ impl History {
 pub(super) struct PastView<'a> {
     pub words: &'a [[u32; 3]],
     pub log_keys: &'a [f32],
+}
+
+/// Last frame's surfaces of one view.
+#[derive(Clone, Copy)]
+pub(super) struct PastSurfaces<'a> {
+    pub words: &'a [[u32; 2]],
+    pub chain: Option<&'a Chain>,
 }

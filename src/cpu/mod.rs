@@ -3,9 +3,12 @@
 //! A pass is a loop over pixels plus calls into [`kernel`](crate::kernel). Rows run in parallel; the result does not depend on
 //! the number of threads.
 
+mod chain;
 mod history;
-mod reprojection;
+mod inputs;
+mod remembered;
 mod smr_pass;
+mod surface_pass;
 mod taa_pass;
 mod wrs_pass;
 
@@ -72,9 +75,6 @@ pub struct CpuAfterimage {
     desc: ContextDesc,
     settings: Settings,
     history: History,
-    surface: [Vec<Vec<[u32; 2]>>; 2],
-    chain: Vec<smr_pass::Chain>,
-    surface_filled: bool,
 }
 
 impl CpuAfterimage {
@@ -85,16 +85,8 @@ impl CpuAfterimage {
     pub fn new(desc: ContextDesc, settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         desc.validate()?;
-        let history = History::new(desc.size_px, desc.view_count, settings.uses_keys());
-        let plane = vec![vec![[0; 2]; desc.size_px[0] as usize * desc.size_px[1] as usize]; desc.view_count as usize];
-        Ok(Self {
-            desc,
-            settings,
-            history,
-            surface: [plane.clone(), plane],
-            chain: vec![Default::default(); desc.view_count as usize],
-            surface_filled: false,
-        })
+        let history = History::new(desc.size_px, desc.view_count, settings.history_layout());
+        Ok(Self { desc, settings, history })
     }
 
     /// What it was made for.
@@ -113,8 +105,10 @@ impl CpuAfterimage {
     /// If a setting is out of range; then the old ones stay.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        if settings.uses_keys() != self.settings.uses_keys() {
-            self.history = History::new(self.desc.size_px, self.desc.view_count, settings.uses_keys());
+        if settings.history_layout() != self.history.layout() {
+            self.history = History::new(self.desc.size_px, self.desc.view_count, settings.history_layout());
+        } else if settings.method != self.settings.method {
+            self.history.forget();
         }
         self.settings = settings;
         Ok(())
@@ -127,7 +121,7 @@ impl CpuAfterimage {
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
-        self.history = History::new(size_px, self.desc.view_count, self.settings.uses_keys());
+        self.history = History::new(size_px, self.desc.view_count, self.settings.history_layout());
         Ok(())
     }
 
@@ -179,67 +173,9 @@ impl CpuAfterimage {
                 Ok(pass_through(&self.desc, frame, output, trace))
             }
             Method::Taa | Method::Smr => {
-                let reset = frame.reset == Reset::All || !self.surface_filled;
-                let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-                let taa = taa_pass::TaaParams { alpha: env("ALPHA", 0.1), gamma: env("GAMMA", 1.0) };
-                let d = crate::kernel::matched::SmrParams::default();
-                let p = crate::kernel::matched::SmrParams {
-                    quality_width: env("QW", d.quality_width),
-                    accumulate: env("ACC", d.accumulate),
-                    accumulate_tolerance: env("AF", d.accumulate_tolerance),
-                    relight_from: env("T0", d.relight_from),
-                    relight_contrast: env("KC", d.relight_contrast),
-                    gate_from: env("G0", d.gate_from),
-                    gate_to: env("G1", d.gate_to),
-                    gate_contrast: env("GK", d.gate_contrast),
-                };
-                for (i, view) in frame.views.iter().enumerate() {
-                    let constants = view.facts.constants(None, &self.settings, i, frame.index);
-                    let [past, next] = &mut self.surface;
-                    let at = reprojection::Reprojection::new(
-                        &self.desc,
-                        view,
-                        constants.depth_row,
-                        self.settings.depth_test,
-                        &past[i],
-                        reset,
-                    );
-                    if self.settings.method == Method::Taa {
-                        taa_pass::run(&at, view.color, &mut next[i], &mut output[i], &taa);
-                    } else {
-                        let own;
-                        let lods = match view.lod {
-                            Some(l) => l,
-                            None => {
-                                own = Image::from_fn_parallel(self.desc.size_px, |[x, y]| {
-                                    self.settings.foveation.lod(crate::kernel::acuity::eccentricity_deg(
-                                        view.facts.geometry.ray([x as f32, y as f32]),
-                                        constants.gaze_ray,
-                                    ))
-                                });
-                                &own
-                            }
-                        };
-                        smr_pass::run(
-                            &at,
-                            view.color,
-                            lods,
-                            &self.chain[i],
-                            &mut next[i],
-                            &mut output[i],
-                            &p,
-                            self.settings.foveation.filter == crate::foveation::Filter::Block,
-                        );
-                        self.chain[i] = smr_pass::Chain::build(
-                            self.desc.size_px,
-                            &next[i],
-                            self.settings.foveation.rate_far.ilog2() + 3,
-                        );
-                    }
-                }
-                self.surface.swap(0, 1);
-                self.surface_filled = true;
-                Ok(FrameStats::default())
+                let stats = surface_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
+                self.history.swap();
+                Ok(stats)
             }
             Method::Wrs => {
                 let stats = wrs_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
@@ -291,7 +227,7 @@ fn pass_through(
     mut trace: Option<&mut [Image<PixelTrace>]>,
 ) -> FrameStats {
     let mut stats = FrameStats::default();
-    let factors = desc.motion.to_internal(desc.size_px);
+    let [sx, sy] = desc.motion.to_internal(desc.size_px);
     for (i, (view, out)) in frame.views.iter().zip(output).enumerate() {
         for (src, dst) in view.color.pixels().iter().zip(out.pixels_mut()) {
             let (color, valid) = scrub::color(Vec3::from(*src));
@@ -300,9 +236,7 @@ fn pass_through(
         }
         if let Some(trace) = &mut trace {
             trace[i] = match view.motion {
-                Some(motion) => {
-                    motion.map(|m| PixelTrace { motion: wrs_pass::scale(m, factors), ..PixelTrace::default() })
-                }
+                Some(motion) => motion.map(|m| PixelTrace { motion: [m[0] * sx, m[1] * sy], ..PixelTrace::default() }),
                 None => Image::filled(desc.size_px, PixelTrace::default()),
             };
         }

@@ -1,153 +1,134 @@
-//! The scale-matched reservoir.
+//! The scale-matched reservoir: scrub, reproject, flush, resample, match scales, relight, decide, store and show. `docs/method.md` has
+//! the equations.
+//!
+//! Each pixel reads its colour, depth, five motions, twelve remembered surfaces, twelve texels of their coarser levels and four more
+//! colours (neighbours share most of them), and writes one surface, a third of a texel of the coarser levels and one colour.
 
-use super::reprojection::Reprojection;
-use crate::image::Image;
-use crate::kernel::matched::{self, Evidence, SmrParams};
-use crate::kernel::resample::split;
-use crate::kernel::scrub;
-use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
+use super::remembered::{Remembered, Source};
+use crate::kernel::approx;
+use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::foveate::mean_of_four;
+use crate::kernel::matched::{self, COHERENT_NEIGHBOURS, Evidence, Matched, SmrParams};
+use crate::kernel::reproject::Verdict;
+use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
+use crate::settings::Settings;
+use crate::stats::FrameStats;
 use glam::Vec3;
-use rayon::prelude::*;
 
-/// Coarser levels of the past: level l at index l - 1.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Chain {
-    pub levels: Vec<Image<[f32; 4]>>,
+/// Constants of a frame.
+pub(super) struct Smr {
+    params: SmrParams,
+    settings: Settings,
 }
 
-impl Chain {
-    pub fn build(size: [u32; 2], words: &[[u32; 2]], count: u32) -> Self {
-        let base = Image::from_fn_parallel(size, |[x, y]| {
-            let s = unpack_surface(words[(y * size[0] + x) as usize]);
-            let w = if s.lod < 0.0 { 0.0 } else { 1.0 };
-            (s.color * w).extend(w).to_array()
-        });
-        let mut levels: Vec<Image<[f32; 4]>> = vec![];
-        for _ in 0..count {
-            let fine = levels.last().unwrap_or(&base);
-            let size = fine.size().map(|s| s.div_ceil(2));
-            let next = Image::from_fn_parallel(size, |[x, y]| {
-                let (x0, y0) = (2 * x as usize, 2 * y as usize);
-                let (x1, y1) = ((x0 + 1).min(fine.width() - 1), (y0 + 1).min(fine.height() - 1));
-                let at = |x, y| glam::Vec4::from(fine.at(x, y));
-                ((at(x0, y0) + at(x1, y0) + at(x0, y1) + at(x1, y1)) * 0.25).to_array()
-            });
-            levels.push(next);
-        }
-        Self { levels }
+impl Smr {
+    pub fn new(settings: &Settings) -> Self {
+        Self { params: settings.smr_params(), settings: *settings }
     }
 
-    fn bilinear(&self, at: [f32; 2], level: usize) -> Vec3 {
-        let image = &self.levels[level - 1];
-        let scale = 1.0 / (1_u32 << level) as f32;
-        let [x, y] = at.map(|v| (v + 0.5) * scale - 0.5);
-        let (x0, fx) = split(x.clamp(0.0, image.width() as f32 - 1.0));
-        let (y0, fy) = split(y.clamp(0.0, image.height() as f32 - 1.0));
-        let (x0, y0) = (x0 as usize, y0 as usize);
-        let x1 = (x0 + 1).min(image.width() - 1);
-        let y1 = (y0 + 1).min(image.height() - 1);
-        let t = |x, y| glam::Vec4::from(image.at(x, y));
-        let top = t(x0, y0) + (t(x1, y0) - t(x0, y0)) * fx;
-        let bottom = t(x0, y1) + (t(x1, y1) - t(x0, y1)) * fx;
-        let v = top + (bottom - top) * fy;
-        v.truncate() / v.w.max(1e-6)
+    /// One pixel: what is shown, what is stored, what was decided.
+    #[inline(always)]
+    pub fn pixel(&self, at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> (Vec3, [u32; 2], PixelTrace) {
+        let inputs = &at.inputs;
+        let (candidate, usable) = inputs.candidate(x, y);
+        let disparity = inputs.disparity(x, y);
+        let motion = inputs.motion(x, y);
+        let lod = self.lod(at, x, y);
+        let coherent = self.is_coherent(at, x, y, motion);
+        let mut source = at.source(x, y, motion, disparity);
+        if source.is_ok() && !coherent {
+            source = Err(Verdict::Disoccluded);
+        }
+        let verdict = source.err().unwrap_or(Verdict::Valid);
+        inputs.count(x, y, usable, disparity, verdict, stats);
+
+        let mut made = Matched { color: candidate, lod: if usable { lod } else { -1.0 }, share: 0.0, fit: 1.0 };
+        if let Ok(source) = source {
+            if !usable {
+                let history = at.resample(&source);
+                made = Matched { color: at.expose(history.sharp), lod: history.lod, share: 1.0, fit: 1.0 };
+            } else if lod > 0.0 {
+                made = self.matched(at, x, y, candidate, lod, &source);
+            }
+        }
+        stats.replaced += u64::from(verdict == Verdict::Valid && made.share == 0.0);
+        // Colours of a moving silhouette mix two surfaces: shown, but not kept.
+        let stored_lod = if coherent || made.lod < 0.0 { made.lod } else { MAX_LOD };
+        let trace = PixelTrace {
+            weight: approx::exp2(-lod),
+            w_sum: 16.0 * approx::exp2(-made.lod.max(0.0)),
+            age: 0,
+            survival: made.share,
+            verdict,
+            gate: made.fit,
+            take: made.share == 0.0,
+            motion,
+        };
+        (made.color, pack_surface(Surface { color: made.color, lod: stored_lod, disparity }), trace)
     }
 
-    fn read(&self, at: [f32; 2], lod: f32, base: Vec3) -> Vec3 {
-        let lod = lod.clamp(0.0, self.levels.len() as f32);
-        let level = lod.floor();
-        let fraction = lod - level;
-        let level = level as usize;
-        let fine = if level == 0 { base } else { self.bilinear(at, level) };
-        if fraction == 0.0 {
-            return fine;
+    /// Level of detail of the candidate.
+    #[inline(always)]
+    fn lod(&self, at: &Remembered<'_>, x: u32, y: u32) -> f32 {
+        match at.inputs.view.lod {
+            // NaN fails the comparison.
+            Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
+            None => self.settings.foveation.lod(at.inputs.eccentricity_deg(at.inputs.ray(x, y))),
         }
-        let coarse = self.bilinear(at, level + 1);
-        fine + (coarse - fine) * fraction
     }
-}
 
-pub(super) fn run(
-    at: &Reprojection<'_>,
-    color: &Image<[f32; 3]>,
-    lods: &Image<f32>,
-    chain: &Chain,
-    words: &mut [[u32; 2]],
-    out: &mut Image<[f32; 3]>,
-    p: &SmrParams,
-    block: bool,
-) {
-    let w = at.size[0] as usize;
-    out.pixels_mut().par_chunks_mut(w).zip(words.par_chunks_mut(w)).enumerate().for_each(|(y, (out, words))| {
-        for x in 0..w {
-            let (xu, yu) = (x as u32, y as u32);
-            let (c, _) = scrub::color(Vec3::from(color.at(x, y)));
-            let disparity = at.disparity(xu, yu);
-            let lod = lods.at(x, y);
-            let mut shown = c;
-            let mut shown_lod = lod;
-            let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-            let need = env("EN", 0.0);
-            let mut bad = false;
-            if need > 0.0
-                && let Some(m) = at.motion
-            {
-                let own = m.at(x, y);
-                let t = env("ET", 0.5) + env("ETR", 0.1) * (own[0].abs() + own[1].abs());
-                let agrees = |dx: i32, dy: i32| {
-                    let o = m.at(
-                        (x as i32 + dx).clamp(0, w as i32 - 1) as usize,
-                        (y as i32 + dy).clamp(0, at.size[1] as i32 - 1) as usize,
-                    );
-                    if (o[0] - own[0]).abs() <= t && (o[1] - own[1]).abs() <= t { 1.0_f32 } else { 0.0 }
-                };
-                bad = agrees(1, 0) + agrees(-1, 0) + agrees(0, 1) + agrees(0, -1) < need;
-            }
-            if bad {
-                shown_lod = shown_lod.max(env("EL", 8.0));
-            }
-            if lod > 0.0 && !(bad && env("ES", 1.0) > 0.0) {
-                if let Ok(source) = at.source(xu, yu, disparity) {
-                    let h = at.resample(&source);
-                    if matched::wanted(lod, h.lod, p).1 > 0.0 {
-                        let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-                        let up = if block { env("UP", 1.0) } else { 0.0 };
-                        let r = 0.75 * lod.exp2();
-                        let tap = |sx: f32, sy: f32| {
-                            let px = ((x as f32 + sx * r).round().max(0.0) as usize).min(w - 1);
-                            let py = ((y as f32 + sy * r).round().max(0.0) as usize).min(at.size[1] as usize - 1);
-                            scrub::color(Vec3::from(color.at(px, py))).0
-                        };
-                        let coarse = (tap(-1., -1.) + tap(1., -1.) + tap(-1., 1.) + tap(1., 1.)) * 0.25;
-                        let wide = if block {
-                            (tap(-2., -2.)
-                                + tap(2., -2.)
-                                + tap(-2., 2.)
-                                + tap(2., 2.)
-                                + tap(0., 2.)
-                                + tap(2., 0.)
-                                + tap(0., -2.)
-                                + tap(-2., 0.)
-                                + tap(0., 0.))
-                                * (1.0 / 9.0)
-                        } else {
-                            coarse
-                        };
-                        let e = Evidence {
-                            candidate: c,
-                            seen: if block { coarse } else { c },
-                            lod,
-                            history: h.sharp,
-                            history_lod: h.lod,
-                            matched: chain.read(source.at, lod + up, h.smooth),
-                            coarser: chain.read(source.at, lod + 1.0 + up, h.smooth),
-                        };
-                        (shown, shown_lod, _) = matched::decide(&e, wide, p);
-                    }
-                }
-            }
-            out[x] = shown.to_array();
-            words[x] = pack_surface(Surface { color: shown, lod: shown_lod, disparity });
+    /// Whether enough neighbours move as the pixel does.
+    #[inline(always)]
+    fn is_coherent(&self, at: &Remembered<'_>, x: u32, y: u32, own: [f32; 2]) -> bool {
+        let inputs = &at.inputs;
+        if inputs.view.motion.is_none() {
+            return true;
         }
-    });
+        let [width, height] = inputs.size;
+        let right = (x + 1).min(width - 1);
+        let below = (y + 1).min(height - 1);
+        let around = [(x.max(1) - 1, y), (right, y), (x, y.max(1) - 1), (x, below)];
+        let alike: u32 = around.iter().map(|&(x, y)| u32::from(matched::coherent(own, inputs.motion(x, y)))).sum();
+        alike >= COHERENT_NEIGHBOURS
+    }
+
+    #[inline(always)]
+    fn matched(&self, at: &Remembered<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
+        let history = at.resample(source);
+        if matched::wanted(lod, history.lod, self.params.accumulate).share == 0.0 {
+            return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
+        }
+        // A point sample is noise at its own scale: compare one level coarser.
+        let shift = if self.params.blocks { 1.0 } else { 0.0 };
+        let chain = at.past.chain.expect("smr remembers coarser levels");
+        let [matched, matched_coarser] = chain.read(source.at, lod + shift, history.smooth);
+        let radius = 0.75 * approx::exp2(lod);
+        let around = self.around(at, x, y, radius);
+        let (compared, compared_coarser) =
+            if self.params.blocks { (around, self.around(at, x, y, 2.0 * radius)) } else { (candidate, around) };
+        let evidence = Evidence {
+            candidate,
+            compared,
+            compared_coarser,
+            lod,
+            history: at.expose(history.sharp),
+            history_lod: history.lod,
+            matched: at.expose(matched),
+            matched_coarser: at.expose(matched_coarser),
+            trust: source.trust,
+        };
+        matched::decide(&evidence, &self.params)
+    }
+
+    /// Mean of four candidates on the diagonals.
+    #[inline(always)]
+    fn around(&self, at: &Remembered<'_>, x: u32, y: u32, radius: f32) -> Vec3 {
+        let [width, height] = at.inputs.size.map(|s| (s - 1) as f32);
+        let tap = |sx: f32, sy: f32| {
+            let tx = (x as f32 + sx * radius + 0.5).floor().clamp(0.0, width);
+            let ty = (y as f32 + sy * radius + 0.5).floor().clamp(0.0, height);
+            at.inputs.candidate(tx as u32, ty as u32).0
+        };
+        mean_of_four(tap(-1.0, -1.0), tap(1.0, -1.0), tap(-1.0, 1.0), tap(1.0, 1.0))
+    }
 }

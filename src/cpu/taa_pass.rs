@@ -1,54 +1,65 @@
-//! Temporal antialiasing of the foveated frame.
+//! Temporal antialiasing of the foveated frame: scrub, reproject, flush, resample, clip, blend, store and show.
+//!
+//! Each pixel reads its motion and depth, nine colours and twelve remembered surfaces (neighbours share most of them), and writes one
+//! surface and one colour: 40 bytes with half-float colour and motion.
 
-use super::reprojection::Reprojection;
-use crate::image::Image;
-use crate::kernel::scrub;
+use super::remembered::Remembered;
+use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::pack::MAX_AGE;
+use crate::kernel::reproject::Verdict;
 use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
+use crate::stats::FrameStats;
 use glam::Vec3;
-use rayon::prelude::*;
 
-pub struct TaaParams {
-    pub alpha: f32,
-    pub gamma: f32,
+/// One pixel: what is shown, what is stored, what was decided.
+#[inline(always)]
+pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> (Vec3, [u32; 2], PixelTrace) {
+    let inputs = &at.inputs;
+    let (candidate, usable) = inputs.candidate(x, y);
+    let disparity = inputs.disparity(x, y);
+    let motion = inputs.motion(x, y);
+    let source = at.source(x, y, motion, disparity);
+    let verdict = source.err().unwrap_or(Verdict::Valid);
+    inputs.count(x, y, usable, disparity, verdict, stats);
+
+    let (mut shown, mut share, mut stored_lod) = (candidate, 0.0, if usable { 0.0 } else { -1.0 });
+    if let Ok(source) = source {
+        let history = at.expose(at.resample(&source).sharp);
+        stored_lod = 0.0;
+        if usable {
+            let alpha = taa::alpha(source.fraction, source.trust);
+            let (sum, squares) = neighbourhood(at, x, y);
+            shown = taa::blend_clipped(candidate, history, sum, squares, alpha);
+            share = 1.0 - alpha;
+        } else {
+            (shown, share) = (history, 1.0);
+        }
+    }
+    let trace = PixelTrace {
+        weight: 1.0 - share,
+        w_sum: 0.0,
+        age: if verdict == Verdict::Valid { MAX_AGE } else { 0 },
+        survival: share,
+        verdict,
+        gate: 1.0,
+        take: verdict != Verdict::Valid,
+        motion,
+    };
+    (shown, pack_surface(Surface { color: shown, lod: stored_lod, disparity }), trace)
 }
 
-pub(super) fn run(
-    at: &Reprojection<'_>,
-    color: &Image<[f32; 3]>,
-    words: &mut [[u32; 2]],
-    out: &mut Image<[f32; 3]>,
-    p: &TaaParams,
-) {
-    let w = at.size[0] as usize;
-    out.pixels_mut().par_chunks_mut(w).zip(words.par_chunks_mut(w)).enumerate().for_each(|(y, (out, words))| {
-        for x in 0..w {
-            let (xu, yu) = (x as u32, y as u32);
-            let (c, _) = scrub::color(Vec3::from(color.at(x, y)));
-            let disparity = at.disparity(xu, yu);
-            let shown = match at.source(xu, yu, disparity) {
-                Err(_) => c,
-                Ok(source) => {
-                    let h = at.resample(&source);
-                    let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-                    for j in -1..=1_i32 {
-                        for i in -1..=1_i32 {
-                            let sx = (x as i32 + i).clamp(0, w as i32 - 1) as usize;
-                            let sy = (y as i32 + j).clamp(0, at.size[1] as i32 - 1) as usize;
-                            let v = taa::to_ycocg(scrub::color(Vec3::from(color.at(sx, sy))).0);
-                            sum += v;
-                            squares += v * v;
-                        }
-                    }
-                    let mean = sum / 9.0;
-                    let deviation = (squares / 9.0 - mean * mean).max(Vec3::ZERO).map(f32::sqrt);
-                    let clipped = taa::clip(taa::to_ycocg(h.sharp), mean, deviation * p.gamma);
-                    let now = taa::to_ycocg(c);
-                    taa::from_ycocg(clipped + (now - clipped) * p.alpha)
-                }
-            };
-            out[x] = shown.to_array();
-            words[x] = pack_surface(Surface { color: shown, lod: 0.0, disparity });
-        }
-    });
+/// Sums of colours and of their squares over 3x3 pixels, in YCoCg.
+#[inline(always)]
+fn neighbourhood(at: &Remembered<'_>, x: u32, y: u32) -> (Vec3, Vec3) {
+    let [width, height] = at.inputs.size;
+    let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+    for tap in 0..9 {
+        let nx = (x + tap % 3).max(1) - 1;
+        let ny = (y + tap / 3).max(1) - 1;
+        let v = taa::to_ycocg(at.inputs.candidate(nx.min(width - 1), ny.min(height - 1)).0);
+        sum += v;
+        squares += v * v;
+    }
+    (sum, squares)
 }

@@ -1,60 +1,103 @@
 //! One pixel of the scale-matched reservoir (smr): the best sample of a surface point is shown while, low-passed to the
-//! candidate's level of detail, it explains the candidate.
+//! candidate's level of detail, it explains the candidate. `docs/method.md` derives it.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-/// Tunables of the method.
+/// Levels of detail by which history must be finer to count wholly as the better sample.
+pub const QUALITY_WIDTH: f32 = 0.1;
+/// Levels of detail by which history may be coarser and still be accumulated.
+const COARSER_WIDTH: f32 = 0.25;
+/// Difference up to which history is believed, and from which it is not, in [`difference`]'s units; both grow with contrast.
+const GATE: [f32; 2] = [3.0, 9.0];
+/// Difference at which relighting sets in, and what a unit of contrast adds to it.
+const RELIGHT: [f32; 2] = [1.5, 0.5];
+/// The same for point-sampled blocks, whose aliasing is no change of light.
+const RELIGHT_BLOCKS: [f32; 2] = [12.0, 2.0];
+/// Gains of relighting.
+const GAIN: [f32; 2] = [0.2, 5.0];
+/// Keeps ratios of dark colours finite.
+const DARK: f32 = 0.002;
+/// Motion of neighbours that counts as the same: this many pixels, and this share of their length.
+const COHERENT: [f32; 2] = [0.5, 0.1];
+
+/// Tunables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmrParams {
-    /// Levels of detail by which history must be sharper to count fully as the better sample.
-    pub quality_width: f32,
-    /// Share of equally coarse history in what is shown.
+    /// Share of equally coarse history in what is shown, in \[0, 1).
     pub accumulate: f32,
-    /// Tolerance of accumulation, as a share of that of reuse.
+    /// Tolerance of accumulation as a share of that of reuse, in (0, 1\].
     pub accumulate_tolerance: f32,
-    /// Difference at which relighting sets in.
-    pub relight_from: f32,
-    /// The same, for each unit of local contrast.
-    pub relight_contrast: f32,
-    /// Difference up to which history is trusted wholly.
-    pub gate_from: f32,
-    /// Difference from which it is not trusted at all.
-    pub gate_to: f32,
-    /// What one unit of local contrast adds to both.
-    pub gate_contrast: f32,
+    /// Factor on the gate's differences.
+    pub tolerance: f32,
+    /// Candidates are point samples of blocks.
+    pub blocks: bool,
+    /// Follow changes of light.
+    pub relight: bool,
 }
 
-impl Default for SmrParams {
-    fn default() -> Self {
-        Self {
-            quality_width: 0.1,
-            accumulate: 0.85,
-            accumulate_tolerance: 0.5,
-            relight_from: 1.5,
-            relight_contrast: 0.5,
-            gate_from: 3.0,
-            gate_to: 9.0,
-            gate_contrast: 1.0,
-        }
-    }
-}
-
-/// 0 up to `from`, 1 from `to` on, a smooth step between.
+/// 0 up to `from`, 1 from `to` on, smooth between.
 #[inline]
 pub fn smooth_step(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     (t * t) * (3.0 - 2.0 * t)
 }
 
-/// Difference of two linear colours, about 100 between black and white: Euclidean in gamma 2, with half the weight on chroma.
+/// Difference of two linear colours, 100 between black and white: Euclidean in YCoCg of square roots, chroma with half the
+/// weight. Exactly 0 for equal colours; no cube roots.
 #[inline]
 pub fn difference(x: Vec3, y: Vec3) -> f32 {
-    let root = |v: Vec3| Vec3::new(v.x.max(0.0).sqrt(), v.y.max(0.0).sqrt(), v.z.max(0.0).sqrt());
-    let d = root(x) - root(y);
-    let luma = 0.25 * (d.x + d.z) + 0.5 * d.y;
+    let d = roots(x) - roots(y);
+    let outer = 0.25 * (d.x + d.z);
+    let inner = 0.5 * d.y;
+    let luma = outer + inner;
     let orange = 0.5 * (d.x - d.z);
-    let green = 0.5 * d.y - 0.25 * (d.x + d.z);
-    100.0 * (luma * luma + 0.5 * (orange * orange + green * green)).sqrt()
+    let green = inner - outer;
+    let chroma = orange * orange + green * green;
+    100.0 * (luma * luma + 0.5 * chroma).sqrt()
+}
+
+/// Square roots of a colour's channels; of negative ones 0.
+#[inline]
+pub fn roots(c: Vec3) -> Vec3 {
+    Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
+}
+
+/// Whether two motion vectors (pixels) are of one surface. A pixel with fewer than two such neighbours lies on a moving silhouette,
+/// where renderers mix the vectors of both sides: such a vector leads nowhere.
+#[inline]
+pub fn coherent(own: [f32; 2], other: [f32; 2]) -> bool {
+    let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
+    (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
+}
+
+/// Neighbours that must move alike for a vector to be believed.
+pub const COHERENT_NEIGHBOURS: u32 = 2;
+
+/// How far history is wanted before it is known whether it fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// 1 if history is finer than the candidate, 0 if not, in \[0, 1\].
+    pub finer: f32,
+    /// Its share in what is shown, if it fits: 1 where finer, `accumulate` where alike, 0 where coarser or in the fovea.
+    pub share: f32,
+}
+
+/// See [`Wanted`]. Levels of detail.
+#[inline]
+pub fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
+    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0);
+    let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0);
+    let alike = (1.0 - finer) * (1.0 - coarser);
+    Wanted { finer, share: finer + (alike * lod.min(1.0)) * accumulate }
+}
+
+/// A colour channel's gain under changed light: the ratio of candidate and history at a coarse level, as far as light `changed`
+/// (0 to 1) and by no less than a few percent.
+#[inline]
+pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
+    let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
+    let away = ratio - 1.0;
+    1.0 + away * (changed * smooth_step(0.05, 0.15, away.abs()))
 }
 
 /// What is known of a pixel before the decision.
@@ -62,58 +105,87 @@ pub fn difference(x: Vec3, y: Vec3) -> f32 {
 pub struct Evidence {
     /// The candidate.
     pub candidate: Vec3,
-    /// What of it is compared.
-    pub seen: Vec3,
+    /// What of it is compared: itself, or a mean of its surroundings where it is a point sample.
+    pub compared: Vec3,
+    /// The candidate one level coarser.
+    pub compared_coarser: Vec3,
     /// Its level of detail.
     pub lod: f32,
     /// History at full sharpness.
     pub history: Vec3,
     /// Level of detail it was shaded at.
     pub history_lod: f32,
-    /// History at the candidate's level of detail.
+    /// History at the level of `compared`.
     pub matched: Vec3,
     /// History one level coarser.
-    pub coarser: Vec3,
+    pub matched_coarser: Vec3,
+    /// How far history may be believed, in \[0, 1\].
+    pub trust: f32,
 }
 
-/// How far history is wanted, before it is known whether it fits: 1 if it is sharper, a share if it is as good, 0 if coarser.
-#[inline]
-pub fn wanted(lod: f32, history_lod: f32, p: &SmrParams) -> (f32, f32) {
-    let sharper = ((lod - history_lod) / p.quality_width).clamp(0.0, 1.0);
-    let coarser = ((history_lod - lod) / 0.25).clamp(0.0, 1.0);
-    (sharper, sharper + (1.0 - sharper) * p.accumulate * lod.min(1.0) * (1.0 - coarser))
+/// What was decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matched {
+    /// What is shown and stored.
+    pub color: Vec3,
+    /// Its level of detail.
+    pub lod: f32,
+    /// History's share in it.
+    pub share: f32,
+    /// How well history explains the candidate, in \[0, 1\].
+    pub fit: f32,
 }
 
-/// The shown colour and its level of detail. `candidate_coarser` is the candidate one level coarser.
+/// Shows history as far as it is wanted and explains the candidate, relit if only the light changed.
 #[inline]
-pub fn decide(e: &Evidence, candidate_coarser: Vec3, p: &SmrParams) -> (Vec3, f32, f32) {
-    let (sharper, want) = wanted(e.lod, e.history_lod, p);
-    let mut contrast = difference(e.matched, e.coarser);
-    let mut d = difference(e.seen, e.matched);
-    let mut gain = Vec3::ONE;
-    let threshold = p.relight_from + p.relight_contrast * contrast;
-    let changed = smooth_step(threshold, 2.0 * threshold, d);
-    if changed > 0.0 {
-        let ratio = ((candidate_coarser + 0.002) / (e.coarser + 0.002)).clamp(Vec3::splat(0.2), Vec3::splat(5.0));
-        let away = (ratio - Vec3::ONE).abs();
-        let amount = |a: f32| changed * smooth_step(0.05, 0.15, a);
-        let k = Vec3::ONE + (ratio - Vec3::ONE) * Vec3::new(amount(away.x), amount(away.y), amount(away.z));
-        let relit = difference(e.seen, k * e.matched);
+pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
+    let wanted = wanted(e.lod, e.history_lod, p.accumulate);
+    // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
+    let mut contrast = difference(e.matched, e.matched_coarser);
+    let mut d = difference(e.compared, e.matched);
+    let mut k = Vec3::ONE;
+    if p.relight {
+        let relight = if p.blocks { RELIGHT_BLOCKS } else { RELIGHT };
+        let from = relight[0] + relight[1] * contrast;
+        let changed = smooth_step(from, 2.0 * from, d);
+        let (c, h) = (e.compared_coarser, e.matched_coarser);
+        let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
+        let relit = difference(e.compared, gains * e.matched);
         if relit < d {
             d = relit;
-            gain = k;
-            contrast *= ((k.x + k.y + k.z) * (1.0 / 3.0)).sqrt();
+            k = gains;
+            contrast *= ((gains.x + gains.y + gains.z) * (1.0 / 3.0)).sqrt();
         }
     }
-    let tolerance = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * sharper;
-    let low = tolerance * (p.gate_from + p.gate_contrast * contrast);
-    let high = tolerance * (p.gate_to + p.gate_contrast * contrast);
-    let share = (1.0 - smooth_step(low, high, d)) * want;
-    let shown = e.candidate * (1.0 - share) + (gain * e.history) * share;
-    let lod = if sharper > 0.0 {
-        (e.history_lod + (e.lod - e.history_lod) * (1.0 - sharper * share / want)).min(e.lod)
+    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * wanted.finer);
+    let scale = if p.blocks { 4.0 } else { 1.0 };
+    let low = tolerance * (GATE[0] * scale + contrast);
+    let high = tolerance * (GATE[1] * scale + contrast);
+    let fit = 1.0 - smooth_step(low, high, d);
+    let believed = fit * e.trust;
+    let share = believed * wanted.share;
+    // In this form a share of 1 gives the history and one of 0 the candidate, bit for bit.
+    let color = e.candidate * (1.0 - share) + (k * e.history) * share;
+    let lod = if wanted.finer > 0.0 {
+        (e.history_lod + (e.lod - e.history_lod) * (1.0 - wanted.finer * believed)).min(e.lod)
     } else {
         e.lod
     };
-    (shown, lod, share)
+    Matched { color, lod, share, fit }
+}
+
+/// Mean of four texels of the chain of coarser levels: colours times coverage, and coverage.
+#[inline]
+pub fn chain_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
+    (a + b + c + d) * 0.25
+}
+
+/// Colour between four texels of the chain, rows first. Black where nothing is covered.
+#[inline]
+pub fn chain_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec3 {
+    let t = top[0] + (top[1] - top[0]) * fraction[0];
+    let b = bottom[0] + (bottom[1] - bottom[0]) * fraction[0];
+    let v = t + (b - t) * fraction[1];
+    let inverse = 1.0 / v.w.max(1e-3);
+    Vec3::new(v.x * inverse, v.y * inverse, v.z * inverse)
 }

@@ -1,16 +1,78 @@
-//! Reading history between texels.
+//! Reading remembered surfaces between texels.
 
-/// Catmull-Rom weights of the four texels around a position that lies `t` in \[0, 1\] after the second; they sum to 1. At t = 0
-/// the second has weight exactly 1 and the others exactly 0.
+use super::surface::Surface;
+use glam::Vec3;
+
+/// Relative difference of disparity within which texels are read together: wide enough for slopes, narrow enough for silhouettes.
+pub const TAP_RELATIVE: f32 = 0.1;
+
+/// Catmull-Rom weights of the four texels around a position that lies `t` in \[0, 1) after the second. At t = 0 the second has
+/// weight exactly 1 and the others exactly 0.
 #[inline]
 pub fn catmull_rom(t: f32) -> [f32; 4] {
     let t2 = t * t;
     [((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t2 + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t, (0.5 * t - 0.5) * t2]
 }
 
-/// Whole texel below a coordinate and what is left of it, in \[0, 1).
+/// Bilinear weights of the same four texels.
 #[inline]
-pub fn split(v: f32) -> (i32, f32) {
-    let whole = v.floor();
-    (whole as i32, v - whole)
+pub fn linear(t: f32) -> [f32; 4] {
+    [0.0, 1.0 - t, t, 0.0]
+}
+
+/// What is read around a position, as it is gathered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gathered {
+    /// Colours by Catmull-Rom weights, and their sum.
+    pub sharp: Vec3,
+    /// Sum of those weights.
+    pub sharp_sum: f32,
+    /// Colours by bilinear weights.
+    pub smooth: Vec3,
+    /// Sum of those weights.
+    pub smooth_sum: f32,
+    /// Levels of detail by bilinear weights.
+    pub lod: f32,
+    /// Texels that show another surface.
+    pub missing: u32,
+}
+
+/// Adds a texel with its two weights; one that is `wanted` not, because it shows another surface, is counted.
+#[inline]
+pub fn gather(g: Gathered, tap: Surface, wanted: bool, sharp: f32, linear: f32) -> Gathered {
+    if !wanted {
+        return Gathered { missing: g.missing + 1, ..g };
+    }
+    Gathered {
+        sharp: g.sharp + tap.color * sharp,
+        sharp_sum: g.sharp_sum + sharp,
+        smooth: g.smooth + tap.color * linear,
+        smooth_sum: g.smooth_sum + linear,
+        lod: g.lod + tap.lod * linear,
+        missing: g.missing,
+    }
+}
+
+/// What was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resampled {
+    /// At full sharpness.
+    pub sharp: Vec3,
+    /// Bilinear.
+    pub smooth: Vec3,
+    /// Level of detail.
+    pub lod: f32,
+}
+
+/// The reading: Catmull-Rom where every texel shows the surface, bilinear over those that do elsewhere, and the `nearest` texel where
+/// those have next to no weight.
+#[inline]
+pub fn resolve(g: Gathered, nearest: Surface) -> Resampled {
+    if g.smooth_sum < 0.01 {
+        return Resampled { sharp: nearest.color, smooth: nearest.color, lod: nearest.lod };
+    }
+    let inverse = 1.0 / g.smooth_sum;
+    let smooth = g.smooth * inverse;
+    let sharp = if g.missing == 0 { (g.sharp * (1.0 / g.sharp_sum)).max(Vec3::ZERO) } else { smooth };
+    Resampled { sharp, smooth, lod: g.lod * inverse }
 }

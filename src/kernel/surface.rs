@@ -12,7 +12,7 @@
 //! What is read was stored: packing what was unpacked changes nothing.
 
 use super::pack::{disparity_code, disparity_value, half_bits, half_value};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Code of the level of detail that stands for "nothing is stored".
 const EMPTY: u32 = 63;
@@ -77,4 +77,18 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
         lod: lod as f32 / LOD_STEPS,
         disparity: disparity_value(words[1] >> 16),
     }
+}
+
+/// Texel of level 0 of the chain of coarser levels: the colour and a coverage of 1, or nothing.
+#[inline]
+pub fn chain_texel(words: [u32; 2]) -> Vec4 {
+    let s = unpack_surface(words);
+    if s.lod < 0.0 { Vec4::ZERO } else { s.color.extend(1.0) }
+}
+
+/// A texel of the chain as it is stored: halves, rounded here, so that devices cannot round otherwise.
+#[inline]
+pub fn round_chain(v: Vec4) -> Vec4 {
+    let round = |x: f32| half_value(half_bits(x));
+    Vec4::new(round(v.x), round(v.y), round(v.z), round(v.w))
 }

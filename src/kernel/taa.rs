@@ -1,20 +1,29 @@
-//! One pixel of temporal antialiasing: the rival that knows nothing of gaze.
+//! One pixel of temporal antialiasing, the rival that knows nothing of gaze: an exponential mean along the motion, kept within
+//! what the neighbourhood of the candidate allows (Salvi 2016, "An excursion in temporal supersampling"; Karis 2014).
 
+use super::matched::roots;
 use glam::Vec3;
 
-/// Gamma 2 and YCoCg of a linear colour.
+/// Weight of the candidate where history lies on texels, and where it had to be resampled: each resampling blurs.
+const ALPHA: [f32; 2] = [0.1, 0.4];
+/// Half width of the neighbourhood's box in standard deviations. Narrower ones clip the detail of earlier frames away, because a
+/// foveated neighbourhood is smooth.
+const BOX_SIGMAS: f32 = 2.0;
+
+/// YCoCg of the square roots of a linear colour.
 #[inline]
 pub fn to_ycocg(c: Vec3) -> Vec3 {
-    let r = Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt());
+    let r = roots(c);
     let outer = 0.25 * (r.x + r.z);
-    Vec3::new(outer + 0.5 * r.y, 0.5 * (r.x - r.z), 0.5 * r.y - outer)
+    let inner = 0.5 * r.y;
+    Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
 }
 
 /// Back to linear.
 #[inline]
 pub fn from_ycocg(y: Vec3) -> Vec3 {
-    let t = y.x - y.z;
-    let r = Vec3::new(t + y.y, y.x + y.z, t - y.y).max(Vec3::ZERO);
+    let outer = y.x - y.z;
+    let r = Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0));
     r * r
 }
 
@@ -22,7 +31,28 @@ pub fn from_ycocg(y: Vec3) -> Vec3 {
 #[inline]
 pub fn clip(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     let d = history - mean;
-    let a = d.abs() / extent.max(Vec3::splat(1e-6));
-    let most = a.x.max(a.y).max(a.z);
+    let x = d.x.abs() / extent.x.max(1e-6);
+    let y = d.y.abs() / extent.y.max(1e-6);
+    let z = d.z.abs() / extent.z.max(1e-6);
+    let most = x.max(y).max(z);
     if most > 1.0 { mean + d * (1.0 / most) } else { history }
+}
+
+/// Weight of the candidate for history read `fraction` (each in \[0, 1)) between texels and believed as far as `trust`.
+#[inline]
+pub fn alpha(fraction: [f32; 2], trust: f32) -> f32 {
+    let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
+    let y = 4.0 * (fraction[1] * (1.0 - fraction[1]));
+    let resampled = ALPHA[0] + (ALPHA[1] - ALPHA[0]) * x.max(y);
+    resampled.max(1.0 - trust)
+}
+
+/// What is shown: `sum` and `squares` are of nine neighbours in YCoCg.
+#[inline]
+pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
+    let mean = sum * (1.0 / 9.0);
+    let variance = squares * (1.0 / 9.0) - mean * mean;
+    let clipped = clip(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS);
+    let now = to_ycocg(candidate);
+    from_ycocg(clipped + (now - clipped) * alpha)
 }

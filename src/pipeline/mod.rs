@@ -13,7 +13,7 @@ use crate::image::Image;
 use crate::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
-use crate::settings::{Method, Settings};
+use crate::settings::Settings;
 use crate::source::SourceFrame;
 use crate::stats::FrameStats;
 use gpu_lane::{GpuLane, LaneInput};
@@ -192,8 +192,7 @@ impl Pipeline {
     /// Bytes that lane `index` keeps between frames.
     pub fn memory_bytes(&self, index: usize) -> usize {
         match &self.lanes[index] {
-            Executor::PostProcess(post) if post.settings().method != Method::None => post.memory_bytes(),
-            Executor::PostProcess(_) => 0,
+            Executor::PostProcess(post) => post.memory_bytes(),
             Executor::Gpu(lane) => lane.memory_bytes(),
             Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
         }

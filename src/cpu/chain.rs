@@ -1,0 +1,76 @@
+//! Coarser levels of remembered surfaces, made of what was stored, by the means of 2x2 texels that the foveation's mip levels are
+//! made of too.
+
+use crate::image::Image;
+use crate::kernel::foveate::{level_coordinate, level_len, split};
+use crate::kernel::matched::{chain_bilinear, chain_mean};
+use crate::kernel::surface::{chain_texel, round_chain};
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+/// Levels 1 to n of one view; level l at index l - 1. Texels are colours times coverage, and coverage, as halves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chain {
+    size: [u32; 2],
+    levels: Vec<Image<[f32; 4]>>,
+}
+
+impl Chain {
+    /// `count` levels of a view of `size` pixels.
+    pub fn new(size: [u32; 2], count: u32) -> Self {
+        let levels = (1..=count).map(|l| Image::filled(size.map(|s| level_len(s, l)), [0.0; 4])).collect();
+        Self { size, levels }
+    }
+
+    /// Bytes, at four halves a texel.
+    pub fn memory_bytes(&self) -> usize {
+        self.levels.iter().map(|l| 8 * l.pixels().len()).sum()
+    }
+
+    /// Fills all levels from the packed surfaces of the view.
+    pub fn build(&mut self, words: &[[u32; 2]]) {
+        let [width, height] = self.size;
+        let base = |x: u32, y: u32| chain_texel(words[(y.min(height - 1) * width + x.min(width - 1)) as usize]);
+        for l in 0..self.levels.len() {
+            let (finer, level) = self.levels.split_at_mut(l);
+            let (finer, level) = (finer.last(), &mut level[0]);
+            let row_len = level.width();
+            level.pixels_mut().par_chunks_mut(row_len).enumerate().for_each(|(y, row)| {
+                for (x, out) in row.iter_mut().enumerate() {
+                    let (x0, y0) = (2 * x as u32, 2 * y as u32);
+                    let at = |x: u32, y: u32| match finer {
+                        None => base(x, y),
+                        Some(f) => {
+                            let (w, h) = (f.width() as u32, f.height() as u32);
+                            Vec4::from(f.at(x.min(w - 1) as usize, y.min(h - 1) as usize))
+                        }
+                    };
+                    let mean = chain_mean(at(x0, y0), at(x0 + 1, y0), at(x0, y0 + 1), at(x0 + 1, y0 + 1));
+                    *out = round_chain(mean).to_array();
+                }
+            });
+        }
+    }
+
+    fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
+        let image = &self.levels[level as usize - 1];
+        let (w, h) = (image.width() as u32, image.height() as u32);
+        let (x0, fx) = split(level_coordinate(at[0], level), w);
+        let (y0, fy) = split(level_coordinate(at[1], level), h);
+        let (x1, y1) = ((x0 + 1).min(w - 1), (y0 + 1).min(h - 1));
+        let texel = |x: u32, y: u32| Vec4::from(image.at(x as usize, y as usize));
+        chain_bilinear([texel(x0, y0), texel(x1, y0)], [texel(x0, y1), texel(x1, y1)], [fx, fy])
+    }
+
+    /// The view at a level of detail around a position in pixels, and one level coarser. `smooth` is its level 0 there.
+    pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 2] {
+        let last = self.levels.len() as u32;
+        let lod = lod.min(last as f32);
+        let whole = lod.floor();
+        let fraction = lod - whole;
+        let level = whole as u32;
+        let at_level = |l: u32| if l == 0 { smooth } else { self.bilinear(at, l.min(last)) };
+        let levels = [at_level(level), at_level(level + 1), at_level(level + 2)];
+        [0, 1].map(|i| levels[i] + (levels[i + 1] - levels[i]) * fraction)
+    }
+}

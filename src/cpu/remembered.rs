@@ -1,0 +1,103 @@
+//! What is remembered of a pixel's surface, where it was: shared by the methods that store surfaces.
+
+use super::history::PastSurfaces;
+use super::inputs::Inputs;
+use crate::kernel::depth;
+use crate::kernel::reproject::{self, Verdict};
+use crate::kernel::resample::{self, Gathered, Resampled, TAP_RELATIVE, catmull_rom, linear};
+use crate::kernel::scrub;
+use crate::kernel::surface::{Surface, unpack_surface};
+use crate::kernel::wrs::expose;
+use glam::Vec3;
+
+/// One view of one frame and its past.
+pub(super) struct Remembered<'a> {
+    pub inputs: Inputs<'a>,
+    pub past: PastSurfaces<'a>,
+}
+
+/// Where a pixel's surface was.
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    /// Whole texel at or before the position, and what is left.
+    pub texel: [i32; 2],
+    pub fraction: [f32; 2],
+    /// Position in pixels.
+    pub at: [f32; 2],
+    /// The nearest texel.
+    pub nearest: Surface,
+    /// Disparity that the surface had.
+    pub expected: f32,
+    /// How far it may be believed, above 0 and at most 1.
+    pub trust: f32,
+}
+
+impl Remembered<'_> {
+    #[inline(always)]
+    fn texel(&self, x: i32, y: i32) -> Surface {
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        unpack_surface(self.past.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
+    }
+
+    /// Where the surface of pixel (x, y) was, or why it has no past.
+    #[inline(always)]
+    pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
+        let inputs = &self.inputs;
+        if inputs.reset {
+            return Err(Verdict::Reset);
+        }
+        let [qx, qy] = reproject::nearest(x, y, motion, inputs.size)?;
+        let nearest = self.texel(qx as i32, qy as i32);
+        if nearest.lod < 0.0 {
+            return Err(Verdict::Empty);
+        }
+        let trust = inputs.trust(x, y).map_or(1.0, scrub::trust);
+        if trust == 0.0 {
+            return Err(Verdict::Distrusted);
+        }
+        let expected = inputs.previous_disparity(inputs.ray(x, y), disparity);
+        if !inputs.same_surface(x, y, expected, nearest.disparity) {
+            return Err(Verdict::Disoccluded);
+        }
+        let at = [x as f32 + motion[0], y as f32 + motion[1]];
+        let whole = at.map(f32::floor);
+        Ok(Source {
+            texel: whole.map(|v| v as i32),
+            fraction: [at[0] - whole[0], at[1] - whole[1]],
+            at,
+            nearest,
+            expected,
+            trust,
+        })
+    }
+
+    /// What is stored around a position: twelve texels, without the corners, whose weights are next to nothing. A position on a
+    /// texel reads that one.
+    #[inline(always)]
+    pub fn resample(&self, source: &Source) -> Resampled {
+        let [fx, fy] = source.fraction;
+        if fx == 0.0 && fy == 0.0 {
+            let s = source.nearest;
+            return Resampled { sharp: s.color, smooth: s.color, lod: s.lod };
+        }
+        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear(fx), linear(fy)]);
+        let mut gathered = Gathered::default();
+        for tap in 0..16 {
+            let (i, j) = (tap % 4, tap / 4);
+            if (i == 0 || i == 3) && (j == 0 || j == 3) {
+                continue;
+            }
+            let s = self.texel(source.texel[0] + i as i32 - 1, source.texel[1] + j as i32 - 1);
+            let same = s.lod >= 0.0
+                && (!self.inputs.tests_depth() || depth::same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0));
+            gathered = resample::gather(gathered, s, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
+        }
+        resample::resolve(gathered, source.nearest)
+    }
+
+    /// A stored colour under this frame's exposure.
+    #[inline(always)]
+    pub fn expose(&self, color: Vec3) -> Vec3 {
+        self.inputs.exposure.map_or(color, |ratio| expose(color, ratio))
+    }
+}
