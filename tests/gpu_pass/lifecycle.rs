@@ -186,6 +186,13 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
     };
     run(&mut lost, 0..4);
     lost.device.destroy();
+    // Until the caller hears of it, recording goes on without a panic.
+    let facts = [noise_view("lost", &lost.context).facts];
+    let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
+    let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+    let mut encoder = lost.device.create_command_encoder(&Default::default());
+    lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
+    lost.queue.submit([encoder.finish()]);
     drop(lost);
     let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }).unwrap();
     assert!(run(&mut fresh(), 4..8) == run(&mut fresh(), 4..8));
