@@ -60,11 +60,17 @@ impl Afterimage {
     /// # Errors
     /// If a setting or fact is out of range, or the device cannot do it.
     pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
+        Self::from_shader(device, desc, &shader::compose("wrs_pass").source)
+    }
+
+    /// With another text of the pass: for this package's tests, which plant errors in it.
+    #[doc(hidden)]
+    pub fn from_shader(device: &Device, desc: &GpuDesc, source: &str) -> Result<Self, CreateError> {
         desc.validate(&device.limits())?;
         let bindings = Bindings::new(device, desc.output_format);
         Ok(Self {
             desc: *desc,
-            pipelines: Pipelines::new(device, desc, &bindings)?,
+            pipelines: Pipelines::new(device, desc, &bindings, source)?,
             bindings,
             history: History::new(device, &desc.context, desc.settings.uses_keys()),
         })

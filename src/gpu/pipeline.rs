@@ -1,8 +1,8 @@
 //! Pipelines: one shader, specialised by `override` constants to what a frame brings and what the settings ask for.
 
+use super::Frame;
 use super::bindings::Bindings;
 use super::desc::GpuDesc;
-use super::{Frame, shader};
 use crate::error::CreateError;
 use crate::kernel::debug_view::DebugView;
 use crate::kernel::wrs::GateCode;
@@ -89,9 +89,9 @@ pub(super) struct Pipelines {
 }
 
 impl Pipelines {
-    pub fn new(device: &Device, desc: &GpuDesc, bindings: &Bindings) -> Result<Self, CreateError> {
+    pub fn new(device: &Device, desc: &GpuDesc, bindings: &Bindings, source: &str) -> Result<Self, CreateError> {
         // The texel format of a storage texture is part of the text in WGSL.
-        let source = shader::compose("wrs_pass").source.replace(
+        let source = source.replace(
             "texture_storage_2d_array<rgba16float",
             &format!("texture_storage_2d_array<{}", desc.output_texel()?),
         );

@@ -2,7 +2,7 @@
 
 use super::common::Draws;
 use super::gpu;
-use super::rig::{Rig, View, make_texture};
+use super::rig::{Made, Rig, View, make_texture};
 use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::display::ViewGeometry;
 use afterimage::error::{CreateError, FrameError};
@@ -109,6 +109,93 @@ fn h79_poisoned_fresh_history_is_never_visible() {
         let views = [noise_view(&format!("poison {index}"), &rig.context)];
         assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
     }
+}
+
+/// Frames `range`, on both.
+fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
+    let context = rig.context;
+    range.map(|i| rig.both(i, Reset::None, &[noise_view(&format!("run {i}"), &context)]).0).collect()
+}
+
+#[test]
+fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
+    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() });
+    let Some(mut rig) = fresh() else { return };
+    let expected = run(&mut rig, 20..26);
+    let used = || {
+        let mut rig = fresh().unwrap();
+        run(&mut rig, 14..20);
+        rig
+    };
+    assert!(run(&mut used(), 20..26) != expected, "the planted error: no reset");
+
+    let mut forgotten = used();
+    forgotten.cpu.forget();
+    forgotten.gpu.forget();
+    assert!(run(&mut forgotten, 20..26) == expected);
+
+    // Odd, even, a single pixel, and back, with frames between and the new history full of garbage.
+    let mut resized = used();
+    for size in [[3, 5], [64, 64], [1, 1], [65, 41], SIZE] {
+        resized.resize(size);
+        resized.poison();
+        if size != SIZE {
+            run(&mut resized, 0..2);
+        }
+    }
+    assert!(run(&mut resized, 20..26) == expected);
+
+    // A pause or a cut, said twice; the first of them at once shows nothing but the candidate.
+    let mut cut = used();
+    let views = [noise_view("run 20", &cut.context)];
+    for _ in 0..2 {
+        let (made, _) = cut.both(20, Reset::All, &views);
+        let candidate: Vec<[u32; 3]> = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
+        assert!(made.shown == candidate && made == expected[0]);
+    }
+    assert!(run(&mut cut, 21..26) == expected[1..]);
+
+    let Some(mut from_zero) = fresh() else { return };
+    let Some(mut told) = fresh() else { return };
+    let views = [noise_view("run 0", &told.context)];
+    assert!(told.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0], "a reset at frame 0 changes nothing");
+}
+
+#[test]
+fn h76_a_minimised_window_is_refused_and_changes_nothing() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+        return;
+    };
+    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+        return;
+    };
+    run(&mut rig, 0..3);
+    run(&mut other, 0..3);
+    for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
+        let error = rig.gpu.resize(&rig.device, size).unwrap_err();
+        assert!(matches!(error, FrameError::Extent { .. }), "{error}");
+    }
+    assert_eq!(rig.gpu.desc().context.size_px, SIZE);
+    assert!(run(&mut rig, 3..6) == run(&mut other, 3..6), "the history is still there");
+}
+
+#[test]
+fn h77_a_lost_device_is_left_behind_for_a_new_one() {
+    let Some(mut lost) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+        return;
+    };
+    run(&mut lost, 0..4);
+    lost.device.destroy();
+    // Until the caller hears of it, recording goes on without a panic.
+    let facts = [noise_view("lost", &lost.context).facts];
+    let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
+    let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+    let mut encoder = lost.device.create_command_encoder(&Default::default());
+    lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
+    lost.queue.submit([encoder.finish()]);
+    drop(lost);
+    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }).unwrap();
+    assert!(run(&mut fresh(), 4..8) == run(&mut fresh(), 4..8));
 }
 
 #[test]

@@ -6,8 +6,13 @@ mod common;
 #[path = "../common/gpu.rs"]
 mod gpu;
 
+mod controls;
 mod decisions;
+mod gaze;
 mod layout;
 mod lifecycle;
+mod light;
+mod reservoirs;
 mod rig;
 mod sequences;
+mod surfaces;

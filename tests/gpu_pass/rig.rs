@@ -1,11 +1,14 @@
 //! The same frames through both executors, and what comes back from the device.
 
+use super::common::Draws;
 use super::gpu;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::frame::{ContextDesc, Exposure, Reset, ViewFrame};
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::display::ViewGeometry;
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc, shader};
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::{DebugView, PixelTrace};
+use afterimage::kernel::pack;
 use afterimage::settings::Settings;
 use afterimage::stats::{COUNTERS_BYTES, FrameStats};
 use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
@@ -20,6 +23,18 @@ pub struct View {
     pub trust: Option<Image<f32>>,
 }
 
+impl View {
+    /// Without optional inputs, under 70 degrees.
+    pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
+        let facts = ViewFrame {
+            geometry: ViewGeometry::flat(color.size(), 70.0).unwrap(),
+            gaze: Gaze::At { px: gaze_px },
+            previous_from_current: None,
+        };
+        Self { facts, color, depth: None, motion: None, trust: None }
+    }
+}
+
 /// A device with textures of one size, and both executors.
 pub struct Rig {
     pub device: Device,
@@ -29,12 +44,31 @@ pub struct Rig {
     pub gpu: Afterimage,
     /// Of the frames to come.
     pub exposure: Exposure,
+    textures: Textures,
+    counters: Buffer,
+}
+
+/// Inputs and output of one size.
+struct Textures {
     color: Texture,
     depth: Texture,
     motion: Texture,
     trust: Texture,
-    pub output: Texture,
-    counters: Buffer,
+    output: Texture,
+}
+
+impl Textures {
+    fn new(device: &Device, context: &ContextDesc) -> Self {
+        let texture = |format, usage| make_texture(device, context, format, usage);
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        Self {
+            color: texture(TextureFormat::Rgba32Float, read),
+            depth: texture(TextureFormat::R32Float, read),
+            motion: texture(TextureFormat::Rg32Float, read),
+            trust: texture(TextureFormat::R32Float, read),
+            output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+        }
+    }
 }
 
 /// What an executor made of a frame: shown colours and packed reservoirs, view after view.
@@ -48,18 +82,18 @@ pub struct Made {
 impl Rig {
     /// `None`, after saying so, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
+        Self::with_shader(context, settings, &shader::compose("wrs_pass").source)
+    }
+
+    /// With another text of the pass on the GPU.
+    pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
         let (device, queue) = gpu::device()?;
         let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
-        let texture = |format, usage| make_texture(&device, &context, format, usage);
-        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let made = || Afterimage::from_shader(&device, &desc, source);
         Some(Self {
             cpu: CpuAfterimage::new(context, settings).unwrap(),
-            gpu: gpu::validated(&device, "new", || Afterimage::new(&device, &desc)).unwrap(),
-            color: texture(TextureFormat::Rgba32Float, read),
-            depth: texture(TextureFormat::R32Float, read),
-            motion: texture(TextureFormat::Rg32Float, read),
-            trust: texture(TextureFormat::R32Float, read),
-            output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            gpu: gpu::validated(&device, "new", made).unwrap(),
+            textures: Textures::new(&device, &context),
             counters: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("counters"),
                 size: COUNTERS_BYTES,
@@ -71,6 +105,44 @@ impl Rig {
             device,
             queue,
         })
+    }
+
+    /// Changes the size of both executors and of the textures.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        self.cpu.resize(size).unwrap();
+        self.gpu.resize(&self.device, size).unwrap();
+        self.context.size_px = size;
+        self.textures = Textures::new(&self.device, &self.context);
+    }
+
+    /// Stores motion as halves on the device from now on.
+    pub fn halve_motion(&mut self) {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        self.textures.motion = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, usage);
+    }
+
+    /// Gives both executors a past.
+    pub fn restore(&mut self, words: &[[u32; 3]]) {
+        self.cpu.restore_history(words);
+        let (textures, len) = (self.gpu.history_textures(), words.len() / self.context.view_count as usize);
+        for (layer, words) in words.chunks(len).enumerate() {
+            let colors: Vec<[u32; 2]> = words.iter().map(|w| [w[0], w[1]]).collect();
+            let weights: Vec<u32> = words.iter().map(|w| w[2]).collect();
+            self.write(&textures[0], layer, bytemuck::cast_slice(&colors));
+            self.write(&textures[1], layer, bytemuck::cast_slice(&weights));
+        }
+    }
+
+    /// The frame on both, which must agree in every bit of what they show, keep and count.
+    #[track_caller]
+    pub fn both(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
+        let (cpu, trace) = self.on_cpu(index, reset, views);
+        let gpu = self.on_gpu(index, reset, views);
+        if gpu != cpu {
+            let at = (0..cpu.words.len()).find(|&i| gpu.words[i] != cpu.words[i] || gpu.shown[i] != cpu.shown[i]);
+            panic!("frame {index}: GPU and CPU differ, first at pixel {at:?}; {:?}, {:?}", gpu.stats, cpu.stats);
+        }
+        (cpu, trace)
     }
 
     pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
@@ -113,13 +185,13 @@ impl Rig {
         self.upload(views);
         let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
         let frame = Frame {
-            depth: views[0].depth.is_some().then_some(&self.depth),
-            motion: views[0].motion.is_some().then_some(&self.motion),
-            trust: views[0].trust.is_some().then_some(&self.trust),
+            depth: views[0].depth.is_some().then_some(&self.textures.depth),
+            motion: views[0].motion.is_some().then_some(&self.textures.motion),
+            trust: views[0].trust.is_some().then_some(&self.textures.trust),
             exposure: self.exposure,
             counters: count.then_some(&self.counters),
             reset,
-            ..Frame::new(&self.color, &self.output, &facts, index)
+            ..Frame::new(&self.textures.color, &self.textures.output, &facts, index)
         };
         gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -137,10 +209,10 @@ impl Rig {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for (index, facts) in facts.iter().enumerate() {
             let frame = Frame {
-                depth: Some(&self.depth),
-                motion: Some(&self.motion),
+                depth: Some(&self.textures.depth),
+                motion: Some(&self.textures.motion),
                 counters: Some(&self.counters),
-                ..Frame::new(&self.color, &self.output, std::slice::from_ref(facts), index as u64)
+                ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(facts), index as u64)
             };
             self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
         }
@@ -160,23 +232,19 @@ impl Rig {
         }
     }
 
-    /// Gives each of two views the other's past.
-    pub fn swap_past_layers(&self) {
-        let made = self.read();
-        let half = made.words.len() / 2;
-        for layer in 0..2 {
-            let words = &made.words[(1 - layer) * half..(2 - layer) * half];
-            let colors: Vec<[u32; 2]> = words.iter().map(|w| [w[0], w[1]]).collect();
-            let weights: Vec<u32> = words.iter().map(|w| w[2]).collect();
-            let textures = self.gpu.history_textures();
-            self.write(&textures[0], layer, bytemuck::cast_slice(&colors));
-            self.write(&textures[1], layer, bytemuck::cast_slice(&weights));
-        }
+    /// Gives each of two views the other's past, on the GPU alone.
+    pub fn swap_past_layers(&mut self) {
+        let mut words = self.read().words;
+        let half = words.len() / 2;
+        words.rotate_left(half);
+        let cpu = self.cpu.clone();
+        self.restore(&words);
+        self.cpu = cpu;
     }
 
     /// Shown colours and stored reservoirs as they are on the device.
     pub fn read(&self) -> Made {
-        let shown = self.read_texture(&self.output);
+        let shown = self.read_texture(&self.textures.output);
         let [colors, weights] = [0, 1].map(|i| self.read_texture(&self.gpu.history_textures()[i]));
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
@@ -209,15 +277,21 @@ impl Rig {
     fn upload(&self, views: &[View]) {
         for (layer, view) in views.iter().enumerate() {
             let color: Vec<[f32; 4]> = view.color.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
-            self.write(&self.color, layer, bytemuck::cast_slice(&color));
+            self.write(&self.textures.color, layer, bytemuck::cast_slice(&color));
             if let Some(depth) = &view.depth {
-                self.write(&self.depth, layer, bytemuck::cast_slice(depth.pixels()));
+                self.write(&self.textures.depth, layer, bytemuck::cast_slice(depth.pixels()));
             }
             if let Some(motion) = &view.motion {
-                self.write(&self.motion, layer, bytemuck::cast_slice(motion.pixels()));
+                let halves: Vec<[u16; 2]> =
+                    motion.pixels().iter().map(|m| m.map(|v| pack::half_bits(v) as u16)).collect();
+                let bytes = match self.textures.motion.format() {
+                    TextureFormat::Rg16Float => bytemuck::cast_slice(&halves),
+                    _ => bytemuck::cast_slice(motion.pixels()),
+                };
+                self.write(&self.textures.motion, layer, bytes);
             }
             if let Some(trust) = &view.trust {
-                self.write(&self.trust, layer, bytemuck::cast_slice(trust.pixels()));
+                self.write(&self.textures.trust, layer, bytemuck::cast_slice(trust.pixels()));
             }
         }
     }
@@ -243,4 +317,15 @@ pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureForma
         usage,
         view_formats: &[],
     })
+}
+
+/// Colours that halves hold exactly, different at every pixel.
+pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
+}
+
+/// Packed reservoirs with another weight sum.
+pub fn with_w_sum(words: &[[u32; 3]], w_sum: f32) -> Vec<[u32; 3]> {
+    words.iter().map(|&w| pack::pack(pack::Stored { w_sum, ..pack::unpack(w) })).collect()
 }
