@@ -5,7 +5,7 @@ use crate::foveation::{Filter, Foveation};
 use crate::kernel::{acuity, matched, reservoir, wrs};
 
 /// What the post-process does with history.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Nothing: the foveated frame as it came, non-finite pixels made black.
     None,

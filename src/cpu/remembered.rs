@@ -4,7 +4,7 @@ use super::history::PastSurfaces;
 use super::inputs::Inputs;
 use crate::kernel::depth;
 use crate::kernel::reproject::{self, Verdict};
-use crate::kernel::resample::{self, Gathered, Resampled, TAP_RELATIVE, catmull_rom, linear};
+use crate::kernel::resample::{self, Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
 use crate::kernel::scrub;
 use crate::kernel::surface::{Surface, unpack_surface};
 use crate::kernel::wrs::expose;
@@ -80,13 +80,10 @@ impl Remembered<'_> {
             let s = source.nearest;
             return Resampled { sharp: s.color, smooth: s.color, lod: s.lod };
         }
-        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear(fx), linear(fy)]);
+        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear_weights(fx), linear_weights(fy)]);
         let mut gathered = Gathered::default();
-        for tap in 0..16 {
-            let (i, j) = (tap % 4, tap / 4);
-            if (i == 0 || i == 3) && (j == 0 || j == 3) {
-                continue;
-            }
+        for tap in 0..TAPS {
+            let [i, j] = tap_at(tap).map(|k| k as usize);
             let s = self.texel(source.texel[0] + i as i32 - 1, source.texel[1] + j as i32 - 1);
             let same = s.lod >= 0.0
                 && (!self.inputs.tests_depth() || depth::same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0));

@@ -88,7 +88,7 @@ impl Smr {
         let right = (x + 1).min(width - 1);
         let below = (y + 1).min(height - 1);
         let around = [(x.max(1) - 1, y), (right, y), (x, y.max(1) - 1), (x, below)];
-        let alike: u32 = around.iter().map(|&(x, y)| u32::from(matched::coherent(own, inputs.motion(x, y)))).sum();
+        let alike: u32 = around.iter().map(|&(x, y)| u32::from(matched::moves_alike(own, inputs.motion(x, y)))).sum();
         alike >= COHERENT_NEIGHBOURS
     }
 

@@ -28,7 +28,7 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
         let history = at.expose(at.resample(&source).sharp);
         stored_lod = 0.0;
         if usable {
-            let alpha = taa::alpha(source.fraction, source.trust);
+            let alpha = taa::candidate_share(source.fraction, source.trust);
             let (sum, squares) = neighbourhood(at, x, y);
             shown = taa::blend_clipped(candidate, history, sum, squares, alpha);
             share = 1.0 - alpha;

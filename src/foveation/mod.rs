@@ -25,7 +25,7 @@ use crate::kernel::foveate;
 use crate::settings::check;
 
 /// How coarse looks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Filter {
     /// Box mip levels of linear light, trilinear between levels: a renderer that shades fewer pixels and upscales.
     #[default]
@@ -136,6 +136,14 @@ impl Foveation {
             Filter::Mip | Filter::Block => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
+        }
+    }
+
+    /// How coarse the middle region is, and beyond: levels of detail, or the largest standard deviations of a blur in pixels.
+    pub(crate) fn coarseness(&self) -> [f32; 2] {
+        match self.filter {
+            Filter::Gauss => [self.sigma_mid_px(), self.sigma_far_px()],
+            _ => [self.lod_mid(), self.lod_far()],
         }
     }
 

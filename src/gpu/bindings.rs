@@ -1,8 +1,10 @@
-//! What the pass is bound to, in the order of `shaders/pass/wrs_pass.wgsl`; stand-ins for what a frame does not bring.
+//! What a pass is bound to: first what all passes share, in the order of `shaders/pass/inputs.wgsl`, then the history, in the order of the
+//! method's pass; stand-ins for what a frame does not bring.
 
 use super::Frame;
 use super::history::{History, array_view};
 use super::types::FrameConstants;
+use crate::settings::HistoryLayout;
 use crate::stats::COUNTERS_BYTES;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
@@ -15,16 +17,18 @@ use wgpu::{
 #[derive(Debug)]
 pub(super) struct Bindings {
     pub layout: BindGroupLayout,
+    history: HistoryLayout,
     no_float: TextureView,
-    no_key_out: TextureView,
+    no_word: TextureView,
+    no_out: [TextureView; 3],
     no_counters: Buffer,
 }
 
 impl Bindings {
-    pub fn new(device: &Device, output: TextureFormat) -> Self {
+    pub fn new(device: &Device, output: TextureFormat, history: HistoryLayout) -> Self {
         let layout = device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-            label: Some("afterimage wrs"),
-            entries: &layout_entries(output),
+            label: Some("afterimage"),
+            entries: &layout_entries(output, history),
         });
         let no_counters = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("afterimage absent counters"),
@@ -34,8 +38,10 @@ impl Bindings {
         });
         Self {
             layout,
-            no_float: stand_in(device, TextureUsages::TEXTURE_BINDING),
-            no_key_out: stand_in(device, TextureUsages::STORAGE_BINDING),
+            history,
+            no_float: stand_in(device, TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING),
+            no_word: stand_in(device, TextureFormat::Rg32Uint, TextureUsages::TEXTURE_BINDING),
+            no_out: written(history).map(|format| stand_in(device, format, TextureUsages::STORAGE_BINDING)),
             no_counters,
         }
     }
@@ -57,41 +63,55 @@ impl Bindings {
             optional(frame.trust),
             array_view(frame.output),
         ];
-        let [color, depth, motion, trust, output] = &inputs;
+        let lod = optional(frame.lod);
         let (past, next) = history.split();
-        let textures = [
-            color,
-            depth,
-            motion,
-            trust,
-            &past.views[0],
-            &past.views[1],
-            past.views.get(2).unwrap_or(&self.no_float),
-            &next.views[0],
-            &next.views[1],
-            next.views.get(2).unwrap_or(&self.no_key_out),
-            output,
-        ];
+        let (past, next) = (&past.views, &next.targets);
+        let past_or = |i: usize, absent| past.get(i).unwrap_or(absent);
+        let next_or = |i: usize| next.get(i).unwrap_or(&self.no_out[i]);
+        let remembered = match self.history {
+            HistoryLayout::Surfaces { .. } => {
+                vec![&lod, past_or(0, &self.no_word), past_or(1, &self.no_float), next_or(0), next_or(1)]
+            }
+            _ => vec![
+                past_or(0, &self.no_word),
+                past_or(1, &self.no_word),
+                past_or(2, &self.no_float),
+                next_or(0),
+                next_or(1),
+                next_or(2),
+            ],
+        };
         let counters = BindingResource::Buffer(BufferBinding {
             buffer: frame.counters.unwrap_or(&self.no_counters),
             offset: 0,
             size: std::num::NonZeroU64::new(COUNTERS_BYTES),
         });
         let resources = std::iter::once(constants.as_entire_binding())
-            .chain(textures.into_iter().map(BindingResource::TextureView))
-            .chain([counters]);
+            .chain(inputs.iter().map(BindingResource::TextureView))
+            .chain([counters])
+            .chain(remembered.into_iter().map(BindingResource::TextureView));
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor {
-            label: Some("afterimage wrs"),
+            label: Some("afterimage"),
             layout: &self.layout,
             entries: &entries,
         })
     }
 }
 
+/// Formats of what a pass writes for the next frame.
+fn written(history: HistoryLayout) -> [TextureFormat; 3] {
+    match history {
+        HistoryLayout::Surfaces { .. } => {
+            [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Float]
+        }
+        _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
+    }
+}
+
 /// A buffer of its own for the constants of one frame. Not by wgpu's `create_buffer_init`, which panics on a lost device (H77).
-fn uniform(device: &Device, bytes: &[u8]) -> Buffer {
+pub(super) fn uniform(device: &Device, bytes: &[u8]) -> Buffer {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("afterimage constants"),
         size: bytes.len() as u64,
@@ -123,20 +143,20 @@ impl<E> Mapped for Result<BufferViewMut, E> {
     }
 }
 
-fn stand_in(device: &Device, usage: TextureUsages) -> TextureView {
+fn stand_in(device: &Device, format: TextureFormat, usage: TextureUsages) -> TextureView {
     array_view(&device.create_texture(&wgpu::TextureDescriptor {
         label: Some("afterimage absent input"),
         size: wgpu::Extent3d::default(),
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::R32Float,
+        format,
         usage,
         view_formats: &[],
     }))
 }
 
-fn layout_entries(output: TextureFormat) -> Vec<BindGroupLayoutEntry> {
+fn layout_entries(output: TextureFormat, history: HistoryLayout) -> Vec<BindGroupLayoutEntry> {
     let float = TextureSampleType::Float { filterable: false };
     let sampled = |sample_type| BindingType::Texture {
         sample_type,
@@ -149,21 +169,21 @@ fn layout_entries(output: TextureFormat) -> Vec<BindGroupLayoutEntry> {
         view_dimension: TextureViewDimension::D2Array,
     };
     let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    let types = [
+    let words = sampled(TextureSampleType::Uint);
+    let [first, second, third] = written(history).map(storage);
+    let mut types = vec![
         buffer(BufferBindingType::Uniform),
         sampled(float),
         sampled(float),
         sampled(float),
         sampled(float),
-        sampled(TextureSampleType::Uint),
-        sampled(TextureSampleType::Uint),
-        sampled(float),
-        storage(TextureFormat::Rg32Uint),
-        storage(TextureFormat::R32Uint),
-        storage(TextureFormat::R32Float),
         storage(output),
         buffer(BufferBindingType::Storage { read_only: false }),
     ];
+    types.extend(match history {
+        HistoryLayout::Surfaces { .. } => vec![sampled(float), words, sampled(float), first, second],
+        _ => vec![words, words, sampled(float), first, second, third],
+    });
     (0..)
         .zip(types)
         .map(|(binding, ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })

@@ -1,24 +1,30 @@
 //! The state between frames: two sets of textures, one the past, one to be written.
 
+use super::chain::{ChainLevel, ChainPass};
 use crate::frame::ContextDesc;
+use crate::kernel::foveate::level_len;
+use crate::settings::HistoryLayout;
 use wgpu::{
     Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
     TextureViewDescriptor, TextureViewDimension,
 };
 
-/// Texture formats of a packed reservoir's planes ([`pack`](crate::kernel::pack)): words 0 and 1, word 2, and with A-ES the key.
-const FORMATS: [TextureFormat; 3] = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
-
-/// One frame's reservoirs.
+/// One frame's textures.
 #[derive(Debug)]
 pub(super) struct Planes {
     pub textures: Vec<Texture>,
+    /// To read: all levels.
     pub views: Vec<TextureView>,
+    /// To write: the first level.
+    pub targets: Vec<TextureView>,
+    /// Dispatches that fill the other levels.
+    pub chain: Vec<ChainLevel>,
 }
 
-/// Both frames' reservoirs, and what else is remembered.
+/// Both frames' textures, and what else is remembered.
 #[derive(Debug)]
 pub(super) struct History {
+    layout: HistoryLayout,
     sets: [Planes; 2],
     past: usize,
     filled: bool,
@@ -26,14 +32,37 @@ pub(super) struct History {
 }
 
 impl History {
-    pub fn new(device: &Device, desc: &ContextDesc, keys: bool) -> Self {
+    /// `chain` fills coarser levels, where the layout has them.
+    pub fn new(device: &Device, desc: &ContextDesc, layout: HistoryLayout, chain: Option<&ChainPass>) -> Self {
         let planes = || {
-            let textures: Vec<Texture> =
-                FORMATS.iter().take(if keys { 3 } else { 2 }).map(|&f| texture(device, desc, f)).collect();
-            let views = textures.iter().map(array_view).collect();
-            Planes { textures, views }
+            let full = |format| texture(device, desc, format, desc.size_px, 1);
+            let mut textures = match layout {
+                HistoryLayout::Nothing => vec![],
+                HistoryLayout::Reservoirs { keys } => {
+                    let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
+                    formats.into_iter().take(if keys { 3 } else { 2 }).map(full).collect()
+                }
+                HistoryLayout::Surfaces { .. } => vec![full(TextureFormat::Rg32Uint)],
+            };
+            let mut levels = vec![];
+            if let (HistoryLayout::Surfaces { levels: count @ 1.. }, Some(chain)) = (layout, chain) {
+                // A texture's levels halve and round down, the chain's round up: padded, they agree.
+                let multiple = 1 << (count - 1);
+                let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
+                let texture = texture(device, desc, TextureFormat::Rgba16Float, size, count);
+                levels = chain.levels(device, &texture, desc.size_px);
+                textures.push(texture);
+            }
+            let views = textures.iter().map(|t| levels_view(t, 0, None)).collect();
+            let targets = textures.iter().map(|t| levels_view(t, 0, Some(1))).collect();
+            Planes { textures, views, targets, chain: levels }
         };
-        Self { sets: [planes(), planes()], past: 0, filled: false, held_gaze: vec![None; desc.view_count as usize] }
+        let held_gaze = vec![None; desc.view_count as usize];
+        Self { layout, sets: [planes(), planes()], past: 0, filled: false, held_gaze }
+    }
+
+    pub fn layout(&self) -> HistoryLayout {
+        self.layout
     }
 
     /// Forgets everything: the next frame starts afresh.
@@ -66,14 +95,16 @@ impl History {
 
 fn bytes(texture: &Texture) -> u64 {
     let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(0));
-    texel * u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texture.depth_or_array_layers())
+    let texels = |level: u32| u64::from(texture.width() >> level) * u64::from(texture.height() >> level);
+    let all_levels: u64 = (0..texture.mip_level_count()).map(texels).sum();
+    texel * all_levels * u64::from(texture.depth_or_array_layers())
 }
 
-fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat) -> Texture {
+fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u32; 2], levels: u32) -> Texture {
     device.create_texture(&TextureDescriptor {
         label: Some("afterimage history"),
-        size: Extent3d { width: desc.size_px[0], height: desc.size_px[1], depth_or_array_layers: desc.view_count },
-        mip_level_count: 1,
+        size: Extent3d { width: size[0], height: size[1], depth_or_array_layers: desc.view_count },
+        mip_level_count: levels,
         sample_count: 1,
         dimension: TextureDimension::D2,
         format,
@@ -85,16 +116,21 @@ fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat) -> Textur
     })
 }
 
-/// All layers of a texture as an array, mono frames too: shaders know only arrays.
+/// All layers of a texture's first level as an array, mono frames too: shaders know only arrays.
 pub(crate) fn array_view(texture: &Texture) -> TextureView {
+    levels_view(texture, 0, Some(1))
+}
+
+/// The same of `count` levels from `first` on, or of all that follow.
+pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
     texture.create_view(&TextureViewDescriptor {
         label: Some("afterimage"),
         dimension: Some(TextureViewDimension::D2Array),
         aspect,
-        base_mip_level: 0,
-        mip_level_count: Some(1),
+        base_mip_level: first,
+        mip_level_count: count,
         ..TextureViewDescriptor::default()
     })
 }

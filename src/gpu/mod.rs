@@ -4,6 +4,7 @@
 //! history and constants. [`Afterimage::record`] never submits, polls, maps or waits.
 
 mod bindings;
+mod chain;
 mod desc;
 mod frame;
 mod history;
@@ -29,8 +30,9 @@ use crate::kernel::debug_view::DebugView;
 use crate::settings::{Method, Settings};
 use crate::stats::COUNTERS_BYTES;
 use bindings::Bindings;
+use chain::ChainPass;
 use history::History;
-use pipeline::{Pipelines, Variant};
+use pipeline::{Pipelines, Variant, pass_name};
 use types::{FrameConstants, ViewConstants};
 use wgpu::{CommandEncoder, Device, Texture};
 
@@ -41,9 +43,33 @@ pub(crate) const WORKGROUP_WIDTH: u32 = 64;
 #[derive(Debug)]
 pub struct Afterimage {
     desc: GpuDesc,
+    passes: Passes,
+    history: History,
+}
+
+/// What a method runs.
+#[derive(Debug)]
+struct Passes {
+    method: Method,
     bindings: Bindings,
     pipelines: Pipelines,
-    history: History,
+    chain: Option<ChainPass>,
+}
+
+impl Passes {
+    fn new(device: &Device, desc: &GpuDesc, source: &str) -> Result<Self, CreateError> {
+        let bindings = Bindings::new(device, desc.output_format, desc.settings.history_layout());
+        Ok(Self {
+            method: desc.settings.method,
+            pipelines: Pipelines::new(device, desc, &bindings, source)?,
+            bindings,
+            chain: (desc.settings.method == Method::Smr).then(|| ChainPass::new(device)),
+        })
+    }
+
+    fn history(&self, device: &Device, desc: &GpuDesc) -> History {
+        History::new(device, &desc.context, desc.settings.history_layout(), self.chain.as_ref())
+    }
 }
 
 /// What a frame comes to before any pixel is looked at.
@@ -60,20 +86,15 @@ impl Afterimage {
     /// # Errors
     /// If a setting or fact is out of range, or the device cannot do it.
     pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
-        Self::from_shader(device, desc, &shader::compose("wrs_pass").source)
+        Self::from_shader(device, desc, &shader::compose(pass_name(desc.settings.method)).source)
     }
 
     /// With another text of the pass: for this package's tests, which plant errors in it.
     #[doc(hidden)]
     pub fn from_shader(device: &Device, desc: &GpuDesc, source: &str) -> Result<Self, CreateError> {
         desc.validate(&device.limits())?;
-        let bindings = Bindings::new(device, desc.output_format);
-        Ok(Self {
-            desc: *desc,
-            pipelines: Pipelines::new(device, desc, &bindings, source)?,
-            bindings,
-            history: History::new(device, &desc.context, desc.settings.uses_keys()),
-        })
+        let passes = Passes::new(device, desc, source)?;
+        Ok(Self { desc: *desc, history: passes.history(device, desc), passes })
     }
 
     /// What it was made for.
@@ -81,16 +102,20 @@ impl Afterimage {
         &self.desc
     }
 
-    /// Changes the tunables from the next frame on. History survives, unless the sampler changes.
+    /// Changes the tunables from the next frame on. History survives, unless the method or what it remembers changes.
     ///
     /// # Errors
     /// If a setting is out of range; then the old ones stay.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        if settings.uses_keys() != self.desc.settings.uses_keys() {
-            self.history = History::new(device, &self.desc.context, settings.uses_keys());
-        }
         self.desc.settings = settings;
+        if settings.method != self.passes.method {
+            let source = shader::compose(pass_name(settings.method)).source;
+            self.passes = Passes::new(device, &self.desc, &source).expect("the output format was checked");
+            self.history = self.passes.history(device, &self.desc);
+        } else if settings.history_layout() != self.history.layout() {
+            self.history = self.passes.history(device, &self.desc);
+        }
         Ok(())
     }
 
@@ -101,7 +126,7 @@ impl Afterimage {
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.context.size_px = size_px;
-        self.history = History::new(device, &self.desc.context, self.desc.settings.uses_keys());
+        self.history = self.passes.history(device, &self.desc);
         Ok(())
     }
 
@@ -115,8 +140,10 @@ impl Afterimage {
         self.history.memory_bytes()
     }
 
-    /// Textures with the packed reservoirs of the last recorded frame ([`pack`](crate::kernel::pack)): words 0 and 1
-    /// (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys (`R32Float`). For tests and tools; usages `COPY_SRC`, `COPY_DST`.
+    /// What was remembered of the last recorded frame, for tests and tools; usages `COPY_SRC`, `COPY_DST`. Of wrs the packed
+    /// reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys
+    /// (`R32Float`). Of taa and smr the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`), and of smr their coarser
+    /// levels (`Rgba16Float`).
     pub fn history_textures(&self) -> &[Texture] {
         &self.history.split().0.textures
     }
@@ -163,6 +190,14 @@ impl Afterimage {
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<Recorded, FrameError> {
+        if self.desc.settings.method != Method::Wrs {
+            return Err(FrameError::Value {
+                what: "method",
+                view: 0,
+                found: format!("{:?}", self.desc.settings.method),
+                expected: "Wrs, whose bytes are moved",
+            });
+        }
         if frame.depth.is_none() || frame.motion.is_none() {
             return Err(FrameError::Value {
                 what: "depth or motion",
@@ -204,25 +239,32 @@ impl Afterimage {
         variant: Variant,
         constants: &FrameConstants,
     ) {
-        let group = self.bindings.group(device, frame, constants, &self.history);
+        let group = self.passes.bindings.group(device, frame, constants, &self.history);
+        // smr takes blocks of 2x2 pixels.
+        let side = if variant.takes_blocks() { 2 } else { 1 };
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("afterimage wrs"),
+            label: Some("afterimage"),
             timestamp_writes: frame.timestamps.map(|t| wgpu::ComputePassTimestampWrites {
                 query_set: t.queries,
                 beginning_of_pass_write_index: Some(t.begin),
                 end_of_pass_write_index: Some(t.end),
             }),
         });
-        pass.set_pipeline(self.pipelines.get(device, variant));
+        pass.set_pipeline(self.passes.pipelines.get(device, variant));
         pass.set_bind_group(0, &group, &[]);
-        let [width, height] = self.desc.context.size_px;
+        let [width, height] = self.desc.context.size_px.map(|s| s.div_ceil(side));
         pass.dispatch_workgroups(width.div_ceil(WORKGROUP_WIDTH), height, self.desc.context.view_count);
+        if let (Some(chain), false) = (&self.passes.chain, variant.is_view()) {
+            chain.record(&mut pass, &self.history.split().1.chain);
+        }
     }
 
     /// What a frame comes to before any pixel is looked at.
     fn prepare(&self, frame: &Frame<'_>) -> Prepared {
         let settings = &self.desc.settings;
         let params = settings.wrs_params();
+        let smr = settings.smr_params();
+        let [coarse_mid, coarse_far] = settings.foveation.coarseness();
         let disparity = self.desc.context.depth.disparity_map();
         let test = settings.depth_test.unwrap_or_default();
         let reset = frame.reset == Reset::All || !self.history.is_filled();
@@ -242,6 +284,13 @@ impl Afterimage {
             disparity_b: disparity.b,
             disparity_flags: u32::from(disparity.invert) | u32::from(disparity.clamp) << 1,
             exposure: frame.exposure.factor().unwrap_or(1.0),
+            mid_radius_deg: 0.5 * settings.foveation.mid_deg,
+            blend_deg: settings.foveation.blend_deg,
+            coarse_mid,
+            coarse_far,
+            smr_accumulate: smr.accumulate,
+            smr_accumulate_tolerance: smr.accumulate_tolerance,
+            smr_tolerance: smr.tolerance,
             ..FrameConstants::default()
         };
         let mut recorded = Recorded::default();

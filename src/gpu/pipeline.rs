@@ -4,6 +4,7 @@ use super::Frame;
 use super::bindings::Bindings;
 use super::desc::GpuDesc;
 use crate::error::CreateError;
+use crate::foveation::Filter;
 use crate::kernel::debug_view::DebugView;
 use crate::kernel::wrs::GateCode;
 use crate::settings::{Method, Settings};
@@ -16,7 +17,7 @@ use wgpu::{
 /// What a pipeline is specialised to. Absent inputs are switched off, not read as zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Variant {
-    pass_through: bool,
+    method: Method,
     copy_only: bool,
     has_depth: bool,
     has_motion: bool,
@@ -26,6 +27,9 @@ pub(super) struct Variant {
     keys: bool,
     bias: u32,
     gate: u32,
+    has_lod: bool,
+    filter: Filter,
+    relight: bool,
     count: bool,
     view: Option<DebugView>,
 }
@@ -35,7 +39,7 @@ impl Variant {
         let has_depth = frame.depth.is_some();
         let params = settings.wrs_params();
         Self {
-            pass_through: settings.method == Method::None,
+            method: settings.method,
             copy_only: false,
             has_depth,
             has_motion: frame.motion.is_some(),
@@ -45,6 +49,9 @@ impl Variant {
             keys: settings.uses_keys(),
             bias: params.bias as u32,
             gate: if settings.gate.is_some() { params.gate as u32 } else { GateCode::Off as u32 },
+            has_lod: frame.lod.is_some(),
+            filter: settings.foveation.filter,
+            relight: settings.smr.relight,
             count: frame.counters.is_some(),
             view: None,
         }
@@ -60,23 +67,53 @@ impl Variant {
         Self { view: Some(view), count: false, ..Self::new(settings, frame) }
     }
 
+    /// Whether an invocation takes a block of 2x2 pixels.
+    pub fn takes_blocks(self) -> bool {
+        self.method == Method::Smr
+    }
+
+    /// Whether it only shows what would be decided.
+    pub fn is_view(self) -> bool {
+        self.view.is_some()
+    }
+
     /// Values of the shader's overrides.
-    fn constants(self) -> [(&'static str, f64); 12] {
+    fn constants(self) -> Vec<(&'static str, f64)> {
         let flag = |on: bool| f64::from(u8::from(on));
-        [
-            ("PASS_THROUGH", flag(self.pass_through)),
-            ("COPY_ONLY", flag(self.copy_only)),
+        let mut list = vec![
             ("HAS_DEPTH", flag(self.has_depth)),
             ("HAS_MOTION", flag(self.has_motion)),
             ("HAS_TRUST", flag(self.has_trust)),
             ("HAS_EXPOSURE", flag(self.has_exposure)),
             ("DEPTH_TEST", flag(self.depth_test)),
-            ("SAMPLER", flag(self.keys)),
-            ("BIAS", f64::from(self.bias)),
-            ("GATE", f64::from(self.gate)),
             ("COUNT", flag(self.count)),
             ("VIEW", self.view.map_or(0.0, |v| f64::from(v as u32))),
-        ]
+        ];
+        match self.method {
+            Method::None | Method::Wrs => list.extend([
+                ("PASS_THROUGH", flag(self.method == Method::None)),
+                ("COPY_ONLY", flag(self.copy_only)),
+                ("SAMPLER", flag(self.keys)),
+                ("BIAS", f64::from(self.bias)),
+                ("GATE", f64::from(self.gate)),
+            ]),
+            Method::Taa => {}
+            Method::Smr => list.extend([
+                ("HAS_LOD", flag(self.has_lod)),
+                ("FILTER", f64::from(self.filter as u32)),
+                ("RELIGHT_ON", flag(self.relight)),
+            ]),
+        }
+        list
+    }
+}
+
+/// Name of the pass of a method.
+pub(super) fn pass_name(method: Method) -> &'static str {
+    match method {
+        Method::None | Method::Wrs => "wrs_pass",
+        Method::Taa => "taa_pass",
+        Method::Smr => "smr_pass",
     }
 }
 
@@ -92,15 +129,15 @@ impl Pipelines {
     pub fn new(device: &Device, desc: &GpuDesc, bindings: &Bindings, source: &str) -> Result<Self, CreateError> {
         // The texel format of a storage texture is part of the text in WGSL.
         let source = source.replace(
-            "texture_storage_2d_array<rgba16float",
-            &format!("texture_storage_2d_array<{}", desc.output_texel()?),
+            "color_out: texture_storage_2d_array<rgba16float",
+            &format!("color_out: texture_storage_2d_array<{}", desc.output_texel()?),
         );
         let module = device.create_shader_module(ShaderModuleDescriptor {
-            label: Some("afterimage wrs"),
+            label: Some("afterimage"),
             source: ShaderSource::Wgsl(source.into()),
         });
         let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("afterimage wrs"),
+            label: Some("afterimage"),
             bind_group_layouts: &[Some(&bindings.layout)],
             ..PipelineLayoutDescriptor::default()
         });
@@ -111,7 +148,7 @@ impl Pipelines {
     pub fn get(&mut self, device: &Device, variant: Variant) -> &ComputePipeline {
         self.made.entry(variant).or_insert_with(|| {
             device.create_compute_pipeline(&ComputePipelineDescriptor {
-                label: Some("afterimage wrs"),
+                label: Some("afterimage"),
                 layout: Some(&self.layout),
                 module: &self.module,
                 entry_point: Some("main"),

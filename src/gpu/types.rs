@@ -2,10 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Views that one frame may have: the length of `FrameConstants::views`, here and in `shaders/pass/wrs_pass.wgsl`.
+/// Views that one frame may have: the length of `FrameConstants::views`, here and in `shaders/pass/inputs.wgsl`.
 pub const MAX_VIEWS: usize = 4;
 
-/// `ViewConstants` in `shaders/pass/wrs_pass.wgsl`.
+/// `ViewConstants` in `shaders/pass/inputs.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct ViewConstants {
@@ -23,7 +23,7 @@ pub struct ViewConstants {
     pub unused: [u32; 3],
 }
 
-/// `FrameConstants` in `shaders/pass/wrs_pass.wgsl`.
+/// `FrameConstants` in `shaders/pass/inputs.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct FrameConstants {
@@ -57,8 +57,20 @@ pub struct FrameConstants {
     pub disparity_flags: u32,
     /// Factor on stored colours.
     pub exposure: f32,
-    /// To a multiple of 16 bytes.
-    pub unused: [u32; 3],
+    /// Radius of the middle region in degrees.
+    pub mid_radius_deg: f32,
+    /// Width of the blend outside each radius in degrees.
+    pub blend_deg: f32,
+    /// Level of detail in the middle region; for a blur its largest standard deviation there, in pixels.
+    pub coarse_mid: f32,
+    /// The same beyond.
+    pub coarse_far: f32,
+    /// `SmrParams::accumulate`.
+    pub smr_accumulate: f32,
+    /// `SmrParams::accumulate_tolerance`.
+    pub smr_accumulate_tolerance: f32,
+    /// `SmrParams::tolerance`.
+    pub smr_tolerance: f32,
     /// One entry a view.
     pub views: [ViewConstants; MAX_VIEWS],
 }

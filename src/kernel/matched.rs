@@ -7,7 +7,7 @@ use glam::{Vec3, Vec4};
 pub const QUALITY_WIDTH: f32 = 0.1;
 /// Levels of detail by which history may be coarser and still be accumulated.
 const COARSER_WIDTH: f32 = 0.25;
-/// Difference up to which history is believed, and from which it is not, in [`difference`]'s units; both grow with contrast.
+/// Difference up to which history is believed, and from which it is not, in [`root_difference`]'s units; both grow with contrast.
 const GATE: [f32; 2] = [3.0, 9.0];
 /// Difference at which relighting sets in, and what a unit of contrast adds to it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
@@ -45,7 +45,7 @@ pub fn smooth_step(from: f32, to: f32, x: f32) -> f32 {
 /// Difference of two linear colours, 100 between black and white: Euclidean in YCoCg of square roots, chroma with half the
 /// weight. Exactly 0 for equal colours; no cube roots.
 #[inline]
-pub fn difference(x: Vec3, y: Vec3) -> f32 {
+pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
     let d = roots(x) - roots(y);
     let outer = 0.25 * (d.x + d.z);
     let inner = 0.5 * d.y;
@@ -65,7 +65,7 @@ pub fn roots(c: Vec3) -> Vec3 {
 /// Whether two motion vectors (pixels) are of one surface. A pixel with fewer than two such neighbours lies on a moving silhouette,
 /// where renderers mix the vectors of both sides: such a vector leads nowhere.
 #[inline]
-pub fn coherent(own: [f32; 2], other: [f32; 2]) -> bool {
+pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
     let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
     (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }
@@ -141,8 +141,8 @@ pub struct Matched {
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let wanted = wanted(e.lod, e.history_lod, p.accumulate);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
-    let mut contrast = difference(e.matched, e.matched_coarser);
-    let mut d = difference(e.compared, e.matched);
+    let mut contrast = root_difference(e.matched, e.matched_coarser);
+    let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
     if p.relight {
         let relight = if p.blocks { RELIGHT_BLOCKS } else { RELIGHT };
@@ -150,7 +150,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
         let changed = smooth_step(from, 2.0 * from, d);
         let (c, h) = (e.compared_coarser, e.matched_coarser);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
-        let relit = difference(e.compared, gains * e.matched);
+        let relit = root_difference(e.compared, gains * e.matched);
         if relit < d {
             d = relit;
             k = gains;

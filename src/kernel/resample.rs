@@ -6,6 +6,15 @@ use glam::Vec3;
 /// Relative difference of disparity within which texels are read together: wide enough for slopes, narrow enough for silhouettes.
 pub const TAP_RELATIVE: f32 = 0.1;
 
+/// Texels that are read: four by four without the corners, whose weights are next to nothing.
+pub const TAPS: u32 = 12;
+
+/// Column and row, 0 to 3, of tap number `tap`.
+#[inline]
+pub fn tap_at(tap: u32) -> [u32; 2] {
+    [((tap + 2) & 3) + u32::from(tap >= 10) - u32::from(tap < 2), (tap + 2) >> 2]
+}
+
 /// Catmull-Rom weights of the four texels around a position that lies `t` in \[0, 1) after the second. At t = 0 the second has
 /// weight exactly 1 and the others exactly 0.
 #[inline]
@@ -16,7 +25,7 @@ pub fn catmull_rom(t: f32) -> [f32; 4] {
 
 /// Bilinear weights of the same four texels.
 #[inline]
-pub fn linear(t: f32) -> [f32; 4] {
+pub fn linear_weights(t: f32) -> [f32; 4] {
     [0.0, 1.0 - t, t, 0.0]
 }
 

@@ -29,7 +29,7 @@ pub fn from_ycocg(y: Vec3) -> Vec3 {
 
 /// Pulls `history` towards `mean` until it lies in the box of half width `extent` around it.
 #[inline]
-pub fn clip(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
+pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     let d = history - mean;
     let x = d.x.abs() / extent.x.max(1e-6);
     let y = d.y.abs() / extent.y.max(1e-6);
@@ -40,7 +40,7 @@ pub fn clip(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
 
 /// Weight of the candidate for history read `fraction` (each in \[0, 1)) between texels and believed as far as `trust`.
 #[inline]
-pub fn alpha(fraction: [f32; 2], trust: f32) -> f32 {
+pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
     let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
     let y = 4.0 * (fraction[1] * (1.0 - fraction[1]));
     let resampled = ALPHA[0] + (ALPHA[1] - ALPHA[0]) * x.max(y);
@@ -52,7 +52,7 @@ pub fn alpha(fraction: [f32; 2], trust: f32) -> f32 {
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);
     let variance = squares * (1.0 / 9.0) - mean * mean;
-    let clipped = clip(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS);
+    let clipped = clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS);
     let now = to_ycocg(candidate);
     from_ycocg(clipped + (now - clipped) * alpha)
 }

@@ -1,0 +1,146 @@
+// Twin of src/kernel/matched.rs; constants are explained there.
+
+const QUALITY_WIDTH: f32 = 0.1;
+const COARSER_WIDTH: f32 = 0.25;
+const GATE_FROM: f32 = 3.0;
+const GATE_TO: f32 = 9.0;
+const RELIGHT: vec2<f32> = vec2<f32>(1.5, 0.5);
+const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);
+const GAIN_LEAST: f32 = 0.2;
+const GAIN_MOST: f32 = 5.0;
+const DARK: f32 = 0.002;
+const COHERENT_PX: f32 = 0.5;
+const COHERENT_SHARE: f32 = 0.1;
+const COHERENT_NEIGHBOURS: u32 = 2u;
+
+struct SmrParams {
+    accumulate: f32,
+    accumulate_tolerance: f32,
+    tolerance: f32,
+    blocks: bool,
+    relight: bool,
+}
+
+// matched::smooth_step
+fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
+    let t = clamp((x - low) / (high - low), 0.0, 1.0);
+    return (t * t) * (3.0 - 2.0 * t);
+}
+
+// matched::root_difference
+fn root_difference(x: vec3<f32>, y: vec3<f32>) -> f32 {
+    let d = roots(x) - roots(y);
+    let outer = 0.25 * (d.x + d.z);
+    let inner = 0.5 * d.y;
+    let luma = outer + inner;
+    let orange = 0.5 * (d.x - d.z);
+    let green = inner - outer;
+    let chroma = orange * orange + green * green;
+    return 100.0 * sqrt(luma * luma + 0.5 * chroma);
+}
+
+// matched::roots
+fn roots(c: vec3<f32>) -> vec3<f32> {
+    return sqrt(max(c, vec3<f32>(0.0)));
+}
+
+// matched::moves_alike
+fn moves_alike(own: vec2<f32>, other: vec2<f32>) -> bool {
+    let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
+    return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
+}
+
+struct Wanted {
+    finer: f32,
+    share: f32,
+}
+
+// matched::wanted
+fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
+    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0);
+    let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0);
+    let alike = (1.0 - finer) * (1.0 - coarser);
+    return Wanted(finer, finer + (alike * min(lod, 1.0)) * accumulate);
+}
+
+// matched::gain
+fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
+    let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);
+    let away = ratio - 1.0;
+    return 1.0 + away * (changed * smooth_step(0.05, 0.15, abs(away)));
+}
+
+struct Evidence {
+    candidate: vec3<f32>,
+    compared: vec3<f32>,
+    compared_coarser: vec3<f32>,
+    lod: f32,
+    history: vec3<f32>,
+    history_lod: f32,
+    matched: vec3<f32>,
+    matched_coarser: vec3<f32>,
+    trust: f32,
+}
+
+struct Matched {
+    color: vec3<f32>,
+    lod: f32,
+    share: f32,
+    fit: f32,
+}
+
+// matched::decide
+fn decide(e: Evidence, p: SmrParams) -> Matched {
+    let want = wanted(e.lod, e.history_lod, p.accumulate);
+    var contrast = root_difference(e.matched, e.matched_coarser);
+    var d = root_difference(e.compared, e.matched);
+    var k = vec3<f32>(1.0);
+    if p.relight {
+        let relight = select(RELIGHT, RELIGHT_BLOCKS, p.blocks);
+        let low = relight.x + relight.y * contrast;
+        let changed = smooth_step(low, 2.0 * low, d);
+        let gains = vec3<f32>(
+            gain(e.compared_coarser.x, e.matched_coarser.x, changed),
+            gain(e.compared_coarser.y, e.matched_coarser.y, changed),
+            gain(e.compared_coarser.z, e.matched_coarser.z, changed),
+        );
+        let relit = root_difference(e.compared, gains * e.matched);
+        if relit < d {
+            d = relit;
+            k = gains;
+            contrast *= sqrt((gains.x + gains.y + gains.z) * (1.0f / 3.0f));
+        }
+    }
+    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * want.finer);
+    let scale = select(1.0, 4.0, p.blocks);
+    let low = tolerance * (GATE_FROM * scale + contrast);
+    let high = tolerance * (GATE_TO * scale + contrast);
+    let fit = 1.0 - smooth_step(low, high, d);
+    let believed = fit * e.trust;
+    let share = believed * want.share;
+    let shown = e.candidate * (1.0 - share) + (k * e.history) * share;
+    var lod = e.lod;
+    if want.finer > 0.0 {
+        lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - want.finer * believed), e.lod);
+    }
+    return Matched(shown, lod, share, fit);
+}
+
+// matched::chain_mean
+fn chain_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
+    return (a + b + c + d) * 0.25;
+}
+
+// matched::chain_bilinear
+fn chain_bilinear(
+    top_left: vec4<f32>,
+    top_right: vec4<f32>,
+    bottom_left: vec4<f32>,
+    bottom_right: vec4<f32>,
+    fraction: vec2<f32>,
+) -> vec3<f32> {
+    let t = top_left + (top_right - top_left) * fraction.x;
+    let b = bottom_left + (bottom_right - bottom_left) * fraction.x;
+    let v = t + (b - t) * fraction.y;
+    return v.xyz * (1.0 / max(v.w, 1e-3));
+}

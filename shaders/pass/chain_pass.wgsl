@@ -1,0 +1,30 @@
+//#use matched
+//#use surface
+// The next level of the chain of remembered surfaces: means of 2x2 texels, at odd borders of those that exist. Its twin on the CPU is
+// Chain::build in src/cpu/chain.rs. One invocation a texel of the coarser level; z is the view.
+//
+// 4 reads and 1 write of 8 bytes a texel; all levels from the second on together read 2.7 bytes a pixel and write 0.7.
+
+// Of the finer level; its texture may be larger.
+@group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
+@group(0) @binding(1) var fine: texture_2d_array<f32>;
+@group(0) @binding(2) var coarse: texture_storage_2d_array<rgba16float, write>;
+
+fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
+    return textureLoad(fine, min(at, fine_size - 1u), view, 0);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let first = 2u * id.xy;
+    if any(first >= fine_size) {
+        return;
+    }
+    let mean = chain_mean(
+        texel(first, group.z),
+        texel(first + vec2<u32>(1u, 0u), group.z),
+        texel(first + vec2<u32>(0u, 1u), group.z),
+        texel(first + vec2<u32>(1u, 1u), group.z),
+    );
+    textureStore(coarse, id.xy, group.z, round_chain(mean));
+}

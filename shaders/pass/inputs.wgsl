@@ -1,0 +1,178 @@
+//#use acuity
+//#use debug_view
+//#use depth
+//#use reproject
+//#use scrub
+// What a frame brings to a pixel, in the internal form; what is counted of it and shown. The part that all methods share; its twin on
+// the CPU is src/cpu/inputs.rs.
+
+// What the frame brings. A pipeline's constants; switched off means not compiled.
+override HAS_DEPTH: u32 = 1u;
+override HAS_MOTION: u32 = 1u;
+override HAS_TRUST: u32 = 1u;
+override HAS_EXPOSURE: u32 = 1u;
+override DEPTH_TEST: u32 = 1u;
+override COUNT: u32 = 0u;
+// 0, or a VIEW_* code: show what would be decided, and decide nothing.
+override VIEW: u32 = 0u;
+
+// src/gpu/types.rs: ViewConstants
+struct ViewConstants {
+    ray_scale: vec2<f32>,
+    ray_offset: vec2<f32>,
+    gaze_ray: vec4<f32>,
+    depth_row: vec4<f32>,
+    key: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
+}
+
+// src/gpu/types.rs: FrameConstants
+struct FrameConstants {
+    size: vec2<u32>,
+    reset: u32,
+    frame_low: u32,
+    fovea_radius_deg: f32,
+    inv_density_at_fovea: f32,
+    exponential_survival: f32,
+    gate_offset: f32,
+    inv_gate_divisor: f32,
+    depth_relative: f32,
+    depth_slope_px: f32,
+    disparity_a: f32,
+    motion_scale: vec2<f32>,
+    disparity_b: f32,
+    disparity_flags: u32,
+    exposure: f32,
+    mid_radius_deg: f32,
+    blend_deg: f32,
+    coarse_mid: f32,
+    coarse_far: f32,
+    smr_accumulate: f32,
+    smr_accumulate_tolerance: f32,
+    smr_tolerance: f32,
+    views: array<ViewConstants, 4>,
+}
+
+@group(0) @binding(0) var<uniform> frame: FrameConstants;
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var depth_in: texture_2d_array<f32>;
+@group(0) @binding(3) var motion_in: texture_2d_array<f32>;
+@group(0) @binding(4) var trust_in: texture_2d_array<f32>;
+@group(0) @binding(5) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
+
+// Words of the counters; src/stats.rs reads them.
+const COUNT_NONFINITE: u32 = 0u;
+const COUNT_BAD_DEPTH: u32 = 1u;
+const COUNT_BAD_TRUST: u32 = 2u;
+const COUNT_REPLACED: u32 = 3u;
+const COUNT_VERDICTS: u32 = 4u;
+const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
+
+// A workgroup's counts, so that few atomics leave it.
+var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
+
+fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
+    return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
+}
+
+// Where the surface was, minus where it is, in pixels.
+fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
+    if HAS_MOTION == 0u {
+        return vec2<f32>(0.0);
+    }
+    return textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
+}
+
+fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
+    if HAS_DEPTH == 0u {
+        return INVALID_DISPARITY;
+    }
+    let map = DisparityMap(frame.disparity_a, frame.disparity_b, frame.disparity_flags);
+    return disparity(textureLoad(depth_in, px, view, 0).x, map);
+}
+
+// depth::slope with its reader: how much the surface's disparity changes from pixel to pixel, where that is wanted. A loop, because
+// software Vulkan runs the body of an `if` for all pixels, but leaves a loop that no pixel wants after one round.
+fn slope_at(px: vec2<u32>, view: u32, center: f32, wanted: bool) -> f32 {
+    var total = 0.0;
+    var before = INVALID_DISPARITY;
+    let taps = select(0u, 4u, wanted);
+    for (var i = 0u; i < taps; i++) {
+        // Left, right, up, down.
+        let ahead = (i & 1u) == 1u;
+        let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), i < 2u);
+        let at = vec2<i32>(px) + select(-axis, axis, ahead);
+        var tap = INVALID_DISPARITY;
+        if all(at >= vec2<i32>(0)) && all(at < vec2<i32>(frame.size)) {
+            tap = disparity_at(vec2<u32>(at), view);
+        }
+        if ahead {
+            total += one_sided_slope(center, before, tap);
+        }
+        before = tap;
+    }
+    return total;
+}
+
+// Disparity that the surface of a pixel had in the previous frame.
+fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
+    let row = frame.views[view].depth_row;
+    let stretch = row.x * ray.x + row.y * ray.y + row.z;
+    return previous_disparity(disparity_now, stretch, row.w);
+}
+
+// Whether a pixel, `expected` at a disparity, is the surface that was `stored` with one. True without a depth test.
+fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
+    if DEPTH_TEST == 0u {
+        return true;
+    }
+    let plain = same_surface(expected, stored, frame.depth_relative, 0.0);
+    // Few pixels pay for the four taps.
+    let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now, !plain);
+    return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
+}
+
+fn count_if(condition: bool, word: u32) {
+    if COUNT != 0u {
+        if condition {
+            atomicAdd(&group_counters[word], 1u);
+        }
+    }
+}
+
+// Counts what is odd about a pixel, and what became of its history.
+fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdict: u32) {
+    count_if(!usable, COUNT_NONFINITE);
+    if HAS_DEPTH != 0u {
+        count_if(disparity_now == INVALID_DISPARITY, COUNT_BAD_DEPTH);
+    }
+    if HAS_TRUST != 0u {
+        count_if(!is_finite(textureLoad(trust_in, px, view, 0).x), COUNT_BAD_TRUST);
+    }
+    count_if(true, COUNT_VERDICTS + verdict);
+}
+
+// The frame, or what was decided about it.
+fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
+    if VIEW != 0u {
+        textureStore(color_out, px, view, vec4<f32>(view_color(VIEW, traced), 1.0));
+    } else {
+        textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    }
+}
+
+// Adds a workgroup's counts to the frame's. To be called by all of its invocations.
+fn add_counts(lane: u32) {
+    if COUNT != 0u {
+        workgroupBarrier();
+        if lane < COUNTERS {
+            let n = atomicLoad(&group_counters[lane]);
+            if n > 0u {
+                atomicAdd(&counters[lane], n);
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//#use inputs
+//#use resample
+//#use wrs
+// What is remembered of a pixel's surface, where it was: shared by the methods that store surfaces. Its twin on the CPU is
+// src/cpu/remembered.rs.
+
+@group(0) @binding(7) var lod_in: texture_2d_array<f32>;
+@group(0) @binding(8) var past_surfaces: texture_2d_array<u32>;
+@group(0) @binding(9) var past_chain: texture_2d_array<f32>;
+@group(0) @binding(10) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(11) var next_chain: texture_storage_2d_array<rgba16float, write>;
+
+// Where a pixel's surface was. All but the verdict only means something if that is VERDICT_VALID.
+struct Source {
+    verdict: u32,
+    texel: vec2<i32>,
+    fraction: vec2<f32>,
+    at: vec2<f32>,
+    nearest: Surface,
+    expected: f32,
+    trust: f32,
+}
+
+fn no_source(verdict: u32) -> Source {
+    let nothing = Surface(vec3<f32>(0.0), -1.0, -1.0);
+    return Source(verdict, vec2<i32>(0), vec2<f32>(0.0), vec2<f32>(0.0), nothing, INVALID_DISPARITY, 0.0);
+}
+
+fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+    let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
+}
+
+fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> Source {
+    if frame.reset != 0u {
+        return no_source(VERDICT_RESET);
+    }
+    let reprojected = nearest(px.x, px.y, motion, frame.size);
+    if reprojected.verdict != VERDICT_VALID {
+        return no_source(reprojected.verdict);
+    }
+    let stored = surface_at(vec2<i32>(reprojected.at), view);
+    if stored.lod < 0.0 {
+        return no_source(VERDICT_EMPTY);
+    }
+    var believed = 1.0;
+    if HAS_TRUST != 0u {
+        believed = trust(textureLoad(trust_in, px, view, 0).x);
+        if believed == 0.0 {
+            return no_source(VERDICT_DISTRUSTED);
+        }
+    }
+    let expected = expected_disparity(view, ray, disparity_now);
+    if !is_same_surface(px, view, disparity_now, expected, stored.disparity) {
+        return no_source(VERDICT_DISOCCLUDED);
+    }
+    let at = vec2<f32>(px) + motion;
+    let whole = floor(at);
+    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, expected, believed);
+}
+
+fn component(v: vec4<f32>, i: u32) -> f32 {
+    return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
+}
+
+// What is stored around a position. A position on a texel reads that one. A loop without rounds for those that want nothing, because
+// software Vulkan runs the body of an `if` for all pixels.
+fn resample(source: Source, view: u32, needed: bool) -> Resampled {
+    let between = needed && !(source.fraction.x == 0.0 && source.fraction.y == 0.0);
+    let sharp_x = catmull_rom(source.fraction.x);
+    let sharp_y = catmull_rom(source.fraction.y);
+    let smooth_x = linear_weights(source.fraction.x);
+    let smooth_y = linear_weights(source.fraction.y);
+    var gathered = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
+    let taps = select(0u, TAPS, between);
+    for (var tap = 0u; tap < taps; tap++) {
+        let at = tap_at(tap);
+        let s = surface_at(source.texel + vec2<i32>(at) - 1, view);
+        var same = s.lod >= 0.0;
+        if DEPTH_TEST != 0u {
+            same = same && same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0);
+        }
+        let sharp = component(sharp_x, at.x) * component(sharp_y, at.y);
+        let smooth_w = component(smooth_x, at.x) * component(smooth_y, at.y);
+        gathered = gather(gathered, s, same, sharp, smooth_w);
+    }
+    // Nothing was gathered on a texel, and the nearest one is taken.
+    return resolve(gathered, source.nearest);
+}
+
+// A stored colour under this frame's exposure.
+fn exposed(stored: vec3<f32>) -> vec3<f32> {
+    if HAS_EXPOSURE == 0u {
+        return stored;
+    }
+    return expose(stored, frame.exposure);
+}

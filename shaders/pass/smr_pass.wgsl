@@ -1,0 +1,212 @@
+//#use foveate
+//#use matched
+//#use remembered
+// The scale-matched reservoir. Its twin on the CPU is src/cpu/smr_pass.rs, which counts what it reads; docs/method.md has the
+// equations. One invocation a block of 2x2 pixels, so that the next level of what it stores needs no second pass; z is the view.
+
+// What a frame's level of detail follows; FILTER_OFF is full rate everywhere.
+const FILTER_MIP: u32 = 0u;
+const FILTER_GAUSS: u32 = 1u;
+const FILTER_BLOCK: u32 = 2u;
+const FILTER_OFF: u32 = 3u;
+
+override HAS_LOD: u32 = 0u;
+override FILTER: u32 = 0u;
+override RELIGHT_ON: u32 = 1u;
+
+// Level of detail of the candidate.
+fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
+    if HAS_LOD != 0u {
+        let given = textureLoad(lod_in, px, view, 0).x;
+        // By bits: NaN is 0.
+        return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
+    }
+    if FILTER == FILTER_OFF {
+        return 0.0;
+    }
+    let e_deg = eccentricity_deg(ray, frame.views[view].gaze_ray.xyz);
+    if FILTER == FILTER_GAUSS {
+        return blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.coarse_mid, frame.coarse_far);
+    }
+    return region_lod(
+        e_deg,
+        frame.fovea_radius_deg,
+        frame.mid_radius_deg,
+        frame.blend_deg,
+        frame.coarse_mid,
+        frame.coarse_far,
+    );
+}
+
+// Whether enough neighbours move as the pixel does.
+fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
+    if HAS_MOTION == 0u {
+        return true;
+    }
+    let low = max(px, vec2<u32>(1u)) - 1u;
+    let high = min(px + 1u, frame.size - 1u);
+    let alike = select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(low.x, px.y), view)))
+        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(high.x, px.y), view)))
+        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, low.y), view)))
+        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, high.y), view)));
+    return alike >= COHERENT_NEIGHBOURS;
+}
+
+fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
+    let size = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
+    let x = split(level_coordinate(at.x, level), size.x);
+    let y = split(level_coordinate(at.y, level), size.y);
+    let low = vec2<u32>(x.whole, y.whole);
+    let high = min(low + 1u, size - 1u);
+    return chain_bilinear(
+        textureLoad(past_chain, low, view, level - 1u),
+        textureLoad(past_chain, vec2<u32>(high.x, low.y), view, level - 1u),
+        textureLoad(past_chain, vec2<u32>(low.x, high.y), view, level - 1u),
+        textureLoad(past_chain, high, view, level - 1u),
+        vec2<f32>(x.fraction, y.fraction),
+    );
+}
+
+struct Matching {
+    matched: vec3<f32>,
+    coarser: vec3<f32>,
+}
+
+// The past at a level of detail around a position, and one level coarser. `smooth_color` is its level 0 there.
+fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
+    let last = textureNumLevels(past_chain);
+    let limited = min(lod, f32(last));
+    let whole = floor(limited);
+    let fraction = limited - whole;
+    let level = u32(whole);
+    var first = smooth_color;
+    if level > 0u {
+        first = chain_level(at, level, view);
+    }
+    let second = chain_level(at, min(level + 1u, last), view);
+    let third = chain_level(at, min(level + 2u, last), view);
+    return Matching(first + (second - first) * fraction, second + (third - second) * fraction);
+}
+
+fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
+    let at = clamp(floor(vec2<f32>(px) + offset + 0.5), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
+    return color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz).color;
+}
+
+// Mean of four candidates on the diagonals.
+fn candidates_around(px: vec2<u32>, view: u32, radius: f32) -> vec3<f32> {
+    return mean_of_four(
+        candidate_near(px, view, vec2<f32>(-radius, -radius)),
+        candidate_near(px, view, vec2<f32>(radius, -radius)),
+        candidate_near(px, view, vec2<f32>(-radius, radius)),
+        candidate_near(px, view, vec2<f32>(radius, radius)),
+    );
+}
+
+fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
+    // A point sample is noise at its own scale: compare one level coarser.
+    let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
+    let past = chain_read(source.at, lod + shift, history.smooth_color, view);
+    let radius = 0.75 * exp2(lod);
+    let around = candidates_around(px, view, radius);
+    var compared = candidate;
+    var coarser = around;
+    if FILTER == FILTER_BLOCK {
+        compared = around;
+        coarser = candidates_around(px, view, 2.0 * radius);
+    }
+    let evidence = Evidence(
+        candidate,
+        compared,
+        coarser,
+        lod,
+        exposed(history.sharp),
+        history.lod,
+        exposed(past.matched),
+        exposed(past.coarser),
+        source.trust,
+    );
+    let params = SmrParams(
+        frame.smr_accumulate,
+        frame.smr_accumulate_tolerance,
+        frame.smr_tolerance,
+        FILTER == FILTER_BLOCK,
+        RELIGHT_ON != 0u,
+    );
+    return decide(evidence, params);
+}
+
+// Shows a pixel, stores it and gives what was stored.
+fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
+    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let ray = ray_at(px, view);
+    let disparity_now = disparity_at(px, view);
+    let motion = motion_at(px, view);
+    let lod = candidate_lod(px, view, ray);
+    let keep = is_coherent(px, view, motion);
+    var source = source_of(px, view, ray, motion, disparity_now);
+    if source.verdict == VERDICT_VALID && !keep {
+        source.verdict = VERDICT_DISOCCLUDED;
+    }
+    let valid = source.verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
+
+    var made = Matched(candidate.color, select(-1.0, lod, candidate.usable), 0.0, 1.0);
+    if valid {
+        let history = resample(source, view, lod > 0.0 || !candidate.usable);
+        if !candidate.usable {
+            made = Matched(exposed(history.sharp), history.lod, 1.0, 1.0);
+        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate).share > 0.0 {
+            made = matched_pixel(px, view, candidate.color, lod, source, history);
+        }
+    }
+    count_if(valid && made.share == 0.0, COUNT_REPLACED);
+    let sharpness = 16.0 * exp2(-max(made.lod, 0.0));
+    show(
+        px,
+        view,
+        made.color,
+        PixelTrace(exp2(-lod), sharpness, 0u, made.share, source.verdict, made.fit, made.share == 0.0, motion),
+    );
+    // Colours of a moving silhouette mix two surfaces: shown, but not kept.
+    let stored_lod = select(MAX_LOD, made.lod, keep || made.lod < 0.0);
+    let words = pack_surface(Surface(made.color, stored_lod, disparity_now));
+    if VIEW == 0u {
+        textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+    }
+    return words;
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let first = 2u * id.xy;
+    if all(first < frame.size) {
+        var texels_0 = vec4<f32>(0.0);
+        var texels_1 = vec4<f32>(0.0);
+        var texels_2 = vec4<f32>(0.0);
+        var texels_3 = vec4<f32>(0.0);
+        // One by one: four copies of the work would take four times as long to compile.
+        for (var i = 0u; i < 4u; i++) {
+            let px = first + vec2<u32>(i & 1u, i >> 1u);
+            // Beyond an odd border the neighbour counts twice.
+            let column = select(0u, i & 1u, px.x < frame.size.x);
+            let row = select(0u, i >> 1u, px.y < frame.size.y);
+            var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);
+            if all(px < frame.size) {
+                texel = chain_texel(pixel(px, group.z));
+            }
+            texels_0 = select(texels_0, texel, i == 0u);
+            texels_1 = select(texels_1, texel, i == 1u);
+            texels_2 = select(texels_2, texel, i == 2u);
+            texels_3 = select(texels_3, texel, i == 3u);
+        }
+        if VIEW == 0u {
+            textureStore(next_chain, id.xy, group.z, round_chain(chain_mean(texels_0, texels_1, texels_2, texels_3)));
+        }
+    }
+    add_counts(lane);
+}

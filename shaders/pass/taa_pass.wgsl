@@ -1,0 +1,65 @@
+//#use remembered
+//#use taa
+// Temporal antialiasing of the foveated frame. Its twin on the CPU is src/cpu/taa_pass.rs, which counts what it reads. One invocation a
+// pixel; z is the view.
+
+struct Neighbourhood {
+    sum: vec3<f32>,
+    squares: vec3<f32>,
+}
+
+// Sums of colours and of their squares over 3x3 pixels, in YCoCg.
+fn neighbourhood(px: vec2<u32>, view: u32) -> Neighbourhood {
+    var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));
+    for (var tap = 0u; tap < 9u; tap++) {
+        let at = max(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u)) - 1u;
+        let v = to_ycocg(color(textureLoad(color_in, min(at, frame.size - 1u), view, 0).xyz).color);
+        around.sum += v;
+        around.squares += v * v;
+    }
+    return around;
+}
+
+fn pixel(px: vec2<u32>, view: u32) {
+    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let disparity_now = disparity_at(px, view);
+    let motion = motion_at(px, view);
+    let source = source_of(px, view, ray_at(px, view), motion, disparity_now);
+    let valid = source.verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
+
+    var shown = candidate.color;
+    var share = 0.0;
+    if valid {
+        let history = exposed(resample(source, view, true).sharp);
+        if candidate.usable {
+            let alpha = candidate_share(source.fraction, source.trust);
+            let around = neighbourhood(px, view);
+            shown = blend_clipped(candidate.color, history, around.sum, around.squares, alpha);
+            share = 1.0 - alpha;
+        } else {
+            shown = history;
+            share = 1.0;
+        }
+    }
+    let age = select(0u, MAX_AGE, valid);
+    show(px, view, shown, PixelTrace(1.0 - share, 0.0, age, share, source.verdict, 1.0, !valid, motion));
+    if VIEW != 0u {
+        return;
+    }
+    let lod = select(-1.0, 0.0, candidate.usable || valid);
+    let words = pack_surface(Surface(shown, lod, disparity_now));
+    textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, group.z);
+    }
+    add_counts(lane);
+}
