@@ -31,7 +31,8 @@ fn constants_have_one_layout() {
     };
     let frame = rust!(FrameConstants: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, disparity_a, motion_scale, disparity_b,
-        disparity_flags, exposure, views);
+        disparity_flags, exposure, mid_radius_deg, blend_deg, coarse_mid, coarse_far, smr_accumulate,
+        smr_accumulate_tolerance, smr_tolerance, views);
     assert_eq!(without_padding("FrameConstants"), frame);
     let view = rust!(ViewConstants: ray_scale, ray_offset, gaze_ray, depth_row, key);
     assert_eq!(without_padding("ViewConstants"), view);

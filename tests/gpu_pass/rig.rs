@@ -161,7 +161,7 @@ impl Rig {
         let frame = CpuFrame { reset, exposure: self.exposure, ..CpuFrame::new(&cpu_views, index) };
         let stats = self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: self.cpu.history().words().to_vec(), stats }, trace)
+        (Made { shown, words: held_words(&self.cpu), stats }, trace)
     }
 
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
@@ -245,10 +245,17 @@ impl Rig {
     /// Shown colours and stored reservoirs as they are on the device.
     pub fn read(&self) -> Made {
         let shown = self.read_texture(&self.textures.output);
-        let [colors, weights] = [0, 1].map(|i| self.read_texture(&self.gpu.history_textures()[i]));
+        let held: Vec<_> =
+            self.gpu.history_textures().iter().take(2).map(|t| (t.format(), self.read_texture(t))).collect();
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
-            words: colors.chunks_exact(2).zip(weights).map(|(c, w)| [c[0], c[1], w]).collect(),
+            words: match &held[..] {
+                [(_, colors), (TextureFormat::R32Uint, weights)] => {
+                    colors.chunks_exact(2).zip(weights).map(|(c, &w)| [c[0], c[1], w]).collect()
+                }
+                [(_, surfaces), ..] => surfaces.chunks_exact(2).map(|s| [s[0], s[1], 0]).collect(),
+                [] => vec![],
+            },
             stats: self.read_counters(),
         }
     }
@@ -323,6 +330,13 @@ pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureForma
 pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     let mut draws = Draws::new(name);
     Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
+}
+
+/// Packed reservoirs, or packed surfaces and a zero.
+fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
+    let history = cpu.history();
+    let surfaces = history.surfaces().iter().map(|s| [s[0], s[1], 0]);
+    history.words().iter().copied().chain(surfaces).collect()
 }
 
 /// Packed reservoirs with another weight sum.

@@ -95,6 +95,18 @@ fn the_default_agrees_bit_for_bit() {
 }
 
 #[test]
+fn taa_and_smr_agree_bit_for_bit() {
+    let base =
+        Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::default() };
+    for scene in ["still", "lateral", "occluder", "light-step"] {
+        for method in [Method::Taa, Method::Smr] {
+            println!("{method:?}");
+            agree(scene, Settings { method, ..base }, |v| v);
+        }
+    }
+}
+
+#[test]
 fn every_variant_agrees_bit_for_bit() {
     let base = Settings::default();
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
