@@ -8,6 +8,7 @@ mod common;
 mod gpu;
 
 mod controls;
+mod decisions;
 mod functions;
 mod mathematics;
 mod modules;
