@@ -131,7 +131,7 @@ impl Afterimage {
     }
 
     /// Records a picture of what [`record`](Self::record) of the same frame would decide, in linear light, into the frame's output.
-    /// No state moves and nothing is counted: call it before `record`, with another output.
+    /// Counters, if given, count what `record` would. No state moves: call it before `record`, with another output.
     ///
     /// # Errors
     /// As for `record`.
@@ -179,9 +179,6 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         input::check(&self.desc, frame)?;
         let prepared = self.prepare(frame);
-        if let Some(counters) = frame.counters {
-            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
-        }
         self.dispatch(device, encoder, frame, variant, &prepared.constants);
         if self.desc.settings.method == Method::None {
             self.history.forget();
@@ -200,6 +197,9 @@ impl Afterimage {
         variant: Variant,
         constants: &FrameConstants,
     ) {
+        if let Some(counters) = frame.counters {
+            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
+        }
         let group = self.bindings.group(device, frame, constants, &self.history);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("afterimage wrs"),
