@@ -20,7 +20,7 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
     let Some((device, queue)) = gpu::device() else { return };
     let desc = GpuDesc::new([24, 16], TextureFormat::Rgba16Float);
     let mut post = Afterimage::new(&device, &desc).unwrap();
-    let mut after_warm_up = None;
+    let mut resident = vec![];
     let mut textures = None;
     for index in 0..10_000_u64 {
         if index % 97 == 0 {
@@ -47,16 +47,15 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
         let mut encoder = device.create_command_encoder(&Default::default());
         post.record(&device, &mut encoder, &frame).unwrap();
         queue.submit([encoder.finish()]);
-        if index % 50 == 0 {
+        if index % 50 == 49 {
             device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
         }
-        if index == 2_000 {
-            after_warm_up = resident_mib();
+        if index % 4_000 == 1_999 {
+            resident.extend(resident_mib());
         }
     }
-    if let (Some(before), Some(after)) = (after_warm_up, resident_mib()) {
-        println!("resident after 2,000 frames {before:.1} MiB, after 10,000 {after:.1} MiB");
-        // A leak of a kilobyte a frame would be 8 MiB.
-        assert!(after - before < 4.0);
-    }
+    println!("resident after 2,000, 6,000 and 10,000 frames: {resident:.1?} MiB");
+    // A leak grows all the time, and one of a kilobyte a frame by 4 MiB each time; what the driver makes late, it makes once.
+    let growth = resident.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+    assert!(resident.is_empty() || growth < 2.0, "{growth} MiB");
 }

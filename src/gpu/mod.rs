@@ -162,7 +162,7 @@ impl Afterimage {
     }
 
     /// Records a picture of what [`record`](Self::record) of the same frame would decide, in linear light, into the frame's output.
-    /// No state moves and nothing is counted: call it before `record`, with another output.
+    /// Counters, if given, count what `record` would. No state moves: call it before `record`, with another output.
     ///
     /// # Errors
     /// As for `record`.
@@ -218,9 +218,6 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         input::check(&self.desc, frame)?;
         let prepared = self.prepare(frame);
-        if let Some(counters) = frame.counters {
-            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
-        }
         self.dispatch(device, encoder, frame, variant, &prepared.constants);
         if self.desc.settings.method == Method::None {
             self.history.forget();
@@ -239,6 +236,9 @@ impl Afterimage {
         variant: Variant,
         constants: &FrameConstants,
     ) {
+        if let Some(counters) = frame.counters {
+            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
+        }
         let group = self.passes.bindings.group(device, frame, constants, &self.history);
         // smr takes blocks of 2x2 pixels.
         let side = if variant.takes_blocks() { 2 } else { 1 };

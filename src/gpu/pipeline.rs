@@ -64,7 +64,7 @@ impl Variant {
 
     /// The pass that shows what would be decided, and stores nothing.
     pub fn view(settings: &Settings, frame: &Frame<'_>, view: DebugView) -> Self {
-        Self { view: Some(view), count: false, ..Self::new(settings, frame) }
+        Self { view: Some(view), ..Self::new(settings, frame) }
     }
 
     /// Whether an invocation takes a block of 2x2 pixels.

@@ -1,8 +1,9 @@
 //! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
 
 mod gpu_lane;
+mod headless;
 
-pub use gpu_lane::Headless;
+pub use headless::Headless;
 
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use crate::display::ViewGeometry;

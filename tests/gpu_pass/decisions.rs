@@ -41,7 +41,9 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
             undisturbed.exposure = rig.exposure;
             let views = [masked(&mut source, index)];
             let pictures = VIEWS.map(|v| rig.decisions(index, reset(index), &views, v));
+            let counted = rig.read().stats;
             let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
+            assert_eq!(counted, cpu.stats, "a view counts, too");
             for (view, picture) in VIEWS.into_iter().zip(&pictures) {
                 let expected: Vec<[u32; 3]> =
                     trace[0].pixels().iter().map(|t| view_color(view, t).to_array().map(f32::to_bits)).collect();

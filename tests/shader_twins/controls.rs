@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{foveation, gpu, mathematics, state};
+use crate::{decisions, foveation, gpu, mathematics, state};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -18,12 +18,12 @@ fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
 fn a_lax_comparison_is_caught() {
     caught(state::PROBES, "combine", "draw * w_sum < w2", "draw * w_sum <= w2");
     caught(state::PROBES, "update", "draw * w_sum < w;", "draw * w_sum <= w;");
-    caught(state::PROBES, "step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w");
+    caught(decisions::PROBES, "step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w");
 }
 
 #[test]
 fn h04_a_weight_below_the_normal_range_is_caught() {
-    caught(state::PROBES, "step", "weight(past.w_sum * survival)", "past.w_sum * survival");
+    caught(decisions::PROBES, "step", "weight(past.w_sum * survival)", "past.w_sum * survival");
 }
 
 #[test]
@@ -39,10 +39,10 @@ fn a_flipped_motion_sign_is_caught() {
 
 #[test]
 fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
-    caught(state::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
+    caught(decisions::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
     caught(state::PROBES, "trust", "return 1.0;", "return t;");
     caught(
-        state::PROBES,
+        decisions::PROBES,
         "expose",
         "clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF))",
         "stored_color * ratio",
@@ -51,8 +51,8 @@ fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
 
 #[test]
 fn a_wrong_colour_of_a_decision_is_caught() {
-    caught(state::PROBES, "view_color", "srgb_decode(encoded.x)", "encoded.x");
-    caught(state::PROBES, "motion_color", "clamp(-motion.x", "clamp(motion.x");
+    caught(decisions::PROBES, "view_color", "srgb_decode(encoded.x)", "encoded.x");
+    caught(decisions::PROBES, "motion_color", "clamp(-motion.x", "clamp(motion.x");
 }
 
 #[test]
@@ -63,8 +63,8 @@ fn draws_without_the_shift_are_caught() {
 
 #[test]
 fn swapped_colours_are_caught() {
-    caught(state::PROBES, "difference", "delta_e94(reference, stored)", "delta_e94(stored, reference)");
-    caught(state::PROBES, "step", "difference(candidate, past.color,", "difference(past.color, candidate,");
+    caught(decisions::PROBES, "difference", "delta_e94(reference, stored)", "delta_e94(stored, reference)");
+    caught(decisions::PROBES, "step", "difference(candidate, past.color,", "difference(past.color, candidate,");
     caught(mathematics::PROBES, "delta_e94", "delta_e94(in_v(0u), in_v(3u))", "delta_e94(in_v(3u), in_v(0u))");
 }
 

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{foveation, mathematics, state};
+use crate::{decisions, foveation, mathematics, state};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -20,7 +20,7 @@ fn color_is_bit_equal_h30_h31_h32_h33_h36_h37_h38() {
 
 #[test]
 fn debug_view_is_bit_equal() {
-    check_module(state::PROBES, "debug_view");
+    check_module(decisions::PROBES, "debug_view");
 }
 
 #[test]
@@ -60,5 +60,5 @@ fn scrub_is_bit_equal_h17_h18_h37() {
 
 #[test]
 fn wrs_decides_bit_equal_h01_h02_h20_h39() {
-    check_module(state::PROBES, "wrs");
+    check_module(decisions::PROBES, "wrs");
 }

@@ -8,6 +8,7 @@ mod common;
 mod gpu;
 
 mod controls;
+mod decisions;
 mod foveation;
 mod functions;
 mod mathematics;

@@ -1,0 +1,143 @@
+//! A device without a window, and frames between it and memory. For experiments; an engine keeps its frames on its device and
+//! calls [`Afterimage`](crate::gpu::Afterimage) itself.
+
+use crate::image::Image;
+use crate::stats::{COUNTERS_BYTES, FrameStats};
+use std::sync::Arc;
+use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
+
+/// A device without a window.
+#[derive(Debug)]
+pub struct Headless {
+    /// With default limits, and timestamp queries where the adapter has them.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Adapter, driver, version and kind of device.
+    pub info: wgpu::AdapterInfo,
+}
+
+impl Headless {
+    /// All adapters of this machine.
+    pub fn adapters() -> Vec<wgpu::Adapter> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
+    }
+
+    /// The first real GPU; with `software`, a software adapter if there is none. `None` if there is nothing of the kind or it
+    /// gives no device with default limits.
+    pub fn find(software: bool) -> Option<Arc<Self>> {
+        let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
+            wgpu::DeviceType::Cpu => 3,
+        };
+        let mut adapters = Self::adapters();
+        adapters.sort_by_key(rank);
+        adapters.retain(|a| software || rank(a) < 3);
+        adapters.into_iter().find_map(|adapter| {
+            let request = adapter.request_device(&wgpu::DeviceDescriptor {
+                label: Some("afterimage"),
+                required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+                ..wgpu::DeviceDescriptor::default()
+            });
+            let (device, queue) = pollster::block_on(request).ok()?;
+            Some(Arc::new(Self { device, queue, info: adapter.get_info() }))
+        })
+    }
+
+    /// Whether the device is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Waits until the device has done all that was submitted.
+    pub fn wait(&self) {
+        // A lost device shows at the next map, with wgpu's own message.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
+    /// A texture of `layers` layers.
+    pub fn texture(&self, size: [u32; 2], layers: u32, format: TextureFormat, usage: TextureUsages) -> Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("afterimage frame"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// A buffer for [`Frame::counters`](crate::gpu::Frame::counters).
+    pub fn counters(&self) -> Buffer {
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        self.buffer(COUNTERS_BYTES, usage)
+    }
+
+    /// Writes a layer of a texture whose texels are laid out like the image's pixels.
+    pub fn write<T: bytemuck::NoUninit>(&self, texture: &Texture, layer: u32, image: &Image<T>) {
+        let mut to = texture.as_image_copy();
+        to.origin.z = layer;
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(image.size()[0] * size_of::<T>() as u32),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+        self.queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, size);
+    }
+
+    /// Writes a layer of an `Rgba32Float` texture.
+    pub fn write_rgb(&self, texture: &Texture, layer: u32, image: &Image<[f32; 3]>) {
+        self.write(texture, layer, &image.map(|[r, g, b]| [r, g, b, 1.0]));
+    }
+
+    /// Waits for all that was submitted, and reads a layer of an `Rgba32Float` texture.
+    pub fn read_rgb(&self, texture: &Texture, layer: u32) -> Image<[f32; 3]> {
+        let [width, height] = [texture.width(), texture.height()];
+        let padded = (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };
+        let bytes = self.read_back(u64::from(padded) * u64::from(height), |encoder, buffer| {
+            let mut from = texture.as_image_copy();
+            from.origin.z = layer;
+            let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+            encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer, layout }, size);
+        });
+        let mut image = Image::filled([width, height], [0.0; 3]);
+        let rows = image.pixels_mut().chunks_mut(width as usize);
+        for (to, from) in rows.zip(bytes.chunks_exact(padded as usize)) {
+            let from: &[[f32; 4]] = bytemuck::cast_slice(&from[..width as usize * 16]);
+            for (to, &[r, g, b, _]) in to.iter_mut().zip(from) {
+                *to = [r, g, b];
+            }
+        }
+        image
+    }
+
+    /// Waits for all that was submitted, and reads what was counted.
+    pub fn read_counters(&self, counters: &Buffer) -> FrameStats {
+        let bytes = self.read_back(COUNTERS_BYTES, |encoder, buffer| {
+            encoder.copy_buffer_to_buffer(counters, 0, buffer, 0, COUNTERS_BYTES);
+        });
+        FrameStats::from_counters(&bytes).expect("as many bytes as counters have")
+    }
+
+    fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
+        let label = Some("afterimage");
+        self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
+    }
+
+    fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {
+        let buffer = self.buffer(size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        copy(&mut encoder, &buffer);
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.wait();
+        buffer.slice(..).get_mapped_range().expect("the buffer was mapped and waited for").to_vec()
+    }
+}
