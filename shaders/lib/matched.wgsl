@@ -3,7 +3,7 @@
 const QUALITY_WIDTH: f32 = 0.1;
 const COARSER_WIDTH: f32 = 0.25;
 const GATE_FROM: f32 = 3.0;
-const GATE_TO: f32 = 9.0;
+const GATE_WIDTH: f32 = 6.0;
 const RELIGHT: vec2<f32> = vec2<f32>(1.5, 0.5);
 const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);
 const GAIN_LEAST: f32 = 0.2;
@@ -22,8 +22,8 @@ struct SmrParams {
 }
 
 // matched::smooth_step
-fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
-    let t = clamp((x - low) / (high - low), 0.0, 1.0);
+fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
+    let t = clamp((x - low) / width, 0.0, 1.0);
     return (t * t) * (3.0 - 2.0 * t);
 }
 
@@ -67,7 +67,7 @@ fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);
     let away = ratio - 1.0;
-    return 1.0 + away * (changed * smooth_step(0.05, 0.15, abs(away)));
+    return 1.0 + away * (changed * smooth_step(0.05, 0.1, abs(away)));
 }
 
 struct Evidence {
@@ -98,7 +98,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     if p.relight {
         let relight = select(RELIGHT, RELIGHT_BLOCKS, p.blocks);
         let low = relight.x + relight.y * contrast;
-        let changed = smooth_step(low, 2.0 * low, d);
+        let changed = smooth_step(low, low, d);
         let gains = vec3<f32>(
             gain(e.compared_coarser.x, e.matched_coarser.x, changed),
             gain(e.compared_coarser.y, e.matched_coarser.y, changed),
@@ -113,12 +113,11 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     }
     let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * want.finer);
     let scale = select(1.0, 4.0, p.blocks);
-    let low = tolerance * (GATE_FROM * scale + contrast);
-    let high = tolerance * (GATE_TO * scale + contrast);
-    let fit = 1.0 - smooth_step(low, high, d);
+    let fit = 1.0 - smooth_step(tolerance * (GATE_FROM * scale + contrast), tolerance * (GATE_WIDTH * scale), d);
     let believed = fit * e.trust;
     let share = believed * want.share;
-    let shown = e.candidate * (1.0 - share) + (k * e.history) * share;
+    let history = k * e.history;
+    let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;
     if want.finer > 0.0 {
         lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - want.finer * believed), e.lod);

@@ -13,20 +13,19 @@ fn to_ycocg(c: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(outer + inner, 0.5 * (r.x - r.z), inner - outer);
 }
 
-// taa::from_ycocg
-fn from_ycocg(y: vec3<f32>) -> vec3<f32> {
+// taa::roots_of_ycocg
+fn roots_of_ycocg(y: vec3<f32>) -> vec3<f32> {
     let outer = y.x - y.z;
-    let r = max(vec3<f32>(outer + y.y, y.x + y.z, outer - y.y), vec3<f32>(0.0));
-    return r * r;
+    return max(vec3<f32>(outer + y.y, y.x + y.z, outer - y.y), vec3<f32>(0.0));
 }
 
 // taa::clip_to_box
 fn clip_to_box(history: vec3<f32>, mean: vec3<f32>, extent: vec3<f32>) -> vec3<f32> {
     let d = history - mean;
-    let ratio = abs(d) / max(extent, vec3<f32>(1e-6));
-    let most = max(max(ratio.x, ratio.y), ratio.z);
-    if most > 1.0 {
-        return mean + d * (1.0 / most);
+    let ratio = extent / max(abs(d), vec3<f32>(1e-6));
+    let inside = min(min(ratio.x, ratio.y), ratio.z);
+    if inside < 1.0 {
+        return mean + d * inside;
     }
     return history;
 }
@@ -48,8 +47,8 @@ fn blend_clipped(
     alpha: f32,
 ) -> vec3<f32> {
     let mean = sum * (1.0f / 9.0f);
-    let variance = squares * (1.0f / 9.0f) - mean * mean;
-    let clipped = clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS);
-    let now = to_ycocg(candidate);
-    return from_ycocg(clipped + (now - clipped) * alpha);
+    let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);
+    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS));
+    let shown = clipped + (roots(candidate) - clipped) * alpha;
+    return shown * shown;
 }

@@ -8,10 +8,12 @@ struct Neighbourhood {
     squares: vec3<f32>,
 }
 
-// Sums of colours and of their squares over 3x3 pixels, in YCoCg.
-fn neighbourhood(px: vec2<u32>, view: u32) -> Neighbourhood {
+// Sums of colours and of their squares over 3x3 pixels, in YCoCg. A loop of unknown length: a known one is unrolled, and Mesa reorders
+// the sums of products that it then sees.
+fn neighbourhood(px: vec2<u32>, view: u32, needed: bool) -> Neighbourhood {
     var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var tap = 0u; tap < 9u; tap++) {
+    let taps = select(0u, 9u, needed);
+    for (var tap = 0u; tap < taps; tap++) {
         let at = max(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u)) - 1u;
         let v = to_ycocg(color(textureLoad(color_in, min(at, frame.size - 1u), view, 0).xyz).color);
         around.sum += v;
@@ -30,11 +32,12 @@ fn pixel(px: vec2<u32>, view: u32) {
 
     var shown = candidate.color;
     var share = 0.0;
+    let around = neighbourhood(px, view, valid && candidate.usable);
+    let resampled = resample(source, view, valid);
     if valid {
-        let history = exposed(resample(source, view, true).sharp);
+        let history = exposed(resampled.sharp);
         if candidate.usable {
             let alpha = candidate_share(source.fraction, source.trust);
-            let around = neighbourhood(px, view);
             shown = blend_clipped(candidate.color, history, around.sum, around.squares, alpha);
             share = 1.0 - alpha;
         } else {

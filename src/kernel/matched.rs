@@ -7,8 +7,9 @@ use glam::{Vec3, Vec4};
 pub const QUALITY_WIDTH: f32 = 0.1;
 /// Levels of detail by which history may be coarser and still be accumulated.
 const COARSER_WIDTH: f32 = 0.25;
-/// Difference up to which history is believed, and from which it is not, in [`root_difference`]'s units; both grow with contrast.
-const GATE: [f32; 2] = [3.0, 9.0];
+/// Difference up to which history is believed, which grows with contrast, and over how much more it ceases to be, in
+/// [`root_difference`]'s units.
+const GATE: [f32; 2] = [3.0, 6.0];
 /// Difference at which relighting sets in, and what a unit of contrast adds to it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
 /// The same for point-sampled blocks, whose aliasing is no change of light.
@@ -35,10 +36,10 @@ pub struct SmrParams {
     pub relight: bool,
 }
 
-/// 0 up to `from`, 1 from `to` on, smooth between.
+/// 0 up to `from`, 1 from `width` above it on, smooth between.
 #[inline]
-pub fn smooth_step(from: f32, to: f32, x: f32) -> f32 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
+    let t = ((x - from) / width).clamp(0.0, 1.0);
     (t * t) * (3.0 - 2.0 * t)
 }
 
@@ -97,7 +98,7 @@ pub fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
     let away = ratio - 1.0;
-    1.0 + away * (changed * smooth_step(0.05, 0.15, away.abs()))
+    1.0 + away * (changed * smooth_step(0.05, 0.1, away.abs()))
 }
 
 /// What is known of a pixel before the decision.
@@ -147,7 +148,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     if p.relight {
         let relight = if p.blocks { RELIGHT_BLOCKS } else { RELIGHT };
         let from = relight[0] + relight[1] * contrast;
-        let changed = smooth_step(from, 2.0 * from, d);
+        let changed = smooth_step(from, from, d);
         let (c, h) = (e.compared_coarser, e.matched_coarser);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
         let relit = root_difference(e.compared, gains * e.matched);
@@ -159,13 +160,12 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     }
     let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * wanted.finer);
     let scale = if p.blocks { 4.0 } else { 1.0 };
-    let low = tolerance * (GATE[0] * scale + contrast);
-    let high = tolerance * (GATE[1] * scale + contrast);
-    let fit = 1.0 - smooth_step(low, high, d);
+    let fit = 1.0 - smooth_step(tolerance * (GATE[0] * scale + contrast), tolerance * (GATE[1] * scale), d);
     let believed = fit * e.trust;
     let share = believed * wanted.share;
-    // In this form a share of 1 gives the history and one of 0 the candidate, bit for bit.
-    let color = e.candidate * (1.0 - share) + (k * e.history) * share;
+    let history = k * e.history;
+    // A share of 1 gives the history bit for bit, and one of 0 the candidate.
+    let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
     let lod = if wanted.finer > 0.0 {
         (e.history_lod + (e.lod - e.history_lod) * (1.0 - wanted.finer * believed)).min(e.lod)
     } else {

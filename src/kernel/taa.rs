@@ -19,23 +19,22 @@ pub fn to_ycocg(c: Vec3) -> Vec3 {
     Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
 }
 
-/// Back to linear.
+/// Back to square roots, at least 0.
 #[inline]
-pub fn from_ycocg(y: Vec3) -> Vec3 {
+pub fn roots_of_ycocg(y: Vec3) -> Vec3 {
     let outer = y.x - y.z;
-    let r = Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0));
-    r * r
+    Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0))
 }
 
 /// Pulls `history` towards `mean` until it lies in the box of half width `extent` around it.
 #[inline]
 pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     let d = history - mean;
-    let x = d.x.abs() / extent.x.max(1e-6);
-    let y = d.y.abs() / extent.y.max(1e-6);
-    let z = d.z.abs() / extent.z.max(1e-6);
-    let most = x.max(y).max(z);
-    if most > 1.0 { mean + d * (1.0 / most) } else { history }
+    let x = extent.x / d.x.abs().max(1e-6);
+    let y = extent.y / d.y.abs().max(1e-6);
+    let z = extent.z / d.z.abs().max(1e-6);
+    let inside = x.min(y).min(z);
+    if inside < 1.0 { mean + d * inside } else { history }
 }
 
 /// Weight of the candidate for history read `fraction` (each in \[0, 1)) between texels and believed as far as `trust`.
@@ -51,8 +50,8 @@ pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
 #[inline]
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);
-    let variance = squares * (1.0 / 9.0) - mean * mean;
-    let clipped = clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS);
-    let now = to_ycocg(candidate);
-    from_ycocg(clipped + (now - clipped) * alpha)
+    let variance = (squares * 9.0 - sum * sum) * (1.0 / 81.0);
+    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS));
+    let shown = clipped + (roots(candidate) - clipped) * alpha;
+    shown * shown
 }

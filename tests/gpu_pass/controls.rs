@@ -67,7 +67,7 @@ fn every_planted_error_in_the_pass_is_caught() {
         ("if !is_same_surface(", "if false && !is_same_surface("),
         // Counts.
         ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
-        ("count_if(!candidate.usable, COUNT_NONFINITE);", ""),
+        ("count_if(!usable, COUNT_NONFINITE);", ""),
     ] {
         let caught = first_difference(Settings::default(), &mutated(right, wrong));
         println!("'{right}' -> '{wrong}': {caught:?}");

@@ -9,7 +9,7 @@ use afterimage::gpu::{Afterimage, Frame, GpuDesc, shader};
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::{DebugView, PixelTrace};
 use afterimage::kernel::pack;
-use afterimage::settings::Settings;
+use afterimage::settings::{Method, Settings};
 use afterimage::stats::{COUNTERS_BYTES, FrameStats};
 use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 
@@ -82,7 +82,12 @@ pub struct Made {
 impl Rig {
     /// `None`, after saying so, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
-        Self::with_shader(context, settings, &shader::compose("wrs_pass").source)
+        let pass = match settings.method {
+            Method::None | Method::Wrs => "wrs_pass",
+            Method::Taa => "taa_pass",
+            Method::Smr => "smr_pass",
+        };
+        Self::with_shader(context, settings, &shader::compose(pass).source)
     }
 
     /// With another text of the pass on the GPU.
