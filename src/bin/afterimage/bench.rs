@@ -13,7 +13,7 @@ use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
 use afterimage::pipeline::Headless;
 use afterimage::report::clock::{Quartiles, Stopwatch};
-use afterimage::settings::Method;
+use afterimage::settings::{Method, Settings};
 use afterimage::whole_file::write_whole;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub struct BenchArgs {
 /// What can be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process (none, wrs), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
+    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
     Post,
 }
 
@@ -101,10 +101,12 @@ enum Does {
 }
 
 /// The passes, in the order in which each frame times them. The first is what the others are held against.
-const PASSES: [PassKind; 6] = [
+const PASSES: [PassKind; 8] = [
     PassKind { name: "copy", bytes_per_pixel: 48, does: Does::Copy },
     PassKind { name: "none", bytes_per_pixel: 16, does: Does::Post(Method::None) },
     PassKind { name: "wrs", bytes_per_pixel: 48, does: Does::Post(Method::Wrs) },
+    PassKind { name: "taa", bytes_per_pixel: 40, does: Does::Post(Method::Taa) },
+    PassKind { name: "smr", bytes_per_pixel: 48, does: Does::Post(Method::Smr) },
     PassKind { name: "mip", bytes_per_pixel: 27, does: Does::Foveate(Filter::Mip) },
     PassKind { name: "gauss", bytes_per_pixel: 48, does: Does::Foveate(Filter::Gauss) },
     PassKind { name: "block", bytes_per_pixel: 25, does: Does::Foveate(Filter::Block) },
@@ -120,6 +122,7 @@ enum Lane {
 impl Lane {
     fn new(gpu: &Headless, size: [u32; 2], does: Does) -> Result<Self, CreateError> {
         let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
+        desc.settings = Settings::paper();
         Ok(match does {
             Does::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
             Does::Post(method) => {
@@ -218,7 +221,7 @@ fn print(report: &Report) {
             100.0 * share
         );
     }
-    say!("cold start of copy, none and wrs: {:.0} ms", report.cold_start_ms);
+    say!("cold start of copy, none, wrs, taa and smr: {:.0} ms", report.cold_start_ms);
 }
 
 /// Milliseconds of one pass of one frame.
