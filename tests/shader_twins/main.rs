@@ -16,4 +16,5 @@ mod mathematics;
 mod modules;
 mod probe;
 mod state;
+mod surfaces;
 mod values;

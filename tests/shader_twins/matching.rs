@@ -7,23 +7,23 @@ use afterimage::kernel::matched::{self, Evidence, SmrParams};
 use glam::Vec4;
 
 /// Channels of colours as scrubbing leaves them: nothing, dark, negative, the largest half.
-fn channels() -> Vec<u32> {
+pub fn channels() -> Vec<u32> {
     floats(&[0.0, -0.0, 6e-8, 0.002, -0.002, 0.18, 1.0, -0.01, -65504.0, 65504.0])
 }
 
 /// A colour that is remembered: at least 0, of all magnitudes a half has.
-fn remembered(d: &mut Draws) -> [f32; 3] {
+pub fn remembered(d: &mut Draws) -> [f32; 3] {
     let scale = [1.0, 1.0, 1.0, 0.01, 100.0, 65504.0][d.bits() as usize % 6];
     [0; 3].map(|_| if d.bits() % 16 == 0 { 0.0 } else { scale * d.uniform() })
 }
 
 /// A colour like `c`: equal, nearly, or another; now and then a little below 0.
-fn like(d: &mut Draws, c: [f32; 3]) -> [f32; 3] {
+pub fn like(d: &mut Draws, c: [f32; 3]) -> [f32; 3] {
     let spread = [0.0, 1e-3, 0.01, 0.1, 0.5, 1.1][d.bits() as usize % 6];
     c.map(|x| x * (1.0 + spread * d.range(-1.0, 1.0)))
 }
 
-fn push(row: &mut Vec<u32>, values: &[f32]) {
+pub fn push(row: &mut Vec<u32>, values: &[f32]) {
     row.extend(values.iter().map(|x| x.to_bits()));
 }
 
