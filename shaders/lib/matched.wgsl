@@ -66,8 +66,8 @@ fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 // matched::gain
 fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);
-    let away = ratio - 1.0;
-    return 1.0 + away * (changed * smooth_step(0.05, 0.1, abs(away)));
+    let share = changed * smooth_step(0.05, 0.1, abs(ratio - 1.0));
+    return (1.0 - share) + ratio * share;
 }
 
 struct Evidence {

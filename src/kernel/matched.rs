@@ -97,8 +97,9 @@ pub fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 #[inline]
 pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
-    let away = ratio - 1.0;
-    1.0 + away * (changed * smooth_step(0.05, 0.1, away.abs()))
+    let share = changed * smooth_step(0.05, 0.1, (ratio - 1.0).abs());
+    // So that a share of 1 gives the ratio bit for bit. Mesa computes 1 + (ratio - 1) * share thus, too.
+    (1.0 - share) + ratio * share
 }
 
 /// What is known of a pixel before the decision.
