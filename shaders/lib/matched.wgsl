@@ -11,7 +11,6 @@ const GAIN_MOST: f32 = 5.0;
 const DARK: f32 = 0.002;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
-const COHERENT_NEIGHBOURS: u32 = 2u;
 
 struct SmrParams {
     accumulate: f32,
@@ -70,6 +69,17 @@ fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     return (1.0 - share) + ratio * share;
 }
 
+// matched::relight_from
+fn relight_from(contrast: f32, blocks: bool) -> f32 {
+    let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
+    return relight.x + relight.y * contrast;
+}
+
+// matched::is_changed
+fn is_changed(compared: vec3<f32>, matched: vec3<f32>, matched_coarser: vec3<f32>, blocks: bool) -> bool {
+    return root_difference(compared, matched) > relight_from(root_difference(matched, matched_coarser), blocks);
+}
+
 struct Evidence {
     candidate: vec3<f32>,
     compared: vec3<f32>,
@@ -96,8 +106,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
     if p.relight {
-        let relight = select(RELIGHT, RELIGHT_BLOCKS, p.blocks);
-        let low = relight.x + relight.y * contrast;
+        let low = relight_from(contrast, p.blocks);
         let changed = smooth_step(low, low, d);
         let gains = vec3<f32>(
             gain(e.compared_coarser.x, e.matched_coarser.x, changed),

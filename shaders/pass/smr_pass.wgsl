@@ -43,13 +43,10 @@ fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
     if HAS_MOTION == 0u {
         return true;
     }
-    let low = max(px, vec2<u32>(1u)) - 1u;
-    let high = min(px + 1u, frame.size - 1u);
-    let alike = select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(low.x, px.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(high.x, px.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, low.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, high.y), view)));
-    return alike >= COHERENT_NEIGHBOURS;
+    // Within the block of 2x2 pixels; beyond the border the pixel itself.
+    let across = min(px ^ vec2<u32>(1u), frame.size - 1u);
+    return moves_alike(own, motion_at(vec2<u32>(across.x, px.y), view))
+        || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
 }
 
 fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
@@ -72,7 +69,7 @@ struct Matching {
     coarser: vec3<f32>,
 }
 
-// The past at a level of detail around a position, and one level coarser. `smooth_color` is its level 0 there.
+// The past at a level of detail around a position, and the next whole level. `smooth_color` is its level 0 there.
 fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = textureNumLevels(past_chain);
     let limited = min(lod, f32(last));
@@ -84,8 +81,7 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
         first = chain_level(at, level, view);
     }
     let second = chain_level(at, min(level + 1u, last), view);
-    let third = chain_level(at, min(level + 2u, last), view);
-    return Matching(first + (second - first) * fraction, second + (third - second) * fraction);
+    return Matching(first + (second - first) * fraction, second);
 }
 
 fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
@@ -93,14 +89,19 @@ fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
     return color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz).color;
 }
 
-// Mean of four candidates on the diagonals.
-fn candidates_around(px: vec2<u32>, view: u32, radius: f32) -> vec3<f32> {
-    return mean_of_four(
-        candidate_near(px, view, vec2<f32>(-radius, -radius)),
-        candidate_near(px, view, vec2<f32>(radius, -radius)),
-        candidate_near(px, view, vec2<f32>(-radius, radius)),
-        candidate_near(px, view, vec2<f32>(radius, radius)),
-    );
+// Mean of four candidates on the diagonals; black where that is not needed, by a loop without rounds.
+fn candidates_around(px: vec2<u32>, view: u32, radius: f32, needed: bool) -> vec3<f32> {
+    var mean = vec3<f32>(0.0);
+    let rounds = select(0u, 1u, needed);
+    for (var i = 0u; i < rounds; i++) {
+        mean = mean_of_four(
+            candidate_near(px, view, vec2<f32>(-radius, -radius)),
+            candidate_near(px, view, vec2<f32>(radius, -radius)),
+            candidate_near(px, view, vec2<f32>(-radius, radius)),
+            candidate_near(px, view, vec2<f32>(radius, radius)),
+        );
+    }
+    return mean;
 }
 
 fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
@@ -108,13 +109,16 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = chain_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
-    let around = candidates_around(px, view, radius);
+    let matched = exposed(past.matched);
+    let matched_coarser = exposed(past.coarser);
     var compared = candidate;
-    var coarser = around;
+    var reach = radius;
     if FILTER == FILTER_BLOCK {
-        compared = around;
-        coarser = candidates_around(px, view, 2.0 * radius);
+        compared = candidates_around(px, view, radius, true);
+        reach = 2.0 * radius;
     }
+    let changed = RELIGHT_ON != 0u && is_changed(compared, matched, matched_coarser, FILTER == FILTER_BLOCK);
+    let coarser = candidates_around(px, view, reach, changed);
     let evidence = Evidence(
         candidate,
         compared,
@@ -122,8 +126,8 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         lod,
         exposed(history.sharp),
         history.lod,
-        exposed(past.matched),
-        exposed(past.coarser),
+        matched,
+        matched_coarser,
         source.trust,
     );
     let params = SmrParams(

@@ -8,7 +8,7 @@ use super::remembered::{Remembered, Source};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
-use crate::kernel::matched::{self, COHERENT_NEIGHBOURS, Evidence, Matched, SmrParams};
+use crate::kernel::matched::{self, Evidence, Matched, SmrParams};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
 use crate::settings::Settings;
@@ -85,11 +85,9 @@ impl Smr {
             return true;
         }
         let [width, height] = inputs.size;
-        let right = (x + 1).min(width - 1);
-        let below = (y + 1).min(height - 1);
-        let around = [(x.max(1) - 1, y), (right, y), (x, y.max(1) - 1), (x, below)];
-        let alike: u32 = around.iter().map(|&(x, y)| u32::from(matched::moves_alike(own, inputs.motion(x, y)))).sum();
-        alike >= COHERENT_NEIGHBOURS
+        // Within the block of 2x2 pixels; beyond the border the pixel itself.
+        let (across_x, across_y) = ((x ^ 1).min(width - 1), (y ^ 1).min(height - 1));
+        matched::moves_alike(own, inputs.motion(across_x, y)) || matched::moves_alike(own, inputs.motion(x, across_y))
     }
 
     #[inline(always)]
@@ -103,9 +101,12 @@ impl Smr {
         let chain = at.past.chain.expect("smr remembers coarser levels");
         let [matched, matched_coarser] = chain.read(source.at, lod + shift, history.smooth);
         let radius = 0.75 * approx::exp2(lod);
-        let around = self.around(at, x, y, radius);
-        let (compared, compared_coarser) =
-            if self.params.blocks { (around, self.around(at, x, y, 2.0 * radius)) } else { (candidate, around) };
+        let (matched, matched_coarser) = (at.expose(matched), at.expose(matched_coarser));
+        let (compared, reach) =
+            if self.params.blocks { (self.around(at, x, y, radius), 2.0 * radius) } else { (candidate, radius) };
+        let changed =
+            self.params.relight && matched::is_changed(compared, matched, matched_coarser, self.params.blocks);
+        let compared_coarser = if changed { self.around(at, x, y, reach) } else { Vec3::ZERO };
         let evidence = Evidence {
             candidate,
             compared,
@@ -113,8 +114,8 @@ impl Smr {
             lod,
             history: at.expose(history.sharp),
             history_lod: history.lod,
-            matched: at.expose(matched),
-            matched_coarser: at.expose(matched_coarser),
+            matched,
+            matched_coarser,
             trust: source.trust,
         };
         matched::decide(&evidence, &self.params)
