@@ -76,8 +76,14 @@ fn relight_from(contrast: f32, blocks: bool) -> f32 {
 }
 
 // matched::is_changed
-fn is_changed(compared: vec3<f32>, matched: vec3<f32>, matched_coarser: vec3<f32>, blocks: bool) -> bool {
-    return root_difference(compared, matched) > relight_from(root_difference(matched, matched_coarser), blocks);
+fn is_changed(
+    compared: vec3<f32>,
+    matched: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
+    blocks: bool,
+) -> bool {
+    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks);
 }
 
 struct Evidence {
@@ -88,7 +94,8 @@ struct Evidence {
     history: vec3<f32>,
     history_lod: f32,
     matched: vec3<f32>,
-    matched_coarser: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
     trust: f32,
 }
 
@@ -102,16 +109,16 @@ struct Matched {
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let want = wanted(e.lod, e.history_lod, p.accumulate);
-    var contrast = root_difference(e.matched, e.matched_coarser);
+    var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
     if p.relight {
         let low = relight_from(contrast, p.blocks);
         let changed = smooth_step(low, low, d);
         let gains = vec3<f32>(
-            gain(e.compared_coarser.x, e.matched_coarser.x, changed),
-            gain(e.compared_coarser.y, e.matched_coarser.y, changed),
-            gain(e.compared_coarser.z, e.matched_coarser.z, changed),
+            gain(e.compared_coarser.x, e.next_level.x, changed),
+            gain(e.compared_coarser.y, e.next_level.y, changed),
+            gain(e.compared_coarser.z, e.next_level.z, changed),
         );
         let relit = root_difference(e.compared, gains * e.matched);
         if relit < d {

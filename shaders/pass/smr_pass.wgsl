@@ -66,10 +66,11 @@ fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
 
 struct Matching {
     matched: vec3<f32>,
-    coarser: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
 }
 
-// The past at a level of detail around a position, and the next whole level. `smooth_color` is its level 0 there.
+// The past at a level of detail around a position, and at the whole levels around that. `smooth_color` is its level 0 there.
 fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = textureNumLevels(past_chain);
     let limited = min(lod, f32(last));
@@ -81,7 +82,7 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
         first = chain_level(at, level, view);
     }
     let second = chain_level(at, min(level + 1u, last), view);
-    return Matching(first + (second - first) * fraction, second);
+    return Matching(first + (second - first) * fraction, first, second);
 }
 
 fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
@@ -110,14 +111,15 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let past = chain_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
     let matched = exposed(past.matched);
-    let matched_coarser = exposed(past.coarser);
+    let whole_level = exposed(past.level);
+    let next_level = exposed(past.next_level);
     var compared = candidate;
     var reach = radius;
     if FILTER == FILTER_BLOCK {
         compared = candidates_around(px, view, radius, true);
         reach = 2.0 * radius;
     }
-    let changed = RELIGHT_ON != 0u && is_changed(compared, matched, matched_coarser, FILTER == FILTER_BLOCK);
+    let changed = RELIGHT_ON != 0u && is_changed(compared, matched, whole_level, next_level, FILTER == FILTER_BLOCK);
     let coarser = candidates_around(px, view, reach, changed);
     let evidence = Evidence(
         candidate,
@@ -127,7 +129,8 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         exposed(history.sharp),
         history.lod,
         matched,
-        matched_coarser,
+        whole_level,
+        next_level,
         source.trust,
     );
     let params = SmrParams(

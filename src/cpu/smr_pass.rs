@@ -99,13 +99,12 @@ impl Smr {
         // A point sample is noise at its own scale: compare one level coarser.
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let chain = at.past.chain.expect("smr remembers coarser levels");
-        let [matched, matched_coarser] = chain.read(source.at, lod + shift, history.smooth);
+        let [matched, level, next_level] = chain.read(source.at, lod + shift, history.smooth).map(|c| at.expose(c));
         let radius = 0.75 * approx::exp2(lod);
-        let (matched, matched_coarser) = (at.expose(matched), at.expose(matched_coarser));
         let (compared, reach) =
             if self.params.blocks { (self.around(at, x, y, radius), 2.0 * radius) } else { (candidate, radius) };
         let changed =
-            self.params.relight && matched::is_changed(compared, matched, matched_coarser, self.params.blocks);
+            self.params.relight && matched::is_changed(compared, matched, level, next_level, self.params.blocks);
         let compared_coarser = if changed { self.around(at, x, y, reach) } else { Vec3::ZERO };
         let evidence = Evidence {
             candidate,
@@ -115,7 +114,8 @@ impl Smr {
             history: at.expose(history.sharp),
             history_lod: history.lod,
             matched,
-            matched_coarser,
+            level,
+            next_level,
             trust: source.trust,
         };
         matched::decide(&evidence, &self.params)

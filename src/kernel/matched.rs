@@ -108,8 +108,8 @@ pub fn relight_from(contrast: f32, blocks: bool) -> f32 {
 
 /// Whether candidate and history differ by more than detail explains: only then is it of interest what surrounds the candidate.
 #[inline]
-pub fn is_changed(compared: Vec3, matched: Vec3, matched_coarser: Vec3, blocks: bool) -> bool {
-    root_difference(compared, matched) > relight_from(root_difference(matched, matched_coarser), blocks)
+pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, blocks: bool) -> bool {
+    root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks)
 }
 
 /// What is known of a pixel before the decision.
@@ -129,8 +129,10 @@ pub struct Evidence {
     pub history_lod: f32,
     /// History at the level of `compared`.
     pub matched: Vec3,
-    /// History one level coarser.
-    pub matched_coarser: Vec3,
+    /// History at the whole level at or below that.
+    pub level: Vec3,
+    /// History at the next whole level.
+    pub next_level: Vec3,
     /// How far history may be believed, in \[0, 1\].
     pub trust: f32,
 }
@@ -153,13 +155,13 @@ pub struct Matched {
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let wanted = wanted(e.lod, e.history_lod, p.accumulate);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
-    let mut contrast = root_difference(e.matched, e.matched_coarser);
+    let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
     if p.relight {
         let from = relight_from(contrast, p.blocks);
         let changed = smooth_step(from, from, d);
-        let (c, h) = (e.compared_coarser, e.matched_coarser);
+        let (c, h) = (e.compared_coarser, e.next_level);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
         let relit = root_difference(e.compared, gains * e.matched);
         if relit < d {
