@@ -12,9 +12,9 @@ pub enum Method {
     /// Temporal antialiasing, which knows nothing of gaze: the rival.
     Taa,
     /// Scale-matched reservoir: the sharpest sample of each surface point, shown while it explains what the renderer delivers.
+    #[default]
     Smr,
     /// Weighted reservoirs (Cantory et al., MIG 2025).
-    #[default]
     Wrs,
 }
 
@@ -108,7 +108,7 @@ impl Default for Smr {
     }
 }
 
-/// All tunables.
+/// All tunables. The default is [`Settings::steady`], which measures best on real frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// What is done with history.
