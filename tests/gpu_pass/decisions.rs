@@ -28,7 +28,7 @@ fn masked(source: &mut AnalyticSource, index: u64) -> View {
 
 #[test]
 fn debug_views_draw_what_record_decides_next_and_move_nothing() {
-    let base = Settings::default();
+    let base = Settings::paper();
     for settings in [
         base,
         Settings { sampler: Sampler::AEs, gate: None, ..base },
@@ -67,8 +67,8 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
 
 #[test]
 fn counting_changes_nothing_and_may_be_left_out() {
-    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
-    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let mut source = source("lateral");
     for index in 0..6 {
         let views = [masked(&mut source, index)];
@@ -85,7 +85,7 @@ fn counting_changes_nothing_and_may_be_left_out() {
 
 #[test]
 fn counters_without_room_or_use_are_refused() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let texture = |usage| make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, usage);
     let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
     let mut source = source("still");
@@ -111,7 +111,7 @@ fn counters_without_room_or_use_are_refused() {
 #[test]
 fn h63_what_is_odd_about_the_gaze_is_said_at_once() {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
     let texture = |usage| make_texture(&rig.device, &desc, TextureFormat::Rgba32Float, usage);
     let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
     let mut source = source("still");

@@ -94,14 +94,14 @@ fn agree_exposed(
 #[test]
 fn the_default_agrees_bit_for_bit() {
     for scene in ["still", "lateral", "occluder", "light-step", "scroll"] {
-        agree(scene, Settings::default(), |v| v);
+        agree(scene, Settings::paper(), |v| v);
     }
 }
 
 #[test]
 fn taa_and_smr_agree_bit_for_bit() {
     let base =
-        Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::default() };
+        Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::paper() };
     for scene in ["still", "lateral", "occluder", "light-step"] {
         for method in [Method::Taa, Method::Smr] {
             println!("{method:?}");
@@ -112,7 +112,7 @@ fn taa_and_smr_agree_bit_for_bit() {
 
 #[test]
 fn every_variant_agrees_bit_for_bit() {
-    let base = Settings::default();
+    let base = Settings::paper();
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
     let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0 };
     for settings in [
@@ -133,7 +133,7 @@ fn every_variant_agrees_bit_for_bit() {
 
 #[test]
 fn absent_inputs_are_switched_off() {
-    let base = Settings::default();
+    let base = Settings::paper();
     agree("lateral", base, |v| View { depth: None, ..v });
     agree("still", base, |v| View { motion: None, ..v });
     agree("still", base, |v| View { motion: None, depth: None, ..v });
@@ -141,7 +141,7 @@ fn absent_inputs_are_switched_off() {
 
 #[test]
 fn trust_and_exposure_agree_bit_for_bit() {
-    let base = Settings::default();
+    let base = Settings::paper();
     // Some stops up and down, thirds of stops, a fade to nothing, and no change.
     let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
     let exposure = |index: u64| match index % 4 {
@@ -160,7 +160,7 @@ fn trust_and_exposure_agree_bit_for_bit() {
 #[test]
 fn method_none_shows_the_scrubbed_frame() {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
-    let settings = Settings { method: Method::None, ..Settings::default() };
+    let settings = Settings { method: Method::None, ..Settings::paper() };
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     for index in 0..3 {
         let views = [view(&mut source, index)];

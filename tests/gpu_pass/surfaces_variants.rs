@@ -17,7 +17,7 @@ const FRAMES: u64 = 26;
 
 fn settings(method: Method) -> Settings {
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    Settings { method, foveation, ..Settings::default() }
+    Settings { method, foveation, ..Settings::paper() }
 }
 
 fn both_methods() -> [Settings; 2] {

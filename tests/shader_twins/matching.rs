@@ -75,7 +75,7 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
     })
 }
 
-const EVIDENCE: usize = 21;
+const EVIDENCE: usize = 24;
 const DECIDE_IN: usize = EVIDENCE + 5;
 
 fn decide(r: &Row<'_>, o: &mut Out) {
@@ -87,15 +87,16 @@ fn decide(r: &Row<'_>, o: &mut Out) {
         history: r.v(10),
         history_lod: r.f(13),
         matched: r.v(14),
-        matched_coarser: r.v(17),
-        trust: r.f(20),
+        level: r.v(17),
+        next_level: r.v(20),
+        trust: r.f(23),
     };
     let p = SmrParams {
-        accumulate: r.f(21),
-        accumulate_tolerance: r.f(22),
-        tolerance: r.f(23),
-        blocks: r.u(24) != 0,
-        relight: r.u(25) != 0,
+        accumulate: r.f(24),
+        accumulate_tolerance: r.f(25),
+        tolerance: r.f(26),
+        blocks: r.u(27) != 0,
+        relight: r.u(28) != 0,
     };
     let m = matched::decide(&e, &p);
     o.v(m.color);
@@ -114,20 +115,20 @@ fn decide_rows(flags: Option<[u32; 2]>) -> Rows {
     lists.push(&l);
     lists.extend([&h[..]; 3]);
     lists.push(&l);
-    lists.extend([&h[..]; 6]);
+    lists.extend([&h[..]; 9]);
     lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
         let candidate = remembered(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
         let lit = [1.0, 1.0, 1.2, 0.4, 2.0][d.bits() as usize % 5];
-        let [coarser, history, matched, dimmer] = [0; 4].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
+        let [coarser, history, matched, whole, dimmer] = [0; 5].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
         let level = lod(d);
         let past = if d.bits() & 1 == 0 { level } else { lod(d) };
         push(row, &[candidate, compared, coarser].concat());
         push(row, &[level]);
         push(row, &history);
         push(row, &[past]);
-        push(row, &[matched, dimmer].concat());
+        push(row, &[matched, whole, dimmer].concat());
         let trust = if d.bits() & 1 == 0 { 1.0 } else { d.range(0.01, 1.0) };
         push(row, &[trust, d.range(0.0, 0.99), d.range(0.1, 1.0), d.range(0.2, 3.0)]);
         row.push(blocks[d.bits() as usize % blocks.len()]);
@@ -142,8 +143,8 @@ macro_rules! decide_probe {
             module: "matched",
             words: [DECIDE_IN, 6],
             wgsl: concat!(
-                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_f(20u));
-    let m = decide(e, SmrParams(in_f(21u), in_f(22u), in_f(23u), ",
+                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u));
+    let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
                 $blocks,
                 ", ",
                 $relight,
@@ -246,7 +247,35 @@ pub const PROBES: &[Probe] = &[
             })
         },
     },
-    decide_probe!("in_u(24u) != 0u", "in_u(25u) != 0u", None),
+    Probe {
+        name: "relight_from",
+        module: "matched",
+        words: [2, 1],
+        wgsl: "out_f(relight_from(in_f(0u), in_u(1u) != 0u));",
+        rust: |r, o| o.f(matched::relight_from(r.f(0), r.u(1) != 0)),
+        rows: || {
+            Rows::new(2).cross(&[&positive(), &[0, 1]]).random("relight_from", |d, row| {
+                push(row, &[d.range(0.0, 150.0)]);
+                row.push(d.bits() & 1);
+            })
+        },
+    },
+    Probe {
+        name: "is_changed",
+        module: "matched",
+        words: [13, 1],
+        wgsl: "out_b(is_changed(in_v(0u), in_v(3u), in_v(6u), in_v(9u), in_u(12u) != 0u));",
+        rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9), r.u(12) != 0)),
+        rows: || {
+            Rows::new(13).random("is_changed", |d, row| {
+                let compared = remembered(d);
+                let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
+                push(row, &[compared, matched, level, next].concat());
+                row.push(d.bits() & 1);
+            })
+        },
+    },
+    decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", None),
     // As the passes have them: constants of a pipeline, which the compiler folds.
     decide_probe!("false", "true", Some([0, 1])),
     decide_probe!("true", "true", Some([1, 1])),
