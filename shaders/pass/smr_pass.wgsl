@@ -88,18 +88,20 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
     return Matching(first + (second - first) * fraction, second + (third - second) * fraction);
 }
 
-fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
+// Of a broken pixel nothing is known, least of all that it is black: `own` stands in.
+fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
     let at = clamp(floor(vec2<f32>(px) + offset + 0.5), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
-    return color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz).color;
+    let near = color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz);
+    return select(own, near.color, near.usable);
 }
 
-// Mean of four candidates on the diagonals.
-fn candidates_around(px: vec2<u32>, view: u32, radius: f32) -> vec3<f32> {
+// Mean of four candidates on the diagonals of one that is usable.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32) -> vec3<f32> {
     return mean_of_four(
-        candidate_near(px, view, vec2<f32>(-radius, -radius)),
-        candidate_near(px, view, vec2<f32>(radius, -radius)),
-        candidate_near(px, view, vec2<f32>(-radius, radius)),
-        candidate_near(px, view, vec2<f32>(radius, radius)),
+        candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
+        candidate_near(px, view, own, vec2<f32>(radius, -radius)),
+        candidate_near(px, view, own, vec2<f32>(-radius, radius)),
+        candidate_near(px, view, own, vec2<f32>(radius, radius)),
     );
 }
 
@@ -108,12 +110,12 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = chain_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
-    let around = candidates_around(px, view, radius);
+    let around = candidates_around(px, view, candidate, radius);
     var compared = candidate;
     var coarser = around;
     if FILTER == FILTER_BLOCK {
         compared = around;
-        coarser = candidates_around(px, view, 2.0 * radius);
+        coarser = candidates_around(px, view, candidate, 2.0 * radius);
     }
     let evidence = Evidence(
         candidate,
@@ -160,6 +162,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             made = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
+    // Gains, and the lobes of the resampling, reach beyond what halves hold.
+    made.color = min(made.color, vec3<f32>(MAX_HALF));
     count_if(valid && made.share == 0.0, COUNT_REPLACED);
     let sharpness = 16.0 * exp2(-max(made.lod, 0.0));
     show(
