@@ -85,21 +85,23 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
     return Matching(first + (second - first) * fraction, first, second);
 }
 
-fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
+// Of a broken pixel nothing is known, least of all that it is black: `own` stands in.
+fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
     let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
-    return color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz).color;
+    let near = color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz);
+    return select(own, near.color, near.usable);
 }
 
-// Mean of four candidates on the diagonals; black where that is not needed, by a loop without rounds.
-fn candidates_around(px: vec2<u32>, view: u32, radius: f32, needed: bool) -> vec3<f32> {
+// Mean of four candidates on the diagonals of one that is usable; black where that is not needed, by a loop without rounds.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
         mean = mean_of_four(
-            candidate_near(px, view, vec2<f32>(-radius, -radius)),
-            candidate_near(px, view, vec2<f32>(radius, -radius)),
-            candidate_near(px, view, vec2<f32>(-radius, radius)),
-            candidate_near(px, view, vec2<f32>(radius, radius)),
+            candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
+            candidate_near(px, view, own, vec2<f32>(radius, -radius)),
+            candidate_near(px, view, own, vec2<f32>(-radius, radius)),
+            candidate_near(px, view, own, vec2<f32>(radius, radius)),
         );
     }
     return mean;
@@ -116,11 +118,11 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     var compared = candidate;
     var reach = radius;
     if FILTER == FILTER_BLOCK {
-        compared = candidates_around(px, view, radius, true);
+        compared = candidates_around(px, view, candidate, radius, true);
         reach = 2.0 * radius;
     }
     let changed = RELIGHT_ON != 0u && is_changed(compared, matched, whole_level, next_level, FILTER == FILTER_BLOCK);
-    let coarser = candidates_around(px, view, reach, changed);
+    let coarser = candidates_around(px, view, candidate, reach, changed);
     let evidence = Evidence(
         candidate,
         compared,
@@ -167,6 +169,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             made = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
+    // Gains, and the lobes of the resampling, reach beyond what halves hold.
+    made.color = min(made.color, vec3<f32>(MAX_HALF));
     count_if(valid && made.share == 0.0, COUNT_REPLACED);
     let sharpness = 16.0 * exp2(-max(made.lod, 0.0));
     show(

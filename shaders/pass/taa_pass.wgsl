@@ -8,14 +8,15 @@ struct Neighbourhood {
     squares: vec3<f32>,
 }
 
-// Sums of colours and of their squares over 3x3 pixels, in YCoCg. A loop of unknown length: a known one is unrolled, and Mesa reorders
-// the sums of products that it then sees.
-fn neighbourhood(px: vec2<u32>, view: u32, needed: bool) -> Neighbourhood {
+// Sums of colours and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose colour is `own`. A loop
+// of unknown length: a known one is unrolled, and Mesa reorders the sums of products that it then sees.
+fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neighbourhood {
     var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let at = max(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u)) - 1u;
-        let v = to_ycocg(color(textureLoad(color_in, min(at, frame.size - 1u), view, 0).xyz).color);
+        let near = color(textureLoad(color_in, min(at, frame.size - 1u), view, 0).xyz);
+        let v = to_ycocg(select(own, near.color, near.usable));
         around.sum += v;
         around.squares += v * v;
     }
@@ -32,7 +33,7 @@ fn pixel(px: vec2<u32>, view: u32) {
 
     var shown = candidate.color;
     var share = 0.0;
-    let around = neighbourhood(px, view, valid && candidate.usable);
+    let around = neighbourhood(px, view, candidate.color, valid && candidate.usable);
     let resampled = resample(source, view, valid);
     if valid {
         let history = exposed(resampled.sharp);
@@ -45,6 +46,8 @@ fn pixel(px: vec2<u32>, view: u32) {
             share = 1.0;
         }
     }
+    // The lobes of the resampling reach beyond what halves hold.
+    shown = min(shown, vec3<f32>(MAX_HALF));
     let age = select(0u, MAX_AGE, valid);
     show(px, view, shown, PixelTrace(1.0 - share, 0.0, age, share, source.verdict, 1.0, !valid, motion));
     if VIEW != 0u {

@@ -10,6 +10,7 @@ use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
 use crate::kernel::matched::{self, Evidence, Matched, SmrParams};
 use crate::kernel::reproject::Verdict;
+use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -51,6 +52,8 @@ impl Smr {
                 made = self.matched(at, x, y, candidate, lod, &source);
             }
         }
+        // Gains, and the lobes of the resampling, reach beyond what halves hold.
+        made.color = made.color.min(Vec3::splat(MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && made.share == 0.0);
         // Colours of a moving silhouette mix two surfaces: shown, but not kept.
         let stored_lod = if coherent || made.lod < 0.0 { made.lod } else { MAX_LOD };
@@ -102,10 +105,10 @@ impl Smr {
         let [matched, level, next_level] = chain.read(source.at, lod + shift, history.smooth).map(|c| at.expose(c));
         let radius = 0.75 * approx::exp2(lod);
         let (compared, reach) =
-            if self.params.blocks { (self.around(at, x, y, radius), 2.0 * radius) } else { (candidate, radius) };
+            if self.params.blocks { (self.around(at, x, y, candidate, radius), 2.0 * radius) } else { (candidate, radius) };
         let changed =
             self.params.relight && matched::is_changed(compared, matched, level, next_level, self.params.blocks);
-        let compared_coarser = if changed { self.around(at, x, y, reach) } else { Vec3::ZERO };
+        let compared_coarser = if changed { self.around(at, x, y, candidate, reach) } else { Vec3::ZERO };
         let evidence = Evidence {
             candidate,
             compared,
@@ -121,15 +124,19 @@ impl Smr {
         matched::decide(&evidence, &self.params)
     }
 
-    /// Mean of four candidates on the diagonals.
+    /// Mean of four candidates on the diagonals of one that is usable.
     #[inline(always)]
-    fn around(&self, at: &Remembered<'_>, x: u32, y: u32, radius: f32) -> Vec3 {
+    fn around(&self, at: &Remembered<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
         let [width, height] = at.inputs.size.map(|s| (s - 1) as f32);
         let tap = |sx: f32, sy: f32| {
             // The product last, as compilers order such sums.
             let tx = ((x as f32 + 0.5) + sx * radius).floor().clamp(0.0, width);
             let ty = ((y as f32 + 0.5) + sy * radius).floor().clamp(0.0, height);
-            at.inputs.candidate(tx as u32, ty as u32).0
+            match at.inputs.candidate(tx as u32, ty as u32) {
+                (color, true) => color,
+                // Of a broken pixel nothing is known, least of all that it is black.
+                (_, false) => own,
+            }
         };
         mean_of_four(tap(-1.0, -1.0), tap(1.0, -1.0), tap(-1.0, 1.0), tap(1.0, 1.0))
     }

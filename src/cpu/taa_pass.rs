@@ -7,6 +7,7 @@ use super::remembered::Remembered;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::pack::MAX_AGE;
 use crate::kernel::reproject::Verdict;
+use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
 use crate::stats::FrameStats;
@@ -29,13 +30,15 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
         stored_lod = 0.0;
         if usable {
             let alpha = taa::candidate_share(source.fraction, source.trust);
-            let (sum, squares) = neighbourhood(at, x, y);
+            let (sum, squares) = neighbourhood(at, x, y, candidate);
             shown = taa::blend_clipped(candidate, history, sum, squares, alpha);
             share = 1.0 - alpha;
         } else {
             (shown, share) = (history, 1.0);
         }
     }
+    // The lobes of the resampling reach beyond what halves hold.
+    shown = shown.min(Vec3::splat(MAX_HALF));
     let trace = PixelTrace {
         weight: 1.0 - share,
         w_sum: 0.0,
@@ -49,15 +52,16 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
     (shown, pack_surface(Surface { color: shown, lod: stored_lod, disparity }), trace)
 }
 
-/// Sums of colours and of their squares over 3x3 pixels, in YCoCg.
+/// Sums of colours and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose colour is `own`.
 #[inline(always)]
-fn neighbourhood(at: &Remembered<'_>, x: u32, y: u32) -> (Vec3, Vec3) {
+fn neighbourhood(at: &Remembered<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
     let [width, height] = at.inputs.size;
     let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
     for tap in 0..9 {
         let nx = (x + tap % 3).max(1) - 1;
         let ny = (y + tap / 3).max(1) - 1;
-        let v = taa::to_ycocg(at.inputs.candidate(nx.min(width - 1), ny.min(height - 1)).0);
+        let (color, usable) = at.inputs.candidate(nx.min(width - 1), ny.min(height - 1));
+        let v = taa::to_ycocg(if usable { color } else { own });
         sum += v;
         squares += v * v;
     }

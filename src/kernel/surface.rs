@@ -39,8 +39,8 @@ impl Surface {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0 };
 }
 
-/// A half-float without sign and without the last bit of its mantissa: 5 bits of exponent, 9 of mantissa, so at most 2^-10 of
-/// the value off. Negative values become 0.
+/// A half-float without sign and without the last bit of its mantissa: 5 bits of exponent, 9 of mantissa. Rounded by way of
+/// the half, so at most 1.5 * 2^-10 of the value off. Negative values become 0.
 #[inline]
 pub fn half14_bits(x: f32) -> u32 {
     let positive = if x > 0.0 { x } else { 0.0 };
