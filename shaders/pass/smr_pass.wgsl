@@ -89,7 +89,7 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
 }
 
 fn candidate_near(px: vec2<u32>, view: u32, offset: vec2<f32>) -> vec3<f32> {
-    let at = clamp(floor(vec2<f32>(px) + offset + 0.5), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
+    let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
     return color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz).color;
 }
 

@@ -125,8 +125,9 @@ impl Smr {
     fn around(&self, at: &Remembered<'_>, x: u32, y: u32, radius: f32) -> Vec3 {
         let [width, height] = at.inputs.size.map(|s| (s - 1) as f32);
         let tap = |sx: f32, sy: f32| {
-            let tx = (x as f32 + sx * radius + 0.5).floor().clamp(0.0, width);
-            let ty = (y as f32 + sy * radius + 0.5).floor().clamp(0.0, height);
+            // The product last, as compilers order such sums.
+            let tx = ((x as f32 + 0.5) + sx * radius).floor().clamp(0.0, width);
+            let ty = ((y as f32 + 0.5) + sy * radius).floor().clamp(0.0, height);
             at.inputs.candidate(tx as u32, ty as u32).0
         };
         mean_of_four(tap(-1.0, -1.0), tap(1.0, -1.0), tap(-1.0, 1.0), tap(1.0, 1.0))

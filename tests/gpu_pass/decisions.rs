@@ -29,9 +29,13 @@ fn masked(source: &mut AnalyticSource, index: u64) -> View {
 #[test]
 fn debug_views_draw_what_record_decides_next_and_move_nothing() {
     let base = Settings::default();
-    for settings in
-        [base, Settings { sampler: Sampler::AEs, gate: None, ..base }, Settings { method: Method::None, ..base }]
-    {
+    for settings in [
+        base,
+        Settings { sampler: Sampler::AEs, gate: None, ..base },
+        Settings { method: Method::None, ..base },
+        Settings { method: Method::Taa, ..base },
+        Settings { method: Method::Smr, ..base },
+    ] {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let Some(mut undisturbed) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let mut source = source("occluder");

@@ -15,7 +15,7 @@ use wgpu::{TextureFormat, TextureUsages};
 const SIZE: [u32; 2] = [70, 40];
 
 /// Colours that are noise, moving by whole and half pixels, over two depths.
-fn noise_view(name: &str, desc: &ContextDesc) -> View {
+pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
     let mut draws = Draws::new(name);
     let size = desc.size_px;
     let scale = desc.motion.to_internal(size);
@@ -39,6 +39,7 @@ fn noise_view(name: &str, desc: &ContextDesc) -> View {
             [m[0] / scale[0], m[1] / scale[1]]
         })),
         trust: None,
+        lod: None,
     }
 }
 

@@ -13,19 +13,23 @@ const FRAMES: u64 = 40;
 
 /// Frame `index` of a scene as a foveating renderer would deliver it, damaged here and there.
 pub fn view(source: &mut AnalyticSource, index: u64) -> View {
+    foveated(source, index, &Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() })
+}
+
+/// The same by another renderer.
+pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) -> View {
     let mut draws = Draws::new(&format!("damage {index}"));
     let frame = source.frame(index).unwrap();
     let geometry = *source.view();
     // The eye drifts, and jumps every ten frames; it is lost for a while.
     let jump = (index / 10) as f32;
     let px = [30.0 + 25.0 * jump + 0.3 * index as f32, 60.0 - 12.0 * jump];
-    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
-    let mut color = foveation.render(&Pyramid::new(frame.color, 3), &lods);
+    let mut color = foveation.render(&Pyramid::new(frame.color, foveation.max_level()), &lods);
     let mut motion = frame.motion.unwrap();
     let mut depth = frame.depth.unwrap();
     for _ in 0..20 {
-        let i = (draws.uniform() * (SIZE[0] * SIZE[1]) as f32) as usize;
+        let i = (draws.uniform() * color.pixels().len() as f32) as usize;
         let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -3.0][draws.bits() as usize % 5];
         match draws.bits() % 3 {
             0 => color.pixels_mut()[i][1] = bad,
@@ -35,7 +39,7 @@ pub fn view(source: &mut AnalyticSource, index: u64) -> View {
     }
     let gaze = if (13..17).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { geometry, gaze, previous_from_current: frame.previous_from_current };
-    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None }
+    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None }
 }
 
 /// A mask that moves over the frame: full trust, none, some, and numbers that are none.
