@@ -155,7 +155,7 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
-            ("compared = candidates_around(px, view, radius, true);", ""),
+            ("compared = candidates_around(px, view, candidate, radius, true);", ""),
             ("reach = 2.0 * radius;", ""),
             ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
             ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),

@@ -14,7 +14,7 @@ pub fn channels() -> Vec<u32> {
 /// A colour that is remembered: at least 0, of all magnitudes a half has.
 pub fn remembered(d: &mut Draws) -> [f32; 3] {
     let scale = [1.0, 1.0, 1.0, 0.01, 100.0, 65504.0][d.bits() as usize % 6];
-    [0; 3].map(|_| if d.bits() % 16 == 0 { 0.0 } else { scale * d.uniform() })
+    [0; 3].map(|_| if d.bits().is_multiple_of(16) { 0.0 } else { scale * d.uniform() })
 }
 
 /// A colour like `c`: equal, nearly, or another; now and then a little below 0.

@@ -74,7 +74,7 @@ fn read_twelve(r: &Row<'_>, o: &mut Out) {
 /// Sums over nine neighbours, near each other or not, as the pass makes them.
 fn push_box(d: &mut Draws, row: &mut Vec<u32>, center: [f32; 3]) {
     let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-    let flat = d.bits() % 4 == 0;
+    let flat = d.bits().is_multiple_of(4);
     for _ in 0..9 {
         let v = taa::to_ycocg(Vec3::from(if flat { center } else { like(d, center) }));
         sum += v;
