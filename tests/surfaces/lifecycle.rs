@@ -176,3 +176,27 @@ fn a_camera_that_drives_keeps_what_it_drives_at() {
         }
     }
 }
+
+#[test]
+fn h58_nothing_is_read_over_a_depth_edge() {
+    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colours show any that do.
+    let near = |[x, _]: [u32; 2]| x < 26;
+    let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };
+    for (depth, bleeds) in [(Some(Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 })), false), (None, true)] {
+        let input = Input {
+            depth,
+            motion: Some(Image::filled(SIZE, [-0.25, 0.0])),
+            ..Input::sharp(Image::from_fn(SIZE, |at| colors(near(at))))
+        };
+        let mut post = context(Method::Taa);
+        let mut worst = 0.0_f32;
+        for index in 0..20 {
+            let made = step(&mut post, index, &input);
+            let pairs = made.shown.pixels().iter().flatten().zip(input.color.pixels().iter().flatten());
+            worst = pairs.fold(worst, |w, (a, b)| w.max((a - b).abs() / b));
+        }
+        println!("off by {worst:.4}");
+        // Storage alone is off by 1.5 * 2^-10, and by up to three times that before a share of 0.3 tells.
+        assert_eq!(worst > 0.006, bleeds, "{worst}");
+    }
+}
