@@ -104,8 +104,11 @@ impl Smr {
         let chain = at.past.chain.expect("smr remembers coarser levels");
         let [matched, level, next_level] = chain.read(source.at, lod + shift, history.smooth).map(|c| at.expose(c));
         let radius = 0.75 * approx::exp2(lod);
-        let (compared, reach) =
-            if self.params.blocks { (self.around(at, x, y, candidate, radius), 2.0 * radius) } else { (candidate, radius) };
+        let (compared, reach) = if self.params.blocks {
+            (self.around(at, x, y, candidate, radius), 2.0 * radius)
+        } else {
+            (candidate, radius)
+        };
         let changed =
             self.params.relight && matched::is_changed(compared, matched, level, next_level, self.params.blocks);
         let compared_coarser = if changed { self.around(at, x, y, candidate, reach) } else { Vec3::ZERO };

@@ -279,8 +279,7 @@ fn contexts_that_cannot_be_are_refused() {
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = gpu::device() else { return };
     let pixels = u64::from(SIZE[0] * SIZE[1]);
-    let mut desc =
-        GpuDesc { settings: Settings::paper(), ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
+    let mut desc = GpuDesc { settings: Settings::paper(), ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
     assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 24 * pixels);
     desc.settings.sampler = Sampler::AEs;
     assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 32 * pixels);

@@ -52,8 +52,7 @@ fn h44_a_steep_floor_under_jitter_is_not_flushed() {
         assert_eq!(one(&mut rig, index, floor(0.5 * (index % 2) as f32)).0.stats.flushed(), 0, "frame {index}");
     }
     let test = Some(DepthTest { slope_px: 0.0, ..DepthTest::default() });
-    let Some(mut strict) = Rig::new(ContextDesc::new(SIZE), Settings { depth_test: test, ..Settings::paper() })
-    else {
+    let Some(mut strict) = Rig::new(ContextDesc::new(SIZE), Settings { depth_test: test, ..Settings::paper() }) else {
         return;
     };
     one(&mut strict, 0, floor(0.0));

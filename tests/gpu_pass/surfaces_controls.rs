@@ -138,7 +138,7 @@ fn every_planted_error_in_smr_is_caught() {
             ("select(-1.0, lod, candidate.usable)", "lod"),
             ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
             // Quality of what is stored.
-            ("let low = relight.x + relight.y * contrast;", "let low = relight.x;"),
+            ("return relight.x + relight.y * contrast;", "return relight.x;"),
             ("1.0 - want.finer * believed", "1.0 - believed"),
             ("count_if(valid && made.share == 0.0, COUNT_REPLACED);", ""),
         ],
