@@ -140,10 +140,12 @@ impl Foveation {
     }
 
     /// How coarse the middle region is, and beyond: levels of detail, or the largest standard deviations of a blur in pixels.
+    #[cfg(feature = "gpu")]
     pub(crate) fn coarseness(&self) -> [f32; 2] {
         match self.filter {
+            Filter::Off => [0.0, 0.0],
             Filter::Gauss => [self.sigma_mid_px(), self.sigma_far_px()],
-            _ => [self.lod_mid(), self.lod_far()],
+            Filter::Mip | Filter::Block => [self.lod_mid(), self.lod_far()],
         }
     }
 

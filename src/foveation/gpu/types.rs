@@ -42,11 +42,7 @@ pub struct FoveationConstants {
 impl FoveationConstants {
     /// Constants of a frame without its views.
     pub(super) fn new(foveation: &Foveation, size: [u32; 2]) -> Self {
-        let (mid, far) = match foveation.filter {
-            Filter::Off => (0.0, 0.0),
-            Filter::Gauss => (foveation.sigma_mid_px(), foveation.sigma_far_px()),
-            Filter::Mip | Filter::Block => (foveation.lod_mid(), foveation.lod_far()),
-        };
+        let [mid, far] = foveation.coarseness();
         Self {
             size,
             coarsest: if foveation.filter == Filter::Off { 0 } else { foveation.max_level() },
