@@ -14,7 +14,7 @@ use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler};
 use afterimage::source::{self, ReadLimits, SceneOptions};
 
 fn variants() -> Vec<(&'static str, LaneKind)> {
-    let paper = Settings::default();
+    let paper = Settings::paper();
     let gate = |divisor, offset| Some(Gate { divisor, offset, ..Gate::default() });
     let ungated = Settings { gate: None, ..paper };
     let list = [

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Without the gate, which on a still can only lose detail.
     let none = Settings { method: Method::None, ..Settings::default() };
-    let lanes = [none, Settings { gate: None, ..Settings::default() }].map(LaneKind::PostProcess);
+    let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Gpu(gpu))?;
     let mut last = None;

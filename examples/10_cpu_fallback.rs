@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Software adapters do not count: the CPU executor needs no driver.
     let gpu = Headless::find(false);
     println!("chosen: {}", gpu.as_ref().map_or("the CPU", |g| &g.info.name));
-    let settings = Settings { gate: None, ..Settings::default() };
+    let settings = Settings::default();
     let mut chosen = Post::new(gpu, settings)?;
     // To compare: the other one, if there is any adapter at all.
     let mut other = match &chosen {

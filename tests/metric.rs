@@ -50,7 +50,7 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
 }
 
 fn source_frame(color: Image<[f32; 3]>) -> SourceFrame {
-    SourceFrame { color, depth: None, motion: None, previous_from_current: None, cut: false, nonfinite: 0 }
+    SourceFrame { color, depth: None, motion: None, trust: None, previous_from_current: None, cut: false, nonfinite: 0 }
 }
 
 #[test]

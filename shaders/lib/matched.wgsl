@@ -11,7 +11,6 @@ const GAIN_MOST: f32 = 5.0;
 const DARK: f32 = 0.002;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
-const COHERENT_NEIGHBOURS: u32 = 2u;
 
 struct SmrParams {
     accumulate: f32,
@@ -66,8 +65,25 @@ fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 // matched::gain
 fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);
-    let away = ratio - 1.0;
-    return 1.0 + away * (changed * smooth_step(0.05, 0.1, abs(away)));
+    let share = changed * smooth_step(0.05, 0.1, abs(ratio - 1.0));
+    return (1.0 - share) + ratio * share;
+}
+
+// matched::relight_from
+fn relight_from(contrast: f32, blocks: bool) -> f32 {
+    let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
+    return relight.x + relight.y * contrast;
+}
+
+// matched::is_changed
+fn is_changed(
+    compared: vec3<f32>,
+    matched: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
+    blocks: bool,
+) -> bool {
+    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks);
 }
 
 struct Evidence {
@@ -78,7 +94,8 @@ struct Evidence {
     history: vec3<f32>,
     history_lod: f32,
     matched: vec3<f32>,
-    matched_coarser: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
     trust: f32,
 }
 
@@ -92,17 +109,16 @@ struct Matched {
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let want = wanted(e.lod, e.history_lod, p.accumulate);
-    var contrast = root_difference(e.matched, e.matched_coarser);
+    var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
     if p.relight {
-        let relight = select(RELIGHT, RELIGHT_BLOCKS, p.blocks);
-        let low = relight.x + relight.y * contrast;
+        let low = relight_from(contrast, p.blocks);
         let changed = smooth_step(low, low, d);
         let gains = vec3<f32>(
-            gain(e.compared_coarser.x, e.matched_coarser.x, changed),
-            gain(e.compared_coarser.y, e.matched_coarser.y, changed),
-            gain(e.compared_coarser.z, e.matched_coarser.z, changed),
+            gain(e.compared_coarser.x, e.next_level.x, changed),
+            gain(e.compared_coarser.y, e.next_level.y, changed),
+            gain(e.compared_coarser.z, e.next_level.z, changed),
         );
         let relit = root_difference(e.compared, gains * e.matched);
         if relit < d {

@@ -43,13 +43,10 @@ fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
     if HAS_MOTION == 0u {
         return true;
     }
-    let low = max(px, vec2<u32>(1u)) - 1u;
-    let high = min(px + 1u, frame.size - 1u);
-    let alike = select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(low.x, px.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(high.x, px.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, low.y), view)))
-        + select(0u, 1u, moves_alike(own, motion_at(vec2<u32>(px.x, high.y), view)));
-    return alike >= COHERENT_NEIGHBOURS;
+    // Within the block of 2x2 pixels; beyond the border the pixel itself.
+    let across = min(px ^ vec2<u32>(1u), frame.size - 1u);
+    return moves_alike(own, motion_at(vec2<u32>(across.x, px.y), view))
+        || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
 }
 
 fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
@@ -69,10 +66,11 @@ fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
 
 struct Matching {
     matched: vec3<f32>,
-    coarser: vec3<f32>,
+    level: vec3<f32>,
+    next_level: vec3<f32>,
 }
 
-// The past at a level of detail around a position, and one level coarser. `smooth_color` is its level 0 there.
+// The past at a level of detail around a position, and at the whole levels around that. `smooth_color` is its level 0 there.
 fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = textureNumLevels(past_chain);
     let limited = min(lod, f32(last));
@@ -84,25 +82,29 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
         first = chain_level(at, level, view);
     }
     let second = chain_level(at, min(level + 1u, last), view);
-    let third = chain_level(at, min(level + 2u, last), view);
-    return Matching(first + (second - first) * fraction, second + (third - second) * fraction);
+    return Matching(first + (second - first) * fraction, first, second);
 }
 
 // Of a broken pixel nothing is known, least of all that it is black: `own` stands in.
 fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
-    let at = clamp(floor(vec2<f32>(px) + offset + 0.5), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
+    let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
     let near = color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz);
     return select(own, near.color, near.usable);
 }
 
-// Mean of four candidates on the diagonals of one that is usable.
-fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32) -> vec3<f32> {
-    return mean_of_four(
-        candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
-        candidate_near(px, view, own, vec2<f32>(radius, -radius)),
-        candidate_near(px, view, own, vec2<f32>(-radius, radius)),
-        candidate_near(px, view, own, vec2<f32>(radius, radius)),
-    );
+// Mean of four candidates on the diagonals of one that is usable; black where that is not needed, by a loop without rounds.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
+    var mean = vec3<f32>(0.0);
+    let rounds = select(0u, 1u, needed);
+    for (var i = 0u; i < rounds; i++) {
+        mean = mean_of_four(
+            candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
+            candidate_near(px, view, own, vec2<f32>(radius, -radius)),
+            candidate_near(px, view, own, vec2<f32>(-radius, radius)),
+            candidate_near(px, view, own, vec2<f32>(radius, radius)),
+        );
+    }
+    return mean;
 }
 
 fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
@@ -110,13 +112,17 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = chain_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
-    let around = candidates_around(px, view, candidate, radius);
+    let matched = exposed(past.matched);
+    let whole_level = exposed(past.level);
+    let next_level = exposed(past.next_level);
     var compared = candidate;
-    var coarser = around;
+    var reach = radius;
     if FILTER == FILTER_BLOCK {
-        compared = around;
-        coarser = candidates_around(px, view, candidate, 2.0 * radius);
+        compared = candidates_around(px, view, candidate, radius, true);
+        reach = 2.0 * radius;
     }
+    let changed = RELIGHT_ON != 0u && is_changed(compared, matched, whole_level, next_level, FILTER == FILTER_BLOCK);
+    let coarser = candidates_around(px, view, candidate, reach, changed);
     let evidence = Evidence(
         candidate,
         compared,
@@ -124,8 +130,9 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         lod,
         exposed(history.sharp),
         history.lod,
-        exposed(past.matched),
-        exposed(past.coarser),
+        matched,
+        whole_level,
+        next_level,
         source.trust,
     );
     let params = SmrParams(

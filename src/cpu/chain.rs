@@ -62,15 +62,16 @@ impl Chain {
         chain_bilinear([texel(x0, y0), texel(x1, y0)], [texel(x0, y1), texel(x1, y1)], [fx, fy])
     }
 
-    /// The view at a level of detail around a position in pixels, and one level coarser. `smooth` is its level 0 there.
-    pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 2] {
+    /// The view at a level of detail around a position in pixels, and at the whole levels around that. `smooth` is its level 0
+    /// there.
+    pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 3] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);
         let whole = lod.floor();
         let fraction = lod - whole;
         let level = whole as u32;
         let at_level = |l: u32| if l == 0 { smooth } else { self.bilinear(at, l.min(last)) };
-        let levels = [at_level(level), at_level(level + 1), at_level(level + 2)];
-        [0, 1].map(|i| levels[i] + (levels[i + 1] - levels[i]) * fraction)
+        let [first, second] = [at_level(level), at_level(level + 1)];
+        [first + (second - first) * fraction, first, second]
     }
 }

@@ -8,7 +8,7 @@ use super::remembered::{Remembered, Source};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
-use crate::kernel::matched::{self, COHERENT_NEIGHBOURS, Evidence, Matched, SmrParams};
+use crate::kernel::matched::{self, Evidence, Matched, SmrParams};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
@@ -88,11 +88,9 @@ impl Smr {
             return true;
         }
         let [width, height] = inputs.size;
-        let right = (x + 1).min(width - 1);
-        let below = (y + 1).min(height - 1);
-        let around = [(x.max(1) - 1, y), (right, y), (x, y.max(1) - 1), (x, below)];
-        let alike: u32 = around.iter().map(|&(x, y)| u32::from(matched::moves_alike(own, inputs.motion(x, y)))).sum();
-        alike >= COHERENT_NEIGHBOURS
+        // Within the block of 2x2 pixels; beyond the border the pixel itself.
+        let (across_x, across_y) = ((x ^ 1).min(width - 1), (y ^ 1).min(height - 1));
+        matched::moves_alike(own, inputs.motion(across_x, y)) || matched::moves_alike(own, inputs.motion(x, across_y))
     }
 
     #[inline(always)]
@@ -104,14 +102,16 @@ impl Smr {
         // A point sample is noise at its own scale: compare one level coarser.
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let chain = at.past.chain.expect("smr remembers coarser levels");
-        let [matched, matched_coarser] = chain.read(source.at, lod + shift, history.smooth);
+        let [matched, level, next_level] = chain.read(source.at, lod + shift, history.smooth).map(|c| at.expose(c));
         let radius = 0.75 * approx::exp2(lod);
-        let around = self.around(at, x, y, candidate, radius);
-        let (compared, compared_coarser) = if self.params.blocks {
-            (around, self.around(at, x, y, candidate, 2.0 * radius))
+        let (compared, reach) = if self.params.blocks {
+            (self.around(at, x, y, candidate, radius), 2.0 * radius)
         } else {
-            (candidate, around)
+            (candidate, radius)
         };
+        let changed =
+            self.params.relight && matched::is_changed(compared, matched, level, next_level, self.params.blocks);
+        let compared_coarser = if changed { self.around(at, x, y, candidate, reach) } else { Vec3::ZERO };
         let evidence = Evidence {
             candidate,
             compared,
@@ -119,8 +119,9 @@ impl Smr {
             lod,
             history: at.expose(history.sharp),
             history_lod: history.lod,
-            matched: at.expose(matched),
-            matched_coarser: at.expose(matched_coarser),
+            matched,
+            level,
+            next_level,
             trust: source.trust,
         };
         matched::decide(&evidence, &self.params)
@@ -131,8 +132,9 @@ impl Smr {
     fn around(&self, at: &Remembered<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
         let [width, height] = at.inputs.size.map(|s| (s - 1) as f32);
         let tap = |sx: f32, sy: f32| {
-            let tx = (x as f32 + sx * radius + 0.5).floor().clamp(0.0, width);
-            let ty = (y as f32 + sy * radius + 0.5).floor().clamp(0.0, height);
+            // The product last, as compilers order such sums.
+            let tx = ((x as f32 + 0.5) + sx * radius).floor().clamp(0.0, width);
+            let ty = ((y as f32 + 0.5) + sy * radius).floor().clamp(0.0, height);
             match at.inputs.candidate(tx as u32, ty as u32) {
                 (color, true) => color,
                 // Of a broken pixel nothing is known, least of all that it is black.

@@ -13,6 +13,9 @@ use crate::settings::{Method, Settings};
 use crate::stats::FrameStats;
 use rayon::prelude::*;
 
+/// What is stored, shown and traced of a row of pixels.
+type Row<'a> = (&'a mut [[u32; 2]], &'a mut [[f32; 3]], Option<&'a mut [PixelTrace]>);
+
 pub(super) fn run(
     desc: &ContextDesc,
     settings: &Settings,
@@ -37,23 +40,22 @@ pub(super) fn run(
             .zip(output[i].pixels_mut().chunks_mut(width))
             .map(|(words, out)| (words, out, traces.as_mut().and_then(Iterator::next)))
             .collect();
-        let row =
-            |(y, (words, out, trace)): (usize, &mut (&mut [[u32; 2]], &mut [[f32; 3]], Option<&mut [PixelTrace]>))| {
-                let mut stats = FrameStats::default();
-                for x in 0..width {
-                    let (shown, stored, decided) = if settings.method == Method::Taa {
-                        taa_pass::pixel(&at, x as u32, y as u32, &mut stats)
-                    } else {
-                        smr.pixel(&at, x as u32, y as u32, &mut stats)
-                    };
-                    out[x] = shown.to_array();
-                    words[x] = stored;
-                    if let Some(trace) = trace {
-                        trace[x] = decided;
-                    }
+        let row = |(y, (words, out, trace)): (usize, &mut Row<'_>)| {
+            let mut stats = FrameStats::default();
+            for x in 0..width {
+                let (shown, stored, decided) = if settings.method == Method::Taa {
+                    taa_pass::pixel(&at, x as u32, y as u32, &mut stats)
+                } else {
+                    smr.pixel(&at, x as u32, y as u32, &mut stats)
+                };
+                out[x] = shown.to_array();
+                words[x] = stored;
+                if let Some(trace) = trace {
+                    trace[x] = decided;
                 }
-                stats
-            };
+            }
+            stats
+        };
         stats = stats.add(rows.par_iter_mut().enumerate().map(row).reduce(FrameStats::default, FrameStats::add));
         history.build_chain(i);
     }

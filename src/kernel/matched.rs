@@ -63,16 +63,13 @@ pub fn roots(c: Vec3) -> Vec3 {
     Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
 }
 
-/// Whether two motion vectors (pixels) are of one surface. A pixel with fewer than two such neighbours lies on a moving silhouette,
-/// where renderers mix the vectors of both sides: such a vector leads nowhere.
+/// Whether two motion vectors (pixels) are of one surface. A pixel that moves like neither neighbour of its block of 2x2 lies on a
+/// moving silhouette, where renderers mix the vectors of both sides: such a vector leads nowhere.
 #[inline]
 pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
     let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
     (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }
-
-/// Neighbours that must move alike for a vector to be believed.
-pub const COHERENT_NEIGHBOURS: u32 = 2;
 
 /// How far history is wanted before it is known whether it fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,8 +94,22 @@ pub fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
 #[inline]
 pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
-    let away = ratio - 1.0;
-    1.0 + away * (changed * smooth_step(0.05, 0.1, away.abs()))
+    let share = changed * smooth_step(0.05, 0.1, (ratio - 1.0).abs());
+    // So that a share of 1 gives the ratio bit for bit. Mesa computes 1 + (ratio - 1) * share thus, too.
+    (1.0 - share) + ratio * share
+}
+
+/// Difference at which relighting sets in.
+#[inline]
+pub fn relight_from(contrast: f32, blocks: bool) -> f32 {
+    let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
+    relight[0] + relight[1] * contrast
+}
+
+/// Whether candidate and history differ by more than detail explains: only then is it of interest what surrounds the candidate.
+#[inline]
+pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, blocks: bool) -> bool {
+    root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks)
 }
 
 /// What is known of a pixel before the decision.
@@ -108,7 +119,7 @@ pub struct Evidence {
     pub candidate: Vec3,
     /// What of it is compared: itself, or a mean of its surroundings where it is a point sample.
     pub compared: Vec3,
-    /// The candidate one level coarser.
+    /// The candidate one level coarser; of no interest unless [`is_changed`].
     pub compared_coarser: Vec3,
     /// Its level of detail.
     pub lod: f32,
@@ -118,8 +129,10 @@ pub struct Evidence {
     pub history_lod: f32,
     /// History at the level of `compared`.
     pub matched: Vec3,
-    /// History one level coarser.
-    pub matched_coarser: Vec3,
+    /// History at the whole level at or below that.
+    pub level: Vec3,
+    /// History at the next whole level.
+    pub next_level: Vec3,
     /// How far history may be believed, in \[0, 1\].
     pub trust: f32,
 }
@@ -142,14 +155,13 @@ pub struct Matched {
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let wanted = wanted(e.lod, e.history_lod, p.accumulate);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
-    let mut contrast = root_difference(e.matched, e.matched_coarser);
+    let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
     if p.relight {
-        let relight = if p.blocks { RELIGHT_BLOCKS } else { RELIGHT };
-        let from = relight[0] + relight[1] * contrast;
+        let from = relight_from(contrast, p.blocks);
         let changed = smooth_step(from, from, d);
-        let (c, h) = (e.compared_coarser, e.matched_coarser);
+        let (c, h) = (e.compared_coarser, e.next_level);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
         let relit = root_difference(e.compared, gains * e.matched);
         if relit < d {

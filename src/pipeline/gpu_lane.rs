@@ -1,23 +1,21 @@
 //! The post-process on a GPU for frames that live in memory: upload, record, submit, read back.
 
 use super::Headless;
+use crate::cpu::CpuView;
 use crate::error::{CreateError, FrameError};
-use crate::frame::{ContextDesc, Reset, ViewFrame};
+use crate::frame::{ContextDesc, Reset};
 use crate::gpu::{Afterimage, Frame, GpuDesc};
 use crate::image::Image;
 use crate::kernel::debug_view::DebugView;
 use crate::report::clock::Stopwatch;
-use crate::settings::{Method, Settings};
+use crate::settings::Settings;
 use crate::stats::FrameStats;
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture, TextureFormat, TextureUsages};
 
-/// What one view of a frame brings.
+/// What a frame of one view brings.
 pub(super) struct LaneInput<'a> {
-    pub facts: ViewFrame,
-    pub color: &'a Image<[f32; 3]>,
-    pub depth: Option<&'a Image<f32>>,
-    pub motion: Option<&'a Image<[f32; 2]>>,
+    pub view: CpuView<'a>,
     pub index: u64,
     pub reset: Reset,
 }
@@ -40,6 +38,8 @@ pub(super) struct GpuLane {
     color: Texture,
     depth: Texture,
     motion: Texture,
+    trust: Texture,
+    lod: Texture,
     output: Texture,
     counters: Buffer,
 }
@@ -55,30 +55,37 @@ impl GpuLane {
             color: texture(TextureFormat::Rgba32Float, read),
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg32Float, read),
+            trust: texture(TextureFormat::R32Float, read),
+            lod: texture(TextureFormat::R32Float, read),
             output: texture(TextureFormat::Rgba32Float, output),
             counters: gpu.counters(),
             gpu: gpu.clone(),
         })
     }
 
-    /// Bytes kept between frames: none for a method without history, whatever was made for one.
+    /// Bytes kept between frames.
     pub fn memory_bytes(&self) -> usize {
-        if self.post.desc().settings.method == Method::None { 0 } else { self.post.memory_bytes() as usize }
+        self.post.memory_bytes() as usize
     }
 
     pub fn process(&mut self, input: &LaneInput<'_>, debug: &[DebugView]) -> Result<LaneOutput, FrameError> {
-        self.gpu.write_rgb(&self.color, 0, input.color);
-        if let Some(depth) = input.depth {
-            self.gpu.write(&self.depth, 0, depth);
+        let view = &input.view;
+        self.gpu.write_rgb(&self.color, 0, view.color);
+        for (image, texture) in [(view.depth, &self.depth), (view.trust, &self.trust), (view.lod, &self.lod)] {
+            if let Some(image) = image {
+                self.gpu.write(texture, 0, image);
+            }
         }
-        if let Some(motion) = input.motion {
+        if let Some(motion) = view.motion {
             self.gpu.write(&self.motion, 0, motion);
         }
         let frame = Frame {
-            depth: input.depth.map(|_| &self.depth),
-            motion: input.motion.map(|_| &self.motion),
+            depth: view.depth.map(|_| &self.depth),
+            motion: view.motion.map(|_| &self.motion),
+            trust: view.trust.map(|_| &self.trust),
+            lod: view.lod.map(|_| &self.lod),
             reset: input.reset,
-            ..Frame::new(&self.color, &self.output, std::slice::from_ref(&input.facts), input.index)
+            ..Frame::new(&self.color, &self.output, std::slice::from_ref(&view.facts), input.index)
         };
         // Counting takes time that is not the method's: it is done by a view, of which there is always one.
         let counted = Frame { counters: Some(&self.counters), ..frame };
@@ -101,7 +108,7 @@ impl GpuLane {
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait();
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
-        let given = [input.depth.is_some(), input.motion.is_some(), false];
+        let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
         let traffic_bytes_per_pixel = self.post.desc().settings.traffic_bytes_per_pixel(given);
         Ok(LaneOutput {
             image: self.gpu.read_rgb(&self.output, 0),

@@ -8,7 +8,7 @@ pub use headless::Headless;
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use crate::display::ViewGeometry;
 use crate::error::{CreateError, FrameError};
-use crate::foveation::{Foveation, Pyramid};
+use crate::foveation::{Filter, Foveation, Pyramid};
 use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use crate::image::Image;
 use crate::kernel::debug_view::{DebugView, PixelTrace, view_color};
@@ -89,6 +89,7 @@ pub struct Pipeline {
     still: Option<Pyramid>,
     is_still: bool,
     debug: Vec<DebugView>,
+    use_trust: bool,
 }
 
 impl Pipeline {
@@ -129,7 +130,14 @@ impl Pipeline {
             still: None,
             is_still,
             debug: debug.to_vec(),
+            use_trust: false,
         })
+    }
+
+    /// Gives the methods the trust masks of sources that have them.
+    #[must_use]
+    pub fn with_trust(self) -> Self {
+        Self { use_trust: true, ..self }
     }
 
     /// Takes frame `index`. A lost gaze holds the last position; before the first, the middle of the view.
@@ -161,26 +169,21 @@ impl Pipeline {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: frame.previous_from_current,
         };
-        let view =
-            CpuView { depth: frame.depth.as_ref(), motion: frame.motion.as_ref(), ..CpuView::new(facts, &candidate) };
+        let view = CpuView {
+            depth: frame.depth.as_ref(),
+            motion: frame.motion.as_ref(),
+            trust: frame.trust.as_ref().filter(|_| self.use_trust),
+            // Blocks are decided by their centres, which the post-process does not know.
+            lod: (self.foveation.filter == Filter::Block).then_some(&lods),
+            ..CpuView::new(facts, &candidate)
+        };
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let cpu_frame = CpuFrame { reset, ..CpuFrame::new(std::slice::from_ref(&view), index) };
         let mut shown = vec![];
         for lane in &mut self.lanes {
             shown.push(match lane {
                 Executor::PostProcess(post) => post_process(post, &cpu_frame, &self.debug)?,
-                Executor::Gpu(lane) => post_process_on_gpu(
-                    lane,
-                    &LaneInput {
-                        facts,
-                        color: &candidate,
-                        depth: frame.depth.as_ref(),
-                        motion: frame.motion.as_ref(),
-                        index,
-                        reset,
-                    },
-                    &self.debug,
-                )?,
+                Executor::Gpu(lane) => post_process_on_gpu(lane, &LaneInput { view, index, reset }, &self.debug)?,
                 Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),
             });
         }

@@ -26,6 +26,8 @@ pub struct SourceFrame {
     pub depth: Option<Image<f32>>,
     /// Pixels, y down, previous minus current: `p` was at `p + motion`. `None`: nothing moves.
     pub motion: Option<Image<[f32; 2]>>,
+    /// How far the past of each pixel may be believed (1 as usual, 0 not at all), where the source knows what moves without vectors.
+    pub trust: Option<Image<f32>>,
     /// Takes a point from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column
     /// vectors. `None`: the camera did not move, or its motion is not known.
     pub previous_from_current: Option<[[f32; 4]; 4]>,

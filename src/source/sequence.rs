@@ -107,6 +107,7 @@ impl FrameSource for SequenceSource {
             color: frame.color,
             depth: frame.depth,
             motion: frame.motion,
+            trust: None,
             previous_from_current,
             cut: step == Step::First,
             nonfinite: frame.nonfinite,

@@ -154,6 +154,20 @@ pub fn write_layer(queue: &wgpu::Queue, texture: &wgpu::Texture, layer: usize, b
     queue.write_texture(to, bytes, layout, size);
 }
 
+/// Fills one level of a texture, all its layers, with one byte.
+pub fn fill_level(queue: &wgpu::Queue, texture: &wgpu::Texture, level: u32, byte: u8) {
+    let size = wgpu::Extent3d {
+        width: texture.width() >> level,
+        height: texture.height() >> level,
+        depth_or_array_layers: texture.depth_or_array_layers(),
+    };
+    let row = size.width * texture.format().block_copy_size(None).unwrap();
+    let bytes = vec![byte; (row * size.height * size.depth_or_array_layers) as usize];
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(size.height) };
+    let to = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
+    queue.write_texture(to, &bytes, layout, size);
+}
+
 /// All words of a texture whose texels are whole words, layer after layer.
 pub fn read_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u32> {
     let texel = texture.format().block_copy_size(None).unwrap();

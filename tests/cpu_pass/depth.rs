@@ -8,7 +8,7 @@ fn two_walls(split: u32, near: f32, far: f32) -> Image<f32> {
 
 #[test]
 fn a_disoccluded_wall_is_flushed_and_only_it() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let first = Input { depth: Some(two_walls(32, 1.0, 5.0)), ..Input::still(noise(SIZE, "x")) };
     one(&mut post, 0, &first);
     // The near wall steps back by 8 px: columns 24..32 now show the far wall.
@@ -25,7 +25,7 @@ fn a_disoccluded_wall_is_flushed_and_only_it() {
 
 #[test]
 fn h44_a_steep_floor_under_jitter_is_not_flushed() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     for index in 0..20 {
         // Disparity grows by 0.001 a row from the horizon at the top; the depth sample moves by half a pixel.
         let jitter = 0.5 * (index % 2) as f32;
@@ -55,7 +55,7 @@ fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
         Input { depth: Some(Image::filled(SIZE, z)), motion: Some(motion), camera, ..Input::still(noise(SIZE, "wall")) }
     };
     for (camera, flushes) in [(Some(camera), false), (None, true)] {
-        let mut post = context(Settings::default());
+        let mut post = context(Settings::paper());
         one(&mut post, 0, &frame(6.0, camera));
         let (_, stats, _) = one(&mut post, 1, &frame(5.0, camera));
         assert_eq!(stats.verdicts[Verdict::Disoccluded as usize] > 0, flushes);
@@ -64,7 +64,7 @@ fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
 
 #[test]
 fn h46_a_jittering_wire_flushes_itself_alone() {
-    let mut post = context(Settings::default());
+    let mut post = context(Settings::paper());
     let mut flushed = vec![];
     for index in 0..60 {
         // One pixel wide at 1 m over a wall at 10 m, hopping between two columns with the jitter.
@@ -80,7 +80,7 @@ fn h46_a_jittering_wire_flushes_itself_alone() {
 
 #[test]
 fn h47_a_nan_depth_flushes_its_pixel_alone() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let clean = Input { depth: Some(Image::filled(SIZE, 4.0)), ..Input::still(noise(SIZE, "d")) };
     one(&mut post, 0, &clean);
     let mut depth = Image::filled(SIZE, 4.0);
@@ -104,7 +104,7 @@ fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
         (DepthConvention::Orthographic { near: 0.0, far: 100.0 }, 1.0, 0.05),
     ] {
         let desc = ContextDesc { depth, ..ContextDesc::new(SIZE) };
-        let mut post = CpuAfterimage::new(desc, Settings::default()).unwrap();
+        let mut post = CpuAfterimage::new(desc, Settings::paper()).unwrap();
         let frame = |split| Input { depth: Some(two_walls(split, wall, sky)), ..Input::still(noise(SIZE, "sky")) };
         one(&mut post, 0, &frame(32));
         assert_eq!(one(&mut post, 1, &frame(32)).1.flushed(), 0, "{depth:?}");
@@ -115,7 +115,7 @@ fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
 #[test]
 fn h58_nothing_bleeds_over_a_depth_edge() {
     // A bright near square moves right by 1.5 px a frame over a dark wall; vectors are right at each pixel.
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     for index in 0..30_u64 {
         let left = 4.0 + 1.5 * index as f32;
         let inside = |x: u32, y: u32| (left..left + 10.0).contains(&(x as f32)) && (10..30).contains(&y);
@@ -132,7 +132,7 @@ fn h58_nothing_bleeds_over_a_depth_edge() {
 
 #[test]
 fn h50_z_fighting_shows_only_what_was_presented() {
-    let mut post = context(Settings::default());
+    let mut post = context(Settings::paper());
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
     let mut draws = Draws::new("z-fighting");
     for index in 0..100 {

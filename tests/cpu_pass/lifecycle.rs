@@ -9,8 +9,8 @@ fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
 #[test]
 fn h29_the_same_bytes_whatever_the_number_of_threads() {
     for settings in [
-        Settings::default(),
-        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Settings::default() },
+        Settings::paper(),
+        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Settings::paper() },
     ] {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -22,13 +22,13 @@ fn h29_the_same_bytes_whatever_the_number_of_threads() {
         assert_eq!(with(1), with(2));
         assert_eq!(with(2), with(7));
     }
-    let other_seed = run(&mut context(Settings { seed: 1, ..Settings::default() }), 0..20);
-    assert_ne!(other_seed, run(&mut context(Settings::default()), 0..20));
+    let other_seed = run(&mut context(Settings { seed: 1, ..Settings::paper() }), 0..20);
+    assert_ne!(other_seed, run(&mut context(Settings::paper()), 0..20));
 }
 
 #[test]
 fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let settings = Settings { gate: None, ..Settings::default() };
+    let settings = Settings { gate: None, ..Settings::paper() };
     let fresh = run(&mut context(settings), 20..30);
     let mut used = context(settings);
     run(&mut used, 0..20);
@@ -54,7 +54,7 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
 
 #[test]
 fn a_frame_that_is_refused_changes_nothing() {
-    let settings = Settings { gate: None, ..Settings::default() };
+    let settings = Settings { gate: None, ..Settings::paper() };
     let (mut good, mut mixed) = (context(settings), context(settings));
     let expected = run(&mut good, 0..6);
     let mut got = run(&mut mixed, 0..3);
@@ -97,12 +97,12 @@ fn a_frame_that_is_refused_changes_nothing() {
 #[test]
 fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
-        assert!(CpuAfterimage::new(ContextDesc::new(size), Settings::default()).is_err());
-        let mut post = context(Settings::default());
+        assert!(CpuAfterimage::new(ContextDesc::new(size), Settings::paper()).is_err());
+        let mut post = context(Settings::paper());
         assert!(matches!(post.resize(size), Err(FrameError::Extent { .. })));
         assert_eq!(post.desc().size_px, SIZE);
     }
-    let mut post = CpuAfterimage::new(ContextDesc::new([1, 1]), Settings::default()).unwrap();
+    let mut post = CpuAfterimage::new(ContextDesc::new([1, 1]), Settings::paper()).unwrap();
     let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);
@@ -111,15 +111,15 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
 #[test]
 fn memory_is_what_the_documentation_says() {
     let pixels = 64 * 48;
-    assert_eq!(context(Settings::default()).memory_bytes(), 24 * pixels);
-    assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::default() }).memory_bytes(), 32 * pixels);
+    assert_eq!(context(Settings::paper()).memory_bytes(), 24 * pixels);
+    assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::paper() }).memory_bytes(), 32 * pixels);
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    assert_eq!(CpuAfterimage::new(stereo, Settings::default()).unwrap().memory_bytes(), 48 * pixels);
+    assert_eq!(CpuAfterimage::new(stereo, Settings::paper()).unwrap().memory_bytes(), 48 * pixels);
 }
 
 #[test]
 fn method_none_shows_the_frame_and_forgets() {
-    let mut post = context(Settings { method: Method::None, ..Settings::default() });
+    let mut post = context(Settings { method: Method::None, ..Settings::paper() });
     let mut color = noise(SIZE, "none");
     color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
     let (out, stats, _) = one(&mut post, 0, &Input::still(color.clone()));

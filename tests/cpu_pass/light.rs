@@ -26,7 +26,7 @@ fn share(image: &Image<PixelTrace>, f: impl Fn(usize, &PixelTrace) -> bool) -> f
 }
 
 fn gated(gate: bool) -> CpuAfterimage {
-    context(if gate { Settings::default() } else { Settings { gate: None, ..Settings::default() } })
+    context(if gate { Settings::paper() } else { Settings { gate: None, ..Settings::paper() } })
 }
 
 /// Noise, new every frame, as bright as `ratio`.

@@ -7,7 +7,7 @@ proptest! {
 
     #[test]
     fn nan_in_one_pixel_stays_there_for_one_frame(x in 0usize..64, y in 0usize..48, channel in 0usize..3, bad in prop::sample::select(vec![f32::NAN, f32::INFINITY, f32::NEG_INFINITY])) {
-        let mut clean = context(Settings::default());
+        let mut clean = context(Settings::paper());
         let mut hurt = clean.clone();
         for index in 0..4 {
             let color = noise(SIZE, &format!("nan {index}"));
@@ -32,7 +32,7 @@ proptest! {
 
     #[test]
     fn h19_h79_whatever_the_history_holds_the_output_is_finite_and_heals(words in prop::collection::vec(any::<[u32; 3]>(), 64 * 48), sampler in prop::sample::select(vec![Sampler::AChao, Sampler::AEs])) {
-        let mut post = context(Settings { sampler, ..Settings::default() });
+        let mut post = context(Settings { sampler, ..Settings::paper() });
         one(&mut post, 0, &Input::still(noise(SIZE, "h")));
         post.restore_history(&words);
         let (out, ..) = one(&mut post, 1, &Input::still(noise(SIZE, "h")));
@@ -46,7 +46,7 @@ proptest! {
 
 #[test]
 fn h79_poisoned_fresh_history_is_never_read() {
-    let mut post = context(Settings::default());
+    let mut post = context(Settings::paper());
     post.restore_history(&vec![[u32::MAX; 3]; 64 * 48]);
     let input = Input::still(noise(SIZE, "poison"));
     assert_eq!(one(&mut post.clone(), 0, &input).0, input.color, "all NaN words are empty");
@@ -56,7 +56,7 @@ fn h79_poisoned_fresh_history_is_never_read() {
 
 #[test]
 fn h18_a_broken_candidate_shows_what_was_remembered() {
-    let mut post = context(Settings::default());
+    let mut post = context(Settings::paper());
     let good = noise(SIZE, "good");
     one(&mut post, 0, &Input::still(good.clone()));
     for index in 1..200 {

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn h51_a_thousand_still_frames_never_move_a_sample() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let picture = noise(SIZE, "still");
     for index in 0..1000 {
         let (out, stats, _) = one(&mut post, index, &Input::still(picture.clone()));
@@ -15,7 +15,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
 
 #[test]
 fn h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let before = noise(SIZE, "before");
     one(&mut post, 0, &Input::still(before.clone()));
     sticky(&mut post);
@@ -45,7 +45,7 @@ fn every_motion_convention_means_the_same_shift() {
                 let scale = convention.to_internal(SIZE);
                 let vector = [3.0 / scale[0], -2.0 / scale[1]];
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
-                let mut post = CpuAfterimage::new(desc, Settings { gate: None, ..Settings::default() }).unwrap();
+                let mut post = CpuAfterimage::new(desc, Settings { gate: None, ..Settings::paper() }).unwrap();
                 one(&mut post, 0, &Input::still(before.clone()));
                 sticky(&mut post);
                 let input = Input { motion: Some(Image::filled(SIZE, vector)), ..Input::still(noise(SIZE, "later")) };
@@ -72,7 +72,7 @@ fn every_motion_convention_means_the_same_shift() {
 #[test]
 fn h53_half_pixel_motion_never_blurs() {
     // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every colour is still one that was put in.
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let mut known = std::collections::HashSet::new();
     for index in 0..200 {
         let color = noise(SIZE, &format!("frame {index}"));
@@ -85,7 +85,7 @@ fn h53_half_pixel_motion_never_blurs() {
 
 #[test]
 fn h54_garbage_motion_shows_the_candidate() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     one(&mut post, 0, &Input::still(noise(SIZE, "a")));
     sticky(&mut post);
     for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9, -1e9].into_iter().enumerate() {
@@ -102,7 +102,7 @@ fn h54_garbage_motion_shows_the_candidate() {
 
 #[test]
 fn h59_h60_zoom_and_turn_leave_no_hole() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     one(&mut post, 0, &Input::still(noise(SIZE, "zoom")));
     // A zoom out by 2: the border comes from outside; inside, texels are skipped.
     let zoom = Image::from_fn(SIZE, |[x, y]| [x as f32 - 32.0, y as f32 - 24.0]);

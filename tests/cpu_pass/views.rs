@@ -6,7 +6,7 @@ use afterimage::foveation::Foveation;
 #[test]
 fn h27_stereo_views_never_read_each_other() {
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let settings = Settings { gate: None, ..Settings::default() };
+    let settings = Settings { gate: None, ..Settings::paper() };
     let fresh = || CpuAfterimage::new(stereo, settings).unwrap();
     let [mut both, mut left_only, mut right_only] = [fresh(), fresh(), fresh()];
     let mut mono = context(settings);
@@ -30,7 +30,7 @@ fn h27_stereo_views_never_read_each_other() {
 #[test]
 fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     let held = |gazes: &[Gaze]| {
-        let mut post = context(Settings { gate: None, ..Settings::default() });
+        let mut post = context(Settings { gate: None, ..Settings::paper() });
         let mut weights = vec![];
         for (i, &gaze) in gazes.iter().enumerate() {
             let (_, _, trace) = one(&mut post, i as u64, &Input { gaze, ..Input::still(noise(SIZE, "gaze")) });
@@ -50,7 +50,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
 
 #[test]
 fn h66_a_saccade_keeps_the_old_fovea() {
-    let mut post = context(Settings { gate: None, ..Settings::default() });
+    let mut post = context(Settings { gate: None, ..Settings::paper() });
     let sharp = noise(SIZE, "sharp");
     for index in 0..18 {
         one(&mut post, index, &Input { gaze: Gaze::At { px: [10.0, 24.0] }, ..Input::still(sharp.clone()) });
@@ -64,7 +64,7 @@ fn h66_a_saccade_keeps_the_old_fovea() {
 
 #[test]
 fn settings_are_checked_and_named() {
-    let base = Settings::default();
+    let base = Settings::paper();
     let fovea = |fovea_deg| Foveation { fovea_deg, ..Foveation::default() };
     for (settings, name) in [
         (Settings { foveation: fovea(-1.0), ..base }, "fovea"),

@@ -34,11 +34,11 @@ fn first_difference(settings: Settings, source: &str) -> Option<u64> {
 
 #[test]
 fn every_planted_error_in_the_pass_is_caught() {
-    let keys = Settings { sampler: Sampler::AEs, ..Settings::default() };
+    let keys = Settings { sampler: Sampler::AEs, ..Settings::paper() };
     if Rig::new(ContextDesc::new(SIZE), keys).is_none() {
         return;
     }
-    for settings in [Settings::default(), keys] {
+    for settings in [Settings::paper(), keys] {
         assert_eq!(first_difference(settings, &shader::compose("wrs_pass").source), None, "without an error");
     }
     for (right, wrong) in [
@@ -69,7 +69,7 @@ fn every_planted_error_in_the_pass_is_caught() {
         ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
         ("count_if(!usable, COUNT_NONFINITE);", ""),
     ] {
-        let caught = first_difference(Settings::default(), &mutated(right, wrong));
+        let caught = first_difference(Settings::paper(), &mutated(right, wrong));
         println!("'{right}' -> '{wrong}': {caught:?}");
         assert!(caught.is_some(), "planted error not caught: '{right}' -> '{wrong}'");
     }
@@ -88,7 +88,7 @@ fn every_planted_error_in_the_pass_is_caught() {
 fn a_lax_comparison_is_caught() {
     let size = [128, 64];
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
-    let settings = Settings { foveation, gate: None, bias: Bias::None, ..Settings::default() };
+    let settings = Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() };
     // With a sum of 2^k - 1 a candidate of weight 1 is taken below a draw of 2^-k, and not at it.
     let power = |index: u64, x: u32, y: u32| {
         let key = rng::stream_key(settings.seed, 0, Purpose::Select, index);
@@ -121,7 +121,7 @@ fn a_lax_comparison_is_caught() {
 
 #[test]
 fn swapped_and_shifted_inputs_are_caught() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let mut scene = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
     let [first, second] = [0, 1].map(|index| [view(&mut scene, index)]);
     let mut flipped = second.clone();
@@ -132,7 +132,7 @@ fn swapped_and_shifted_inputs_are_caught() {
     rig.both(0, Reset::None, &first);
     for (what, wrong) in [("the frame before", &first), ("flipped motion", &flipped), ("a mirrored image", &mirrored)] {
         // A fresh pair for each: nothing of one error helps the next.
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
         rig.both(0, Reset::None, &first);
         assert!(rig.on_gpu(1, Reset::None, wrong) != rig.on_cpu(1, Reset::None, &second).0, "{what}");
     }

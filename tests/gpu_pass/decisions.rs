@@ -28,10 +28,14 @@ fn masked(source: &mut AnalyticSource, index: u64) -> View {
 
 #[test]
 fn debug_views_draw_what_record_decides_next_and_move_nothing() {
-    let base = Settings::default();
-    for settings in
-        [base, Settings { sampler: Sampler::AEs, gate: None, ..base }, Settings { method: Method::None, ..base }]
-    {
+    let base = Settings::paper();
+    for settings in [
+        base,
+        Settings { sampler: Sampler::AEs, gate: None, ..base },
+        Settings { method: Method::None, ..base },
+        Settings { method: Method::Taa, ..base },
+        Settings { method: Method::Smr, ..base },
+    ] {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let Some(mut undisturbed) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let mut source = source("occluder");
@@ -63,8 +67,8 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
 
 #[test]
 fn counting_changes_nothing_and_may_be_left_out() {
-    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
-    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let mut source = source("lateral");
     for index in 0..6 {
         let views = [masked(&mut source, index)];
@@ -81,7 +85,7 @@ fn counting_changes_nothing_and_may_be_left_out() {
 
 #[test]
 fn counters_without_room_or_use_are_refused() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let texture = |usage| make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, usage);
     let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
     let mut source = source("still");
@@ -107,7 +111,7 @@ fn counters_without_room_or_use_are_refused() {
 #[test]
 fn h63_what_is_odd_about_the_gaze_is_said_at_once() {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
     let texture = |usage| make_texture(&rig.device, &desc, TextureFormat::Rgba32Float, usage);
     let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
     let mut source = source("still");

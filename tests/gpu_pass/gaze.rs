@@ -20,7 +20,7 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
     ];
     for fovea_deg in [0.0, 5.0] {
         let foveation = Foveation { fovea_deg, ..Foveation::default() };
-        let settings = Settings { gate: None, foveation, ..Settings::default() };
+        let settings = Settings { gate: None, foveation, ..Settings::paper() };
         for geometry in views {
             let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
             for (index, px) in (0..).zip([[31.0, 23.0], [1.0, 2.0], [63.0, 47.0], [-40.0, 200.0]]) {
@@ -50,7 +50,7 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
 fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     let at = |px| Gaze::At { px };
     let weights = |gazes: &[Gaze]| -> Option<Vec<f32>> {
-        let mut rig = Rig::new(ContextDesc::new(SIZE), Settings::default())?;
+        let mut rig = Rig::new(ContextDesc::new(SIZE), Settings::paper())?;
         let mut weights = vec![];
         for (index, &gaze) in (0..).zip(gazes) {
             let mut view = View::still(noise(SIZE, "gaze"), [0.0; 2]);
@@ -70,7 +70,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
 
 #[test]
 fn h66_a_saccade_keeps_the_old_fovea() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
         return;
     };
     let sharp = noise(SIZE, "sharp");

@@ -15,7 +15,7 @@ use wgpu::{TextureFormat, TextureUsages};
 const SIZE: [u32; 2] = [70, 40];
 
 /// Colours that are noise, moving by whole and half pixels, over two depths.
-fn noise_view(name: &str, desc: &ContextDesc) -> View {
+pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
     let mut draws = Draws::new(name);
     let size = desc.size_px;
     let scale = desc.motion.to_internal(size);
@@ -39,6 +39,7 @@ fn noise_view(name: &str, desc: &ContextDesc) -> View {
             [m[0] / scale[0], m[1] / scale[1]]
         })),
         trust: None,
+        lod: None,
     }
 }
 
@@ -56,12 +57,12 @@ fn agree(desc: ContextDesc, settings: Settings, frames: u64) {
 
 #[test]
 fn h27_stereo_is_one_dispatch_without_a_leak() {
-    agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::default(), 12);
-    let settings = Settings { sampler: Sampler::AEs, ..Settings::default() };
+    agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::paper(), 12);
+    let settings = Settings { sampler: Sampler::AEs, ..Settings::paper() };
     agree(ContextDesc { view_count: 4, ..ContextDesc::new([33, 17]) }, settings, 12);
     // The planted error: the other eye's history. Layers swapped in the past must show.
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::default() }) else { return };
+    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
     let views = |index: u64| -> Vec<View> { (0..2).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect() };
     rig.on_gpu(0, Reset::None, &views(0));
     rig.on_cpu(0, Reset::None, &views(0));
@@ -75,7 +76,7 @@ fn every_convention_agrees() {
         for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
             for y_axis in [YAxis::Down, YAxis::Up] {
                 let motion = MotionConvention { unit, direction, y_axis };
-                agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::default(), 4);
+                agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
             }
         }
     }
@@ -86,14 +87,14 @@ fn every_convention_agrees() {
         DepthConvention::Reversed { near: 0.1, far: f32::INFINITY },
         DepthConvention::Orthographic { near: -1.0, far: 50.0 },
     ] {
-        agree(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::default(), 6);
+        agree(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::paper(), 6);
     }
 }
 
 #[test]
 fn odd_sizes_agree() {
     for size in [[1, 1], [1, 7], [65, 3], [63, 64], [129, 1]] {
-        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings::default()) else { return };
+        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings::paper()) else { return };
         for index in 0..4 {
             let views = [noise_view(&format!("odd {index}"), &ContextDesc::new(size))];
             assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0, "{size:?}");
@@ -103,7 +104,7 @@ fn odd_sizes_agree() {
 
 #[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     rig.poison();
     for index in 0..3 {
         let views = [noise_view(&format!("poison {index}"), &rig.context)];
@@ -119,7 +120,7 @@ fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
 
 #[test]
 fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() });
+    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() });
     let Some(mut rig) = fresh() else { return };
     let expected = run(&mut rig, 20..26);
     let used = || {
@@ -163,10 +164,10 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
 
 #[test]
 fn h76_a_minimised_window_is_refused_and_changes_nothing() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
         return;
     };
-    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
         return;
     };
     run(&mut rig, 0..3);
@@ -181,7 +182,7 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
 
 #[test]
 fn h77_a_lost_device_is_left_behind_for_a_new_one() {
-    let Some(mut lost) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }) else {
+    let Some(mut lost) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
         return;
     };
     run(&mut lost, 0..4);
@@ -194,13 +195,13 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
     lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
     lost.queue.submit([encoder.finish()]);
     drop(lost);
-    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() }).unwrap();
+    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }).unwrap();
     assert!(run(&mut fresh(), 4..8) == run(&mut fresh(), 4..8));
 }
 
 #[test]
 fn two_frames_in_one_submission_see_their_own_constants() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let mut view = noise_view("submission", &rig.context);
     let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
     rig.on_cpu(0, Reset::None, &[view.clone()]);
@@ -212,8 +213,8 @@ fn two_frames_in_one_submission_see_their_own_constants() {
 #[test]
 fn good_bad_good_equals_good_good() {
     let desc = ContextDesc::new(SIZE);
-    let Some(mut rig) = Rig::new(desc, Settings::default()) else { return };
-    let Some(mut other) = Rig::new(desc, Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
+    let Some(mut other) = Rig::new(desc, Settings::paper()) else { return };
     let frames: Vec<View> = (0..2).map(|i| noise_view(&format!("good {i}"), &desc)).collect();
     rig.on_gpu(0, Reset::None, &frames[..1]);
     other.on_gpu(0, Reset::None, &frames[..1]);
@@ -278,7 +279,7 @@ fn contexts_that_cannot_be_are_refused() {
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = gpu::device() else { return };
     let pixels = u64::from(SIZE[0] * SIZE[1]);
-    let mut desc = GpuDesc::new(SIZE, TextureFormat::Rgba16Float);
+    let mut desc = GpuDesc { settings: Settings::paper(), ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
     assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 24 * pixels);
     desc.settings.sampler = Sampler::AEs;
     assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 32 * pixels);

@@ -9,7 +9,7 @@ use afterimage::settings::Settings;
 const SIZE: [u32; 2] = [64, 48];
 
 fn rig(gate: bool) -> Option<Rig> {
-    let settings = Settings::default();
+    let settings = Settings::paper();
     Rig::new(ContextDesc::new(SIZE), if gate { settings } else { Settings { gate: None, ..settings } })
 }
 

@@ -16,3 +16,5 @@ mod reservoirs;
 mod rig;
 mod sequences;
 mod surfaces;
+mod surfaces_controls;
+mod surfaces_variants;

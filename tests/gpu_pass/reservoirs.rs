@@ -12,7 +12,7 @@ use afterimage::settings::{Bias, Sampler, Settings};
 /// Every candidate has weight 1, and nothing but chance decides.
 fn even() -> Settings {
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
-    Settings { foveation, gate: None, bias: Bias::None, ..Settings::default() }
+    Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() }
 }
 
 /// A frame of one colour.
@@ -88,7 +88,7 @@ fn h12_a_candidate_is_taken_in_proportion_to_its_weight() {
 fn h19_whatever_the_history_holds_it_heals_in_one_frame() {
     let size = [64, 48];
     for sampler in [Sampler::AChao, Sampler::AEs] {
-        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings { sampler, ..Settings::default() }) else {
+        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings { sampler, ..Settings::paper() }) else {
             return;
         };
         let mut draws = Draws::new("h19 on the device");
@@ -116,7 +116,7 @@ fn h19_whatever_the_history_holds_it_heals_in_one_frame() {
 fn h22_h29_only_what_was_shown_is_shown_and_the_same_bytes_again() {
     let size = [65, 33];
     let run = || -> Option<Vec<Vec<[u32; 3]>>> {
-        let mut rig = Rig::new(ContextDesc::new(size), Settings::default())?;
+        let mut rig = Rig::new(ContextDesc::new(size), Settings::paper())?;
         let mut known = std::collections::HashSet::new();
         let mut all = vec![];
         for index in 0..24 {

@@ -21,6 +21,8 @@ pub struct View {
     pub depth: Option<Image<f32>>,
     pub motion: Option<Image<[f32; 2]>>,
     pub trust: Option<Image<f32>>,
+    /// Levels of detail, where the renderer tells them.
+    pub lod: Option<Image<f32>>,
 }
 
 impl View {
@@ -31,7 +33,7 @@ impl View {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: None,
         };
-        Self { facts, color, depth: None, motion: None, trust: None }
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None }
     }
 }
 
@@ -54,6 +56,7 @@ struct Textures {
     depth: Texture,
     motion: Texture,
     trust: Texture,
+    lod: Texture,
     output: Texture,
 }
 
@@ -66,6 +69,7 @@ impl Textures {
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg32Float, read),
             trust: texture(TextureFormat::R32Float, read),
+            lod: texture(TextureFormat::R32Float, read),
             output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
         }
     }
@@ -160,6 +164,7 @@ impl Rig {
                 depth: v.depth.as_ref(),
                 motion: v.motion.as_ref(),
                 trust: v.trust.as_ref(),
+                lod: v.lod.as_ref(),
                 ..CpuView::new(v.facts, &v.color)
             })
             .collect();
@@ -193,6 +198,7 @@ impl Rig {
             depth: views[0].depth.is_some().then_some(&self.textures.depth),
             motion: views[0].motion.is_some().then_some(&self.textures.motion),
             trust: views[0].trust.is_some().then_some(&self.textures.trust),
+            lod: views[0].lod.is_some().then_some(&self.textures.lod),
             exposure: self.exposure,
             counters: count.then_some(&self.counters),
             reset,
@@ -225,14 +231,11 @@ impl Rig {
         self.read()
     }
 
-    /// Fills the past with words that are NaN as whatever they are read.
+    /// Fills the past, all its levels, with words that are NaN as whatever they are read.
     pub fn poison(&self) {
         for texture in self.gpu.history_textures() {
-            let texel = texture.format().block_copy_size(None).unwrap();
-            let [width, height] = self.context.size_px;
-            let bytes = vec![0xff; (texel * width * height) as usize];
-            for layer in 0..self.context.view_count as usize {
-                self.write(texture, layer, &bytes);
+            for level in 0..texture.mip_level_count() {
+                gpu::fill_level(&self.queue, texture, level, 0xff);
             }
         }
     }
@@ -304,6 +307,9 @@ impl Rig {
             }
             if let Some(trust) = &view.trust {
                 self.write(&self.textures.trust, layer, bytemuck::cast_slice(trust.pixels()));
+            }
+            if let Some(lod) = &view.lod {
+                self.write(&self.textures.lod, layer, bytemuck::cast_slice(lod.pixels()));
             }
         }
     }

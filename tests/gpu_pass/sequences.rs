@@ -13,19 +13,23 @@ const FRAMES: u64 = 40;
 
 /// Frame `index` of a scene as a foveating renderer would deliver it, damaged here and there.
 pub fn view(source: &mut AnalyticSource, index: u64) -> View {
+    foveated(source, index, &Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() })
+}
+
+/// The same by another renderer.
+pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) -> View {
     let mut draws = Draws::new(&format!("damage {index}"));
     let frame = source.frame(index).unwrap();
     let geometry = *source.view();
     // The eye drifts, and jumps every ten frames; it is lost for a while.
     let jump = (index / 10) as f32;
     let px = [30.0 + 25.0 * jump + 0.3 * index as f32, 60.0 - 12.0 * jump];
-    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
-    let mut color = foveation.render(&Pyramid::new(frame.color, 3), &lods);
+    let mut color = foveation.render(&Pyramid::new(frame.color, foveation.max_level()), &lods);
     let mut motion = frame.motion.unwrap();
     let mut depth = frame.depth.unwrap();
     for _ in 0..20 {
-        let i = (draws.uniform() * (SIZE[0] * SIZE[1]) as f32) as usize;
+        let i = (draws.uniform() * color.pixels().len() as f32) as usize;
         let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -3.0][draws.bits() as usize % 5];
         match draws.bits() % 3 {
             0 => color.pixels_mut()[i][1] = bad,
@@ -35,7 +39,7 @@ pub fn view(source: &mut AnalyticSource, index: u64) -> View {
     }
     let gaze = if (13..17).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { geometry, gaze, previous_from_current: frame.previous_from_current };
-    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None }
+    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None }
 }
 
 /// A mask that moves over the frame: full trust, none, some, and numbers that are none.
@@ -90,14 +94,14 @@ fn agree_exposed(
 #[test]
 fn the_default_agrees_bit_for_bit() {
     for scene in ["still", "lateral", "occluder", "light-step", "scroll"] {
-        agree(scene, Settings::default(), |v| v);
+        agree(scene, Settings::paper(), |v| v);
     }
 }
 
 #[test]
 fn taa_and_smr_agree_bit_for_bit() {
     let base =
-        Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::default() };
+        Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::paper() };
     for scene in ["still", "lateral", "occluder", "light-step"] {
         for method in [Method::Taa, Method::Smr] {
             println!("{method:?}");
@@ -108,7 +112,7 @@ fn taa_and_smr_agree_bit_for_bit() {
 
 #[test]
 fn every_variant_agrees_bit_for_bit() {
-    let base = Settings::default();
+    let base = Settings::paper();
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
     let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0 };
     for settings in [
@@ -129,7 +133,7 @@ fn every_variant_agrees_bit_for_bit() {
 
 #[test]
 fn absent_inputs_are_switched_off() {
-    let base = Settings::default();
+    let base = Settings::paper();
     agree("lateral", base, |v| View { depth: None, ..v });
     agree("still", base, |v| View { motion: None, ..v });
     agree("still", base, |v| View { motion: None, depth: None, ..v });
@@ -137,7 +141,7 @@ fn absent_inputs_are_switched_off() {
 
 #[test]
 fn trust_and_exposure_agree_bit_for_bit() {
-    let base = Settings::default();
+    let base = Settings::paper();
     // Some stops up and down, thirds of stops, a fade to nothing, and no change.
     let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
     let exposure = |index: u64| match index % 4 {
@@ -156,7 +160,7 @@ fn trust_and_exposure_agree_bit_for_bit() {
 #[test]
 fn method_none_shows_the_scrubbed_frame() {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
-    let settings = Settings { method: Method::None, ..Settings::default() };
+    let settings = Settings { method: Method::None, ..Settings::paper() };
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     for index in 0..3 {
         let views = [view(&mut source, index)];

@@ -26,7 +26,7 @@ fn with_motion(name: &str, motion: impl FnMut([u32; 2]) -> [f32; 2]) -> View {
 }
 
 fn ungated() -> Option<Rig> {
-    Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::default() })
+    Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() })
 }
 
 fn one(rig: &mut Rig, index: u64, view: View) -> (Made, Image<PixelTrace>) {
@@ -52,8 +52,7 @@ fn h44_a_steep_floor_under_jitter_is_not_flushed() {
         assert_eq!(one(&mut rig, index, floor(0.5 * (index % 2) as f32)).0.stats.flushed(), 0, "frame {index}");
     }
     let test = Some(DepthTest { slope_px: 0.0, ..DepthTest::default() });
-    let Some(mut strict) = Rig::new(ContextDesc::new(SIZE), Settings { depth_test: test, ..Settings::default() })
-    else {
+    let Some(mut strict) = Rig::new(ContextDesc::new(SIZE), Settings { depth_test: test, ..Settings::paper() }) else {
         return;
     };
     one(&mut strict, 0, floor(0.0));
@@ -106,7 +105,7 @@ fn h41_h49_sky_and_orthographic_depth_flush_where_surfaces_change() {
         (DepthConvention::Linear, f32::INFINITY, 5.0),
         (DepthConvention::Orthographic { near: 0.0, far: 100.0 }, 1.0, 0.05),
     ] {
-        let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::default()) else {
+        let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::paper()) else {
             return;
         };
         for (index, split, flushed) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48)] {
@@ -118,7 +117,7 @@ fn h41_h49_sky_and_orthographic_depth_flush_where_surfaces_change() {
 
 #[test]
 fn h50_z_fighting_shows_only_what_was_presented() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::default()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
     let mut draws = Draws::new("z-fighting on the device");
     for index in 0..40 {
@@ -198,7 +197,7 @@ fn h55_half_float_motion_is_off_by_its_quantum_and_no_more() {
     // Half a view and half a pixel, nearly, in texture coordinates, where halves step by 2^-11: a 32nd of these pixels.
     let motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::default() };
     let desc = ContextDesc { motion, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::default() }) else { return };
+    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
     rig.halve_motion();
     sticky(&mut rig, still("before"));
     let wanted_px = 32.0 + 0.49;

@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{decisions, foveation, gpu, mathematics, state};
+use crate::{decisions, foveation, gpu, matching, mathematics, state, surfaces};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -111,4 +111,51 @@ fn a_gaussian_of_another_width_is_caught() {
     caught(foveation::PROBES, "gauss_radius", "u32(3.0 * sigma_px) + 1u", "u32(3.0 * sigma_px)");
     caught(foveation::PROBES, "blur_sigma_px", "0.5 * (exp2(", "0.50000006 * (exp2(");
     caught(foveation::PROBES, "blur_lod", "1.0 + 2.0 * sigma", "1.0 + sigma");
+}
+
+#[test]
+fn a_surface_stored_or_read_wrongly_is_caught() {
+    caught(surfaces::PROBES, "half14_bits", "(h + ((h >> 1u) & 1u)) >> 1u", "h >> 1u");
+    caught(surfaces::PROBES, "half14_bits", ">> 1u, 0x3dffu)", ">> 1u, 0x3e00u)");
+    caught(surfaces::PROBES, "pack_surface", "* LOD_STEPS + 0.5", "* LOD_STEPS");
+    caught(surfaces::PROBES, "unpack_surface", "if lod == EMPTY_LOD", "if lod > EMPTY_LOD");
+    caught(surfaces::PROBES, "chain_texel", "vec4<f32>(s.color, 1.0)", "vec4<f32>(s.color, 0.0)");
+    caught(surfaces::PROBES, "round_chain", "half_value(half_bits(v.w))", "v.w");
+}
+
+#[test]
+fn a_wrong_tap_or_weight_is_caught() {
+    caught(surfaces::PROBES, "tap_at", "tap >= 10u", "tap > 10u");
+    caught(surfaces::PROBES, "catmull_rom", "2.0 - 1.5 * t", "2.0 - 1.51 * t");
+    caught(surfaces::PROBES, "linear_weights", "0.0, 1.0 - t, t, 0.0", "0.0, t, 1.0 - t, 0.0");
+    caught(surfaces::PROBES, "gather", "tap.color * linear", "tap.color * sharp");
+    caught(surfaces::PROBES, "resolve", "g.missing == 0u)", "g.missing <= 1u)");
+    caught(surfaces::PROBES, "resolve", "if g.smooth_sum < 0.01 {", "if g.smooth_sum < 0.0 {");
+}
+
+#[test]
+fn a_wrong_match_is_caught() {
+    caught(matching::PROBES, "smooth_step", "3.0 - 2.0 * t", "3.0 - 2.01 * t");
+    caught(matching::PROBES, "root_difference", "luma * luma + 0.5 * chroma", "luma * luma + chroma");
+    caught(matching::PROBES, "moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within");
+    caught(matching::PROBES, "wanted", "(history_lod - lod) / COARSER_WIDTH", "(lod - history_lod) / COARSER_WIDTH");
+    caught(matching::PROBES, "gain", "(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)");
+    caught(matching::PROBES, "decide", "if relit < d {", "if relit > d {");
+    caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
+    caught(matching::PROBES, "chain_mean", "(a + b + c + d)", "(a + b + c + c)");
+    caught(matching::PROBES, "chain_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
+}
+
+#[test]
+fn a_wrong_antialiasing_is_caught() {
+    caught(surfaces::PROBES, "to_ycocg", "0.5 * (r.x - r.z)", "0.5 * (r.z - r.x)");
+    caught(surfaces::PROBES, "roots_of_ycocg", "outer - y.y", "outer + y.z");
+    caught(surfaces::PROBES, "clip_to_box", "if inside < 1.0", "if inside < 0.5");
+    caught(surfaces::PROBES, "candidate_share", "max(resampled, 1.0 - trust)", "resampled");
+    caught(
+        surfaces::PROBES,
+        "blend_clipped",
+        "(roots(candidate) - clipped) * alpha",
+        "(roots(candidate) - clipped) * (1.01 * alpha)",
+    );
 }

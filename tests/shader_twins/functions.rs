@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, mathematics, state};
+use crate::{decisions, foveation, matching, mathematics, state, surfaces};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -61,4 +61,24 @@ fn scrub_is_bit_equal_h17_h18_h37() {
 #[test]
 fn wrs_decides_bit_equal_h01_h02_h20_h39() {
     check_module(decisions::PROBES, "wrs");
+}
+
+#[test]
+fn matched_is_bit_equal() {
+    check_module(matching::PROBES, "matched");
+}
+
+#[test]
+fn surface_is_bit_equal() {
+    check_module(surfaces::PROBES, "surface");
+}
+
+#[test]
+fn resample_is_bit_equal() {
+    check_module(surfaces::PROBES, "resample");
+}
+
+#[test]
+fn taa_is_bit_equal() {
+    check_module(surfaces::PROBES, "taa");
 }

@@ -1,6 +1,6 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
-use crate::{decisions, foveation, mathematics, state};
+use crate::{decisions, foveation, matching, mathematics, state, surfaces};
 use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -107,7 +107,8 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
         assert_eq!(wgsl, expected, "{stem}");
         wgsl_names.extend(wgsl);
     }
-    let lists = [decisions::PROBES, foveation::PROBES, mathematics::PROBES, state::PROBES];
+    let lists =
+        [decisions::PROBES, foveation::PROBES, matching::PROBES, mathematics::PROBES, state::PROBES, surfaces::PROBES];
     let probed = lists.into_iter().flatten().map(|p| p.name);
     let covered: BTreeSet<String> = probed.chain(PRIVATE.iter().copied()).map(str::to_owned).collect();
     assert_eq!(wgsl_names, covered);

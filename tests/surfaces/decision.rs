@@ -29,7 +29,8 @@ fn evidence(draws: &mut Draws) -> Evidence {
         history: near(draws, matched),
         history_lod: draws.range(0.0, 5.0),
         matched,
-        matched_coarser: near(draws, matched),
+        level: matched,
+        next_level: near(draws, matched),
         trust: if draws.uniform() < 0.5 { 1.0 } else { draws.range(0.01, 1.0) },
     }
 }
@@ -93,7 +94,7 @@ fn s5_each_channel_lies_between_the_candidate_and_the_relit_history() {
         for i in 0..3 {
             let (c, h) = (e.candidate[i], e.history[i]);
             // The gain lies between 1 and the limited ratio of the coarser levels.
-            let ratio = ((e.compared_coarser[i] + 0.002) / (e.matched_coarser[i] + 0.002)).clamp(0.2, 5.0);
+            let ratio = ((e.compared_coarser[i] + 0.002) / (e.next_level[i] + 0.002)).clamp(0.2, 5.0);
             let relit = if p.relight { h * ratio } else { h };
             let (low, high) = (c.min(h).min(relit), c.max(h).max(relit));
             let rounding = 1e-6 * high;
@@ -121,7 +122,8 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
         history: near(draws, matched),
         history_lod: 0.0,
         matched,
-        matched_coarser: coarser,
+        level: matched,
+        next_level: coarser,
         trust: 1.0,
     }
 }
@@ -170,7 +172,7 @@ fn s7_far_from_the_candidate_is_the_candidate() {
         let tolerance = p.tolerance * (0.5 + 0.5 * finer);
         let scale = if p.blocks { 4.0 } else { 1.0 };
         let d = root_difference(e.compared, e.matched);
-        let contrast = root_difference(e.matched, e.matched_coarser);
+        let contrast = root_difference(e.level, e.next_level);
         let (keep, drop) = (tolerance * (3.0 * scale + contrast), tolerance * (9.0 * scale + contrast));
         if d > drop * 1.0001 {
             assert!(shows_the_candidate(&e, &m), "{d} beyond {drop}");
@@ -196,7 +198,8 @@ fn s7_relighting_explains_no_change_of_structure() {
             history: ground,
             history_lod: 0.0,
             matched: ground,
-            matched_coarser: ground,
+            level: ground,
+            next_level: ground,
             trust: 1.0,
         };
         assert!(shows_the_candidate(&e, &decide(&e, &PARAMS)));

@@ -13,7 +13,7 @@ use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
 use afterimage::pipeline::Headless;
 use afterimage::report::clock::{Quartiles, Stopwatch};
-use afterimage::settings::Method;
+use afterimage::settings::{Method, Settings};
 use afterimage::whole_file::write_whole;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -37,6 +37,9 @@ pub struct BenchArgs {
     /// Frames after warm-up, at least 30
     #[arg(long, default_value_t = 60, value_name = "N")]
     pub frames: u64,
+    /// Passes besides the copy, separated by commas; default: all
+    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    pub only: Vec<String>,
     /// Also write the figures as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -45,7 +48,7 @@ pub struct BenchArgs {
 /// What can be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process (none, wrs), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
+    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
     Post,
 }
 
@@ -78,7 +81,10 @@ struct PassReport {
 
 /// Textures of a frame as engines store them.
 struct Inputs {
+    full: Texture,
+    /// The full-rate frame as the foveation simulator leaves it for the frame's gaze.
     color: Texture,
+    foveation: GpuFoveation,
     depth: Texture,
     motion: Texture,
     output: Texture,
@@ -101,10 +107,12 @@ enum Does {
 }
 
 /// The passes, in the order in which each frame times them. The first is what the others are held against.
-const PASSES: [PassKind; 6] = [
+const PASSES: [PassKind; 8] = [
     PassKind { name: "copy", bytes_per_pixel: 48, does: Does::Copy },
     PassKind { name: "none", bytes_per_pixel: 16, does: Does::Post(Method::None) },
     PassKind { name: "wrs", bytes_per_pixel: 48, does: Does::Post(Method::Wrs) },
+    PassKind { name: "taa", bytes_per_pixel: 40, does: Does::Post(Method::Taa) },
+    PassKind { name: "smr", bytes_per_pixel: 48, does: Does::Post(Method::Smr) },
     PassKind { name: "mip", bytes_per_pixel: 27, does: Does::Foveate(Filter::Mip) },
     PassKind { name: "gauss", bytes_per_pixel: 48, does: Does::Foveate(Filter::Gauss) },
     PassKind { name: "block", bytes_per_pixel: 25, does: Does::Foveate(Filter::Block) },
@@ -120,6 +128,7 @@ enum Lane {
 impl Lane {
     fn new(gpu: &Headless, size: [u32; 2], does: Does) -> Result<Self, CreateError> {
         let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
+        desc.settings = Settings::paper();
         Ok(match does {
             Does::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
             Does::Post(method) => {
@@ -139,30 +148,42 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     if args.frames < 30 || args.frames > 100_000 {
         return Err(Failure::Input(format!("--frames {}: expected 30 to 100000", args.frames)));
     }
+    let known = |name: &&String| PASSES.iter().any(|p| p.name == **name);
+    if let Some(name) = args.only.iter().find(|name| !known(name)) {
+        let names: Vec<_> = PASSES.iter().map(|p| p.name).collect();
+        return Err(Failure::Input(format!("--only {name}: expected some of {}", names.join(","))));
+    }
+    let chosen =
+        |pass: &&PassKind| pass.name == "copy" || args.only.is_empty() || args.only.iter().any(|o| o == pass.name);
+    let passes: Vec<&PassKind> = PASSES.iter().filter(chosen).collect();
     let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
     let clock = Clock::new(&gpu);
-    let inputs = Inputs::new(&gpu, args.size);
+    let mut inputs = Inputs::new(&gpu, args.size)?;
+    let first = views(args.size, 0)?;
+    inputs.foveate(&gpu, &first)?;
     let mut lanes = vec![];
     let mut cold_start_ms = 0.0;
-    for pass in &PASSES {
+    for pass in &passes {
         let watch = Stopwatch::start();
         let mut lane = Lane::new(&gpu, args.size, pass.does)?;
-        time(&gpu, &clock, &inputs, &mut lane, args.size, 0)?;
+        time(&gpu, &clock, &inputs, &mut lane, &first, 0)?;
         if !matches!(pass.does, Does::Foveate(_)) {
             cold_start_ms += watch.wall_ms();
         }
         lanes.push(lane);
     }
-    let mut times: Vec<Vec<f64>> = vec![vec![]; PASSES.len()];
+    let mut times: Vec<Vec<f64>> = vec![vec![]; passes.len()];
     for index in 1..WARM_UP + args.frames {
+        let views = views(args.size, index)?;
+        inputs.foveate(&gpu, &views)?;
         for (lane, times) in lanes.iter_mut().zip(&mut times) {
-            let ms = time(&gpu, &clock, &inputs, lane, args.size, index)?;
+            let ms = time(&gpu, &clock, &inputs, lane, &views, index)?;
             if index >= WARM_UP {
                 times.push(ms);
             }
         }
     }
-    let report = summarise(args, &gpu, &clock, cold_start_ms, &times);
+    let report = summarise(args, &gpu, &clock, cold_start_ms, &passes, &times);
     print(&report);
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&report).map_err(|e| Failure::Work(e.to_string()))?;
@@ -171,16 +192,23 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn summarise(args: &BenchArgs, gpu: &Headless, clock: &Clock, cold_start_ms: f64, times: &[Vec<f64>]) -> Report {
+fn summarise(
+    args: &BenchArgs,
+    gpu: &Headless,
+    clock: &Clock,
+    cold_start_ms: f64,
+    passes: &[&PassKind],
+    times: &[Vec<f64>],
+) -> Report {
     let megapixels = f64::from(args.size[0]) * f64::from(args.size[1]) / 1e6;
     let median = |i: usize| Quartiles::of(&times[i]).map(|q| q.median);
-    let passes = PASSES.iter().enumerate().map(|(i, pass)| PassReport {
+    let reports = passes.iter().enumerate().map(|(i, pass)| PassReport {
         name: pass.name,
         ms: Quartiles::of(&times[i]),
         ms_per_megapixel: median(i).map(|ms| ms / megapixels),
         bytes_per_pixel: pass.bytes_per_pixel,
         share_of_copy_bandwidth: (|| {
-            let copy_of_as_many = median(0)? * f64::from(pass.bytes_per_pixel) / f64::from(PASSES[0].bytes_per_pixel);
+            let copy_of_as_many = median(0)? * f64::from(pass.bytes_per_pixel) / f64::from(passes[0].bytes_per_pixel);
             Some(copy_of_as_many / median(i)?)
         })(),
     });
@@ -194,7 +222,7 @@ fn summarise(args: &BenchArgs, gpu: &Headless, clock: &Clock, cold_start_ms: f64
         frames: args.frames,
         clock: clock.name(),
         cold_start_ms,
-        passes: passes.collect(),
+        passes: reports.collect(),
     }
 }
 
@@ -218,7 +246,7 @@ fn print(report: &Report) {
             100.0 * share
         );
     }
-    say!("cold start of copy, none and wrs: {:.0} ms", report.cold_start_ms);
+    say!("cold start of the post-process: {:.0} ms", report.cold_start_ms);
 }
 
 /// Milliseconds of one pass of one frame.
@@ -227,21 +255,15 @@ fn time(
     clock: &Clock,
     inputs: &Inputs,
     lane: &mut Lane,
-    size: [u32; 2],
+    views: &[ViewFrame],
     index: u64,
 ) -> Result<f64, Failure> {
-    let turn = index as f32 * 0.1;
-    let px = [0.5, 0.5].map(|v| v + 0.3 * if v > 0.0 { turn.sin() } else { turn.cos() });
-    let views = [ViewFrame {
-        geometry: ViewGeometry::flat(size, 70.0)?,
-        gaze: Gaze::At { px: [px[0] * size[0] as f32, px[1] * size[1] as f32] },
-        previous_from_current: None,
-    }];
+    let color = if matches!(lane, Lane::Foveate(_)) { &inputs.full } else { &inputs.color };
     let frame = Frame {
         depth: Some(&inputs.depth),
         motion: Some(&inputs.motion),
         timestamps: clock.timestamps(),
-        ..Frame::new(&inputs.color, &inputs.output, &views, index)
+        ..Frame::new(color, &inputs.output, views, index)
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
@@ -339,9 +361,18 @@ impl Clock {
     }
 }
 
+/// An eye that circles.
+fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
+    let turn = index as f32 * 0.1;
+    let px = [(0.5 + 0.3 * turn.cos()) * size[0] as f32, (0.5 + 0.3 * turn.sin()) * size[1] as f32];
+    let geometry = ViewGeometry::flat(size, 70.0)?;
+    Ok([ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None }])
+}
+
 impl Inputs {
-    /// Noise to look at, two depths, and vectors of a few pixels.
-    fn new(gpu: &Headless, size: [u32; 2]) -> Self {
+    /// Noise to look at, two depths in stripes, and vectors of a few pixels in every other stripe, which the picture does not follow:
+    /// half of the history fits, half does not.
+    fn new(gpu: &Headless, size: [u32; 2]) -> Result<Self, Failure> {
         let texture = |format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("bench"),
@@ -365,20 +396,33 @@ impl Inputs {
         let pixels = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y]));
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let half = |v: f32| half_bits(v) as u16;
+        let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
+        desc.settings = Settings::paper();
         let inputs = Self {
-            color: texture(TextureFormat::Rgba16Float, read),
+            full: texture(TextureFormat::Rgba16Float, read),
+            color: texture(TextureFormat::Rgba16Float, TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING),
+            foveation: GpuFoveation::new(&gpu.device, &desc)?,
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg16Float, read),
             output: texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING),
         };
         let color: Vec<[u16; 4]> =
             pixels().map(|[x, y]| [0, 1, 2, 3].map(|i| half(rng::unit_draw(rng::bits(x, y, i, 1))))).collect();
-        upload(&inputs.color, bytemuck::cast_slice(&color));
+        upload(&inputs.full, bytemuck::cast_slice(&color));
         let depth: Vec<f32> = pixels().map(|[x, _]| if x / 64 % 2 == 0 { 3.0 } else { 12.0 }).collect();
         upload(&inputs.depth, bytemuck::cast_slice(&depth));
         let motion: Vec<[u16; 2]> =
             pixels().map(|[x, _]| if x / 64 % 2 == 0 { [half(-3.0), half(1.0)] } else { [0, 0] }).collect();
         upload(&inputs.motion, bytemuck::cast_slice(&motion));
-        inputs
+        Ok(inputs)
+    }
+
+    /// Foveates the frame for these views.
+    fn foveate(&mut self, gpu: &Headless, views: &[ViewFrame]) -> Result<(), Failure> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.foveation.record(&gpu.device, &mut encoder, &FoveationFrame::new(&self.full, &self.color, views))?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait();
+        Ok(())
     }
 }

@@ -32,6 +32,8 @@ pub struct Clip {
     pub format: FormatName,
     pub write_reference: bool,
     pub debug: Vec<DebugName>,
+    /// Whether the methods get the source's trust mask.
+    pub trust: bool,
     pub backend: Backend,
     /// Why the CPU, if that was not asked for.
     pub backend_note: &'static str,
@@ -102,6 +104,9 @@ impl Clip {
         let is_still = source.info().still;
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
+        if self.trust {
+            pipeline = pipeline.with_trust();
+        }
         let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
         let mut foveation_ms = vec![];
         let mut gaze_px = vec![];

@@ -30,7 +30,7 @@ const DEMO: &[&str] = &[
     "--rate-far",
     "8",
     "--method",
-    "none,wrs,oracle",
+    "none,wrs,smr,oracle",
     "--reference",
     "--backend",
     "cpu",
@@ -54,20 +54,20 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
     say!("in 8-pixel blocks beyond, as a foveating renderer would. Each method gets the same foveated frames.\n");
     let report = execute(&run.args)?;
     let find = |name: &str| report.methods.iter().find(|m| m.0 == name).map(|m| &m.1);
-    if let (Some(none), Some(wrs), Some(oracle)) = (find("none"), find("wrs"), find("oracle")) {
-        explain(none, wrs, oracle);
+    if let (Some(none), Some(wrs), Some(smr), Some(oracle)) = (find("none"), find("wrs"), find("smr"), find("oracle")) {
+        explain([none, wrs, smr, oracle]);
     }
     let sheet = args.out.join("sheet.png");
     say!("Look at {}:", sheet.display());
     say!("  top row      the last frame; the yellow circle is where the eye looks, the blue line where it has been");
     say!("  middle row   the error: black is none. Dark trails along the blue line are detail that was kept");
     say!("  bottom row   a close look at the green square, which the eye has left: sharp is kept, blurred is lost");
-    say!("Frames: {0}/none, {0}/wrs, {0}/oracle, {0}/reference; figures: {0}/report.json", args.out.display());
+    say!("Frames: {0}/none, {0}/wrs, {0}/smr, {0}/oracle, {0}/reference; figures: {0}/report.json", args.out.display());
     say!("The same by hand: afterimage run {} --out {}", DEMO.join(" "), args.out.display());
     Ok(())
 }
 
-fn explain(none: &MethodReport, wrs: &MethodReport, oracle: &MethodReport) {
+fn explain([none, wrs, smr, oracle]: [&MethodReport; 4]) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.1} dB"));
     let row = |what: &str, m: &MethodReport| {
         let (whole, retained) = (m.scores.whole.psnr_db, m.scores.retained_psnr_db);
@@ -75,7 +75,8 @@ fn explain(none: &MethodReport, wrs: &MethodReport, oracle: &MethodReport) {
     };
     say!("  {:46} {:>9} {:>12}", "", "all", "seen before");
     row("none: the foveated frame alone", none);
-    row("wrs: weighted reservoirs keep earlier samples", wrs);
+    row("wrs: weighted reservoirs, the paper's method", wrs);
+    row("smr: scale-matched reservoirs, ours", smr);
     row("oracle: the best that any reuse could show", oracle);
     say!("\"seen before\" is the part outside the fovea that the eye has already seen sharp: what reuse is for.\n");
 }

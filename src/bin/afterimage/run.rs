@@ -44,10 +44,13 @@ pub struct RunArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs,smr", value_name = "LIST")]
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
+    /// Tell the methods which pixels move without vectors, where the scene knows it (analytic:scroll)
+    #[arg(long)]
+    pub trust: bool,
     /// What computes the methods: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: BackendName,
@@ -267,6 +270,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             format: args.format,
             write_reference: args.reference,
             debug: args.debug.clone(),
+            trust: args.trust,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",

@@ -196,6 +196,7 @@ impl AnalyticSource {
             color: geometry.map(|(color, _)| color),
             depth: Some(geometry.map(|(_, at)| at.depth)),
             motion: Some(geometry.map(|(_, at)| at.motion)),
+            trust: None,
             previous_from_current: Some(stage.cameras[0].to(&stage.cameras[1])),
             cut: index == 0,
             nonfinite: 0,
@@ -226,6 +227,7 @@ impl AnalyticSource {
         for (pixel, fresh) in frame.color.pixels_mut().iter_mut().zip(fresh) {
             *pixel = fresh.unwrap_or(*pixel);
         }
+        frame.trust = self.panel_mask(index).map(|mask| mask.map(|panel| if panel { 0.0 } else { 1.0 }));
         frame
     }
 }
