@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod antialiasing;
 mod decision;
 mod formulas;
 mod hostile;
