@@ -7,7 +7,7 @@
 //! | 0 | 28-31 | level of detail, low 4 bits of its code |
 //! | 1 | 0-13 | blue |
 //! | 1 | 14-15 | level of detail, high 2 bits |
-//! | 1 | 16-31 | disparity, [`disparity_code`](super::pack::disparity_code) |
+//! | 1 | 16-31 | disparity, [`disparity_code`] |
 //!
 //! What is read was stored: packing what was unpacked changes nothing.
 
