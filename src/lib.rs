@@ -1,12 +1,12 @@
 //! Temporal post-process for foveated rendering: what the eye has already paid for is not thrown away.
 //!
-//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it: per-pixel reservoirs keep
-//! sharp samples from earlier gaze positions, follow them along the motion vectors, and show them while they still fit what
-//! the renderer delivers. The method is Cantory et al., "Enhancing Foveated Rendering with Weighted Reservoir Sampling"
-//! (MIG 2025).
+//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it: it keeps the sharpest sample
+//! of every surface point, follows it along the motion vectors, and shows it while it explains what the renderer delivers
+//! ([`Method::Smr`](settings::Method::Smr)). To compare: weighted reservoirs (Cantory et al., MIG 2025) and temporal antialiasing.
 //!
 //! ```
 //! use afterimage::display::ViewGeometry;
+//! use afterimage::foveation::Foveation;
 //! use afterimage::frame::{Gaze, ViewFrame};
 //! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 //! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
@@ -25,7 +25,10 @@
 //! # let mut encoder = device.create_command_encoder(&Default::default());
 //! # let (size, gaze_px, index) = ([640, 360], [200.0, 180.0], 0);
 //!
-//! let mut post = Afterimage::new(&device, &GpuDesc::new(size, output.format()))?;
+//! let mut desc = GpuDesc::new(size, output.format());
+//! // As your renderer foveates.
+//! desc.settings.foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
+//! let mut post = Afterimage::new(&device, &desc)?;
 //!
 //! // Every frame, after the foveated frame is rendered: its textures, one gaze a view, your encoder.
 //! let views = [ViewFrame {
@@ -45,7 +48,7 @@
 //! - [`settings`]: what can be tuned, what more and less of it does.
 //! - [`frame`], [`convention`], [`display`]: what the caller says about a frame, and in which conventions.
 //! - [`stats`], [`warning`]: what a frame came to, and what was odd about it.
-//! - [`gpu`] and [`cpu`]: the two executors of the same pass, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
+//! - [`gpu`] and [`cpu`]: the two executors of the same passes, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
 //!   they share, one function a formula.
 //! - With the feature `lab`: `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
 //!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric` and `report`.
