@@ -159,7 +159,7 @@ fn occluder_motion_follows_objects_and_camera() {
 #[test]
 fn camera_matrix_agrees_with_motion_and_previous_depth() {
     let pinhole = Pinhole::new(SIZE, 70.0);
-    for name in ["lateral", "occluder"] {
+    for name in ["lateral", "turn", "occluder"] {
         let [before, now] = frames(name, [79, 80]);
         let (depth, motion) = geometry(&now);
         let (previous_depth, _) = geometry(&before);

@@ -21,7 +21,7 @@ use std::path::PathBuf;
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
-    /// A still (.png, .jpg, .exr), a folder of .exr frames, or analytic:NAME with NAME one of still, lateral, occluder,
+    /// A still (.png, .jpg, .exr), a folder of .exr frames, or analytic:NAME with NAME one of still, lateral, turn, occluder,
     /// light-step, scroll
     pub input: String,
     /// Folder for everything that is written

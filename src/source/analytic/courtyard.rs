@@ -120,6 +120,14 @@ pub(super) fn lateral() -> Scene {
     })
 }
 
+/// `turn`: the camera looks left and right by 8 degrees, and up and down by 3.
+pub(super) fn turn() -> Scene {
+    scene(notice(), |t| {
+        let (yaw, pitch) = (0.14 * (2.0 * t).sin(), 0.05 * (1.4 * t).sin());
+        Camera::looking(Vec3::ZERO, yaw as f32, pitch as f32)
+    })
+}
+
 /// `occluder`: a fence and a rolling ball pass in front of a camera that drifts and turns a little; the globe spins.
 pub(super) fn occluder() -> Scene {
     let mut extra = notice();

@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | `still` | nothing | the picture to look at; how much detail comes back |
 //! | `lateral` | the camera, sideways, 1 m/s at the most | reprojection, disocclusion behind near posts |
+//! | `turn` | the camera, about itself, 17 degrees a second at the most | camera rotation: every pixel moves, nothing is disoccluded |
 //! | `occluder` | a fence and a rolling ball in front, a spinning globe, the camera a little | motion of objects |
 //! | `light-step` | nothing; the light falls to 0.45 for 0.75 s | change without motion |
 //! | `scroll` | the page on a panel, without motion vectors | content that lies about its motion |
@@ -54,14 +55,16 @@ const SCROLL_PERIOD: f64 = 1024.0;
 enum Kind {
     Still,
     Lateral,
+    Turn,
     Occluder,
     LightStep,
     Scroll,
 }
 
-const KINDS: [(&str, Kind); 5] = [
+const KINDS: [(&str, Kind); 6] = [
     ("still", Kind::Still),
     ("lateral", Kind::Lateral),
+    ("turn", Kind::Turn),
     ("occluder", Kind::Occluder),
     ("light-step", Kind::LightStep),
     ("scroll", Kind::Scroll),
@@ -126,6 +129,7 @@ impl AnalyticSource {
         let (scene, samples) = match kind {
             Kind::Still | Kind::LightStep => (courtyard::still(), SAMPLES_KEPT),
             Kind::Lateral => (courtyard::lateral(), SAMPLES_MOVING),
+            Kind::Turn => (courtyard::turn(), SAMPLES_MOVING),
             Kind::Occluder => (courtyard::occluder(), SAMPLES_MOVING),
             Kind::Scroll => (courtyard::scroll(), SAMPLES_MOVING),
         };
@@ -243,7 +247,7 @@ impl FrameSource for AnalyticSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let mut frame = match self.kind {
-            Kind::Lateral | Kind::Occluder => self.cast(index),
+            Kind::Lateral | Kind::Turn | Kind::Occluder => self.cast(index),
             Kind::Still => self.kept(),
             Kind::Scroll => self.scrolled(index),
             Kind::LightStep => {
