@@ -38,7 +38,7 @@ fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
     );
 }
 
-// Whether enough neighbours move as the pixel does.
+// Whether a neighbour moves as the pixel does.
 fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
     if HAS_MOTION == 0u {
         return true;

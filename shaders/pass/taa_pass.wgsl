@@ -48,8 +48,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     // The lobes of the resampling reach beyond what halves hold.
     shown = min(shown, vec3<f32>(MAX_HALF));
-    let age = select(0u, MAX_AGE, valid);
-    show(px, view, shown, PixelTrace(1.0 - share, 0.0, age, share, source.verdict, 1.0, !valid, motion));
+    show(px, view, shown, PixelTrace(1.0 - share, 0.0, 0u, share, source.verdict, 1.0, !valid, motion));
     if VIEW != 0u {
         return;
     }

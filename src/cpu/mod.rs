@@ -38,7 +38,8 @@ pub struct CpuView<'a> {
     /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
     /// reflections). `None`: 1 everywhere.
     pub trust: Option<&'a Image<f32>>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it.
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it,
+    /// whose `rate_far` must be the coarsest in either case: history is not matched at coarser levels.
     pub lod: Option<&'a Image<f32>>,
 }
 

@@ -1,8 +1,9 @@
 //! The scale-matched reservoir: scrub, reproject, flush, resample, match scales, relight, decide, store and show. `docs/method.md` has
 //! the equations.
 //!
-//! Each pixel reads its colour, depth, five motions, twelve remembered surfaces, twelve texels of their coarser levels and four more
-//! colours (neighbours share most of them), and writes one surface, a third of a texel of the coarser levels and one colour.
+//! Each pixel reads its colour, depth, three motions, twelve remembered surfaces, eight texels of their coarser levels and, where
+//! something changed, four more colours (neighbours share most of them), and writes one surface, a third of a texel of the coarser
+//! levels and one colour: 48 bytes with half-float colour and motion.
 
 use super::remembered::{Remembered, Source};
 use crate::kernel::approx;
@@ -80,7 +81,7 @@ impl Smr {
         }
     }
 
-    /// Whether enough neighbours move as the pixel does.
+    /// Whether a neighbour moves as the pixel does.
     #[inline(always)]
     fn is_coherent(&self, at: &Remembered<'_>, x: u32, y: u32, own: [f32; 2]) -> bool {
         let inputs = &at.inputs;

@@ -5,7 +5,6 @@
 
 use super::remembered::Remembered;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::pack::MAX_AGE;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
@@ -42,7 +41,7 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
     let trace = PixelTrace {
         weight: 1.0 - share,
         w_sum: 0.0,
-        age: if verdict == Verdict::Valid { MAX_AGE } else { 0 },
+        age: 0,
         survival: share,
         verdict,
         gate: 1.0,

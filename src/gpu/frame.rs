@@ -19,7 +19,8 @@ pub struct Frame<'a> {
     /// reflections). Any float or normalised format. `None`: 1 everywhere.
     pub trust: Option<&'a Texture>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels, any float format. `None`: as
-    /// [`Settings::foveation`](crate::Settings::foveation) has it.
+    /// [`Settings::foveation`](crate::Settings::foveation) has it, whose `rate_far` must be the coarsest in either case: history is not
+    /// matched at coarser levels.
     pub lod: Option<&'a Texture>,
     /// What the user will see: the context's output format, usage `STORAGE_BINDING`.
     pub output: &'a Texture,

@@ -10,16 +10,17 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DebugView {
-    /// Weight sum of the reservoir: black 0, white 16 or more.
+    /// Weight sum of the reservoir: black 0, white 16 or more. Of smr the sharpness of what is stored: white full rate, each level of
+    /// detail half of it. taa has none: black.
     Weight = 1,
-    /// Frames since the shown sample was shaded: black 0, white 255 or more, by square root.
+    /// Frames since the shown sample was shaded: black 0, white 255 or more, by square root. Only wrs remembers it; black otherwise.
     Age = 2,
-    /// Share of the history's weight that survived: black none, white all.
+    /// Share of the history's weight that survived, of smr and taa history's share in what is shown: black none, white all.
     Survival = 3,
     /// What became of the history: grey valid, blue reset, magenta bad motion, orange off screen, yellow empty, red disoccluded,
     /// cyan distrusted.
     Flush = 4,
-    /// Gate value: white open, black shut.
+    /// Gate value, of smr how well history explains the candidate: white open, black shut. taa has none: white.
     Gate = 5,
     /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full colour, green no number.
     Motion = 6,

@@ -170,9 +170,9 @@ fn parse_bias(text: &str) -> Result<Bias, String> {
 /// Names of debug views.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DebugName {
-    /// Weight sum of the reservoir
+    /// Weight sum of the reservoir; of smr the sharpness stored
     Weight,
-    /// Frames since the shown sample was shaded
+    /// Frames since the shown sample was shaded; wrs only
     Age,
     /// Share of the history's weight that survived
     Survival,

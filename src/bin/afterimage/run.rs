@@ -44,7 +44,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs,smr", value_name = "LIST")]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
