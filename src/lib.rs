@@ -73,6 +73,8 @@ pub mod pipeline;
 pub mod report;
 #[cfg(feature = "lab")]
 pub mod scanpath;
+#[cfg(feature = "lab")]
+pub mod scene;
 pub mod settings;
 #[cfg(feature = "lab")]
 pub mod source;
