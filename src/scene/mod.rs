@@ -4,6 +4,7 @@
 //! once ([`Scene::still`]), those that do are posed for each frame ([`Scene::pose`]), in the same order and number at every time,
 //! so that a triangle's place a frame ago is its place in an earlier pose.
 
+pub mod builtin;
 pub mod camera;
 pub mod light;
 pub mod material;

@@ -1,0 +1,45 @@
+//! The Cornell box.
+
+use super::shapes::block;
+use crate::scene::{Environment, Material, Scene, Triangles};
+use glam::Vec3;
+
+/// A room of 5.55 m with an open front, two blocks, a lamp in the ceiling. All surfaces are Lambert's.
+///
+/// | what | where, metres | reflectance |
+/// |---|---|---|
+/// | floor, ceiling, back wall | 0..5.55 in x, y, z; the front (z = 0) is open | 0.73 |
+/// | left wall as seen (x = 5.55) | | 0.65, 0.05, 0.05 |
+/// | right wall as seen (x = 0) | | 0.12, 0.45, 0.15 |
+/// | tall block | 1.65 x 3.30 x 1.65, turned by 15 degrees about y, moved by (2.65, 0, 2.95) | 0.73 |
+/// | low block | 1.65 x 1.65 x 1.65, turned by -18 degrees about y, moved by (1.30, 0, 0.65) | 0.73 |
+/// | lamp | x 2.13..3.43, z 2.27..3.32, y 5.54; radiance 15 downwards | 0 |
+///
+/// The camera stands at (2.78, 2.78, -8), looks along +z, and sees 40 degrees vertically. Nothing surrounds the box. The
+/// measures are those of Shirley's "Ray Tracing: The Next Week", which cleans up the Cornell measurements.
+pub fn cornell() -> Scene {
+    let lambert =
+        |name: &str, base_color| Material { name: name.into(), base_color, specular: 0.0, ..Material::default() };
+    let [white, red, green, lamp] = [0, 1, 2, 3];
+    let materials = vec![
+        lambert("white", [0.73; 3]),
+        lambert("red", [0.65, 0.05, 0.05]),
+        lambert("green", [0.12, 0.45, 0.15]),
+        Material { emissive: [15.0; 3], double_sided: false, ..lambert("lamp", [0.0; 3]) },
+    ];
+    let mut t = Triangles::default();
+    let s = 5.55;
+    let corner = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+    // Fronts face inwards.
+    t.push_quad([corner(0., 0., 0.), corner(0., 0., s), corner(s, 0., s), corner(s, 0., 0.)], white);
+    t.push_quad([corner(0., s, 0.), corner(s, s, 0.), corner(s, s, s), corner(0., s, s)], white);
+    t.push_quad([corner(0., 0., s), corner(0., s, s), corner(s, s, s), corner(s, 0., s)], white);
+    t.push_quad([corner(s, 0., 0.), corner(s, 0., s), corner(s, s, s), corner(s, s, 0.)], red);
+    t.push_quad([corner(0., 0., 0.), corner(0., s, 0.), corner(0., s, s), corner(0., 0., s)], green);
+    let [x0, x1, z0, z1, y] = [2.13, 3.43, 2.27, 3.32, 5.54];
+    t.push_quad([corner(x0, y, z0), corner(x1, y, z0), corner(x1, y, z1), corner(x0, y, z1)], lamp);
+    block(&mut t, Vec3::new(1.65, 3.30, 1.65), 15.0, Vec3::new(2.65, 0.0, 2.95), white);
+    block(&mut t, Vec3::splat(1.65), -18.0, Vec3::new(1.30, 0.0, 0.65), white);
+    let camera = super::look_at([2.78, 2.78, -8.0], [2.78, 2.78, 0.0], 40.0);
+    super::still("cornell", materials, t, camera, Environment::Constant([0.0; 3]))
+}
