@@ -6,6 +6,7 @@
 
 pub mod builtin;
 pub mod camera;
+pub mod camera_file;
 pub mod light;
 pub mod material;
 pub mod texture;

@@ -60,24 +60,16 @@ impl Cameras {
     /// If the file cannot be read, is not JSON of the expected form, or holds numbers that no camera has.
     pub fn beside(folder: &Path) -> Result<Option<Self>, InputError> {
         let path = folder.join(FILE_NAME);
-        let subject = path.display().to_string();
-        let bytes = match fs::metadata(&path) {
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(io_error(&subject, &e)),
-            Ok(meta) => meta.len(),
-        };
-        if bytes > MAX_BYTES {
-            return Err(InputError::new(
-                &subject,
-                format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
-                "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
-            ));
+        match fs::metadata(&path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            _ => {
+                let subject = path.display().to_string();
+                Self::parse(&subject, &read(&path)?).map(Some)
+            }
         }
-        let text = fs::read(&path).map_err(|e| io_error(&subject, &e))?;
-        Self::parse(&subject, &text).map(Some)
     }
 
-    fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
+    pub(crate) fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let form: FileForm = serde_json::from_slice(text).map_err(|e| {
             InputError::new(
                 subject,
@@ -113,6 +105,11 @@ impl Cameras {
             numbers: form.frames.iter().map(|f| f.frame).collect(),
             poses,
         })
+    }
+
+    /// Camera-to-world of every frame, in the file's axes.
+    pub(crate) fn world_from_camera(&self) -> impl ExactSizeIterator<Item = DMat4> {
+        self.poses.iter().map(|p| p.world_from_camera)
     }
 
     /// Checks that the images have the size that the cameras were made for.
@@ -162,6 +159,20 @@ impl Cameras {
         let matrix = flip * self.poses[previous].camera_from_world * self.poses[current].world_from_camera * flip;
         matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
+}
+
+/// The bytes of a file of cameras, if there are not too many.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
+    let subject = path.display().to_string();
+    let bytes = fs::metadata(path).map_err(|e| io_error(&subject, &e))?.len();
+    if bytes > MAX_BYTES {
+        return Err(InputError::new(
+            &subject,
+            format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
+            "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
+        ));
+    }
+    fs::read(path).map_err(|e| io_error(&subject, &e))
 }
 
 fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, InputError> {

@@ -1,0 +1,48 @@
+//#use approx
+// Twin of src/kernel/light.rs.
+
+// light::distance_falloff
+fn distance_falloff(distance: f32, range: f32) -> f32 {
+    let ratio = distance / range;
+    let squared = ratio * ratio;
+    let window = clamp(1.0 - squared * squared, 0.0, 1.0);
+    let near = max(distance, 1e-3);
+    return window / (near * near);
+}
+
+// light::cone_falloff
+fn cone_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
+    let t = clamp((cos_angle - cos_outer) / max(cos_inner - cos_outer, 1e-3), 0.0, 1.0);
+    return t * t;
+}
+
+// light::solid_angle_pdf
+fn solid_angle_pdf(per_area: f32, distance: f32, cos_light: f32) -> f32 {
+    return per_area * (distance * distance) / max(cos_light, 1e-7);
+}
+
+// light::map_coordinates
+fn map_coordinates(direction: vec3<f32>) -> vec2<f32> {
+    let across = sqrt(direction.x * direction.x + direction.z * direction.z);
+    let longitude = atan2_upper(abs(direction.x), -direction.z) * 0.15915494;
+    let u = select(0.5 + longitude, 0.5 - longitude, direction.x < 0.0);
+    return vec2<f32>(u, atan2_upper(across, direction.y) * 0.31830987);
+}
+
+struct MapDirection {
+    direction: vec3<f32>,
+    sine: f32,
+}
+
+// light::map_direction
+fn map_direction(u: f32, v: f32) -> MapDirection {
+    let longitude = sin_cos_turns(u - 0.5);
+    let latitude = sin_cos_turns(0.5 * v);
+    let sine = max(latitude.x, 0.0);
+    return MapDirection(vec3<f32>(longitude.x * sine, latitude.y, -(longitude.y * sine)), sine);
+}
+
+// light::map_pdf
+fn map_pdf(chosen: f32, texels: f32, sine: f32) -> f32 {
+    return chosen * texels / (19.739208 * max(sine, 1e-6));
+}
