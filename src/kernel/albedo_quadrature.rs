@@ -1,0 +1,195 @@
+//! The tables of [`albedo`](super::albedo), by quadrature in f64. No shader twin: they are computed once and uploaded.
+//!
+//! GGX is integrated over the draws that its sampler takes (visible normals), where the integrand is a ratio of masking terms
+//! between 0 and 1; sheen over directions. Gauss and Legendre's rule along the cosine, equal steps, which converge as fast for
+//! periodic functions, around the azimuth.
+
+use super::albedo::{AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, ROUGHNESSES};
+use super::bsdf::REFRACTING_IOR;
+use super::microfacet::{MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
+use glam::{DVec3, Vec4};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Points along the cosine.
+const RINGS: usize = 24;
+/// Points around half a turn; the other half is its mirror image.
+const SPOKES: usize = 16;
+
+/// Nodes and weights of Gauss and Legendre's rule on \[0, 1\], by Newton's method.
+fn gauss(count: usize) -> Vec<[f64; 2]> {
+    let n = count as f64;
+    (0..count)
+        .map(|i| {
+            let mut x = (PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+            let mut slope = 1.0;
+            // Quadratic convergence from a guess good to 1 / n^2: six steps reach f64.
+            for _ in 0..6 {
+                let [mut p0, mut p1] = [1.0, x];
+                for k in 2..=count {
+                    let k = k as f64;
+                    [p0, p1] = [p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k];
+                }
+                slope = n * (x * p1 - p0) / (x * x - 1.0);
+                x -= p1 / slope;
+            }
+            [0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope)]
+        })
+        .collect()
+}
+
+fn spokes() -> [[f64; 2]; SPOKES] {
+    std::array::from_fn(|i| {
+        let angle = PI * (i as f64 + 0.5) / SPOKES as f64;
+        [angle.cos(), angle.sin()]
+    })
+}
+
+/// A rough boundary of width `a`, seen under the cosine `z`, and the points of the rule.
+struct Facets {
+    wo: DVec3,
+    length: f64,
+    a: f64,
+}
+
+impl Facets {
+    fn new(z: f64, a: f64) -> Self {
+        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+        Self { wo, length: stretched(wo, a), a }
+    }
+
+    /// Mean of `f`(normal) over the visible normals.
+    fn mean<const N: usize>(&self, rings: &[[f64; 2]], f: impl Fn(DVec3) -> [f64; N]) -> [f64; N] {
+        let s = DVec3::new(self.wo.x * self.a, 0.0, self.wo.z).normalize();
+        let mut sum = [0.0; N];
+        for &[u, weight] in rings {
+            let q = u * (1.0 + s.z);
+            let r = (q * (2.0 - q)).max(0.0).sqrt();
+            for [cos, sin] in spokes() {
+                let h = DVec3::new(r * cos + s.x, r * sin, (1.0 - u) * (1.0 + s.z));
+                let h = DVec3::new(h.x * self.a, h.y * self.a, h.z).normalize();
+                let values = f(h);
+                for (sum, value) in sum.iter_mut().zip(values) {
+                    *sum += value * weight / SPOKES as f64;
+                }
+            }
+        }
+        sum
+    }
+
+    /// G2 / G1 of the direction `wi`, whichever side it leaves to.
+    fn shadowing(&self, wi: DVec3) -> f64 {
+        let z = wi.z.abs();
+        let sum = z * self.length + self.wo.z * stretched(wi, self.a);
+        if sum > 0.0 { z * (self.wo.z + self.length) / sum } else { 0.0 }
+    }
+}
+
+fn stretched(v: DVec3, a: f64) -> f64 {
+    ((v.x * v.x + v.y * v.y) * a * a + v.z * v.z).sqrt()
+}
+
+fn mirrored(v: DVec3, h: DVec3) -> DVec3 {
+    2.0 * v.dot(h) * h - v
+}
+
+/// Directional albedo with reflectance 1, and with (1 - v.h)^5.
+fn ggx(z: f64, a: f64, rings: &[[f64; 2]]) -> [f64; 2] {
+    let facets = Facets::new(z, a);
+    facets.mean(rings, |h| {
+        let wi = mirrored(facets.wo, h);
+        let g = if wi.z > 0.0 { facets.shadowing(wi) } else { 0.0 };
+        [g, g * (1.0 - facets.wo.dot(h)).powi(5)]
+    })
+}
+
+/// What returns from a rough boundary: with Fresnel's reflectance, and with no reflection but the total one.
+fn glass(z: f64, a: f64, eta: f64, rings: &[[f64; 2]]) -> [f64; 2] {
+    let facets = Facets::new(z, a);
+    facets.mean(rings, |h| {
+        let wo = facets.wo;
+        let c = wo.dot(h).min(1.0);
+        let up = mirrored(wo, h);
+        let reflected = if up.z > 0.0 { facets.shadowing(up) } else { 0.0 };
+        let k = 1.0 - (1.0 - c * c) / (eta * eta);
+        if k <= 0.0 {
+            return [reflected, reflected];
+        }
+        let t = k.sqrt();
+        let s = (c - eta * t) / (c + eta * t);
+        let p = (eta * c - t) / (eta * c + t);
+        let f = 0.5 * (s * s + p * p);
+        let down = (c / eta - t) * h - wo / eta;
+        let through = if down.z < 0.0 { facets.shadowing(down) } else { 0.0 };
+        [f * reflected + (1.0 - f) * through, through]
+    })
+}
+
+fn charlie_lambda(c: f64, a: f64) -> f64 {
+    let w = (1.0 - a) * (1.0 - a);
+    let mix = |rough: f64, smooth: f64| rough + (smooth - rough) * w;
+    let [top, slope, power] = [mix(21.5473, 25.3245), mix(3.82987, 3.32435), mix(0.19823, 0.16801)];
+    let [linear, offset] = [mix(-1.97760, -1.27393), mix(-4.32054, -4.85967)];
+    let curve = |x: f64| top / (1.0 + slope * x.powf(power)) + linear * x + offset;
+    if c < 0.5 { curve(c).exp() } else { (2.0 * curve(0.5) - curve(1.0 - c)).exp() }
+}
+
+/// Directional albedo of white sheen.
+fn sheen(z: f64, a: f64, rings: &[[f64; 2]]) -> f64 {
+    let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+    let lambda_o = charlie_lambda(z, a);
+    let mut sum = 0.0;
+    for &[t, weight] in rings {
+        // The cosine is t^2: the lobe's weight is at the horizon.
+        let c = t * t;
+        let r = (1.0 - c * c).max(0.0).sqrt();
+        let lambda_i = charlie_lambda(c, a);
+        let visibility = (1.0 / ((1.0 + lambda_o + lambda_i) * 4.0 * z * c)).min(1.0);
+        for [cos, sin] in spokes() {
+            let h = (wo + DVec3::new(r * cos, r * sin, c)).normalize();
+            let d = (2.0 + 1.0 / a) * (1.0 - h.z * h.z).max(0.0).powf(0.5 / a) / (2.0 * PI);
+            sum += d * visibility * c * 2.0 * t * weight * 2.0 * PI / SPOKES as f64;
+        }
+    }
+    sum
+}
+
+fn knot(index: u32, count: u32) -> f64 {
+    f64::from(index) / f64::from(count - 1)
+}
+
+/// The inverse of [`albedo_cosine`](super::albedo::albedo_cosine).
+fn cosine_at(x: f64, width: f64) -> f64 {
+    x * width / (1.0 + width - x)
+}
+
+impl AlbedoTables {
+    /// Computes all tables, on all threads.
+    pub fn compute() -> Self {
+        let rings = gauss(RINGS);
+        let width_at = |roughness: f64| (roughness * roughness).max(f64::from(MIN_WIDTH));
+        let first = (0..COSINES * ROUGHNESSES).into_par_iter().map(|i| {
+            let [x, r] = [knot(i % COSINES, COSINES), knot(i / COSINES, ROUGHNESSES)];
+            let a = width_at(r);
+            let [white, rising] = ggx(cosine_at(x, a), a, &rings);
+            let low = f64::from(MIN_SHEEN_ROUGHNESS);
+            let rs = low + (1.0 - low) * r;
+            let cloth = sheen(x * x, rs * rs, &rings);
+            Vec4::new(white as f32, rising as f32, cloth as f32, 0.0)
+        });
+        let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
+        let second = (0..plane * GLASS_IORS).into_par_iter().map(|i| {
+            let x = knot(i % GLASS_COSINES, GLASS_COSINES);
+            let r = knot(i / GLASS_COSINES % GLASS_ROUGHNESSES, GLASS_ROUGHNESSES);
+            let ratio = 0.5 * knot(i / plane, GLASS_IORS);
+            let eta = ((1.0 + ratio) / (1.0 - ratio)).max(f64::from(REFRACTING_IOR[0]));
+            let a = width_at(r);
+            let z = cosine_at(x, a);
+            let [enter, leave] = [glass(z, a, eta, &rings), glass(z, a, 1.0 / eta, &rings)];
+            Vec4::new(enter[0] as f32, enter[1] as f32, leave[0] as f32, leave[1] as f32)
+        });
+        let cells: Vec<Vec4> = first.chain(second).collect();
+        debug_assert_eq!(cells.len(), CELLS as usize);
+        Self { cells }
+    }
+}
