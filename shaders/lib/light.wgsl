@@ -16,11 +16,6 @@ fn cone_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     return t * t;
 }
 
-// light::solid_angle_pdf
-fn solid_angle_pdf(per_area: f32, distance: f32, cos_light: f32) -> f32 {
-    return per_area * (distance * distance) / max(cos_light, 1e-7);
-}
-
 // light::map_coordinates
 fn map_coordinates(direction: vec3<f32>) -> vec2<f32> {
     let across = sqrt(direction.x * direction.x + direction.z * direction.z);

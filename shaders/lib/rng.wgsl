@@ -2,6 +2,7 @@
 
 const PURPOSE_SELECT: u32 = 0u;
 const PURPOSE_KEY: u32 = 1u;
+const PURPOSE_PATH: u32 = 2u;
 
 // rng::pcg4d (Jarzynski and Olano, JCGT 9(3), 2020)
 fn pcg4d(input: vec4<u32>) -> vec4<u32> {
@@ -34,4 +35,10 @@ fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
 // rng::unit_draw: in [0, 1) on the grid of 2^-24.
 fn unit_draw(bits: u32) -> f32 {
     return f32(bits >> 8u) * (1.0 / 16777216.0);
+}
+
+// rng::path_draws
+fn path_draws(pixel: u32, sample: u32, dimension: u32, key: u32) -> vec4<f32> {
+    let words = pcg4d(vec4<u32>(pixel, sample, dimension, key));
+    return vec4<f32>(unit_draw(words.x), unit_draw(words.y), unit_draw(words.z), unit_draw(words.w));
 }

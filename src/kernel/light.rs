@@ -22,13 +22,6 @@ pub fn cone_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     t * t
 }
 
-/// Density over directions, 1/sr, of a point chosen with density `per_area`, 1/m^2, on a surface that is seen at `distance`
-/// with `cos_light` to its normal.
-#[inline]
-pub fn solid_angle_pdf(per_area: f32, distance: f32, cos_light: f32) -> f32 {
-    per_area * (distance * distance) / cos_light.max(1e-7)
-}
-
 /// Place in the environment map of a direction of length 1, both in \[0, 1\]: longitude, 0.5 towards -z and growing towards +x;
 /// angle from +y.
 #[inline]

@@ -8,6 +8,8 @@ pub enum Purpose {
     Select = 0,
     /// Key of a candidate in A-ES sampling.
     Key = 1,
+    /// Paths of light.
+    Path = 2,
 }
 
 /// PCG-4D (Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): a bijection of four words in which
@@ -52,4 +54,11 @@ pub fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
 #[inline]
 pub fn unit_draw(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// Four numbers in \[0, 1) for sample `sample` of a pixel (x in the low, y in the high 16 bits), for the decision `dimension` of
+/// its path.
+#[inline]
+pub fn path_draws(pixel: u32, sample: u32, dimension: u32, key: u32) -> [f32; 4] {
+    pcg4d([pixel, sample, dimension, key]).map(unit_draw)
 }

@@ -1,4 +1,6 @@
 //! Materials, textures and lights as both tracers read them: plain words, 16 bytes a row, twins of `shaders/trace/records.wgsl`.
+// Fields are those of `scene`, documented there.
+#![allow(missing_docs)]
 
 use crate::kernel::texel;
 use crate::scene::{Alpha, Material, PunctualKind, PunctualLight, Texture, TextureRef, Wrap};
@@ -53,7 +55,8 @@ pub struct MaterialRecord {
     pub sheen_color_texture: u32,
     pub sheen_roughness_texture: u32,
     pub transmission_texture: u32,
-    pub phong_diffuse: [f32; 3],
+    pub phong_diffuse: f32,
+    pub unused: [f32; 2],
 }
 
 /// Rows of 16 bytes a material takes.
@@ -109,7 +112,8 @@ impl MaterialRecord {
             sheen_color_texture: texture(m.sheen_color_texture),
             sheen_roughness_texture: texture(m.sheen_roughness_texture),
             transmission_texture: texture(m.transmission_texture),
-            phong_diffuse: [diffuse_share; 3],
+            phong_diffuse: diffuse_share,
+            unused: [0.0; 2],
         }
     }
 }
@@ -145,6 +149,9 @@ pub const LIGHT_TRIANGLE: u32 = 0;
 pub const LIGHT_PUNCTUAL: u32 = 1;
 /// What surrounds the scene.
 pub const LIGHT_ENVIRONMENT: u32 = 2;
+
+/// Index of the light in [`PickRecord::what`].
+pub const LIGHT_INDEX: u32 = 0x3fff_ffff;
 
 /// One row of the table that lights are picked by (Walker's alias method): row i stands for light i with probability `keep`,
 /// else for light `alias`.
@@ -197,3 +204,19 @@ impl PunctualRecord {
         }
     }
 }
+
+/// A texel of the environment map in two rows.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MapRecord {
+    pub radiance: [f32; 3],
+    /// Probability that this texel is picked.
+    pub chosen: f32,
+    /// As in [`PickRecord`].
+    pub keep: f32,
+    pub alias: u32,
+    pub unused: [f32; 2],
+}
+
+/// Rows of 16 bytes a texel of the environment map takes.
+pub const MAP_ROWS: u32 = (size_of::<MapRecord>() / 16) as u32;

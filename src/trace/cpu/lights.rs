@@ -1,0 +1,185 @@
+//! Light that is looked for: `shaders/trace/lights.wgsl`.
+
+use super::surface::emission_at;
+use crate::kernel::direction::{to_world, unit};
+use crate::kernel::light::{cone_falloff, distance_falloff, map_coordinates, map_direction, map_pdf};
+use crate::kernel::sampling::{area_pdf, cosine_hemisphere, cosine_hemisphere_pdf, triangle};
+use crate::kernel::texel::{WRAP_CLAMP, WRAP_REPEAT, wrap_texel};
+use crate::kernel::triangle::{magnitude, offset_ray, point_at};
+use crate::trace::effects::{Effect, Effects};
+use crate::trace::records::{FLAG_DOUBLE_SIDED, LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE};
+use crate::trace::world::World;
+use glam::{Vec2, Vec3};
+
+/// Light that may arrive at a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arriving {
+    /// Unit vector towards it.
+    pub direction: Vec3,
+    /// Metres to it; infinity for what is infinitely far.
+    pub distance: f32,
+    /// Radiance; of punctual lights irradiance on a surface that faces them.
+    pub radiance: Vec3,
+    /// Density of finding it, 1/sr; of punctual lights the probability.
+    pub pdf: f32,
+    /// Whether a path that scatters may find it, too.
+    pub can_be_hit: bool,
+}
+
+/// Picks a light and a place on it, as seen from `position` with shading frame `frame`. `draws` pick the light and the place,
+/// `more` the texel of an environment map.
+pub(super) fn look(
+    world: &World,
+    position: Vec3,
+    frame: &[Vec3; 3],
+    draws: [f32; 4],
+    more: [f32; 4],
+    effects: Effects,
+) -> Option<Arriving> {
+    let count = world.picks.len() as u32;
+    if count == 0 {
+        return None;
+    }
+    let row = ((draws[0] * count as f32) as u32).min(count - 1);
+    let mut pick = world.picks[row as usize];
+    if draws[1] >= pick.keep {
+        pick = world.picks[pick.alias as usize];
+    }
+    let place = Vec2::new(draws[2], draws[3]);
+    let index = pick.what & LIGHT_INDEX;
+    match pick.what >> 30 {
+        LIGHT_TRIANGLE if effects.has(Effect::EmissiveTriangles) => {
+            from_triangle(world, position, index, pick.chosen, place, effects)
+        }
+        LIGHT_PUNCTUAL if effects.has(Effect::PunctualLights) => {
+            Some(from_punctual(world, position, index, pick.chosen))
+        }
+        LIGHT_ENVIRONMENT if effects.has(Effect::Environment) => {
+            from_environment(world, frame, pick.chosen, place, more, effects)
+        }
+        _ => None,
+    }
+}
+
+fn from_triangle(
+    world: &World,
+    position: Vec3,
+    index: u32,
+    chosen: f32,
+    place: Vec2,
+    effects: Effects,
+) -> Option<Arriving> {
+    let light = world.geometry.triangle(index);
+    let [v0, v1, v2] = light.positions();
+    let weights = triangle(place);
+    let across = (v1 - v0).cross(v2 - v0);
+    let face = unit(across);
+    let on_light = point_at(v0, v1, v2, weights.y, weights.z);
+    let cosine = face.dot(position - on_light);
+    let double_sided = world.materials[light.material() as usize].flags & FLAG_DOUBLE_SIDED != 0;
+    if cosine <= 0.0 && !double_sided {
+        return None;
+    }
+    // To just before the light: the ray must not end on it.
+    let side = if cosine > 0.0 { face } else { -face };
+    let to = offset_ray(on_light, side, magnitude(v0, v1, v2)) - position;
+    let distance = to.dot(to).sqrt();
+    let direction = unit(to);
+    let area = 0.5 * across.dot(across).sqrt();
+    let pdf = chosen * area_pdf(area, distance, face.dot(direction));
+    let radiance = emission_at(world, index, weights.y, weights.z, effects);
+    (pdf > 0.0).then_some(Arriving { direction, distance, radiance, pdf, can_be_hit: true })
+}
+
+fn from_punctual(world: &World, position: Vec3, index: u32, chosen: f32) -> Arriving {
+    let light = world.punctual[index as usize];
+    let axis = Vec3::from(light.direction);
+    let mut radiance = Vec3::from(light.intensity);
+    let (mut direction, mut distance) = (-axis, f32::INFINITY);
+    if light.kind != 0 {
+        let to = Vec3::from(light.position) - position;
+        distance = to.dot(to).sqrt();
+        direction = unit(to);
+        radiance *= distance_falloff(distance, light.range);
+    }
+    if light.kind == 2 {
+        radiance *= cone_falloff(-direction.dot(axis), light.cos_inner, light.cos_outer);
+    }
+    Arriving { direction, distance, radiance, pdf: chosen, can_be_hit: false }
+}
+
+fn from_environment(
+    world: &World,
+    frame: &[Vec3; 3],
+    chosen: f32,
+    place: Vec2,
+    more: [f32; 4],
+    effects: Effects,
+) -> Option<Arriving> {
+    let (direction, pdf) = if has_map(world, effects) {
+        let count = world.map.len() as u32;
+        let mut index = ((more[0] * count as f32) as u32).min(count - 1);
+        if more[1] >= world.map[index as usize].keep {
+            index = world.map[index as usize].alias;
+        }
+        let [w, h] = world.map_size;
+        let u = ((index % w) as f32 + place.x) / w as f32;
+        let v = ((index / w) as f32 + place.y) / h as f32;
+        let (direction, sine) = map_direction(u, v);
+        (direction, map_pdf(world.map[index as usize].chosen, count as f32, sine))
+    } else {
+        let local = cosine_hemisphere(place);
+        (to_world(local, frame[0], frame[1], frame[2]), cosine_hemisphere_pdf(local.z))
+    };
+    let pdf = chosen * pdf;
+    let radiance = sky(world, direction, effects);
+    (pdf > 0.0).then_some(Arriving { direction, distance: f32::INFINITY, radiance, pdf, can_be_hit: true })
+}
+
+fn has_map(world: &World, effects: Effects) -> bool {
+    effects.has(Effect::EnvironmentMap) && world.map_size[0] > 0
+}
+
+/// Radiance from a direction that meets nothing.
+pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
+    if !has_map(world, effects) {
+        return world.sky;
+    }
+    let [w, h] = world.map_size;
+    let [u, v] = map_coordinates(direction);
+    let (x, y) = (u * w as f32 - 0.5, v * h as f32 - 0.5);
+    let (i, j) = (x.floor(), y.floor());
+    let (s, t) = (x - i, y - j);
+    let texel = |i: i32, j: i32| {
+        let index = wrap_texel(j, h, WRAP_CLAMP) * w + wrap_texel(i, w, WRAP_REPEAT);
+        Vec3::from(world.map[index as usize].radiance)
+    };
+    let (i, j) = (i as i32, j as i32);
+    let top = texel(i, j) * (1.0 - s) + texel(i + 1, j) * s;
+    let bottom = texel(i, j + 1) * (1.0 - s) + texel(i + 1, j + 1) * s;
+    top * (1.0 - t) + bottom * t
+}
+
+/// Density with which [`look`] finds the sky in a direction under `cosine` to the shading normal that it is looked from.
+pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effects) -> f32 {
+    if !has_map(world, effects) {
+        return world.sky_chosen * cosine_hemisphere_pdf(cosine);
+    }
+    let [w, h] = world.map_size;
+    let [u, v] = map_coordinates(direction);
+    let i = ((u * w as f32) as u32).min(w - 1);
+    let j = ((v * h as f32) as u32).min(h - 1);
+    let sine = (direction.x * direction.x + direction.z * direction.z).sqrt();
+    let chosen = world.map[(j * w + i) as usize].chosen;
+    world.sky_chosen * map_pdf(chosen, world.map.len() as f32, sine)
+}
+
+/// Density with which [`look`] finds the point of triangle `index` that a path from `distance` away met under `cosine`.
+pub(super) fn triangle_pdf(world: &World, index: u32, distance: f32, cosine: f32) -> f32 {
+    let light = world.geometry.triangle(index);
+    let Some(row) = light.light() else { return 0.0 };
+    let [v0, v1, v2] = light.positions();
+    let across = (v1 - v0).cross(v2 - v0);
+    let area = 0.5 * across.dot(across).sqrt();
+    world.picks[row as usize].chosen * area_pdf(area, distance, cosine)
+}

@@ -1,0 +1,91 @@
+//! The tracer on the CPU: the oracle, and the tracer of machines without a GPU.
+
+mod lights;
+mod path;
+mod surface;
+mod texture;
+
+use super::effects::Effects;
+use super::film::{Film, Moments};
+use super::settings::TraceSettings;
+use super::view::View;
+use super::work::WorkItem;
+use super::world::World;
+use crate::kernel::direction::unit;
+use crate::kernel::rng::{Purpose, path_draws, stream_key};
+use glam::Vec3;
+use path::{DRAWS_CAMERA, Paths};
+use rayon::prelude::*;
+
+/// Traces with all threads of the machine. The image does not depend on their number.
+#[derive(Clone, Copy, Debug)]
+pub struct CpuTracer {
+    settings: TraceSettings,
+}
+
+impl CpuTracer {
+    /// A tracer.
+    pub fn new(settings: TraceSettings) -> Self {
+        Self { settings }
+    }
+
+    /// What it simulates in `world`.
+    pub fn effects(&self, world: &World) -> Effects {
+        self.settings.effects.unwrap_or(world.needs)
+    }
+
+    /// Adds the samples of `items`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
+        let paths = Paths {
+            world,
+            integrator: self.settings.integrator,
+            bsdf: self.settings.bsdf,
+            max_depth: self.settings.max_depth,
+            effects: self.effects(world),
+            key: path_key(self.settings.seed, frame),
+        };
+        let rays = view.rays();
+        let width = film.moments.width();
+        let moments = &film.moments;
+        let pixels: Vec<&[WorkItem]> = items.chunk_by(|a, b| a.pixel == b.pixel).collect();
+        let done: Vec<Done> = pixels
+            .par_iter()
+            .with_min_len(32)
+            .map(|items| {
+                let [x, y] = items[0].xy();
+                let index = y as usize * width + x as usize;
+                let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
+                for item in *items {
+                    let draws = path_draws(item.pixel, item.sample, DRAWS_CAMERA, paths.key);
+                    let (px, py) = (x as f32 + (draws[0] - 0.5), y as f32 + (draws[1] - 0.5));
+                    let direction = unit(rays.corner + rays.right * px + rays.down * py);
+                    let (radiance, traced) = paths.radiance(rays.origin, direction, item.pixel, item.sample);
+                    let sound = radiance.is_finite();
+                    done.moments.add(if sound { radiance } else { Vec3::ZERO });
+                    done.nonfinite += u64::from(!sound);
+                    done.rays += traced;
+                }
+                done
+            })
+            .collect();
+        for pixel in done {
+            film.moments.pixels_mut()[pixel.index] = pixel.moments;
+            film.rays += pixel.rays;
+            film.nonfinite += pixel.nonfinite;
+        }
+    }
+}
+
+/// A pixel with its samples.
+struct Done {
+    index: usize,
+    moments: Moments,
+    rays: u64,
+    nonfinite: u64,
+}
+
+/// Key of a frame's draws.
+pub(super) fn path_key(seed: u64, frame: u64) -> u32 {
+    // The counter's low word is no argument of a path's draws: it goes into the key.
+    stream_key(seed, frame as u32, Purpose::Path, frame)
+}
