@@ -19,4 +19,5 @@ pub mod rng;
 pub mod scrub;
 pub mod surface;
 pub mod taa;
+pub mod triangle;
 pub mod wrs;
