@@ -41,13 +41,9 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// Before the first hit, with a ray's own limit.
+    /// Before the first hit: the ray's own limit, at which no triangle comes before.
     pub(super) const fn none(t_max: f32) -> Self {
-        Self { triangle: u32::MAX, t: t_max, u: 0.0, v: 0.0 }
-    }
-
-    pub(super) fn found(self) -> Option<Self> {
-        (self.triangle != u32::MAX).then_some(self)
+        Self { triangle: 0, t: t_max, u: 0.0, v: 0.0 }
     }
 }
 
@@ -132,8 +128,7 @@ impl Bvh {
     /// opacity matters ([`TriangleFlags::ALPHA`]); its answers may not depend on the order of questions.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
         let mut hit = Hit::none(ray.t_max);
-        self.traverse::<false>(&Prepared::new(ray)?, 0, &mut hit, &mut accept);
-        hit.found()
+        self.traverse::<false>(&Prepared::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
     }
 
     /// Whether anything is hit.

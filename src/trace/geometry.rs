@@ -50,9 +50,9 @@ impl Geometry {
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
         let prepared = Prepared::new(ray)?;
         let mut hit = Hit::none(ray.t_max);
-        self.still.traverse::<false>(&prepared, 0, &mut hit, &mut accept);
-        self.moving.traverse::<false>(&prepared, self.first_moving(), &mut hit, &mut accept);
-        hit.found()
+        let still = self.still.traverse::<false>(&prepared, 0, &mut hit, &mut accept);
+        let moving = self.moving.traverse::<false>(&prepared, self.first_moving(), &mut hit, &mut accept);
+        (still || moving).then_some(hit)
     }
 
     /// Whether anything is hit, as [`Bvh::occluded`].

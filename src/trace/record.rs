@@ -146,7 +146,8 @@ impl AttributeRecord {
                 words[UV_WORDS[2 * vertex + 1]] = finite(uv[vertex].y).to_bits();
             }
             let color = triangles.colors.get(source).map_or(Vec4::ONE, |c| c[vertex]);
-            words[3 + 4 * vertex] = u32::from_le_bytes(color.to_array().map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8));
+            words[3 + 4 * vertex] =
+                u32::from_le_bytes(color.to_array().map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8));
         }
         Self { words }
     }

@@ -63,7 +63,7 @@ fn moving_and_resting_triangles_are_one_scene() {
     let (a, b) = (soup("resting", 500, Vec3::ZERO, 1.0), soup("moving", 100, Vec3::ZERO, 1.0));
     let build = |t| Bvh::build(t, None, &[]);
     let geometry = Geometry { still: build(&a), moving: build(&b) };
-    let mut both = a;
+    let mut both = a.clone();
     both.extend(&b);
     let joined = build(&both);
     let mut moving = 0;
@@ -71,7 +71,10 @@ fn moving_and_resting_triangles_are_one_scene() {
         let (hit, expected) = (geometry.closest(&ray, all), joined.closest(&ray, all));
         assert_eq!(hit.map(|h| (h.t, h.u, h.v)), expected.map(|h| (h.t, h.u, h.v)));
         let (Some(hit), Some(expected)) = (hit, expected) else { continue };
-        assert_eq!(geometry.triangle(hit.triangle).positions(), joined.triangles()[expected.triangle as usize].positions());
+        assert_eq!(
+            geometry.triangle(hit.triangle).positions(),
+            joined.triangles()[expected.triangle as usize].positions()
+        );
         moving += usize::from(hit.triangle >= geometry.first_moving());
         assert!(geometry.occluded(&ray, all));
     }

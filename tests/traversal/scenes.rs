@@ -12,7 +12,7 @@ pub fn all(_: u32, _: f32, _: f32) -> bool {
 }
 
 /// A point in the cube of half width `half`.
-pub fn point(d: &mut Draws, half: f64) -> Vec3 {
+pub fn point(d: &mut Draws, half: f32) -> Vec3 {
     vec3(d.range(-half, half), d.range(-half, half), d.range(-half, half))
 }
 
@@ -27,19 +27,19 @@ pub fn direction(d: &mut Draws) -> Vec3 {
 }
 
 /// Random triangles of sizes from `half` down to a thousandth of it, around `center`.
-pub fn soup(name: &str, count: usize, center: Vec3, half: f64) -> Triangles {
+pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
     let mut d = Draws::new(name);
     let mut triangles = Triangles::default();
     for _ in 0..count {
         let at = center + point(&mut d, half);
-        let size = half * 10_f64.powf(f64::from(d.range(-3.0, 0.0)));
+        let size = half * 10_f32.powf(d.range(-3.0, 0.0));
         triangles.push_flat([0; 3].map(|_| at + point(&mut d, size)), 0);
     }
     triangles
 }
 
 /// Rays from inside and around the cube of half width `half`; every fourth parallel to an axis, with zeros of both signs.
-pub fn rays(name: &str, count: usize, center: Vec3, half: f64) -> Vec<Ray> {
+pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
     let mut d = Draws::new(name);
     let axes = [
         vec3(1.0, 0.0, 0.0),
@@ -75,7 +75,9 @@ pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
 /// A closed sphere of radius 1 made of `8 * 4^levels` triangles, corners shared bit for bit.
 pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     let mut faces = vec![];
-    for (x, y, z) in [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (1, 1, -1), (-1, 1, -1), (-1, -1, -1), (1, -1, -1)] {
+    for (x, y, z) in
+        [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (1, 1, -1), (-1, 1, -1), (-1, -1, -1), (1, -1, -1)]
+    {
         let corners = [Vec3::X * x as f32, Vec3::Y * y as f32, Vec3::Z * z as f32];
         faces.push(if x * y * z > 0 { corners } else { [corners[0], corners[2], corners[1]] });
     }

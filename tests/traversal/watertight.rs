@@ -62,7 +62,7 @@ fn h80_h82_spheres_of_all_sizes_and_places_have_no_holes() {
         let directions = directions(&bvh, center, &format!("{center} {radius}"));
         let mut d = Draws::new("places");
         for i in 0..3 {
-            let origin = center + point(&mut d, 0.5 * f64::from(i)) * radius;
+            let origin = center + point(&mut d, 0.25 * i as f32) * radius;
             assert_eq!(holes(&bvh, origin, &directions), 0, "radius {radius} around {center}, from {origin}");
         }
     }
