@@ -79,6 +79,8 @@ pub mod settings;
 #[cfg(feature = "lab")]
 pub mod source;
 pub mod stats;
+#[cfg(feature = "lab")]
+pub mod trace;
 pub mod warning;
 #[cfg(feature = "lab")]
 pub mod whole_file;

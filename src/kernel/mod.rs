@@ -33,4 +33,5 @@ pub mod sampling;
 pub mod scrub;
 pub mod surface;
 pub mod taa;
+pub mod triangle;
 pub mod wrs;

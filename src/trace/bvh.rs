@@ -1,0 +1,238 @@
+//! Triangles under an eight-wide hierarchy, and rays through it on the CPU.
+
+use super::bvh2;
+use super::node::NodeRay;
+use super::record::{AttributeRecord, PreviousRecord, TriangleFlags, TriangleRecord};
+use crate::kernel::triangle::{Shear, intersect, shear};
+use crate::scene::{Material, Triangles};
+use glam::{Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+use obvhs::cwbvh::node::CwBvhNode;
+
+/// Entries of a traversal's stack; `shaders/trace/traverse.wgsl` has as many.
+pub(super) const STACK: usize = 24;
+
+/// Coordinates beyond this are taken for broken: squares of their differences would leave the floats.
+const MAX_COORDINATE: f32 = 1e15;
+
+/// What is searched for hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Metres. Not finite: hits nothing.
+    pub origin: Vec3,
+    /// Not zero, of any length around 1; distances are in its lengths.
+    pub direction: Vec3,
+    /// Hits count if nearer than this; may be infinite.
+    pub t_max: f32,
+}
+
+/// The nearest hit of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Which triangle: of [`Geometry`](super::Geometry) or of [`Bvh::triangles`], whichever was asked.
+    pub triangle: u32,
+    /// Distance in lengths of the ray's direction, above 0.
+    pub t: f32,
+    /// Weight of the second corner.
+    pub u: f32,
+    /// Weight of the third corner.
+    pub v: f32,
+}
+
+impl Hit {
+    /// Before the first hit: the ray's own limit, at which no triangle comes before.
+    pub(super) const fn none(t_max: f32) -> Self {
+        Self { triangle: 0, t: t_max, u: 0.0, v: 0.0 }
+    }
+}
+
+/// A ray made ready for nodes and triangles.
+pub(super) struct Prepared {
+    origin: Vec3,
+    shear: Shear,
+    node_ray: NodeRay,
+}
+
+impl Prepared {
+    /// `None` for rays that hit nothing.
+    #[inline]
+    pub fn new(ray: &Ray) -> Option<Self> {
+        let usable = ray.origin.is_finite() && ray.direction.is_finite() && ray.direction != Vec3::ZERO;
+        usable.then(|| Self {
+            origin: ray.origin,
+            shear: shear(ray.direction),
+            node_ray: NodeRay::new(ray.origin, ray.direction),
+        })
+    }
+}
+
+/// Triangles in the order of the hierarchy's leaves, and the hierarchy.
+#[derive(Clone, Debug, Default)]
+pub struct Bvh {
+    pub(super) nodes: Vec<CwBvhNode>,
+    triangles: Vec<TriangleRecord>,
+    attributes: Vec<AttributeRecord>,
+    previous: Vec<PreviousRecord>,
+    dropped: u32,
+}
+
+impl Bvh {
+    /// Of all triangles with an area and finite corners within 1e15 m; the others no ray can meet. `previous` is where the corners
+    /// were a frame ago, if they move. n log n steps whatever the input.
+    pub fn build(triangles: &Triangles, previous: Option<&[[Vec3; 3]]>, materials: &[Material]) -> Self {
+        let count = triangles.len().min(u32::MAX as usize) as u32;
+        let sources: Vec<u32> = (0..count).filter(|&i| is_sound(&triangles.positions[i as usize])).collect();
+        let boxes: Vec<Aabb> = sources.iter().map(|&i| bounds(&triangles.positions[i as usize])).collect();
+        let (nodes, order) = hierarchy(&boxes);
+        let sources: Vec<u32> = order.into_iter().map(|i| sources[i as usize]).collect();
+        let previous = previous.map_or(vec![], |corners| {
+            let corners = |i: u32| *corners.get(i as usize).unwrap_or(&triangles.positions[i as usize]);
+            sources.iter().map(|&i| PreviousRecord::new(corners(i))).collect()
+        });
+        Self {
+            nodes,
+            triangles: sources.iter().map(|&i| TriangleRecord::new(triangles, i, materials)).collect(),
+            attributes: sources.iter().map(|&i| AttributeRecord::new(triangles, i as usize)).collect(),
+            previous,
+            dropped: count - sources.len() as u32,
+        }
+    }
+
+    /// Triangles in the order of leaves: what [`Hit::triangle`] indexes.
+    pub fn triangles(&self) -> &[TriangleRecord] {
+        &self.triangles
+    }
+
+    /// Their shading, in the same order.
+    pub fn attributes(&self) -> &[AttributeRecord] {
+        &self.attributes
+    }
+
+    /// Where they were a frame ago, in the same order; empty if that was not said.
+    pub fn previous(&self) -> &[PreviousRecord] {
+        &self.previous
+    }
+
+    /// How many triangles were left out: without area, not finite, or too far away.
+    pub fn dropped(&self) -> u32 {
+        self.dropped
+    }
+
+    /// Number of nodes, of 80 bytes each.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The nearest hit; of equally near ones that of the lowest index. `accept(triangle, u, v)` is asked about triangles whose
+    /// opacity matters ([`TriangleFlags::ALPHA`]); its answers may not depend on the order of questions.
+    pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
+        let mut hit = Hit::none(ray.t_max);
+        self.traverse::<false>(&Prepared::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
+    }
+
+    /// Whether anything is hit.
+    pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> bool {
+        let mut hit = Hit::none(ray.t_max);
+        Prepared::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
+    }
+
+    /// Puts the nearest hit, if nearer than `hit`, there; with `ANY` stops at the first. Whether there was one. The indices of
+    /// triangles start at `first`.
+    #[inline]
+    pub(super) fn traverse<const ANY: bool>(
+        &self,
+        ray: &Prepared,
+        first: u32,
+        hit: &mut Hit,
+        accept: &mut impl FnMut(u32, f32, f32) -> bool,
+    ) -> bool {
+        if self.nodes.is_empty() {
+            return false;
+        }
+        let octant = ray.node_ray.octant & 7;
+        let mut met = false;
+        let mut stack = [(0_u32, 0_u32); STACK];
+        let mut depth = 0;
+        // Children of a node that are to be visited: index of the first, and hits above the mask of inner ones.
+        let mut group = (0_u32, 0x8000_0000_u32);
+        loop {
+            let bit = 31 - group.1.leading_zeros();
+            group.1 &= !(1 << bit);
+            if group.1 >= 1 << 24 {
+                stack[depth] = group;
+                depth += 1;
+            }
+            let slot = (bit - 24) ^ octant;
+            let child = group.0 + (group.1 & !(u32::MAX << slot) & 0xff).count_ones();
+            let node = &self.nodes[child as usize];
+            let hits = ray.node_ray.hits(node, hit.t);
+            group = (node.child_base_idx, hits & 0xff00_0000 | u32::from(node.imask));
+
+            let mut leaves = hits & 0x00ff_ffff;
+            while leaves != 0 {
+                let index = node.primitive_base_idx + leaves.trailing_zeros();
+                leaves &= leaves - 1;
+                let triangle = &self.triangles[index as usize];
+                let [v0, v1, v2] = triangle.positions();
+                let meeting = intersect(ray.shear, ray.origin, v0, v1, v2);
+                let index = first + index;
+                let nearer = meeting.t < hit.t || meeting.t == hit.t && index < hit.triangle;
+                if meeting.t > 0.0 && nearer && meeting.t < f32::INFINITY {
+                    if triangle.has(TriangleFlags::ALPHA) && !accept(index, meeting.u, meeting.v) {
+                        continue;
+                    }
+                    *hit = Hit { triangle: index, t: meeting.t, u: meeting.u, v: meeting.v };
+                    met = true;
+                    if ANY {
+                        return true;
+                    }
+                }
+            }
+            if group.1 < 1 << 24 {
+                if depth == 0 {
+                    return met;
+                }
+                depth -= 1;
+                group = stack[depth];
+            }
+        }
+    }
+}
+
+fn is_sound(corners: &[Vec3; 3]) -> bool {
+    let [a, b, c] = corners;
+    // False for what is not finite, too.
+    let near = corners.iter().all(|v| v.abs().max_element() <= MAX_COORDINATE);
+    near && (b - a).as_dvec3().cross((c - a).as_dvec3()).length_squared() > 0.0
+}
+
+fn bounds(corners: &[Vec3; 3]) -> Aabb {
+    let [a, b, c] = corners.map(Vec3A::from);
+    Aabb::new(a.min(b).min(c), a.max(b).max(c))
+}
+
+/// Nodes, and indices of boxes in the order of leaves.
+fn hierarchy(boxes: &[Aabb]) -> (Vec<CwBvhNode>, Vec<u32>) {
+    for halve in [false, true] {
+        let binary = bvh2::build(boxes, halve);
+        let wide = bvh2_to_cwbvh(&binary, 3, true, false);
+        if halve || wide.nodes.is_empty() || stack_needed(&wide.nodes) <= STACK {
+            return (wide.nodes, wide.primitive_indices);
+        }
+    }
+    unreachable!("the second round returns")
+}
+
+/// Entries of the stack that the deepest traversal takes: one a node with two inner children or more. Children come after their
+/// parents.
+fn stack_needed(nodes: &[CwBvhNode]) -> usize {
+    let mut needed = vec![0_usize; nodes.len()];
+    for (i, node) in nodes.iter().enumerate().rev() {
+        let inner = node.imask.count_ones() as usize;
+        let first = node.child_base_idx as usize;
+        let deepest = needed[first..first + inner].iter().max().copied().unwrap_or(0);
+        needed[i] = deepest + usize::from(inner > 1);
+    }
+    needed.first().copied().unwrap_or(0)
+}

@@ -1,0 +1,15 @@
+//! Path tracing. So far what rays meet: acceleration structures and packed geometry, on the CPU and in WGSL.
+//!
+//! - [`Geometry`]: the triangles that never move and those that do, each under a hierarchy of its own; a ray visits both.
+//! - [`heap`]: everything that a GPU tracer reads, as one array of `vec4<u32>`.
+
+mod bvh;
+mod bvh2;
+mod geometry;
+pub mod heap;
+mod node;
+mod record;
+
+pub use bvh::{Bvh, Hit, Ray};
+pub use geometry::Geometry;
+pub use record::{AttributeRecord, Attributes, PreviousRecord, TriangleFlags, TriangleRecord};

@@ -1,0 +1,84 @@
+//! A ray against the eight boxes of a node of an eight-wide hierarchy with quantised boxes (CWBVH; Ylitie, Karras and Laine,
+//! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
+//!
+//! `obvhs` tests them, too, but takes boxes nearer than 1e-4 for missed, divides small components of the direction by a limit, and
+//! rounds without slack: rays leak. Here every box is widened by what rounding can amount to (after Ize, "Robust BVH Ray
+//! Traversal", JCGT 2(2), 2013), so that no triangle that the watertight test would accept is passed by. What is hit then does not
+//! depend on this test at all, and it needs no bit-equal twin: `shaders/trace/traverse.wgsl` has the same formulas.
+
+use glam::{BVec3A, Vec3, Vec3A, Vec4};
+use obvhs::cwbvh::node::CwBvhNode;
+
+/// Boxes are widened by this share of the distance from the ray's origin to the node's far side. Rounding, u = 2^-24: of the
+/// planes and their distances 4 u, of quantisation 2 u, of the test of triangles, whose shear moves a vertex across the ray,
+/// 7 u; where division is as bad as Vulkan allows (2.5 ulp), twice as much. That makes 26 u; this is 32 u.
+const SLACK: f32 = 1.0 / 524_288.0;
+
+/// Directions more parallel to a plane than this are taken to be so parallel: reciprocals and their products stay finite.
+const MIN_DIRECTION: f32 = 1.0 / (1_u64 << 60) as f32;
+
+/// What tests of nodes need of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NodeRay {
+    origin: Vec3A,
+    inverse: Vec3A,
+    widening: Vec3A,
+    backward: BVec3A,
+    /// Octant that is visited first, in each byte.
+    pub octant: u32,
+}
+
+impl NodeRay {
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        let direction = Vec3A::from(direction);
+        let backward = direction.cmplt(Vec3A::ZERO);
+        let size = direction.abs().max(Vec3A::splat(MIN_DIRECTION));
+        let size_inverse = 1.0 / size;
+        let inverse = Vec3A::select(backward, -size_inverse, size_inverse);
+        let octant = [0x0404_0404, 0x0202_0202, 0x0101_0101].iter().enumerate();
+        let octant = octant.map(|(axis, bits)| if backward.test(axis) { 0 } else { *bits }).sum();
+        Self { origin: Vec3A::from(origin), inverse, widening: size_inverse * SLACK, backward, octant }
+    }
+
+    /// Children that the ray meets nearer than `t_max`: inner ones in bits 24 to 31 in the order of visits, the highest first,
+    /// triangles of leaves in bits 0 to 23.
+    #[inline(always)]
+    pub fn hits(&self, node: &CwBvhNode, t_max: f32) -> u32 {
+        let extent = node.compute_extent();
+        let to_node = Vec3A::from(node.p) - self.origin;
+        let step = extent * self.inverse;
+        let first = to_node * self.inverse;
+        let reach = (to_node.abs() + extent * 255.0).max_element();
+        let near = first - self.widening * reach;
+        let far = first + self.widening * reach;
+        let (child_bits, bit_index) = node.get_child_and_index_bits(self.octant);
+        let (child_bits, bit_index) = (child_bits.to_le_bytes(), bit_index.to_le_bytes());
+
+        let planes = |axis: usize, min: &[u8; 8], max: &[u8; 8], half: usize| {
+            let (low, high) = (four(min, half), four(max, half));
+            let (a, b) = if self.backward.test(axis) { (high, low) } else { (low, high) };
+            (a * step[axis] + near[axis], b * step[axis] + far[axis])
+        };
+        let mut hits = 0;
+        for half in 0..2 {
+            let (near_x, far_x) = planes(0, &node.child_min_x, &node.child_max_x, half);
+            let (near_y, far_y) = planes(1, &node.child_min_y, &node.child_max_y, half);
+            let (near_z, far_z) = planes(2, &node.child_min_z, &node.child_max_z, half);
+            let near = near_x.max(near_y).max(near_z.max(Vec4::ZERO));
+            let far = far_x.min(far_y).min(far_z.min(Vec4::splat(t_max)));
+            let met = near.cmple(far).bitmask();
+            for j in 0..4 {
+                if met & (1 << j) != 0 {
+                    hits |= u32::from(child_bits[half * 4 + j]) << bit_index[half * 4 + j];
+                }
+            }
+        }
+        hits
+    }
+}
+
+#[inline(always)]
+fn four(bytes: &[u8; 8], half: usize) -> Vec4 {
+    let i = half * 4;
+    Vec4::new(bytes[i] as f32, bytes[i + 1] as f32, bytes[i + 2] as f32, bytes[i + 3] as f32)
+}

@@ -1,0 +1,192 @@
+//! Triangles as both tracers read them.
+
+use crate::scene::{Alpha, Material, Triangles};
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3, Vec4};
+
+/// What a tracer must know of a triangle's material before it looks it up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TriangleFlags;
+
+impl TriangleFlags {
+    /// Whether a hit counts depends on the opacity there.
+    pub const ALPHA: u32 = 1 << 24;
+    /// It emits light.
+    pub const EMISSIVE: u32 = 1 << 25;
+    /// Light may pass through it.
+    pub const TRANSMISSIVE: u32 = 1 << 26;
+
+    /// Of a material.
+    pub fn of(material: &Material) -> u32 {
+        let mut flags = 0;
+        if material.alpha != Alpha::Opaque {
+            flags |= Self::ALPHA;
+        }
+        if material.emissive.iter().any(|&e| e > 0.0) {
+            flags |= Self::EMISSIVE;
+        }
+        if material.transmission > 0.0 {
+            flags |= Self::TRANSMISSIVE;
+        }
+        flags
+    }
+}
+
+/// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
+/// of the triangle in its source, and a spare one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TriangleRecord {
+    v0: [f32; 3],
+    material: u32,
+    v1: [f32; 3],
+    source: u32,
+    v2: [f32; 3],
+    spare: u32,
+}
+
+impl TriangleRecord {
+    /// Largest material index that fits.
+    pub const MAX_MATERIAL: u32 = (1 << 24) - 1;
+
+    pub(super) fn new(triangles: &Triangles, source: u32, materials: &[Material]) -> Self {
+        let [v0, v1, v2] = triangles.positions[source as usize].map(|v| v.to_array());
+        let material = triangles.materials.get(source as usize).copied().unwrap_or(0).min(Self::MAX_MATERIAL);
+        let flags = materials.get(material as usize).map_or(0, TriangleFlags::of);
+        Self { v0, material: material | flags, v1, source, v2, spare: 0 }
+    }
+
+    /// Corners in world space.
+    #[inline]
+    pub fn positions(&self) -> [Vec3; 3] {
+        [self.v0, self.v1, self.v2].map(Vec3::from_array)
+    }
+
+    /// Index into the scene's materials.
+    #[inline]
+    pub fn material(&self) -> u32 {
+        self.material & Self::MAX_MATERIAL
+    }
+
+    /// Whether all of `flags` are set.
+    #[inline]
+    pub fn has(&self, flags: u32) -> bool {
+        self.material & flags == flags
+    }
+
+    /// Its index in the [`Triangles`] it comes from.
+    #[inline]
+    pub fn source(&self) -> u32 {
+        self.source
+    }
+}
+
+/// Where a moving triangle's corners were a frame ago: three `vec4<u32>` of the heap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct PreviousRecord {
+    corners: [[f32; 4]; 3],
+}
+
+impl PreviousRecord {
+    pub(super) fn new(positions: [Vec3; 3]) -> Self {
+        Self { corners: positions.map(|p| p.extend(0.0).to_array()) }
+    }
+
+    /// Corners in world space.
+    pub fn positions(&self) -> [Vec3; 3] {
+        self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z))
+    }
+}
+
+/// A triangle for shading: four `vec4<u32>` of the heap.
+///
+/// | words | hold |
+/// |---|---|
+/// | 0 to 2 | normals, octahedral, two 16-bit signed fractions |
+/// | 3, 7, 11 | vertex colours, 8 bits a channel, red lowest |
+/// | 4 to 6 | tangents, as normals but the lowest bit: 1 for a bitangent sign of -1 |
+/// | 8 to 10, 12 to 14 | texture coordinates, u then v of each vertex, as floats |
+/// | 15 | spare |
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct AttributeRecord {
+    words: [u32; 16],
+}
+
+/// What an [`AttributeRecord`] holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attributes {
+    /// Shading normals of length 1.
+    pub normals: [Vec3; 3],
+    /// Directions of growing u, of length 1, and the bitangent's sign.
+    pub tangents: [Vec4; 3],
+    /// Texture coordinates.
+    pub uvs: [Vec2; 3],
+    /// Factors of colour and alpha, in steps of 1/255.
+    pub colors: [Vec4; 3],
+}
+
+/// Words of the texture coordinates' components.
+const UV_WORDS: [usize; 6] = [8, 9, 10, 12, 13, 14];
+
+impl AttributeRecord {
+    pub(super) fn new(triangles: &Triangles, source: usize) -> Self {
+        let mut words = [0; 16];
+        let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+        for vertex in 0..3 {
+            if let Some(n) = triangles.normals.get(source) {
+                words[vertex] = encode_direction(n[vertex]);
+            }
+            if let Some(t) = triangles.tangents.get(source) {
+                words[4 + vertex] = encode_direction(t[vertex].truncate()) & !1 | u32::from(t[vertex].w < 0.0);
+            }
+            if let Some(uv) = triangles.uvs.get(source) {
+                words[UV_WORDS[2 * vertex]] = finite(uv[vertex].x).to_bits();
+                words[UV_WORDS[2 * vertex + 1]] = finite(uv[vertex].y).to_bits();
+            }
+            let color = triangles.colors.get(source).map_or(Vec4::ONE, |c| c[vertex]);
+            words[3 + 4 * vertex] =
+                u32::from_le_bytes(color.to_array().map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8));
+        }
+        Self { words }
+    }
+
+    /// All of it, decoded.
+    pub fn unpack(&self) -> Attributes {
+        let w = &self.words;
+        let of = |word: usize| f32::from_bits(w[word]);
+        Attributes {
+            normals: [0, 1, 2].map(|i| decode_direction(w[i])),
+            tangents: [4, 5, 6].map(|i| decode_direction(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
+            uvs: [0, 1, 2].map(|i| Vec2::new(of(UV_WORDS[2 * i]), of(UV_WORDS[2 * i + 1]))),
+            colors: [3, 7, 11].map(|i| Vec4::from_array(w[i].to_le_bytes().map(|b| f32::from(b) / 255.0))),
+        }
+    }
+}
+
+/// Octahedral code of a direction (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
+/// 3(2), 2014), two 16-bit signed fractions; within 0.004 degrees. A vector that is no direction becomes +z.
+pub(super) fn encode_direction(n: Vec3) -> u32 {
+    let sum = n.x.abs() + n.y.abs() + n.z.abs();
+    if !(sum.is_finite() && sum > 0.0) {
+        return 0;
+    }
+    let (mut x, mut y) = (n.x / sum, n.y / sum);
+    if n.z < 0.0 {
+        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
+        (x, y) = ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y));
+    }
+    let code = |v: f32| u32::from((v * 32767.0).round() as i16 as u16);
+    code(x) | code(y) << 16
+}
+
+/// Inverse of [`encode_direction`].
+pub(super) fn decode_direction(code: u32) -> Vec3 {
+    let value = |bits: u32| f32::from(bits as u16 as i16) * (1.0 / 32767.0);
+    let (x, y) = (value(code), value(code >> 16));
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = (-z).max(0.0);
+    let back = |v: f32| if v < 0.0 { v + fold } else { v - fold };
+    Vec3::new(back(x), back(y), z).normalize_or(Vec3::Z)
+}
