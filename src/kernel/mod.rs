@@ -18,6 +18,8 @@ pub mod depth;
 #[cfg(feature = "lab")]
 pub mod direction;
 pub mod foveate;
+#[cfg(feature = "lab")]
+pub mod light;
 pub mod matched;
 #[cfg(feature = "lab")]
 pub mod microfacet;
@@ -31,7 +33,11 @@ pub mod rng;
 #[cfg(feature = "lab")]
 pub mod sampling;
 pub mod scrub;
+#[cfg(feature = "lab")]
+pub mod shading;
 pub mod surface;
 pub mod taa;
+#[cfg(feature = "lab")]
+pub mod texel;
 pub mod triangle;
 pub mod wrs;

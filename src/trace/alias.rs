@@ -41,7 +41,11 @@ mod tests {
         }
         for i in 0..8 {
             let expected = if weights[i] > 0.0 { weights[i] / 11.500000001 } else { 0.0 };
-            assert!((got[i] - expected).abs() < 1e-7 && (f64::from(chosen[i]) - expected).abs() < 1e-7, "{i}: {}", got[i]);
+            assert!(
+                (got[i] - expected).abs() < 1e-7 && (f64::from(chosen[i]) - expected).abs() < 1e-7,
+                "{i}: {}",
+                got[i]
+            );
         }
     }
 

@@ -71,7 +71,7 @@ impl Prepared {
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     pub(super) nodes: Vec<CwBvhNode>,
-    triangles: Vec<TriangleRecord>,
+    pub(super) triangles: Vec<TriangleRecord>,
     attributes: Vec<AttributeRecord>,
     previous: Vec<PreviousRecord>,
     dropped: u32,

@@ -18,6 +18,25 @@ impl Geometry {
         self.still.triangles().len() as u32
     }
 
+    /// Number of triangles.
+    pub fn len(&self) -> u32 {
+        self.first_moving() + self.moving.triangles().len() as u32
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Says which row of the table of lights a triangle is.
+    pub(super) fn set_light(&mut self, index: u32, light: u32) {
+        let first_moving = self.first_moving();
+        match index.checked_sub(first_moving) {
+            None => self.still.triangles[index as usize].set_light(light),
+            Some(i) => self.moving.triangles[i as usize].set_light(light),
+        }
+    }
+
     /// A triangle of a hit.
     ///
     /// # Panics

@@ -3,12 +3,21 @@
 //! - [`Geometry`]: the triangles that never move and those that do, each under a hierarchy of its own; a ray visits both.
 //! - [`heap`]: everything that a GPU tracer reads, as one array of `vec4<u32>`.
 
+mod alias;
 mod bvh;
 mod bvh2;
+pub mod cpu;
+pub mod effects;
+pub mod film;
 mod geometry;
 pub mod heap;
 mod node;
 mod record;
+pub mod records;
+pub mod settings;
+pub mod view;
+pub mod work;
+pub mod world;
 
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;

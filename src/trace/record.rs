@@ -32,8 +32,11 @@ impl TriangleFlags {
     }
 }
 
+/// The triangle is no light.
+const NO_LIGHT: u32 = u32::MAX;
+
 /// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
-/// of the triangle in its source, and a spare one.
+/// of the triangle in its source, and its row in the table of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TriangleRecord {
@@ -42,7 +45,7 @@ pub struct TriangleRecord {
     v1: [f32; 3],
     source: u32,
     v2: [f32; 3],
-    spare: u32,
+    light: u32,
 }
 
 impl TriangleRecord {
@@ -53,7 +56,7 @@ impl TriangleRecord {
         let [v0, v1, v2] = triangles.positions[source as usize].map(|v| v.to_array());
         let material = triangles.materials.get(source as usize).copied().unwrap_or(0).min(Self::MAX_MATERIAL);
         let flags = materials.get(material as usize).map_or(0, TriangleFlags::of);
-        Self { v0, material: material | flags, v1, source, v2, spare: 0 }
+        Self { v0, material: material | flags, v1, source, v2, light: NO_LIGHT }
     }
 
     /// Corners in world space.
@@ -72,6 +75,16 @@ impl TriangleRecord {
     #[inline]
     pub fn has(&self, flags: u32) -> bool {
         self.material & flags == flags
+    }
+
+    /// Its row in the table that lights are picked by; `None` if it is no light.
+    #[inline]
+    pub fn light(&self) -> Option<u32> {
+        (self.light != NO_LIGHT).then_some(self.light)
+    }
+
+    pub(super) fn set_light(&mut self, light: u32) {
+        self.light = light;
     }
 
     /// Its index in the [`Triangles`] it comes from.

@@ -3,13 +3,13 @@
 use super::alias::alias_table;
 use super::effects::{Effect, Effects};
 use super::records::{
-    LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE, MapRecord, MaterialRecord, PickRecord, PunctualRecord,
-    TextureRecord,
+    LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE, MapRecord, MaterialRecord, PickRecord,
+    PunctualRecord, TextureRecord,
 };
 use super::{Bvh, Geometry, TriangleFlags, TriangleRecord};
+use crate::image::Image;
 use crate::kernel::albedo::AlbedoTables;
 use crate::kernel::color::{luma, srgb_decode};
-use crate::image::Image;
 use crate::scene::{Environment, PunctualKind, PunctualLight, Scene, Texture};
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -129,11 +129,14 @@ impl World {
         for (i, l) in lights.iter().enumerate() {
             let intensity = f64::from(luma(Vec3::from(l.intensity)));
             what.push(LIGHT_PUNCTUAL << 30 | i as u32);
-            power.push(intensity * match l.kind {
-                PunctualKind::Directional => disk,
-                PunctualKind::Point => 4.0 * PI,
-                PunctualKind::Spot { cos_outer, .. } => 2.0 * PI * (1.0 - f64::from(cos_outer)),
-            });
+            power.push(
+                intensity
+                    * match l.kind {
+                        PunctualKind::Directional => disk,
+                        PunctualKind::Point => 4.0 * PI,
+                        PunctualKind::Spot { cos_outer, .. } => 2.0 * PI * (1.0 - f64::from(cos_outer)),
+                    },
+            );
         }
         if self.needs.has(Effect::Environment) {
             what.push(LIGHT_ENVIRONMENT << 30);
@@ -162,7 +165,8 @@ fn bounds(triangles: &[TriangleRecord]) -> [Vec3; 2] {
 fn mean_luma(texture: &Texture) -> f64 {
     let decoded: Vec<f32> = (0..=255).map(|byte| srgb_decode(byte as f32 / 255.0)).collect();
     let value = |b: u8| decoded[usize::from(b)];
-    let sum: f64 = texture.texels.iter().map(|t| f64::from(luma(Vec3::new(value(t[0]), value(t[1]), value(t[2]))))).sum();
+    let sum: f64 =
+        texture.texels.iter().map(|t| f64::from(luma(Vec3::new(value(t[0]), value(t[1]), value(t[2]))))).sum();
     // Never 0: what may glow may be hit, and must then have been worth a look.
     (sum / texture.texels.len().max(1) as f64).max(1e-6)
 }
