@@ -7,6 +7,7 @@ mod bvh;
 mod bvh2;
 mod geometry;
 pub mod heap;
+pub mod measure;
 mod node;
 mod record;
 
