@@ -45,6 +45,7 @@ const MODULES: &[Module] = &[
     module!("lib", "scrub"),
     module!("lib", "surface"),
     module!("lib", "taa"),
+    module!("lib", "triangle"),
     module!("lib", "wrs"),
     module!("pass", "chain_pass"),
     module!("pass", "inputs"),
@@ -52,6 +53,10 @@ const MODULES: &[Module] = &[
     module!("pass", "smr_pass"),
     module!("pass", "taa_pass"),
     module!("pass", "wrs_pass"),
+    module!("trace", "accept_all"),
+    module!("trace", "heap_buffer"),
+    module!("trace", "heap_texture"),
+    module!("trace", "traverse"),
 ];
 
 /// A shader put together, and where each of its lines comes from.

@@ -1,22 +1,33 @@
 //! Directional albedos of the lobes, interpolated in tables that are computed once by quadrature.
 
-use super::microfacet::{MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
-use glam::{Vec2, Vec4};
+use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, MIN_WIDTH, schlick_weight};
+use glam::{Vec2, Vec3, Vec4};
 
 /// Cosines of the tables of GGX and of sheen.
-pub const COSINES: u32 = 32;
+pub const COSINES: u32 = 48;
 /// Roughnesses of the tables of GGX and of sheen.
 pub const ROUGHNESSES: u32 = 32;
 /// Cosines of the table of refraction.
 pub const GLASS_COSINES: u32 = 24;
 /// Roughnesses of the table of refraction.
-pub const GLASS_ROUGHNESSES: u32 = 16;
+pub const GLASS_ROUGHNESSES: u32 = 12;
 /// Indices of refraction of the table of refraction.
-pub const GLASS_IORS: u32 = 8;
+pub const GLASS_IORS: u32 = 12;
 /// Cells before the table of refraction.
 pub const GLASS_BASE: u32 = COSINES * ROUGHNESSES;
+/// Cells before the table of stretched GGX.
+pub const STRETCHED_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
+/// Knots of the table of stretched GGX along the cosine, the azimuth, the larger width and the aspect.
+pub const STRETCHED: [u32; 4] = [12, 5, 10, 5];
+/// Smallest ratio of the square roots of the widths.
+pub const MIN_ASPECT: f32 = 0.316_227_77;
 /// Cells of all tables.
-pub const CELLS: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
+pub const CELLS: u32 = STRETCHED_BASE + STRETCHED[0] * STRETCHED[1] * STRETCHED[2] * STRETCHED[3];
+
+/// Where the axis of the sheen's cosines begins: the fourth root of its smallest.
+pub const SHEEN_ROOT: f32 = 0.177_827_94;
+/// Where the axis of the indices of refraction begins: sqrt(2 (n - 1) / (n + 1)) of the smallest.
+pub const IOR_ROOT: f32 = 0.171_913_92;
 
 /// The tables, one flat list of cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +60,8 @@ fn albedo_knot(t: f32, count: u32) -> Vec2 {
 /// stretched there.
 #[inline]
 pub fn albedo_cosine(cosine: f32, roughness: f32) -> f32 {
-    let k = (roughness * roughness).max(MIN_WIDTH);
+    let width = (roughness * roughness).clamp(MIN_WIDTH, 1.0);
+    let k = (1.0 - 0.75 * width) * width;
     (cosine * (1.0 + k)) / (cosine + k)
 }
 
@@ -73,23 +85,54 @@ fn albedo_plane(tables: &AlbedoTables, x: f32, y: f32) -> Vec4 {
 #[inline]
 pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> Vec2 {
     let e = albedo_plane(tables, albedo_cosine(cosine, roughness), roughness);
-    Vec2::new(e.x, e.y)
+    // Stored over what a smooth surface has.
+    Vec2::new(e.x, e.x * schlick_weight(cosine) + e.y)
+}
+
+/// What stretching adds to [`ggx_albedo`] at the widths' mean roughness, of the two parts that it is put together from.
+///
+/// The shadowing of stretched facets depends on both directions of the plane, so no single width stands for it.
+#[inline]
+pub fn stretched_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
+    let slanted = wo.x * wo.x + wo.y * wo.y;
+    let azimuth = if slanted > 1e-12 { (wo.x * wo.x) / slanted } else { 0.5 };
+    let roughness = a.x.sqrt();
+    let aspect = ((a.y / a.x).sqrt() - MIN_ASPECT) / (1.0 - MIN_ASPECT);
+    let kx = albedo_knot(albedo_cosine(wo.z, roughness), STRETCHED[0]);
+    let ky = albedo_knot(azimuth, STRETCHED[1]);
+    let kz = albedo_knot(roughness, STRETCHED[2]);
+    let kw = albedo_knot(aspect, STRETCHED[3]);
+    let mut sum = Vec4::ZERO;
+    for corner in 0..8_u32 {
+        let y = ky.x as u32 + (corner & 1);
+        let z = kz.x as u32 + ((corner >> 1) & 1);
+        let w = kw.x as u32 + (corner >> 2);
+        let i = STRETCHED_BASE + ((w * STRETCHED[2] + z) * STRETCHED[1] + y) * STRETCHED[0] + kx.x as u32;
+        let wy = if (corner & 1) == 1 { ky.y } else { 1.0 - ky.y };
+        let wz = if ((corner >> 1) & 1) == 1 { kz.y } else { 1.0 - kz.y };
+        let ww = if (corner >> 2) == 1 { kw.y } else { 1.0 - kw.y };
+        let low = albedo_cell(tables, i);
+        let high = albedo_cell(tables, i + 1);
+        sum += (low + (high - low) * kx.y) * ((wy * wz) * ww);
+    }
+    Vec2::new(sum.x, sum.x * schlick_weight(wo.z) + sum.y)
 }
 
 /// Directional albedo of white sheen; may exceed 1.
 #[inline]
 pub fn sheen_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> f32 {
     let y = (roughness - MIN_SHEEN_ROUGHNESS) / (1.0 - MIN_SHEEN_ROUGHNESS);
-    albedo_plane(tables, cosine.sqrt(), y).z
+    let x = (cosine.max(MIN_SHEEN_COSINE).sqrt().sqrt() - SHEEN_ROOT) / (1.0 - SHEEN_ROOT);
+    albedo_plane(tables, x, y).z
 }
 
 /// What single scattering at a rough boundary returns in reflection and refraction together: by Fresnel's equations, and with
 /// no reflection but the total one.
 #[inline]
 pub fn glass_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32, ior: f32, entering: bool) -> Vec2 {
-    let kx = albedo_knot(albedo_cosine(cosine, roughness), GLASS_COSINES);
+    let kx = albedo_knot(albedo_cosine(cosine, roughness).sqrt(), GLASS_COSINES);
     let ky = albedo_knot(roughness, GLASS_ROUGHNESSES);
-    let kz = albedo_knot(2.0 * ((ior - 1.0) / (ior + 1.0)), GLASS_IORS);
+    let kz = albedo_knot((((2.0 * (ior - 1.0)) / (ior + 1.0)).sqrt() - IOR_ROOT) / (1.0 - IOR_ROOT), GLASS_IORS);
     let row = GLASS_COSINES;
     let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
     let mut sums = [Vec4::ZERO; 2];

@@ -4,17 +4,21 @@
 //! between 0 and 1; sheen over directions. Gauss and Legendre's rule along the cosine, equal steps, which converge as fast for
 //! periodic functions, around the azimuth.
 
-use super::albedo::{AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, ROUGHNESSES};
-use super::bsdf::REFRACTING_IOR;
-use super::microfacet::{MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
-use glam::{DVec3, Vec4};
+use super::albedo::{
+    AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, MIN_ASPECT, ROUGHNESSES, STRETCHED,
+};
+use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
+const MIN_C: f64 = MIN_SHEEN_COSINE as f64;
+const IOR_ROOT: f64 = super::albedo::IOR_ROOT as f64;
+const SHEEN_ROOT: f64 = super::albedo::SHEEN_ROOT as f64;
+use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Points along the cosine.
-const RINGS: usize = 24;
-/// Points around half a turn; the other half is its mirror image.
-const SPOKES: usize = 16;
+/// Points along the cosine, and around half a turn, whose other half is its mirror image.
+const POINTS: [usize; 2] = [24, 12];
+/// The same for stretched GGX, whose table is of small differences.
+const STRETCHED_POINTS: [usize; 2] = [16, 10];
 
 /// Nodes and weights of Gauss and Legendre's rule on \[0, 1\], by Newton's method.
 fn gauss(count: usize) -> Vec<[f64; 2]> {
@@ -38,39 +42,42 @@ fn gauss(count: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn spokes() -> [[f64; 2]; SPOKES] {
-    std::array::from_fn(|i| {
-        let angle = PI * (i as f64 + 0.5) / SPOKES as f64;
-        [angle.cos(), angle.sin()]
-    })
+fn half_turn(n: usize) -> Vec<[f64; 2]> {
+    (0..n)
+        .map(|i| {
+            let angle = PI * (i as f64 + 0.5) / n as f64;
+            [angle.cos(), angle.sin()]
+        })
+        .collect()
 }
 
-/// A rough boundary of width `a`, seen under the cosine `z`, and the points of the rule.
+/// A rough boundary of widths `a`, seen from `wo`.
 struct Facets {
     wo: DVec3,
     length: f64,
-    a: f64,
+    a: DVec2,
 }
 
 impl Facets {
-    fn new(z: f64, a: f64) -> Self {
-        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+    fn new(wo: DVec3, a: DVec2) -> Self {
         Self { wo, length: stretched(wo, a), a }
     }
 
-    /// Mean of `f`(normal) over the visible normals.
-    fn mean<const N: usize>(&self, rings: &[[f64; 2]], f: impl Fn(DVec3) -> [f64; N]) -> [f64; N] {
-        let s = DVec3::new(self.wo.x * self.a, 0.0, self.wo.z).normalize();
+    /// Mean of `f`(normal) over the visible normals. `spokes` of half a turn will do where the x axis is a line of symmetry.
+    fn mean<const N: usize>(&self, rings: &[[f64; 2]], spokes: &[[f64; 2]], f: impl Fn(DVec3) -> [f64; N]) -> [f64; N] {
+        let s = DVec3::new(self.wo.x * self.a.x, self.wo.y * self.a.y, self.wo.z).normalize();
         let mut sum = [0.0; N];
-        for &[u, weight] in rings {
+        for &[t, weight] in rings {
+            // Normals that reflect below the horizon crowd at the end of the draws.
+            let [u, weight] = [1.0 - t * t, 2.0 * t * weight];
             let q = u * (1.0 + s.z);
             let r = (q * (2.0 - q)).max(0.0).sqrt();
-            for [cos, sin] in spokes() {
-                let h = DVec3::new(r * cos + s.x, r * sin, (1.0 - u) * (1.0 + s.z));
-                let h = DVec3::new(h.x * self.a, h.y * self.a, h.z).normalize();
+            for [cos, sin] in spokes {
+                let h = DVec3::new(r * cos + s.x, r * sin + s.y, (1.0 - u) * (1.0 + s.z));
+                let h = DVec3::new(h.x * self.a.x, h.y * self.a.y, h.z).normalize();
                 let values = f(h);
                 for (sum, value) in sum.iter_mut().zip(values) {
-                    *sum += value * weight / SPOKES as f64;
+                    *sum += value * weight / spokes.len() as f64;
                 }
             }
         }
@@ -85,8 +92,15 @@ impl Facets {
     }
 }
 
-fn stretched(v: DVec3, a: f64) -> f64 {
-    ((v.x * v.x + v.y * v.y) * a * a + v.z * v.z).sqrt()
+fn stretched(v: DVec3, a: DVec2) -> f64 {
+    let [x, y] = [v.x * a.x, v.y * a.y];
+    (x * x + y * y + v.z * v.z).sqrt()
+}
+
+/// Direction at the cosine `z`, at an azimuth with the squared cosine `azimuth`.
+fn seen_from(z: f64, azimuth: f64) -> DVec3 {
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    DVec3::new(r * azimuth.sqrt(), r * (1.0 - azimuth).max(0.0).sqrt(), z)
 }
 
 fn mirrored(v: DVec3, h: DVec3) -> DVec3 {
@@ -94,9 +108,9 @@ fn mirrored(v: DVec3, h: DVec3) -> DVec3 {
 }
 
 /// Directional albedo with reflectance 1, and with (1 - v.h)^5.
-fn ggx(z: f64, a: f64, rings: &[[f64; 2]]) -> [f64; 2] {
-    let facets = Facets::new(z, a);
-    facets.mean(rings, |h| {
+fn ggx(wo: DVec3, a: DVec2, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2] {
+    let facets = Facets::new(wo, a);
+    facets.mean(rings, spokes, |h| {
         let wi = mirrored(facets.wo, h);
         let g = if wi.z > 0.0 { facets.shadowing(wi) } else { 0.0 };
         [g, g * (1.0 - facets.wo.dot(h)).powi(5)]
@@ -104,10 +118,9 @@ fn ggx(z: f64, a: f64, rings: &[[f64; 2]]) -> [f64; 2] {
 }
 
 /// What returns from a rough boundary: with Fresnel's reflectance, and with no reflection but the total one.
-fn glass(z: f64, a: f64, eta: f64, rings: &[[f64; 2]]) -> [f64; 2] {
-    let facets = Facets::new(z, a);
-    facets.mean(rings, |h| {
-        let wo = facets.wo;
+fn glass(wo: DVec3, a: DVec2, eta: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2] {
+    let facets = Facets::new(wo, a);
+    facets.mean(rings, spokes, |h| {
         let c = wo.dot(h).min(1.0);
         let up = mirrored(wo, h);
         let reflected = if up.z > 0.0 { facets.shadowing(up) } else { 0.0 };
@@ -135,20 +148,20 @@ fn charlie_lambda(c: f64, a: f64) -> f64 {
 }
 
 /// Directional albedo of white sheen.
-fn sheen(z: f64, a: f64, rings: &[[f64; 2]]) -> f64 {
-    let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-    let lambda_o = charlie_lambda(z, a);
+fn sheen(z: f64, a: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> f64 {
+    let wo = seen_from(z, 1.0);
+    let lambda_o = charlie_lambda(z.max(MIN_C), a);
     let mut sum = 0.0;
     for &[t, weight] in rings {
-        // The cosine is t^2: the lobe's weight is at the horizon.
-        let c = t * t;
+        // The cosine is t^4: the lobe's weight is at the horizon.
+        let c = t.powi(4);
         let r = (1.0 - c * c).max(0.0).sqrt();
-        let lambda_i = charlie_lambda(c, a);
-        let visibility = (1.0 / ((1.0 + lambda_o + lambda_i) * 4.0 * z * c)).min(1.0);
-        for [cos, sin] in spokes() {
+        let lambda_i = charlie_lambda(c.max(MIN_C), a);
+        let visibility = (1.0 / ((1.0 + lambda_o + lambda_i) * 4.0 * z.max(MIN_C) * c.max(MIN_C))).min(1.0);
+        for [cos, sin] in spokes {
             let h = (wo + DVec3::new(r * cos, r * sin, c)).normalize();
             let d = (2.0 + 1.0 / a) * (1.0 - h.z * h.z).max(0.0).powf(0.5 / a) / (2.0 * PI);
-            sum += d * visibility * c * 2.0 * t * weight * 2.0 * PI / SPOKES as f64;
+            sum += d * visibility * c * 4.0 * t.powi(3) * weight * 2.0 * PI / spokes.len() as f64;
         }
     }
     sum
@@ -160,35 +173,62 @@ fn knot(index: u32, count: u32) -> f64 {
 
 /// The inverse of [`albedo_cosine`](super::albedo::albedo_cosine).
 fn cosine_at(x: f64, width: f64) -> f64 {
-    x * width / (1.0 + width - x)
+    let k = width * (1.0 - 0.75 * width);
+    x * k / (1.0 + k - x)
 }
 
 impl AlbedoTables {
     /// Computes all tables, on all threads.
     pub fn compute() -> Self {
-        let rings = gauss(RINGS);
+        let rings = gauss(POINTS[0]);
+        let spokes = half_turn(POINTS[1]);
+        let few_rings = gauss(STRETCHED_POINTS[0]);
+        let few = half_turn(STRETCHED_POINTS[1]);
+        let around: Vec<[f64; 2]> = few.iter().flat_map(|&[c, s]| [[c, s], [c, -s]]).collect();
         let width_at = |roughness: f64| (roughness * roughness).max(f64::from(MIN_WIDTH));
         let first = (0..COSINES * ROUGHNESSES).into_par_iter().map(|i| {
             let [x, r] = [knot(i % COSINES, COSINES), knot(i / COSINES, ROUGHNESSES)];
             let a = width_at(r);
-            let [white, rising] = ggx(cosine_at(x, a), a, &rings);
+            let z = cosine_at(x, a);
+            let [white, rising] = ggx(seen_from(z, 1.0), DVec2::splat(a), &rings, &spokes);
             let low = f64::from(MIN_SHEEN_ROUGHNESS);
             let rs = low + (1.0 - low) * r;
-            let cloth = sheen(x * x, rs * rs, &rings);
-            Vec4::new(white as f32, rising as f32, cloth as f32, 0.0)
+            let root = SHEEN_ROOT + (1.0 - SHEEN_ROOT) * x;
+            let cloth = sheen(root.powi(4), rs * rs, &rings, &spokes);
+            Vec4::new(white as f32, (rising - white * (1.0 - z).powi(5)) as f32, cloth as f32, 0.0)
         });
         let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
         let second = (0..plane * GLASS_IORS).into_par_iter().map(|i| {
             let x = knot(i % GLASS_COSINES, GLASS_COSINES);
             let r = knot(i / GLASS_COSINES % GLASS_ROUGHNESSES, GLASS_ROUGHNESSES);
-            let ratio = 0.5 * knot(i / plane, GLASS_IORS);
-            let eta = ((1.0 + ratio) / (1.0 - ratio)).max(f64::from(REFRACTING_IOR[0]));
+            let root = IOR_ROOT + (1.0 - IOR_ROOT) * knot(i / plane, GLASS_IORS);
+            let ratio = 0.5 * root * root;
+            let eta = (1.0 + ratio) / (1.0 - ratio);
             let a = width_at(r);
-            let z = cosine_at(x, a);
-            let [enter, leave] = [glass(z, a, eta, &rings), glass(z, a, 1.0 / eta, &rings)];
+            let z = cosine_at(x * x, a);
+            let [enter, leave] = [
+                glass(seen_from(z, 1.0), DVec2::splat(a), eta, &rings, &spokes),
+                glass(seen_from(z, 1.0), DVec2::splat(a), 1.0 / eta, &rings, &spokes),
+            ];
             Vec4::new(enter[0] as f32, enter[1] as f32, leave[0] as f32, leave[1] as f32)
         });
-        let cells: Vec<Vec4> = first.chain(second).collect();
+        let third = (0..STRETCHED.iter().product()).into_par_iter().map(|i: u32| {
+            let [nx, ny, nz, nw] = STRETCHED;
+            let [x, azimuth] = [knot(i % nx, nx), knot(i / nx % ny, ny)];
+            let r = knot(i / (nx * ny) % nz, nz);
+            let low = f64::from(MIN_ASPECT);
+            let aspect = low + (1.0 - low) * knot(i / (nx * ny * nz), nw);
+            let wide = width_at(r);
+            let a = DVec2::new(wide, (wide * aspect * aspect).max(f64::from(MIN_WIDTH)));
+            let z = cosine_at(x, wide);
+            let mean = (0.5 * (a.x * a.x + a.y * a.y)).sqrt();
+            let smooth = (1.0 - z).powi(5);
+            let [white, rising] = ggx(seen_from(z, azimuth), a, &few_rings, &around);
+            let [mean_white, mean_rising] = ggx(seen_from(z, 1.0), DVec2::splat(mean), &few_rings, &few);
+            let white = white - mean_white;
+            Vec4::new(white as f32, (rising - mean_rising - white * smooth) as f32, 0.0, 0.0)
+        });
+        let cells: Vec<Vec4> = first.chain(second).chain(third).collect();
         debug_assert_eq!(cells.len(), CELLS as usize);
         Self { cells }
     }

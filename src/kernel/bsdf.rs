@@ -7,12 +7,13 @@
 //!
 //! [`layers`] does once what depends on the point and `wo` only; [`eval`] and [`sample`] take it from there.
 
-use super::albedo::{AlbedoTables, ggx_albedo, glass_albedo, sheen_albedo};
+use super::albedo::{AlbedoTables, ggx_albedo, glass_albedo, sheen_albedo, stretched_albedo};
 use super::color::luma;
 use super::direction::unit;
 use super::microfacet::{
     MIN_SHEEN_ROUGHNESS, charlie_d, charlie_lambda, charlie_visibility, fresnel_dielectric, ggx_d, ggx_length,
-    ggx_widths, mirrored, reflectance_at_normal, refracted, refraction_discriminant, schlick_weight, vndf_sample,
+    ggx_mean_roughness, ggx_widths, mirrored, reflectance_at_normal, refracted, refraction_discriminant,
+    schlick_weight, vndf_sample,
 };
 use super::sampling::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::{Vec2, Vec3};
@@ -21,8 +22,11 @@ use std::f32::consts::FRAC_1_PI;
 /// Index of refraction of the coat (glTF KHR_materials_clearcoat).
 const COAT_IOR: f32 = 1.5;
 
-/// Indices of refraction that bodies refract by are clamped to this range: at 1 refraction has no half vector.
-pub const REFRACTING_IOR: [f32; 2] = [1.01, 3.0];
+/// Smallest index of refraction that bends rays. A body below it is a sheet: towards 1 refraction has no half vector.
+pub const MIN_REFRACTING_IOR: f32 = 1.03;
+
+/// Largest index of refraction that rays are bent by.
+pub const MAX_REFRACTING_IOR: f32 = 3.0;
 
 /// Parameters of a surface point, textures and tints resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -282,8 +286,12 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
 
     // The base: reflection of the dielectric and the metal, and what it leaves.
     let mut e = Vec2::new(1.0, 0.0);
+    let width_roughness = ggx_mean_roughness(widths);
     if lobes.specular || lobes.metal || lobes.transmission {
-        e = ggx_albedo(tables, z, roughness);
+        e = ggx_albedo(tables, z, width_roughness);
+        if lobes.anisotropy && anisotropy > 0.0 {
+            e += stretched_albedo(tables, wo, widths);
+        }
     }
     let mut reflect = Vec3::ZERO;
     let mut reflect_rise = Vec3::ZERO;
@@ -316,14 +324,15 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     let mut glass_reflect = Vec3::ZERO;
     let mut eta = 1.0;
     let mut glass_chance = 0.0;
+    let ior = surface.ior.clamp(1.0, MAX_REFRACTING_IOR);
+    let thin = surface.thin || ior < MIN_REFRACTING_IOR;
     if lobes.transmission {
-        let ior = surface.ior.clamp(REFRACTING_IOR[0], REFRACTING_IOR[1]);
-        eta = if surface.entering || surface.thin { ior } else { 1.0 / ior };
+        eta = if surface.entering || thin { ior } else { 1.0 / ior };
         glass_reflect = (surface.specular_color * strength).clamp(Vec3::ZERO, Vec3::ONE);
         // What single scattering returns with Fresnel's reflectance, and without it but for total internal reflection.
         let mut returned = Vec2::new(e.x, e.x);
-        if !surface.thin {
-            returned = glass_albedo(tables, z, roughness, ior, surface.entering);
+        if !thin {
+            returned = glass_albedo(tables, z, width_roughness, ior, surface.entering);
         }
         let amount = (dielectric * transmission) * below;
         glass = Vec3::splat(amount) / (glass_reflect * (returned.x - returned.y) + Vec3::splat(returned.y));
@@ -355,7 +364,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         glass_color: base,
         glass_reflect,
         eta,
-        thin: surface.thin,
+        thin,
         chances,
     }
 }

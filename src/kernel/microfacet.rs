@@ -11,13 +11,22 @@ pub const MIN_WIDTH: f32 = 1e-3;
 /// Smallest roughness of the sheen: below it the exponent leaves what f32 resolves near the horizon.
 pub const MIN_SHEEN_ROUGHNESS: f32 = 0.1;
 
+/// Smallest cosine of the sheen's visibility, 0.06 degrees above the horizon: the fitted shadowing rises without bound below.
+pub const MIN_SHEEN_COSINE: f32 = 1e-3;
+
 /// Widths of GGX along x and y: the square of the perceptual `roughness`, stretched by Burley's aspect sqrt(1 - 0.9 `anisotropy`)
-/// (2012, section 5.4).
+/// (2012, section 5.4), to 1 at most.
 #[inline]
 pub fn ggx_widths(roughness: f32, anisotropy: f32) -> Vec2 {
     let width = (roughness * roughness).clamp(MIN_WIDTH, 1.0);
     let aspect = (1.0 - 0.9 * anisotropy.clamp(0.0, 1.0)).sqrt();
-    Vec2::new((width / aspect).max(MIN_WIDTH), (width * aspect).max(MIN_WIDTH))
+    Vec2::new((width / aspect).min(1.0), (width * aspect).max(MIN_WIDTH))
+}
+
+/// Perceptual roughness of the isotropic GGX with the mean square of the widths.
+#[inline]
+pub fn ggx_mean_roughness(a: Vec2) -> f32 {
+    (0.5 * (a.x * a.x + a.y * a.y)).sqrt().sqrt()
 }
 
 /// Length of `v` stretched by the widths: sqrt(ax^2 x^2 + ay^2 y^2 + z^2), |z| sqrt(1 + tan^2 a^2) = |z| (1 + 2 Lambda).
@@ -151,7 +160,7 @@ fn charlie_curve(x: f32, a: f32) -> f32 {
 /// Charlie's Lambda of a direction with the cosine `cosine` in \[0, 1\].
 #[inline]
 pub fn charlie_lambda(cosine: f32, a: f32) -> f32 {
-    let c = cosine.clamp(0.0, 1.0);
+    let c = cosine.clamp(MIN_SHEEN_COSINE, 1.0);
     if c < 0.5 {
         return exp(charlie_curve(c, a));
     }
@@ -161,6 +170,8 @@ pub fn charlie_lambda(cosine: f32, a: f32) -> f32 {
 /// Visibility of the sheen, G / (4 cos cos), at most 1 (glTF KHR_materials_sheen).
 #[inline]
 pub fn charlie_visibility(cos_o: f32, lambda_o: f32, cos_i: f32, lambda_i: f32) -> f32 {
-    let x = ((1.0 + lambda_o) + lambda_i) * (4.0 * (cos_o * cos_i));
+    let o = cos_o.max(MIN_SHEEN_COSINE);
+    let i = cos_i.max(MIN_SHEEN_COSINE);
+    let x = ((1.0 + lambda_o) + lambda_i) * ((4.0 * o) * i);
     if x > 1.0 { 1.0 / x } else { 1.0 }
 }

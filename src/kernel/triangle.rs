@@ -8,7 +8,7 @@
 //! Edges shorter than a rounding of their distance from the ray give random answers. Whether the ray passes through the
 //! triangle's bounds is answered exactly, and asked first.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 /// Spacing of the origin of a secondary ray from its surface, as a share of the largest coordinate of the triangle's vertices.
 /// A hit point made of barycentrics is off by at most 7 * 2^-24 of it (Pharr, Jakob and Humphreys, "Physically Based Rendering",
@@ -18,15 +18,18 @@ pub const OFFSET: f32 = 1.0 / 262_144.0;
 /// Sums of edge functions below this are zero-area triangles: their products have left the normal floats.
 pub const MIN_DET: f32 = 1e-36;
 
+/// Bounds whose lower end lies above this are beside the ray; along it they may begin anywhere.
+const ACROSS: Vec3A = Vec3A::new(0.0, 0.0, f32::MAX);
+
 /// Columns of the matrix that shears a ray's direction onto (0, 0, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     /// Image of the x axis.
-    pub x: Vec3,
+    pub x: Vec3A,
     /// Image of the y axis.
-    pub y: Vec3,
+    pub y: Vec3A,
     /// Image of the z axis.
-    pub z: Vec3,
+    pub z: Vec3A,
 }
 
 /// Where a ray meets a triangle.
@@ -48,46 +51,46 @@ pub fn shear(direction: Vec3) -> Shear {
     if size.x >= size.y && size.x >= size.z {
         let inv = 1.0 / direction.x;
         return Shear {
-            x: Vec3::new(-(direction.y / direction.x), -(direction.z / direction.x), inv),
-            y: Vec3::X,
-            z: Vec3::Y,
+            x: Vec3A::new(-(direction.y / direction.x), -(direction.z / direction.x), inv),
+            y: Vec3A::X,
+            z: Vec3A::Y,
         };
     }
     if size.y >= size.z {
         let inv = 1.0 / direction.y;
         return Shear {
-            x: Vec3::Y,
-            y: Vec3::new(-(direction.z / direction.y), -(direction.x / direction.y), inv),
-            z: Vec3::X,
+            x: Vec3A::Y,
+            y: Vec3A::new(-(direction.z / direction.y), -(direction.x / direction.y), inv),
+            z: Vec3A::X,
         };
     }
     let inv = 1.0 / direction.z;
-    Shear { x: Vec3::X, y: Vec3::Y, z: Vec3::new(-(direction.x / direction.z), -(direction.y / direction.z), inv) }
+    Shear { x: Vec3A::X, y: Vec3A::Y, z: Vec3A::new(-(direction.x / direction.z), -(direction.y / direction.z), inv) }
 }
 
 /// A vertex relative to the ray's origin, sheared: x and y across the ray, z along it.
 #[inline]
-pub fn sheared(shear: Shear, from_origin: Vec3) -> Vec3 {
+pub fn sheared(shear: Shear, from_origin: Vec3A) -> Vec3A {
     shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z
 }
 
 /// Twice the signed area that the ray's axis and the edge from `a` to `b` span; changes sign, and nothing else, with its
 /// arguments swapped.
 #[inline]
-pub fn edge(a: Vec3, b: Vec3) -> f32 {
+pub fn edge(a: Vec3A, b: Vec3A) -> f32 {
     a.x * b.y - a.y * b.x
 }
 
 /// Where the ray from `origin` meets the triangle, from either side.
 #[inline]
-pub fn intersect(shear: Shear, origin: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> Meeting {
+pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -> Meeting {
     let miss = Meeting { t: 0.0, u: 0.0, v: 0.0 };
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
     let c = sheared(shear, v2 - origin);
     let low = a.min(b.min(c));
     let high = a.max(b.max(c));
-    if low.x > 0.0 || high.x < 0.0 || low.y > 0.0 || high.y < 0.0 || high.z <= 0.0 {
+    if (low.cmpgt(ACROSS) | high.cmplt(Vec3A::ZERO)).any() {
         return miss;
     }
     let e0 = edge(c, b);

@@ -49,7 +49,7 @@ impl Hit {
 
 /// A ray made ready for nodes and triangles.
 pub(super) struct Prepared {
-    origin: Vec3,
+    origin: Vec3A,
     shear: Shear,
     node_ray: NodeRay,
 }
@@ -60,7 +60,7 @@ impl Prepared {
     pub fn new(ray: &Ray) -> Option<Self> {
         let usable = ray.origin.is_finite() && ray.direction.is_finite() && ray.direction != Vec3::ZERO;
         usable.then(|| Self {
-            origin: ray.origin,
+            origin: Vec3A::from(ray.origin),
             shear: shear(ray.direction),
             node_ray: NodeRay::new(ray.origin, ray.direction),
         })
@@ -174,7 +174,7 @@ impl Bvh {
                 let index = node.primitive_base_idx + leaves.trailing_zeros();
                 leaves &= leaves - 1;
                 let triangle = &self.triangles[index as usize];
-                let [v0, v1, v2] = triangle.positions();
+                let [v0, v1, v2] = triangle.corners();
                 let meeting = intersect(ray.shear, ray.origin, v0, v1, v2);
                 let index = first + index;
                 let nearer = meeting.t < hit.t || meeting.t == hit.t && index < hit.triangle;

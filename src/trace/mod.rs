@@ -11,6 +11,7 @@ pub mod effects;
 pub mod film;
 mod geometry;
 pub mod heap;
+pub mod measure;
 mod node;
 mod record;
 pub mod records;

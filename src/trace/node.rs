@@ -52,26 +52,26 @@ impl NodeRay {
         let near = first - self.widening * reach;
         let far = first + self.widening * reach;
         let (child_bits, bit_index) = node.get_child_and_index_bits(self.octant);
-        let (child_bits, bit_index) = (child_bits.to_le_bytes(), bit_index.to_le_bytes());
 
         let planes = |axis: usize, min: &[u8; 8], max: &[u8; 8], half: usize| {
             let (low, high) = (four(min, half), four(max, half));
             let (a, b) = if self.backward.test(axis) { (high, low) } else { (low, high) };
             (a * step[axis] + near[axis], b * step[axis] + far[axis])
         };
-        let mut hits = 0;
+        let mut met = 0;
         for half in 0..2 {
             let (near_x, far_x) = planes(0, &node.child_min_x, &node.child_max_x, half);
             let (near_y, far_y) = planes(1, &node.child_min_y, &node.child_max_y, half);
             let (near_z, far_z) = planes(2, &node.child_min_z, &node.child_max_z, half);
             let near = near_x.max(near_y).max(near_z.max(Vec4::ZERO));
             let far = far_x.min(far_y).min(far_z.min(Vec4::splat(t_max)));
-            let met = near.cmple(far).bitmask();
-            for j in 0..4 {
-                if met & (1 << j) != 0 {
-                    hits |= u32::from(child_bits[half * 4 + j]) << bit_index[half * 4 + j];
-                }
-            }
+            met |= near.cmple(far).bitmask() << (4 * half);
+        }
+        let mut hits = 0;
+        while met != 0 {
+            let shift = 8 * met.trailing_zeros();
+            met &= met - 1;
+            hits |= ((child_bits >> shift) as u32 & 7) << ((bit_index >> shift) & 31);
         }
         hits
     }

@@ -2,7 +2,7 @@
 
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec3A, Vec4};
 
 /// What a tracer must know of a triangle's material before it looks it up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,20 +32,16 @@ impl TriangleFlags {
     }
 }
 
-/// The triangle is no light.
-const NO_LIGHT: u32 = u32::MAX;
+/// In place of one more than its row in the table of lights: the triangle is no light.
+const NO_LIGHT: u32 = 0;
 
 /// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
 /// of the triangle in its source, and its row in the table of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TriangleRecord {
-    v0: [f32; 3],
-    material: u32,
-    v1: [f32; 3],
-    source: u32,
-    v2: [f32; 3],
-    light: u32,
+    /// The words are floats of the same bits.
+    rows: [[f32; 4]; 3],
 }
 
 impl TriangleRecord {
@@ -53,44 +49,51 @@ impl TriangleRecord {
     pub const MAX_MATERIAL: u32 = (1 << 24) - 1;
 
     pub(super) fn new(triangles: &Triangles, source: u32, materials: &[Material]) -> Self {
-        let [v0, v1, v2] = triangles.positions[source as usize].map(|v| v.to_array());
+        let [v0, v1, v2] = triangles.positions[source as usize];
         let material = triangles.materials.get(source as usize).copied().unwrap_or(0).min(Self::MAX_MATERIAL);
         let flags = materials.get(material as usize).map_or(0, TriangleFlags::of);
-        Self { v0, material: material | flags, v1, source, v2, light: NO_LIGHT }
+        let row = |v: Vec3, word: u32| v.extend(f32::from_bits(word)).to_array();
+        Self { rows: [row(v0, material | flags), row(v1, source), row(v2, NO_LIGHT)] }
     }
 
     /// Corners in world space.
     #[inline]
     pub fn positions(&self) -> [Vec3; 3] {
-        [self.v0, self.v1, self.v2].map(Vec3::from_array)
+        self.rows.map(|[x, y, z, _]| Vec3::new(x, y, z))
+    }
+
+    /// The same in registers.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [Vec3A; 3] {
+        self.rows.map(|row| Vec3A::from_vec4(Vec4::from_array(row)))
     }
 
     /// Index into the scene's materials.
     #[inline]
     pub fn material(&self) -> u32 {
-        self.material & Self::MAX_MATERIAL
+        self.rows[0][3].to_bits() & Self::MAX_MATERIAL
     }
 
     /// Whether all of `flags` are set.
     #[inline]
     pub fn has(&self, flags: u32) -> bool {
-        self.material & flags == flags
+        self.rows[0][3].to_bits() & flags == flags
     }
 
     /// Its row in the table that lights are picked by; `None` if it is no light.
     #[inline]
     pub fn light(&self) -> Option<u32> {
-        (self.light != NO_LIGHT).then_some(self.light)
+        self.rows[2][3].to_bits().checked_sub(1)
     }
 
     pub(super) fn set_light(&mut self, light: u32) {
-        self.light = light;
+        self.rows[2][3] = f32::from_bits(light + 1);
     }
 
     /// Its index in the [`Triangles`] it comes from.
     #[inline]
     pub fn source(&self) -> u32 {
-        self.source
+        self.rows[1][3].to_bits()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{decisions, foveation, gpu, matching, mathematics, state, surfaces};
+use crate::{decisions, foveation, gpu, matching, mathematics, state, surfaces, triangles};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -158,4 +158,14 @@ fn a_wrong_antialiasing_is_caught() {
         "(roots(candidate) - clipped) * alpha",
         "(roots(candidate) - clipped) * (1.01 * alpha)",
     );
+}
+
+#[test]
+fn a_flipped_edge_or_a_lax_one_is_caught() {
+    caught(triangles::PROBES, "intersect", "edge(c, b)", "edge(b, c)");
+    caught(triangles::PROBES, "intersect", "min(e0, min(e1, e2)) < 0.0", "min(e0, min(e1, e2)) <= 0.0");
+    caught(triangles::PROBES, "intersect", "|| low.y > 0.0", "");
+    caught(triangles::PROBES, "edge", "a.x * b.y - a.y * b.x", "a.x * b.y + a.y * b.x");
+    caught(triangles::PROBES, "shear", "-(direction.y / direction.x)", "direction.y / direction.x");
+    caught(triangles::PROBES, "offset_ray", "magnitude * OFFSET", "OFFSET");
 }

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, matching, mathematics, state, surfaces};
+use crate::{decisions, foveation, matching, mathematics, state, surfaces, triangles};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -81,4 +81,9 @@ fn resample_is_bit_equal() {
 #[test]
 fn taa_is_bit_equal() {
     check_module(surfaces::PROBES, "taa");
+}
+
+#[test]
+fn triangle_is_bit_equal_h80() {
+    check_module(triangles::PROBES, "triangle");
 }

@@ -4,7 +4,7 @@ use crate::common::Draws;
 use afterimage::kernel::triangle::{Meeting, intersect, shear};
 use afterimage::scene::Triangles;
 use afterimage::trace::{Bvh, Hit, Ray};
-use glam::{Vec3, vec3};
+use glam::{Vec3, Vec3A, vec3};
 
 /// Hits everything.
 pub fn all(_: u32, _: f32, _: f32) -> bool {
@@ -63,8 +63,8 @@ pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let shear = shear(ray.direction);
     let mut best = Hit { triangle: u32::MAX, t: ray.t_max, u: 0.0, v: 0.0 };
     for (i, triangle) in bvh.triangles().iter().enumerate() {
-        let [a, b, c] = triangle.positions();
-        let Meeting { t, u, v } = intersect(shear, ray.origin, a, b, c);
+        let [a, b, c] = triangle.positions().map(Vec3A::from);
+        let Meeting { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
         if t > 0.0 && t < best.t {
             best = Hit { triangle: i as u32, t, u, v };
         }

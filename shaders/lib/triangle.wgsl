@@ -1,0 +1,87 @@
+// Twin of src/kernel/triangle.rs: rays and triangles (Woop, Benthin and Wald, JCGT 2(1), 2013).
+
+const OFFSET: f32 = 1.0 / 262144.0;
+const MIN_DET: f32 = 1e-36;
+
+struct Shear {
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+}
+
+// t is 0 where they do not meet.
+struct Meeting {
+    t: f32,
+    u: f32,
+    v: f32,
+}
+
+// triangle::shear
+fn shear(direction: vec3<f32>) -> Shear {
+    let size = abs(direction);
+    if size.x >= size.y && size.x >= size.z {
+        let inv = 1.0 / direction.x;
+        let image = vec3<f32>(-(direction.y / direction.x), -(direction.z / direction.x), inv);
+        return Shear(image, vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0));
+    }
+    if size.y >= size.z {
+        let inv = 1.0 / direction.y;
+        let image = vec3<f32>(-(direction.z / direction.y), -(direction.x / direction.y), inv);
+        return Shear(vec3<f32>(0.0, 1.0, 0.0), image, vec3<f32>(1.0, 0.0, 0.0));
+    }
+    let inv = 1.0 / direction.z;
+    let image = vec3<f32>(-(direction.x / direction.z), -(direction.y / direction.z), inv);
+    return Shear(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), image);
+}
+
+// triangle::sheared
+fn sheared(shear: Shear, from_origin: vec3<f32>) -> vec3<f32> {
+    return shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z;
+}
+
+// triangle::edge
+fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// triangle::intersect
+fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Meeting {
+    let miss = Meeting(0.0, 0.0, 0.0);
+    let a = sheared(shear, v0 - origin);
+    let b = sheared(shear, v1 - origin);
+    let c = sheared(shear, v2 - origin);
+    let low = min(a, min(b, c));
+    let high = max(a, max(b, c));
+    if low.x > 0.0 || high.x < 0.0 || low.y > 0.0 || high.y < 0.0 || high.z < 0.0 {
+        return miss;
+    }
+    let e0 = edge(c, b);
+    let e1 = edge(a, c);
+    let e2 = edge(b, a);
+    if min(e0, min(e1, e2)) < 0.0 && max(e0, max(e1, e2)) > 0.0 {
+        return miss;
+    }
+    let det = e0 + (e1 + e2);
+    if abs(det) < MIN_DET {
+        return miss;
+    }
+    let u = e1 / det;
+    let v = e2 / det;
+    return Meeting((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
+}
+
+// triangle::point_at
+fn point_at(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>, u: f32, v: f32) -> vec3<f32> {
+    return (v0 + (v1 - v0) * u) + (v2 - v0) * v;
+}
+
+// triangle::magnitude
+fn magnitude(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> f32 {
+    let largest = max(max(abs(v0), abs(v1)), abs(v2));
+    return max(largest.x, max(largest.y, largest.z));
+}
+
+// triangle::offset_ray
+fn offset_ray(point: vec3<f32>, normal: vec3<f32>, magnitude: f32) -> vec3<f32> {
+    return point + normal * (magnitude * OFFSET);
+}
