@@ -11,7 +11,9 @@ pub struct Triangles {
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates, (0, 0) at the first texel's corner.
     pub uvs: Vec<[Vec2; 3]>,
-    /// Direction of growing u, of length 1, and in w the sign of the bitangent: `cross(normal, tangent) * w`.
+    /// Direction of growing u, of length 1, and in w the sign of the bitangent `cross(normal, tangent) * w`, which a
+    /// normal map's green points along (up in the image, against growing v). Some direction beside
+    /// the normal where the material needs none.
     pub tangents: Vec<[Vec4; 3]>,
     /// Linear factors of the base colour, and of alpha in w.
     pub colors: Vec<[Vec4; 3]>,
@@ -28,6 +30,16 @@ impl Triangles {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+
+    /// Makes room for `more` triangles.
+    pub(crate) fn reserve(&mut self, more: usize) {
+        self.positions.reserve(more);
+        self.normals.reserve(more);
+        self.uvs.reserve(more);
+        self.tangents.reserve(more);
+        self.colors.reserve(more);
+        self.materials.reserve(more);
     }
 
     /// Adds all of `other`.

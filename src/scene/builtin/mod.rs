@@ -35,6 +35,7 @@ fn still(name: &str, materials: Vec<Material>, still: Triangles, camera: Camera,
         warnings: vec![],
         still,
         rest: Pose { cameras: vec![camera], ..Pose::default() },
+        animated: None,
     }
 }
 

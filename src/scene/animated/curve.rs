@@ -1,0 +1,96 @@
+//! Keyframes and what lies between them.
+
+use glam::DQuat;
+
+/// How values follow from one key to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Interpolation {
+    Step,
+    Linear,
+    /// Cubic Hermite splines; each key has the tangent towards it, its value, and the tangent away from it.
+    Cubic,
+}
+
+/// Values over time. Before the first key it has the first one's value, after the last the last one's.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    /// Seconds, ascending; at least one.
+    pub times: Vec<f32>,
+    /// `width` numbers a key, three times as many with [`Interpolation::Cubic`].
+    pub values: Vec<f32>,
+    pub width: usize,
+    pub interpolation: Interpolation,
+}
+
+/// Between two keys, or at one.
+enum Place {
+    At(usize),
+    Between { key: usize, share: f64, seconds: f64 },
+}
+
+impl Curve {
+    fn place(&self, time_s: f64) -> Place {
+        let next = self.times.partition_point(|&t| f64::from(t) <= time_s);
+        if next == 0 {
+            return Place::At(0);
+        }
+        let key = next - 1;
+        if next == self.times.len() || self.interpolation == Interpolation::Step {
+            return Place::At(key);
+        }
+        let start = f64::from(self.times[key]);
+        let seconds = f64::from(self.times[next]) - start;
+        Place::Between { key, share: (time_s - start) / seconds, seconds }
+    }
+
+    /// Component `i` of what is stored with a key: 0 the tangent towards it, 1 its value, 2 the tangent away from it.
+    fn stored(&self, key: usize, part: usize, i: usize) -> f64 {
+        let at = match self.interpolation {
+            Interpolation::Cubic => (key * 3 + part) * self.width,
+            _ => key * self.width,
+        };
+        f64::from(self.values[at + i])
+    }
+
+    /// Component `i` at a time.
+    pub fn component(&self, time_s: f64, i: usize) -> f64 {
+        match self.place(time_s) {
+            Place::At(key) => self.stored(key, 1, i),
+            Place::Between { key, share: t, seconds } => {
+                let (from, to) = (self.stored(key, 1, i), self.stored(key + 1, 1, i));
+                if self.interpolation == Interpolation::Linear {
+                    return from + (to - from) * t;
+                }
+                // glTF 2.0, appendix C.5.
+                let (away, towards) = (self.stored(key, 2, i) * seconds, self.stored(key + 1, 0, i) * seconds);
+                let (t2, t3) = (t * t, t * t * t);
+                (2.0 * t3 - 3.0 * t2 + 1.0) * from
+                    + (t3 - 2.0 * t2 + t) * away
+                    + (3.0 * t2 - 2.0 * t3) * to
+                    + (t3 - t2) * towards
+            }
+        }
+    }
+
+    /// The first `N` components at a time.
+    pub fn components<const N: usize>(&self, time_s: f64) -> [f64; N] {
+        std::array::from_fn(|i| self.component(time_s, i))
+    }
+
+    /// The rotation at a time: along the shorter arc between keys, of length 1.
+    pub fn rotation(&self, time_s: f64) -> DQuat {
+        let at = |key| unit(DQuat::from_array(std::array::from_fn(|i| self.stored(key, 1, i))));
+        match self.place(time_s) {
+            Place::Between { key, share, .. } if self.interpolation == Interpolation::Linear => {
+                at(key).slerp(at(key + 1), share)
+            }
+            _ => unit(DQuat::from_array(self.components(time_s))),
+        }
+    }
+}
+
+/// A quaternion scaled to length 1; of none no rotation.
+pub(crate) fn unit(q: DQuat) -> DQuat {
+    let length = q.length();
+    if length.is_finite() && length > 0.0 { q / length } else { DQuat::IDENTITY }
+}

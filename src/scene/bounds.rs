@@ -1,0 +1,74 @@
+//! What a scene spans, and a camera that has all of it in view.
+
+use super::{Camera, Scene, Triangles};
+use glam::{DMat4, DVec3, Vec3};
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates, in metres.
+    pub min: Vec3,
+    /// Largest coordinates, in metres.
+    pub max: Vec3,
+}
+
+/// Vertical field of view of the camera that is made where a scene has none.
+const FRAMING_VFOV_DEG: f32 = 40.0;
+/// That camera's direction as seen from the middle: to the right of the front, and above.
+const AZIMUTH_DEG: f64 = 35.0;
+const ELEVATION_DEG: f64 = 20.0;
+/// Free space around the box, as a share of the picture.
+const MARGIN: f64 = 1.05;
+
+impl Triangles {
+    /// The box around them; `None` if there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let first = self.positions.first()?[0];
+        let start = Bounds { min: first, max: first };
+        Some(self.positions.iter().flatten().fold(start, |b, &p| Bounds { min: b.min.min(p), max: b.max.max(p) }))
+    }
+}
+
+impl Scene {
+    /// The box around all triangles at time 0; `None` if there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        match (self.still.bounds(), self.rest.moving.bounds()) {
+            (Some(a), Some(b)) => Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// A camera with the whole box of the scene in view, from the front, right and above: for scenes without one.
+    ///
+    /// `aspect` is width by height of the picture. Of an empty scene it sees the space around the origin.
+    pub fn framing_camera(&self, aspect: f32) -> Camera {
+        let aspect = if aspect.is_finite() && aspect > 0.0 { f64::from(aspect) } else { 1.0 };
+        let (min, max) = self.bounds().map_or((DVec3::NEG_ONE, DVec3::ONE), |b| (b.min.as_dvec3(), b.max.as_dvec3()));
+        let center = (min + max) / 2.0;
+        let mut half = (max - min) / 2.0;
+        if half == DVec3::ZERO {
+            half = DVec3::splat(center.length().max(1.0) * 1e-3);
+        }
+        let (sin_azimuth, cos_azimuth) = AZIMUTH_DEG.to_radians().sin_cos();
+        let (sin_elevation, cos_elevation) = ELEVATION_DEG.to_radians().sin_cos();
+        let back = DVec3::new(sin_azimuth * cos_elevation, sin_elevation, cos_azimuth * cos_elevation);
+        let right = DVec3::Y.cross(back).normalize();
+        let up = back.cross(right);
+        let tan_y = (f64::from(FRAMING_VFOV_DEG) / 2.0).to_radians().tan() / MARGIN;
+        let tan_x = tan_y * aspect;
+        // A corner at (x, y, z) in camera axes from the middle is in view from distance d if |x| <= (d - z) tan_x, and so for y.
+        let distance = (0..8)
+            .map(|corner| {
+                let sign = |bit: i32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                let p = half * DVec3::new(sign(0), sign(1), sign(2));
+                p.dot(back) + (p.dot(right).abs() / tan_x).max(p.dot(up).abs() / tan_y)
+            })
+            .fold(0.0, f64::max);
+        let eye = center + back * distance;
+        Camera {
+            name: String::new(),
+            world_from_camera: DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0)),
+            vfov_deg: FRAMING_VFOV_DEG,
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! A scene out of its parts: what never moves becomes triangles at once, the rest is kept to be posed.
+
+use super::accessors::Accessors;
+use super::container::Container;
+use super::images::Textures;
+use super::mesh::Primitives;
+use super::warnings::Warnings;
+use super::{Document, InputError, animation, extensions, materials, nodes, skins, viewpoints};
+use crate::scene::animated::{Animated, Mesh, Moment, Property, Skin};
+use crate::scene::geometry::{Geometry, MAX_COORDINATE};
+use crate::scene::{Environment, Scene, Triangles};
+use gltf::json::{self, Index};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -> Result<Scene, InputError> {
+    let mut warnings = Warnings::default();
+    extensions::warn_of_unsupported(&document.root.extensions_used, &mut warnings);
+    let accessors = Accessors::new(document);
+    let mut textures = Textures::new(document);
+    let surfaces = materials::read(document, &mut textures, &mut warnings)?;
+    let (nodes, shown) = nodes::tree(document, &mut warnings)?;
+    let channels = animation::channels(document, &accessors, clip, &mut warnings)?;
+
+    let set = channels.iter().filter(|c| c.property != Property::Weights).map(|c| c.node);
+    let moving = nodes.moving(set);
+    let mut reshaped = vec![false; shown.len()];
+    for channel in channels.iter().filter(|c| c.property == Property::Weights) {
+        reshaped[channel.node as usize] = true;
+    }
+    let duration_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
+    let placed: Vec<Placed> = placed(document, &shown)?;
+    let (skins, skin_of) = used_skins(document, &accessors, &placed)?;
+    let animated = Animated {
+        rest_worlds: nodes.worlds(),
+        moving_order: nodes.order.iter().copied().filter(|&n| moving[n as usize]).collect(),
+        nodes,
+        channels,
+        duration_s,
+        skins,
+        ..Animated::default()
+    };
+
+    let default_surface = materials::default();
+    let primitives = Primitives { document, accessors: &accessors, surfaces: &surfaces, default_surface };
+    check_triangles(document, &primitives, &placed)?;
+    let mut stage = Stage {
+        moment: animated.moment(0.0),
+        animated,
+        still: Triangles::default(),
+        dropped: 0,
+        moving: &moving,
+        reshaped: &reshaped,
+        skin_of: &skin_of,
+    };
+    for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
+        stage.add_mesh(&primitives, uses, &mut warnings)?;
+    }
+    if stage.dropped > 0 {
+        let what = format!("with corners that are not finite, or farther than {MAX_COORDINATE:e} m");
+        warnings.add(format!("{} triangles {what}, are left out", stage.dropped));
+    }
+    let Stage { mut animated, still, .. } = stage;
+
+    for node in (0..shown.len()).filter(|&n| shown[n]) {
+        let (index, node) = (node as u32, &document.root.nodes[node]);
+        if let Some(camera) = node.camera {
+            animated.cameras.extend(viewpoints::camera(document, index, camera, &mut warnings)?);
+        }
+        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+            animated.lights.extend(viewpoints::light(document, index, light.light, &mut warnings)?);
+        }
+    }
+    let textures = textures.load(file)?;
+    let rest = animated.pose(0.0);
+    let moves = !animated.channels.is_empty();
+    Ok(Scene {
+        name: document.subject.to_owned(),
+        materials: surfaces.into_iter().chain([materials::default()]).map(|s| s.material).collect(),
+        textures,
+        environment: Environment::Constant([0.0; 3]),
+        warnings: warnings.into_lines(),
+        still,
+        rest,
+        animated: moves.then(|| Arc::new(animated)),
+    })
+}
+
+/// A node of the scene with a mesh.
+struct Placed {
+    node: u32,
+    mesh: usize,
+    skin: Option<usize>,
+}
+
+/// All nodes with meshes, by mesh.
+fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError> {
+    let root = document.root;
+    let mut placed = Vec::new();
+    for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| shown[*i]) {
+        let Some(mesh) = node.mesh else { continue };
+        document.look_up(&root.meshes, mesh, "mesh")?;
+        if let Some(skin) = node.skin {
+            document.look_up(&root.skins, skin, "skin")?;
+        }
+        placed.push(Placed { node: i as u32, mesh: mesh.value(), skin: node.skin.map(|s| s.value()) });
+    }
+    placed.sort_by_key(|p| p.mesh);
+    Ok(placed)
+}
+
+/// The skins that are used, and where each of the file's is among them.
+fn used_skins(
+    document: &Document,
+    accessors: &Accessors,
+    placed: &[Placed],
+) -> Result<(Vec<Skin>, HashMap<usize, u32>), InputError> {
+    let mut skins = Vec::new();
+    let mut places = HashMap::new();
+    for index in placed.iter().filter_map(|p| p.skin) {
+        if let std::collections::hash_map::Entry::Vacant(entry) = places.entry(index) {
+            entry.insert(skins.len() as u32);
+            skins.push(skins::skin(document, accessors, index)?);
+        }
+    }
+    Ok((skins, places))
+}
+
+/// Refuses more triangles than there may be, before any is made. A primitive counts as one at least.
+fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Placed]) -> Result<(), InputError> {
+    let mut total = 0u64;
+    for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
+        let mut triangles = 0u64;
+        for primitive in &document.root.meshes[uses[0].mesh].primitives {
+            triangles = triangles.saturating_add(primitives.claimed_triangles(primitive)?.max(1));
+        }
+        total = total.saturating_add(triangles.saturating_mul(uses.len() as u64));
+    }
+    document.limits.check_triangles(document.subject, total)
+}
+
+/// Where meshes go.
+struct Stage<'a> {
+    animated: Animated,
+    /// All nodes and joints at time 0.
+    moment: Moment,
+    still: Triangles,
+    dropped: u64,
+    /// Nodes that move.
+    moving: &'a [bool],
+    /// Nodes whose morph targets move.
+    reshaped: &'a [bool],
+    skin_of: &'a HashMap<usize, u32>,
+}
+
+impl Stage<'_> {
+    /// Reads a mesh and adds it wherever it is used.
+    fn add_mesh(
+        &mut self,
+        primitives: &Primitives,
+        uses: &[Placed],
+        warnings: &mut Warnings,
+    ) -> Result<(), InputError> {
+        let document = primitives.document;
+        let index = uses[0].mesh;
+        let mesh = &document.root.meshes[index];
+        let skinned = uses.iter().any(|u| u.skin.is_some());
+        for primitive in &mesh.primitives {
+            let Some((geometry, left_out)) = primitives.geometry(index, primitive, skinned, warnings)? else {
+                continue;
+            };
+            self.dropped += left_out;
+            let geometry = Arc::new(geometry);
+            for used in uses {
+                self.add(document, used, &geometry, mesh)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        document: &Document,
+        used: &Placed,
+        geometry: &Arc<Geometry>,
+        mesh: &json::Mesh,
+    ) -> Result<(), InputError> {
+        let node = used.node as usize;
+        let skin = used.skin.filter(|_| geometry.influences.per_vertex > 0).map(|s| self.skin_of[&s]);
+        let mut moves = self.reshaped[node];
+        if let Some(skin) = skin {
+            let skin = &self.animated.skins[skin as usize];
+            skins::check_joints(document, &geometry.influences, skin)?;
+            moves |= skin.joints.iter().any(|&joint| self.moving[joint as usize]);
+        } else {
+            moves |= self.moving[node];
+        }
+        let own: &json::Node = document.look_up(&document.root.nodes, Index::new(used.node), "node")?;
+        let weights = own.weights.as_ref().or(mesh.weights.as_ref());
+        let weights = weights.map_or(&[][..], Vec::as_slice);
+        let placed = Mesh { node: used.node, geometry: geometry.clone(), skin, weights: weights.into() };
+        if moves {
+            self.animated.meshes.push(placed);
+        } else {
+            let posed = self.animated.posed(&placed, &self.moment);
+            self.dropped += geometry.emit(&posed, true, &mut self.still);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! The file itself: text or binary, its description, and what it must have.
+
+use super::{InputError, SceneLimits, damaged, extensions, shown};
+use gltf::json::Root;
+use serde::Deserialize;
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A file as it was read.
+pub(super) struct Container {
+    /// As the user named it.
+    pub subject: String,
+    /// The folder it is in, as the user named it.
+    pub folder: PathBuf,
+    pub root: Root,
+    /// The whole file, and where its binary chunk is.
+    pub bytes: Vec<u8>,
+    pub binary: Option<Range<usize>>,
+}
+
+/// What decides whether the rest can be understood.
+#[derive(Deserialize)]
+struct Preamble {
+    asset: Asset,
+    #[serde(default, rename = "extensionsRequired")]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Asset {
+    version: String,
+}
+
+pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, InputError> {
+    let path = Path::new(input);
+    let bytes = read_file(path, input, limits.max_file_bytes, limits)?;
+    let (json, binary) = if bytes.starts_with(b"glTF") { split(input, &bytes)? } else { (0..bytes.len(), None) };
+    limits.check_json_bytes(input, json.len() as u64)?;
+    let json = &bytes[json];
+    let unreadable = |e: serde_json::Error| {
+        let problem = format!("is not a glTF 2.0 description: {}", shown(&e.to_string()));
+        InputError::new(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
+    };
+    let preamble: Preamble = serde_json::from_slice(json).map_err(unreadable)?;
+    if !preamble.asset.version.starts_with("2.") {
+        let problem = format!("is of glTF version {}", shown(&preamble.asset.version));
+        return Err(InputError::new(input, problem, "expected version 2.0; convert it"));
+    }
+    extensions::check_required(input, &preamble.extensions_required)?;
+    let root = Root::from_slice(json).map_err(unreadable)?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+    Ok(Container { subject: input.to_owned(), folder, root, bytes, binary })
+}
+
+/// A whole file of at most `allowed` bytes. Pipes and devices, which may have no end, are no files.
+pub(super) fn read_file(path: &Path, subject: &str, allowed: u64, limits: &SceneLimits) -> Result<Vec<u8>, InputError> {
+    let failed = |e: std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => InputError::new(subject, "does not exist", "check its name and folder"),
+        _ => InputError::new(subject, format!("cannot be read: {e}"), "check its permissions"),
+    };
+    let metadata = std::fs::metadata(path).map_err(failed)?;
+    if !metadata.is_file() {
+        return Err(InputError::new(subject, "is not a file", "expected a regular file"));
+    }
+    let over = |bytes: u64| limits.check_file_bytes(subject, limits.max_file_bytes - allowed + bytes);
+    over(metadata.len())?;
+    let mut bytes = Vec::new();
+    let reserved = bytes.try_reserve_exact(metadata.len() as usize);
+    reserved.map_err(|_| {
+        InputError::new(subject, format!("its {} bytes do not fit into memory", metadata.len()), "use a smaller scene")
+    })?;
+    // It may have grown meanwhile.
+    let file = File::open(path).map_err(failed)?;
+    file.take(allowed.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    over(bytes.len() as u64)?;
+    Ok(bytes)
+}
+
+/// Where a binary file has its description and its binary chunk.
+fn split(subject: &str, bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), InputError> {
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    let truncated = || damaged(subject, format!("ends after {} bytes, before its contents do", bytes.len()));
+    let version = word(4).ok_or_else(truncated)?;
+    if version != 2 {
+        return Err(InputError::new(
+            subject,
+            format!("is a .glb of version {version}"),
+            "expected version 2; convert it",
+        ));
+    }
+    let end = word(8).ok_or_else(truncated)? as usize;
+    if end > bytes.len() {
+        return Err(truncated());
+    }
+    let mut chunks = Vec::new();
+    let mut at = 12;
+    // Chunks after the second are for extensions.
+    while at < end && chunks.len() < 2 {
+        let length = word(at).ok_or_else(truncated)? as usize;
+        let kind = word(at + 4).ok_or_else(truncated)?;
+        let start = at + 8;
+        if length > end.saturating_sub(start) {
+            return Err(truncated());
+        }
+        chunks.push((kind, start..start + length));
+        at = start + length.next_multiple_of(4);
+    }
+    let mut chunks = chunks.into_iter();
+    let json = match chunks.next() {
+        Some((kind, range)) if kind == u32::from_le_bytes(*b"JSON") => range,
+        _ => return Err(damaged(subject, "has no JSON chunk in front")),
+    };
+    let binary = chunks.next().filter(|(kind, _)| *kind == u32::from_le_bytes(*b"BIN\0")).map(|(_, range)| range);
+    Ok((json, binary))
+}

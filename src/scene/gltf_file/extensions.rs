@@ -1,0 +1,44 @@
+//! Which extensions are understood.
+
+use super::warnings::Warnings;
+use super::{InputError, shown};
+use std::collections::BTreeSet;
+
+const SUPPORTED: [&str; 12] = [
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Refuses what a file cannot be read without.
+pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), InputError> {
+    let Some(missing) = required.iter().find(|name| !SUPPORTED.contains(&name.as_str())) else { return Ok(()) };
+    let remedy = match missing.as_str() {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "decompress it first, for instance with gltf-transform"
+        }
+        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" | "MSFT_texture_dds" => {
+            "convert its textures to PNG or JPEG first, for instance with gltf-transform"
+        }
+        _ => "export the scene without it",
+    };
+    Err(InputError::new(subject, format!("requires the extension {}, which is not supported", shown(missing)), remedy))
+}
+
+/// Names what a file uses and is left out.
+pub(super) fn warn_of_unsupported(used: &[String], warnings: &mut Warnings) {
+    let unsupported: BTreeSet<&str> =
+        used.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
+    for name in unsupported {
+        warnings.add(format!("extension {} is not supported and left out", shown(name)));
+    }
+}

@@ -1,0 +1,156 @@
+//! Images of materials.
+
+use super::container::Container;
+use super::{Document, InputError, buffers, named};
+use crate::scene::{Texture, TextureRef, Wrap};
+use gltf::json::texture::{MagFilter, WrappingMode};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::io::Cursor;
+
+/// The textures that materials turn out to use, each pair of image and sampler once.
+pub(super) struct Textures<'a> {
+    document: &'a Document<'a>,
+    wanted: Vec<Wanted>,
+    indices: HashMap<(usize, Option<usize>), u32>,
+}
+
+struct Wanted {
+    image: usize,
+    wrap: [Wrap; 2],
+    nearest: bool,
+}
+
+/// An encoded image whose header was read.
+struct Encoded<'a> {
+    bytes: Cow<'a, [u8]>,
+    format: ImageFormat,
+    texels: u64,
+}
+
+impl<'a> Textures<'a> {
+    pub fn new(document: &'a Document<'a>) -> Self {
+        Self { document, wanted: Vec::new(), indices: HashMap::new() }
+    }
+
+    /// Notes that a texture of the file is used.
+    pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<TextureRef, InputError> {
+        let root = self.document.root;
+        let texture = self.document.look_up(&root.textures, index, "texture")?;
+        self.document.look_up(&root.images, texture.source, "image")?;
+        let sampler = match texture.sampler {
+            Some(sampler) => Some(self.document.look_up(&root.samplers, sampler, "sampler")?),
+            None => None,
+        };
+        let key = (texture.source.value(), texture.sampler.map(|s| s.value()));
+        let next = self.wanted.len() as u32;
+        let texture = *self.indices.entry(key).or_insert(next);
+        if texture == next {
+            let wrap = |mode: Option<&Checked<WrappingMode>>| match mode {
+                Some(Checked::Valid(WrappingMode::ClampToEdge)) => Wrap::Clamp,
+                Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Wrap::Mirror,
+                _ => Wrap::Repeat,
+            };
+            self.wanted.push(Wanted {
+                image: key.0,
+                wrap: [wrap(sampler.map(|s| &s.wrap_s)), wrap(sampler.map(|s| &s.wrap_t))],
+                nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
+            });
+        }
+        Ok(TextureRef { texture })
+    }
+
+    /// Reads and decodes the used images, sizes checked first.
+    pub fn load(self, file: &Container) -> Result<Vec<Texture>, InputError> {
+        let mut total_bytes = self.document.buffers.total_bytes;
+        let mut texels = 0u64;
+        let mut encoded = Vec::new();
+        let mut place_of_image = HashMap::new();
+        for wanted in &self.wanted {
+            let place = match place_of_image.get(&wanted.image) {
+                Some(&place) => place,
+                None => {
+                    encoded.push((wanted.image, self.encoded(file, wanted.image, &mut total_bytes)?));
+                    place_of_image.insert(wanted.image, encoded.len() - 1);
+                    encoded.len() - 1
+                }
+            };
+            texels = texels.saturating_add(encoded[place].1.texels);
+            self.document.limits.check_texels(self.document.subject, texels)?;
+        }
+        let decoded: Result<Vec<_>, _> =
+            encoded.par_iter().map(|(image, encoded)| self.decoded(*image, encoded)).collect();
+        let decoded = decoded?;
+        let texture = |wanted: &Wanted| {
+            let (size, texels) = &decoded[place_of_image[&wanted.image]];
+            Texture { size: *size, texels: texels.clone(), wrap: wanted.wrap, nearest: wanted.nearest }
+        };
+        Ok(self.wanted.iter().map(texture).collect())
+    }
+
+    fn encoded(&self, file: &Container, index: usize, total_bytes: &mut u64) -> Result<Encoded<'a>, InputError> {
+        let document = self.document;
+        let image = &document.root.images[index];
+        let bytes = match (&image.buffer_view, &image.uri) {
+            (Some(view), _) => {
+                let view = document.buffers.view(&document.root.buffer_views, *view);
+                let (bytes, _) = view.ok_or_else(|| self.bad(index, "reaches beyond its buffer".into()))?;
+                Cow::Borrowed(bytes)
+            }
+            (None, Some(address)) => {
+                let bytes = buffers::fetch(file, address, *total_bytes, document.limits)?;
+                *total_bytes += bytes.len() as u64;
+                document.limits.check_file_bytes(document.subject, *total_bytes)?;
+                Cow::Owned(bytes)
+            }
+            (None, None) => return Err(self.bad(index, "has neither an address nor a buffer view".into())),
+        };
+        let reader = ImageReader::new(Cursor::new(&*bytes)).with_guessed_format();
+        let format = reader.ok().and_then(|r| r.format());
+        let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = format else {
+            let found = format.map_or("of an unknown format".to_owned(), |f| format!("{f:?}"));
+            return Err(InputError::new(
+                document.subject,
+                format!("{} is {found}", self.name(index)),
+                "expected PNG or JPEG; convert it",
+            ));
+        };
+        let size = ImageReader::with_format(Cursor::new(&*bytes), format).into_dimensions();
+        let (w, h) = size.map_err(|e| self.undecodable(index, &e))?;
+        if w == 0 || h == 0 {
+            return Err(self.bad(index, format!("is {w}x{h} texels")));
+        }
+        Ok(Encoded { bytes, format, texels: u64::from(w) * u64::from(h) })
+    }
+
+    fn decoded(&self, index: usize, encoded: &Encoded) -> Result<([u32; 2], Vec<[u8; 4]>), InputError> {
+        let undecodable = |e| self.undecodable(index, &e);
+        let reader = ImageReader::with_format(Cursor::new(&*encoded.bytes), encoded.format);
+        let mut decoder = reader.into_decoder().map_err(undecodable)?;
+        // The largest form: four components of 16 bits, as much again while decoding.
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(encoded.texels.saturating_mul(16).max(1 << 20));
+        decoder.set_limits(limits).map_err(undecodable)?;
+        let image = DynamicImage::from_decoder(decoder).map_err(undecodable)?.into_rgba8();
+        let size = [image.width(), image.height()];
+        let texels = image.into_raw().as_chunks::<4>().0.to_vec();
+        Ok((size, texels))
+    }
+
+    fn undecodable(&self, index: usize, error: &image::ImageError) -> InputError {
+        self.bad(index, format!("cannot be decoded: {}", super::shown(&error.to_string())))
+    }
+
+    fn bad(&self, index: usize, problem: String) -> InputError {
+        self.document.damaged(format!("{} {problem}", self.name(index)))
+    }
+
+    fn name(&self, index: usize) -> String {
+        let image = &self.document.root.images[index];
+        named("image", index, image.name.as_deref().or(image.uri.as_deref().filter(|u| !u.starts_with("data:"))))
+    }
+}

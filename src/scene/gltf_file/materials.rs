@@ -1,0 +1,129 @@
+//! Materials: the core ones here, their extensions in `lobes`.
+
+use super::images::Textures;
+use super::lobes;
+use super::uv::{PLAIN, UvSource, agreed};
+use super::warnings::Warnings;
+use super::{Document, InputError, named};
+use crate::scene::{Alpha, Material, TextureRef};
+use gltf::json;
+use gltf::json::material::AlphaMode;
+use gltf::json::validation::Checked;
+
+/// Largest emitted radiance. Sums of many such stay finite.
+const MAX_EMISSION: f32 = 1e12;
+
+/// A material, and what it wants of the triangles it is on.
+pub(super) struct Surface {
+    pub material: Material,
+    pub uv: UvSource,
+    pub textured: bool,
+    pub wants_tangents: bool,
+    /// By how much tangents are turned about the normal, in radians.
+    pub tangent_turn: f32,
+}
+
+/// What is filled in while a material is read.
+pub(super) struct Reader<'a, 'b> {
+    pub textures: &'b mut Textures<'a>,
+    pub warnings: &'b mut Warnings,
+    pub name: String,
+    pub material: Material,
+    pub tangent_turn: f32,
+    sources: Vec<UvSource>,
+}
+
+/// glTF's material for triangles that have none.
+pub(super) fn default() -> Surface {
+    let material = Material { metallic: 1.0, double_sided: false, ..Material::default() };
+    Surface { material, uv: PLAIN, textured: false, wants_tangents: false, tangent_turn: 0.0 }
+}
+
+/// All materials of the file, in its order.
+pub(super) fn read<'a>(
+    document: &Document<'a>,
+    textures: &mut Textures<'a>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Surface>, InputError> {
+    let materials = document.root.materials.iter().enumerate();
+    materials.map(|(i, json)| surface(i, json, textures, warnings)).collect()
+}
+
+fn surface(
+    index: usize,
+    json: &json::Material,
+    textures: &mut Textures,
+    warnings: &mut Warnings,
+) -> Result<Surface, InputError> {
+    let name = json.name.clone().unwrap_or_default();
+    let mut r = Reader {
+        textures,
+        warnings,
+        name: named("material", index, Some(&name)),
+        material: Material { name, double_sided: json.double_sided, ..Material::default() },
+        tangent_turn: 0.0,
+        sources: Vec::new(),
+    };
+    let pbr = &json.pbr_metallic_roughness;
+    let [red, green, blue, opacity] = pbr.base_color_factor.0;
+    r.material.base_color = [red, green, blue].map(|c| r.clamped(c, 0.0, 1.0));
+    r.material.opacity = r.clamped(opacity, 0.0, 1.0);
+    // First, for all textures take their coordinates as this one does.
+    r.material.base_color_texture = r.texture(pbr.base_color_texture.as_ref())?;
+    r.material.metallic = r.clamped(pbr.metallic_factor.0, 0.0, 1.0);
+    r.material.roughness = r.clamped(pbr.roughness_factor.0, 0.0, 1.0);
+    r.material.metallic_roughness_texture = r.texture(pbr.metallic_roughness_texture.as_ref())?;
+    if let Some(normal) = &json.normal_texture {
+        r.material.normal_texture = Some(r.textures.use_texture(normal.index)?);
+        r.material.normal_scale = r.clamped(normal.scale, -1e3, 1e3);
+        let transform = normal.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
+        r.sources.push(UvSource::of_value(normal.tex_coord, transform));
+    }
+    r.material.emissive = json.emissive_factor.0;
+    r.material.emissive_texture = r.texture(json.emissive_texture.as_ref())?;
+    let cutoff = json.alpha_cutoff.map_or(0.5, |c| c.0);
+    r.material.alpha = match json.alpha_mode {
+        Checked::Valid(AlphaMode::Mask) => Alpha::Mask { cutoff: r.clamped(cutoff, 0.0, f32::MAX) },
+        Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
+        Checked::Valid(AlphaMode::Opaque) => Alpha::Opaque,
+        Checked::Invalid => {
+            r.warnings.about("materials with an unknown alphaMode are opaque", || r.name.clone());
+            Alpha::Opaque
+        }
+    };
+    if let Some(extensions) = &json.extensions {
+        lobes::read(&mut r, extensions)?;
+    }
+    r.material.emissive = r.material.emissive.map(|c| r.clamped(c, 0.0, MAX_EMISSION));
+    let uv = agreed(&r.sources, r.warnings, || r.name.clone());
+    Ok(Surface {
+        uv,
+        textured: !r.sources.is_empty(),
+        wants_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
+        tangent_turn: r.tangent_turn,
+        material: r.material,
+    })
+}
+
+impl Reader<'_, '_> {
+    /// A texture and where it takes its coordinates.
+    pub fn texture(&mut self, info: Option<&json::texture::Info>) -> Result<Option<TextureRef>, InputError> {
+        let Some(info) = info else { return Ok(None) };
+        self.sources.push(UvSource::of(info));
+        self.textures.use_texture(info.index).map(Some)
+    }
+
+    /// A factor held in its range.
+    pub fn clamped(&mut self, value: f32, low: f32, high: f32) -> f32 {
+        if (low..=high).contains(&value) {
+            return value;
+        }
+        self.warn("factors of materials out of their range are brought into it");
+        // A float overflows to infinity where it is too large to be told; it is never NaN.
+        value.clamp(low, high)
+    }
+
+    pub fn warn(&mut self, text: &str) {
+        self.warnings.about(text, || self.name.clone());
+    }
+}

@@ -1,0 +1,80 @@
+//! The node tree of a file.
+
+use super::warnings::Warnings;
+use super::{Document, InputError};
+use crate::scene::animated::curve::unit;
+use crate::scene::animated::nodes::{Local, Nodes};
+use glam::{DAffine3, DQuat, DVec3, Mat4, Vec3};
+use gltf::json;
+
+/// All nodes of the file, and which of them belong to the scene that is shown.
+pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Nodes, Vec<bool>), InputError> {
+    let nodes = &document.root.nodes;
+    let mut parents = vec![None; nodes.len()];
+    for (parent, node) in nodes.iter().enumerate() {
+        for child in node.children.iter().flatten() {
+            document.look_up(nodes, *child, "node")?;
+            if parents[child.value()].replace(parent as u32).is_some() {
+                let problem = format!("node {child} is the child of more than one node: nodes must form a tree");
+                return Err(document.damaged(problem));
+            }
+        }
+    }
+    let roots: Vec<u32> = (0..nodes.len()).filter(|&n| parents[n].is_none()).map(|n| n as u32).collect();
+    let order = below(nodes, roots.clone());
+    if order.len() < nodes.len() {
+        return Err(document.damaged("its nodes form a cycle: they must form a tree"));
+    }
+    let mut shown = vec![false; nodes.len()];
+    for node in below(nodes, scene_roots(document, roots, warnings)?) {
+        shown[node as usize] = true;
+    }
+    let locals = nodes.iter().map(local).collect();
+    Ok((Nodes { parents, locals, order }, shown))
+}
+
+/// Nodes and all below them, each once; parents before children where none of the given nodes is below another.
+fn below(nodes: &[json::Node], mut found: Vec<u32>) -> Vec<u32> {
+    let mut met = vec![false; nodes.len()];
+    found.retain(|&node| !std::mem::replace(&mut met[node as usize], true));
+    let mut next = 0;
+    while next < found.len() {
+        let children = nodes[found[next] as usize].children.iter().flatten().map(|child| child.value());
+        found.extend(children.filter(|&child| !std::mem::replace(&mut met[child], true)).map(|child| child as u32));
+        next += 1;
+    }
+    found
+}
+
+fn scene_roots(document: &Document, all: Vec<u32>, warnings: &mut Warnings) -> Result<Vec<u32>, InputError> {
+    let root = document.root;
+    let scene = match root.scene {
+        Some(scene) => document.look_up(&root.scenes, scene, "scene")?,
+        None => match root.scenes.first() {
+            Some(scene) => scene,
+            None => return Ok(all),
+        },
+    };
+    if root.scenes.len() > 1 {
+        let number = root.scene.map_or(0, |s| s.value());
+        warnings.add(format!("scene {number} of {} is shown, the others are left out", root.scenes.len()));
+    }
+    let mut roots = Vec::new();
+    for node in &scene.nodes {
+        document.look_up(&root.nodes, *node, "node")?;
+        roots.push(node.value() as u32);
+    }
+    Ok(roots)
+}
+
+fn local(node: &json::Node) -> Local {
+    if let Some(matrix) = node.matrix {
+        return Local::Matrix(DAffine3::from_mat4(Mat4::from_cols_array(&matrix).as_dmat4()));
+    }
+    let vector = |v: Option<[f32; 3]>, default| v.map_or(default, |v| Vec3::from_array(v).as_dvec3());
+    Local::Parts {
+        translation: vector(node.translation, DVec3::ZERO),
+        rotation: unit(DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from))),
+        scale: vector(node.scale, DVec3::ONE),
+    }
+}

@@ -1,0 +1,90 @@
+//! Addresses inside a scene: data that is in the address itself, and files in the scene's folder.
+
+use super::{InputError, shown};
+use base64::Engine;
+use base64::alphabet;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use std::path::{Component, Path, PathBuf};
+
+/// With or without padding, as files have it.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// What an address means.
+#[derive(Debug)]
+pub(super) enum Resolved {
+    Data(Vec<u8>),
+    /// A file that exists, inside the folder however its links lead.
+    File(PathBuf),
+}
+
+/// Resolves an address against the scene's folder.
+///
+/// # Errors
+/// If it leads, or could lead, out of the folder; if there is no such file; if its data are damaged.
+pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolved, InputError> {
+    let damaged = |problem: &str| {
+        InputError::new(subject, format!("the address {:?} {problem}", shown(uri)), "export the scene again")
+    };
+    if let Some(rest) = uri.strip_prefix("data:") {
+        let (kind, data) = rest.split_once(',').ok_or_else(|| damaged("has no data"))?;
+        if !kind.ends_with(";base64") {
+            return Ok(Resolved::Data(percent_decoded(data).ok_or_else(|| damaged("is not percent-encoded data"))?));
+        }
+        let data = BASE64.decode(data).map_err(|_| damaged("is not base64 data"))?;
+        return Ok(Resolved::Data(data));
+    }
+    let refused = |problem: &str| {
+        InputError::new(
+            subject,
+            format!("it refers to {:?}, which {problem}", shown(uri)),
+            "a scene may only read files in its own folder; copy them there",
+        )
+    };
+    let decoded = percent_decoded(uri).and_then(|bytes| String::from_utf8(bytes).ok());
+    let decoded = decoded.ok_or_else(|| damaged("is not percent-encoded UTF-8"))?;
+    if decoded.is_empty() || decoded.contains('\0') {
+        return Err(damaged("names no file"));
+    }
+    // A colon is a scheme or, on some systems, a drive or a stream; a backslash separates folders on some.
+    if decoded.contains([':', '\\']) {
+        return Err(refused("has a scheme, a drive or a backslash"));
+    }
+    let relative = Path::new(&decoded);
+    for part in relative.components() {
+        match part {
+            Component::Normal(_) | Component::CurDir => {}
+            Component::ParentDir => return Err(refused("goes up a folder")),
+            Component::RootDir | Component::Prefix(_) => return Err(refused("is an absolute path")),
+        }
+    }
+    let missing = |e: std::io::Error| {
+        InputError::new(
+            subject,
+            format!("it refers to {:?}, which cannot be read: {e}", shown(uri)),
+            "put the file where the scene expects it",
+        )
+    };
+    let folder = folder.canonicalize().map_err(missing)?;
+    let path = folder.join(relative).canonicalize().map_err(missing)?;
+    if !path.starts_with(&folder) {
+        return Err(refused("is a link out of the folder"));
+    }
+    Ok(Resolved::File(path))
+}
+
+/// Bytes with `%xx` replaced; `None` if one is not hexadecimal.
+fn percent_decoded(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = text.bytes();
+    let mut decoded = Vec::with_capacity(text.len());
+    let digit = |b: Option<u8>| char::from(b?).to_digit(16).map(|d| d as u8);
+    while let Some(byte) = bytes.next() {
+        decoded.push(match byte {
+            b'%' => digit(bytes.next())? << 4 | digit(bytes.next())?,
+            other => other,
+        });
+    }
+    Some(decoded)
+}
