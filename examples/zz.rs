@@ -2,24 +2,18 @@
 use afterimage::scene::builtin;
 use afterimage::trace::{cpu::CpuTracer, film::Film, settings::*, view::View, work, world::World};
 fn main() {
-    let s = builtin::cornell();
-    let size = [16u32, 16];
+    let s = builtin::cornell(); let size=[64u32,64];
     let w = World::new(&s);
     let view = View::of_camera(&s.pose(0.0).cameras[0], size, None).unwrap();
-    let mut imgs = vec![];
-    for integ in [Integrator::Nee, Integrator::Naive] {
-        let tracer = CpuTracer::new(TraceSettings { max_depth: 1, integrator: integ, ..Default::default() });
+    for depth in [1,3] { for integ in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
+        let tracer = CpuTracer::new(TraceSettings { max_depth: depth, integrator: integ, ..Default::default() });
         let mut film = Film::new(size);
-        let spp = if integ == Integrator::Naive { 20000 } else { 1000 };
+        let spp = if integ == Integrator::Naive { 4000 } else { 200 };
         tracer.trace(&w, &view, 0, &work::uniform(size[0], 0..size[1], 0..spp), &mut film);
-        imgs.push((film.color(), film.variance()));
-    }
-    for y in 0..16 {
-        for x in 0..16 {
-            let (a, b) = (imgs[0].0.at(x, y)[1], imgs[1].0.at(x, y)[1]);
-            let sd = (imgs[0].1.at(x, y)[1] + imgs[1].1.at(x, y)[1]).sqrt();
-            print!("{:5.2}({:4.1}) ", b / a.max(1e-9), (b - a) / sd.max(1e-9));
-        }
-        println!();
-    }
+        let (m, v) = (film.color(), film.variance());
+        let f = |i: usize| i/64 > 14;
+        let mean = m.pixels().iter().enumerate().filter(|(i,_)| f(*i)).map(|(_,p)| p[1] as f64).sum::<f64>() / 4096.;
+        let sd = v.pixels().iter().enumerate().filter(|(i,_)| f(*i)).map(|(_,p)| p[1] as f64).sum::<f64>().sqrt() / 4096.;
+        println!("{depth} {integ:?} {mean:.5} +- {sd:.5}");
+    } }
 }

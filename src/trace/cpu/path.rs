@@ -1,6 +1,6 @@
 //! One path of light. `shaders/trace/shade.wgsl` and its companions do the same a step at a time.
 
-use super::lights::{look, sky, sky_pdf, triangle_pdf};
+use super::lights::{Arriving, look, sky, sky_pdf, triangle_pdf};
 use super::surface::{Point, is_there, lobes, point};
 use crate::kernel::approx::exp;
 use crate::kernel::bsdf::{Layers, Lobes, Sampled, Scatter, eval, layers, sample};
@@ -156,7 +156,7 @@ impl Paths<'_> {
             return None;
         }
         let origin = leaving(p, arriving.direction, wi.z)?;
-        Some((Ray { origin, direction: arriving.direction, t_max: arriving.distance }, light))
+        Some((shadow_ray(origin, p.position, &arriving), light))
     }
 }
 
@@ -175,6 +175,19 @@ fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
     let normal = if side > 0.0 { p.geometric } else { -p.geometric };
     Some(offset_ray(p.position, normal, p.magnitude))
 }
+
+/// From `origin`, off the surface point at `position`, to what was found from there. Both ends being off their surfaces, the
+/// segment between them meets neither; it ends a little early for what rounding adds over its length.
+fn shadow_ray(origin: Vec3, position: Vec3, arriving: &Arriving) -> Ray {
+    if arriving.distance == f32::INFINITY {
+        return Ray { origin, direction: arriving.direction, t_max: f32::INFINITY };
+    }
+    let to = arriving.direction * arriving.distance + (position - origin);
+    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * BEFORE_LIGHT }
+}
+
+/// Share of the way to a light that is looked at.
+const BEFORE_LIGHT: f32 = 1.0 - 1.0 / 1_048_576.0;
 
 /// How light scatters at a point, seen along `wo`.
 struct Scattering<'a> {
