@@ -6,6 +6,8 @@
 mod bvh;
 mod bvh2;
 mod geometry;
+pub mod gpu_heap;
+pub mod gpu_rays;
 pub mod heap;
 pub mod measure;
 mod node;
