@@ -3,9 +3,14 @@
 //!
 //! `cargo run --release --features lab --example 14_traversal`; numbers of triangles may follow.
 
+use afterimage::pipeline::Headless;
+use afterimage::report::clock::Stopwatch;
 use afterimage::scene::Triangles;
+use afterimage::trace::gpu_heap::{GpuHeap, Storage};
+use afterimage::trace::gpu_rays::{GpuRays, Question};
+use afterimage::trace::heap::{Heap, HeapBuilder};
 use afterimage::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
-use afterimage::trace::{Bvh, Geometry};
+use afterimage::trace::{Bvh, Geometry, Ray};
 use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
 use std::f32::consts::TAU;
@@ -46,7 +51,29 @@ fn courtyard(count: usize) -> Triangles {
     triangles
 }
 
+/// Million rays per second: of CPU time where the device is a program, else of wall time.
+fn gpu_mrays(
+    gpu: &Headless,
+    heap: &Heap,
+    geometry: &Geometry,
+    storage: Storage,
+    question: Question,
+    rays: &[Ray],
+) -> f64 {
+    let tracer = GpuRays::new(&gpu.device, &gpu.queue, heap, geometry, storage, question, None);
+    let batch = tracer.batch(&GpuHeap::new(&gpu.device, &gpu.queue, heap, storage), rays);
+    tracer.run(&batch);
+    let run = |_| {
+        let watch = Stopwatch::start();
+        tracer.run(&batch);
+        if gpu.is_software() { watch.cpu_ms().unwrap_or(watch.wall_ms()) } else { watch.wall_ms() }
+    };
+    let ms = (0..5).map(run).fold(f64::INFINITY, f64::min);
+    rays.len() as f64 / ms * 1e-3
+}
+
 fn main() {
+    let gpu = Headless::find_roomy(true);
     println!(
         "| triangles | build ms | nodes | CPU primary | bounce | shadow | obvhs, same nodes | bounce | obvhs medium | bounce | build ms |"
     );
@@ -76,5 +103,25 @@ fn main() {
             best(&|| medium.closest(&bounce).mrays()),
             medium.build_ms,
         );
+        let Some(gpu) = &gpu else { continue };
+        for storage in [Storage::Texture, Storage::Buffer] {
+            let heap = HeapBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
+            let heap = match heap {
+                Ok(heap) => heap,
+                Err(error) => {
+                    println!("{storage:?}: {error}");
+                    continue;
+                }
+            };
+            let rate = |question, rays: &[Ray]| gpu_mrays(gpu, &heap, &geometry, storage, question, rays);
+            println!(
+                "{}, {storage:?}: primary {:.2}, bounce {:.2}, shadow {:.2}; {:.0} bytes a triangle",
+                gpu.info.name,
+                rate(Question::Closest, &primary),
+                rate(Question::Closest, &bounce),
+                rate(Question::Any, &bounce),
+                heap.bytes() as f64 / triangles.len() as f64,
+            );
+        }
     }
 }

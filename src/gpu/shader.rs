@@ -56,6 +56,7 @@ const MODULES: &[Module] = &[
     module!("trace", "accept_all"),
     module!("trace", "heap_buffer"),
     module!("trace", "heap_texture"),
+    module!("trace", "hits_pass"),
     module!("trace", "traverse"),
 ];
 

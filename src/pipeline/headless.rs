@@ -9,7 +9,7 @@ use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 /// A device without a window.
 #[derive(Debug)]
 pub struct Headless {
-    /// With default limits, and timestamp queries where the adapter has them.
+    /// With default limits unless others were asked for, and timestamp queries where the adapter has them.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
@@ -27,6 +27,20 @@ impl Headless {
     /// The first real GPU; with `software`, a software adapter if there is none. `None` if there is nothing of the kind or it
     /// gives no device with default limits.
     pub fn find(software: bool) -> Option<Arc<Self>> {
+        Self::find_with(software, |_| wgpu::Limits::default())
+    }
+
+    /// As [`find`](Self::find), with textures and buffers as large as the adapter offers: for scenes.
+    pub fn find_roomy(software: bool) -> Option<Arc<Self>> {
+        Self::find_with(software, |offered| wgpu::Limits {
+            max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            max_buffer_size: offered.max_buffer_size,
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        })
+    }
+
+    fn find_with(software: bool, limits: impl Fn(&wgpu::Limits) -> wgpu::Limits) -> Option<Arc<Self>> {
         let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
             wgpu::DeviceType::DiscreteGpu => 0,
             wgpu::DeviceType::IntegratedGpu => 1,
@@ -40,6 +54,7 @@ impl Headless {
             let request = adapter.request_device(&wgpu::DeviceDescriptor {
                 label: Some("afterimage"),
                 required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+                required_limits: limits(&adapter.limits()),
                 ..wgpu::DeviceDescriptor::default()
             });
             let (device, queue) = pollster::block_on(request).ok()?;

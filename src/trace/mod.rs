@@ -10,6 +10,8 @@ pub mod cpu;
 pub mod effects;
 pub mod film;
 mod geometry;
+pub mod gpu_heap;
+pub mod gpu_rays;
 pub mod heap;
 pub mod measure;
 mod node;

@@ -6,7 +6,7 @@
 //! Traversal", JCGT 2(2), 2013), so that no triangle that the watertight test would accept is passed by. What is hit then does not
 //! depend on this test at all, and it needs no bit-equal twin: `shaders/trace/traverse.wgsl` has the same formulas.
 
-use glam::{BVec3A, Vec3, Vec3A, Vec4};
+use glam::{Vec3, Vec3A, Vec4};
 use obvhs::cwbvh::node::CwBvhNode;
 
 /// Boxes are widened by this share of the distance from the ray's origin to the node's far side. Rounding, u = 2^-24: of the
@@ -23,7 +23,7 @@ pub(super) struct NodeRay {
     origin: Vec3A,
     inverse: Vec3A,
     widening: Vec3A,
-    backward: BVec3A,
+    backward: [bool; 3],
     /// Octant that is visited first, in each byte.
     pub octant: u32,
 }
@@ -36,7 +36,8 @@ impl NodeRay {
         let size_inverse = 1.0 / size;
         let inverse = Vec3A::select(backward, -size_inverse, size_inverse);
         let octant = [0x0404_0404, 0x0202_0202, 0x0101_0101].iter().enumerate();
-        let octant = octant.map(|(axis, bits)| if backward.test(axis) { 0 } else { *bits }).sum();
+        let backward = [0, 1, 2].map(|axis| backward.test(axis));
+        let octant = octant.map(|(axis, bits)| if backward[axis] { 0 } else { *bits }).sum();
         Self { origin: Vec3A::from(origin), inverse, widening: size_inverse * SLACK, backward, octant }
     }
 
@@ -54,9 +55,8 @@ impl NodeRay {
         let (child_bits, bit_index) = node.get_child_and_index_bits(self.octant);
 
         let planes = |axis: usize, min: &[u8; 8], max: &[u8; 8], half: usize| {
-            let (low, high) = (four(min, half), four(max, half));
-            let (a, b) = if self.backward.test(axis) { (high, low) } else { (low, high) };
-            (a * step[axis] + near[axis], b * step[axis] + far[axis])
+            let (a, b) = if self.backward[axis] { (max, min) } else { (min, max) };
+            (four(a, half) * step[axis] + near[axis], four(b, half) * step[axis] + far[axis])
         };
         let mut met = 0;
         for half in 0..2 {

@@ -164,7 +164,12 @@ fn a_wrong_antialiasing_is_caught() {
 fn a_flipped_edge_or_a_lax_one_is_caught() {
     caught(triangles::PROBES, "intersect", "edge(c, b)", "edge(b, c)");
     caught(triangles::PROBES, "intersect", "min(e0, min(e1, e2)) < 0.0", "min(e0, min(e1, e2)) <= 0.0");
-    caught(triangles::PROBES, "intersect", "|| low.y > 0.0", "");
+    caught(
+        triangles::PROBES,
+        "intersect",
+        "if low.x > 0.0 || high.x < 0.0 || low.y > 0.0 || high.y < 0.0 || high.z < 0.0",
+        "if false",
+    );
     caught(triangles::PROBES, "edge", "a.x * b.y - a.y * b.x", "a.x * b.y + a.y * b.x");
     caught(triangles::PROBES, "shear", "-(direction.y / direction.x)", "direction.y / direction.x");
     caught(triangles::PROBES, "offset_ray", "magnitude * OFFSET", "OFFSET");

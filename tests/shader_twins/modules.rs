@@ -37,7 +37,9 @@ fn every_module_composes_and_is_valid() {
     for name in names {
         let variants: &[&[&str]] = match name {
             // What it needs is said by its user: where the heap is, which hits count.
-            "traverse" => &[&["heap_texture", "accept_all", "traverse"], &["heap_buffer", "accept_all", "traverse"]],
+            "hits_pass" | "traverse" => {
+                &[&["heap_texture", "accept_all", "hits_pass"], &["heap_buffer", "accept_all", "hits_pass"]]
+            }
             _ => &[&[name]],
         };
         for parts in variants {

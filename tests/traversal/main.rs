@@ -4,9 +4,12 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/gpu.rs"]
+mod gpu;
 
 mod brute_force;
 mod degenerate;
+mod on_gpu;
 mod records;
 mod scenes;
 mod self_intersection;

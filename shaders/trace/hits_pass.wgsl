@@ -1,0 +1,30 @@
+//#use traverse
+// Hits of a list of rays: for tests and for measuring traversal, without shading. Needs what `traverse` needs.
+
+// A ray is two elements: origin and limit, direction and a spare word.
+@group(0) @binding(1) var<storage, read> rays: array<vec4<f32>>;
+// Triangle, distance and barycentrics of each ray; of `any_hits` the first word, 1 where something is hit.
+@group(0) @binding(2) var<storage, read_write> hits: array<vec4<u32>>;
+
+override WORKGROUP: u32 = 64u;
+
+fn ray_at(i: u32) -> Ray {
+    let a = rays[2u * i];
+    let b = rays[2u * i + 1u];
+    return Ray(a.xyz, b.xyz, a.w);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn closest_hits(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&hits) {
+        let hit = closest(ray_at(id.x), id.x);
+        hits[id.x] = vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn any_hits(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&hits) {
+        hits[id.x] = vec4<u32>(select(0u, 1u, occluded(ray_at(id.x), id.x)), 0u, 0u, 0u);
+    }
+}

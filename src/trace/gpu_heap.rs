@@ -1,0 +1,165 @@
+//! The heap on a device.
+
+use super::Geometry;
+use super::heap::{ELEMENT_BYTES, Heap, HeapLimits, Section};
+
+/// Where a device keeps the heap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storage {
+    /// An rgba32uint texture. Software Vulkan reads it five times as fast as a buffer.
+    Texture,
+    /// A storage buffer.
+    Buffer,
+}
+
+impl Storage {
+    /// What a kind of device reads faster.
+    pub fn of(device: wgpu::DeviceType) -> Self {
+        if device == wgpu::DeviceType::Cpu { Self::Texture } else { Self::Buffer }
+    }
+
+    /// The shader module that has `load`.
+    pub fn module(self) -> &'static str {
+        match self {
+            Self::Texture => "heap_texture",
+            Self::Buffer => "heap_buffer",
+        }
+    }
+
+    /// The largest heap on a device of these limits.
+    pub fn limits(self, device: &wgpu::Limits) -> HeapLimits {
+        match self {
+            Self::Texture => {
+                let rows = device.max_texture_dimension_2d;
+                HeapLimits { rows, elements: u64::from(rows) * u64::from(rows) }
+            }
+            Self::Buffer => {
+                let bytes = device.max_storage_buffer_binding_size.min(device.max_buffer_size);
+                HeapLimits { rows: 1 << 31, elements: bytes / ELEMENT_BYTES as u64 }
+            }
+        }
+    }
+}
+
+/// A texture or a buffer with the heap's contents.
+#[derive(Debug)]
+pub struct GpuHeap {
+    resource: Resource,
+}
+
+#[derive(Debug)]
+enum Resource {
+    Texture(wgpu::Texture, wgpu::TextureView),
+    Buffer(wgpu::Buffer),
+}
+
+impl GpuHeap {
+    /// Uploads all of `heap`, which was finished within the limits of `storage` on this device.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heap: &Heap, storage: Storage) -> Self {
+        let resource = match storage {
+            Storage::Texture => {
+                let texture = device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some("heap"),
+                    size: wgpu::Extent3d {
+                        width: 1 << heap.width_log2(),
+                        height: heap.rows(),
+                        depth_or_array_layers: 1,
+                    },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba32Uint,
+                    usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                    view_formats: &[],
+                });
+                let view = texture.create_view(&Default::default());
+                Resource::Texture(texture, view)
+            }
+            Storage::Buffer => Resource::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("heap"),
+                size: heap.bytes(),
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })),
+        };
+        let this = Self { resource };
+        this.write_rows(queue, heap, 0..heap.rows());
+        this
+    }
+
+    /// Uploads the sections that are rewritten each frame. Takes effect with the queue's next submission.
+    pub fn write_moving(&self, queue: &wgpu::Queue, heap: &Heap) {
+        let rows = heap.moving_rows();
+        if !rows.is_empty() {
+            self.write_rows(queue, heap, rows);
+        }
+    }
+
+    /// For `binding` of a layout of compute passes.
+    pub fn layout_entry(&self, binding: u32) -> wgpu::BindGroupLayoutEntry {
+        let ty = match &self.resource {
+            Resource::Texture(..) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            Resource::Buffer(_) => wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only: true },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+        };
+        wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
+    }
+
+    /// What to bind there.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        match &self.resource {
+            Resource::Texture(_, view) => wgpu::BindingResource::TextureView(view),
+            Resource::Buffer(buffer) => buffer.as_entire_binding(),
+        }
+    }
+
+    fn write_rows(&self, queue: &wgpu::Queue, heap: &Heap, rows: std::ops::Range<u32>) {
+        let first = (rows.start as usize) << heap.width_log2();
+        let last = (rows.end as usize) << heap.width_log2();
+        let bytes: &[u8] = bytemuck::cast_slice(&heap.elements()[first..last]);
+        match &self.resource {
+            Resource::Texture(texture, _) => {
+                let mut to = texture.as_image_copy();
+                to.origin.y = rows.start;
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some((ELEMENT_BYTES as u32) << heap.width_log2()),
+                    rows_per_image: None,
+                };
+                let height = rows.end - rows.start;
+                let size = wgpu::Extent3d { width: 1 << heap.width_log2(), height, depth_or_array_layers: 1 };
+                queue.write_texture(to, bytes, layout, size);
+            }
+            Resource::Buffer(buffer) => queue.write_buffer(buffer, (first * ELEMENT_BYTES) as u64, bytes),
+        }
+    }
+}
+
+/// Values of the overrides of `traverse` and of the heap's accessor.
+pub fn traversal_constants(
+    heap: &Heap,
+    geometry: &Geometry,
+    alpha: bool,
+    storage: Storage,
+) -> Vec<(&'static str, f64)> {
+    let mut constants = vec![
+        ("NODES", f64::from(heap.base(Section::Nodes))),
+        ("TRIANGLES", f64::from(heap.base(Section::Triangles))),
+        ("MOVING_NODES", f64::from(heap.base(Section::MovingNodes))),
+        ("MOVING_TRIANGLES", f64::from(heap.base(Section::MovingTriangles))),
+        ("FIRST_MOVING", f64::from(geometry.first_moving())),
+        ("MOVES", f64::from(u8::from(heap.capacity(Section::MovingNodes) > 0))),
+        ("ALPHA", f64::from(u8::from(alpha))),
+    ];
+    if storage == Storage::Texture {
+        constants.push(("HEAP_WIDTH_LOG2", f64::from(heap.width_log2())));
+    }
+    constants
+}
