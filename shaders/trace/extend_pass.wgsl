@@ -1,0 +1,25 @@
+//#use frame
+//#use holes
+//#use traverse
+// The nearest hit of every path that is alive.
+
+@compute @workgroup_size(WORKGROUP)
+fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= atomicLoad(&counters[ACTIVE]) {
+        return;
+    }
+    let path = active_path(id.x);
+    if ALPHA {
+        let item = work[frame.first_item + path];
+        hole_pixel = item.x;
+        hole_sample = item.y;
+        hole_ray = 2u * atomicLoad(&counters[BOUNCE]);
+    }
+    let ray = Ray(path_row(path, PATH_ORIGIN).xyz, path_row(path, PATH_DIRECTION).xyz, FAR_AWAY);
+    let hit = closest(ray, frame.key);
+    paths[path * PATH_ROWS + PATH_HIT] =
+        vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
+}
+
+// Hits count up to the largest number.
+const FAR_AWAY: f32 = 3.4028234e38;

@@ -1,0 +1,62 @@
+// What all passes of a frame share, and where paths are between them: trace/gpu/paths.rs.
+
+struct TraceFrame {
+    origin: vec3<f32>,
+    key: u32,
+    corner: vec3<f32>,
+    lights: u32,
+    right: vec3<f32>,
+    sky_chosen: f32,
+    down: vec3<f32>,
+    width: u32,
+    sky: vec3<f32>,
+    first_item: u32,
+    map_size: vec2<u32>,
+    items: u32,
+    capacity: u32,
+}
+
+// Words of `counters`.
+const BOUNCE: u32 = 0u;
+const ACTIVE: u32 = 1u;
+const NEXT: u32 = 2u;
+const SHADOWS: u32 = 3u;
+const RAYS_LOW: u32 = 4u;
+const RAYS_HIGH: u32 = 5u;
+const NONFINITE: u32 = 6u;
+
+@group(1) @binding(0) var<uniform> frame: TraceFrame;
+// Pixel and sample of all that is to be traced; a batch of it is in flight.
+@group(1) @binding(1) var<storage, read> work: array<vec2<u32>>;
+// Eight rows a path: PATH_*.
+@group(1) @binding(2) var<storage, read_write> paths: array<vec4<u32>>;
+// Numbers of paths: those alive at even bounces, at odd ones, those with a shadow ray; `capacity` each.
+@group(1) @binding(3) var<storage, read_write> lists: array<u32>;
+@group(1) @binding(4) var<storage, read_write> counters: array<atomic<u32>, 8>;
+
+override WORKGROUP: u32 = 64u;
+
+const PATH_ROWS: u32 = 8u;
+// Origin, density of the direction (0 for the camera's).
+const PATH_ORIGIN: u32 = 0u;
+// Direction, density with which the sky there could have been looked for.
+const PATH_DIRECTION: u32 = 1u;
+const PATH_THROUGHPUT: u32 = 2u;
+const PATH_RADIANCE: u32 = 3u;
+// Triangle, distance, barycentrics.
+const PATH_HIT: u32 = 4u;
+// Shadow ray: origin and limit, direction, light.
+const PATH_SHADOW: u32 = 5u;
+
+fn path_row(path: u32, row: u32) -> vec4<f32> {
+    return bitcast<vec4<f32>>(paths[path * PATH_ROWS + row]);
+}
+
+fn set_path_row(path: u32, row: u32, value: vec3<f32>, last: f32) {
+    paths[path * PATH_ROWS + row] = bitcast<vec4<u32>>(vec4<f32>(value, last));
+}
+
+// Path of thread `i` among those alive.
+fn active_path(i: u32) -> u32 {
+    return lists[(atomicLoad(&counters[BOUNCE]) & 1u) * frame.capacity + i];
+}

@@ -1,0 +1,176 @@
+//#use light
+//#use sampling
+//#use surface_point
+//#use frame
+// Light that is looked for: trace/cpu/lights.rs.
+
+const LIGHT_TRIANGLE: u32 = 0u;
+const LIGHT_PUNCTUAL: u32 = 1u;
+const LIGHT_ENVIRONMENT: u32 = 2u;
+const LIGHT_INDEX: u32 = 0x3fffffffu;
+// Farther than all there is: of lights infinitely far away.
+const FAR: f32 = 3e38;
+
+// lights::Arriving; nothing arrives where `pdf` is 0.
+struct Arriving {
+    direction: vec3<f32>,
+    distance: f32,
+    radiance: vec3<f32>,
+    pdf: f32,
+    can_be_hit: bool,
+}
+
+fn nothing_arrives() -> Arriving {
+    return Arriving(vec3<f32>(0.0, 1.0, 0.0), 0.0, vec3<f32>(0.0), 0.0, false);
+}
+
+// lights::look
+fn look(p: Point, draws: vec4<f32>, more: vec4<f32>) -> Arriving {
+    let count = frame.lights;
+    if count == 0u {
+        return nothing_arrives();
+    }
+    var pick = load(PICKS + min(u32(draws.x * f32(count)), count - 1u));
+    if draws.y >= bitcast<f32>(pick.x) {
+        pick = load(PICKS + pick.y);
+    }
+    let chosen = bitcast<f32>(pick.z);
+    let kind = pick.w >> 30u;
+    let index = pick.w & LIGHT_INDEX;
+    if EFFECT_EMISSIVE_TRIANGLES {
+        if kind == LIGHT_TRIANGLE {
+            return from_triangle(p.position, index, chosen, draws.zw);
+        }
+    }
+    if EFFECT_PUNCTUAL_LIGHTS {
+        if kind == LIGHT_PUNCTUAL {
+            return from_punctual(p.position, index, chosen);
+        }
+    }
+    if EFFECT_ENVIRONMENT {
+        if kind == LIGHT_ENVIRONMENT {
+            return from_environment(p, chosen, draws.zw, more);
+        }
+    }
+    return nothing_arrives();
+}
+
+// lights::from_triangle
+fn from_triangle(position: vec3<f32>, index: u32, chosen: f32, place: vec2<f32>) -> Arriving {
+    let c = corners_of(index);
+    let weights = barycentrics(place);
+    let normal = cross(c.v1 - c.v0, c.v2 - c.v0);
+    let face = unit(normal);
+    let on_light = point_at(c.v0, c.v1, c.v2, weights.y, weights.z);
+    let cosine = dot(face, position - on_light);
+    let double_sided = (material_row(c.material, 8u).x & FLAG_DOUBLE_SIDED) != 0u;
+    if cosine <= 0.0 && !double_sided {
+        return nothing_arrives();
+    }
+    let side = select(-face, face, cosine > 0.0);
+    let to = offset_ray(on_light, side, magnitude(c.v0, c.v1, c.v2)) - position;
+    let distance = sqrt(dot(to, to));
+    let direction = unit(to);
+    let area = 0.5 * sqrt(dot(normal, normal));
+    let pdf = chosen * area_pdf(area, distance, dot(face, direction));
+    return Arriving(direction, distance, emission_at(index, c.material, weights.y, weights.z), pdf, true);
+}
+
+// lights::from_punctual
+fn from_punctual(position: vec3<f32>, index: u32, chosen: f32) -> Arriving {
+    let r0 = load(PUNCTUAL + index * PUNCTUAL_ROWS);
+    let r1 = load(PUNCTUAL + index * PUNCTUAL_ROWS + 1u);
+    let r2 = bitcast<vec4<f32>>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 2u));
+    let axis = bitcast<vec3<f32>>(r1.xyz);
+    var radiance = r2.xyz;
+    var direction = -axis;
+    var distance = FAR;
+    if r0.w != 0u {
+        let to = bitcast<vec3<f32>>(r0.xyz) - position;
+        distance = sqrt(dot(to, to));
+        direction = unit(to);
+        radiance *= distance_falloff(distance, bitcast<f32>(r1.w));
+    }
+    if r0.w == 2u {
+        let cos_outer = bitcast<f32>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 3u).x);
+        radiance *= cone_falloff(-dot(direction, axis), r2.w, cos_outer);
+    }
+    return Arriving(direction, distance, radiance, chosen, false);
+}
+
+fn has_map() -> bool {
+    return EFFECT_ENVIRONMENT_MAP && frame.map_size.x > 0u;
+}
+
+fn map_radiance(i: i32, j: i32) -> vec3<f32> {
+    let size = frame.map_size;
+    let index = wrap_texel(j, size.y, WRAP_CLAMP) * size.x + wrap_texel(i, size.x, WRAP_REPEAT);
+    return bitcast<vec3<f32>>(load(MAP + index * MAP_ROWS).xyz);
+}
+
+// lights::from_environment
+fn from_environment(p: Point, chosen: f32, place: vec2<f32>, more: vec4<f32>) -> Arriving {
+    var direction: vec3<f32>;
+    var pdf: f32;
+    if has_map() {
+        let size = frame.map_size;
+        let count = size.x * size.y;
+        var index = min(u32(more.x * f32(count)), count - 1u);
+        let row = load(MAP + index * MAP_ROWS + 1u);
+        if more.y >= bitcast<f32>(row.x) {
+            index = row.y;
+        }
+        let u = (f32(index % size.x) + place.x) / f32(size.x);
+        let v = (f32(index / size.x) + place.y) / f32(size.y);
+        let to = map_direction(u, v);
+        direction = to.direction;
+        pdf = map_pdf(bitcast<f32>(load(MAP + index * MAP_ROWS).w), f32(count), to.sine);
+    } else {
+        let local = cosine_hemisphere(place);
+        direction = to_world(local, p.x, p.y, p.z);
+        pdf = cosine_hemisphere_pdf(local.z);
+    }
+    return Arriving(direction, FAR, sky(direction), chosen * pdf, true);
+}
+
+// lights::sky
+fn sky(direction: vec3<f32>) -> vec3<f32> {
+    if !has_map() {
+        return frame.sky;
+    }
+    let place = map_coordinates(direction);
+    let x = place.x * f32(frame.map_size.x) - 0.5;
+    let y = place.y * f32(frame.map_size.y) - 0.5;
+    let i = floor(x);
+    let j = floor(y);
+    let r = x - i;
+    let s = y - j;
+    let top = map_radiance(i32(i), i32(j)) * (1.0 - r) + map_radiance(i32(i) + 1, i32(j)) * r;
+    let bottom = map_radiance(i32(i), i32(j) + 1) * (1.0 - r) + map_radiance(i32(i) + 1, i32(j) + 1) * r;
+    return top * (1.0 - s) + bottom * s;
+}
+
+// lights::sky_pdf
+fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
+    if !has_map() {
+        return frame.sky_chosen * cosine_hemisphere_pdf(cosine);
+    }
+    let size = frame.map_size;
+    let place = map_coordinates(direction);
+    let i = min(u32(place.x * f32(size.x)), size.x - 1u);
+    let j = min(u32(place.y * f32(size.y)), size.y - 1u);
+    let sine = sqrt(direction.x * direction.x + direction.z * direction.z);
+    let chosen = bitcast<f32>(load(MAP + (j * size.x + i) * MAP_ROWS).w);
+    return frame.sky_chosen * map_pdf(chosen, f32(size.x * size.y), sine);
+}
+
+// lights::triangle_pdf
+fn triangle_pdf(triangle: u32, distance: f32, cosine: f32) -> f32 {
+    let c = corners_of(triangle);
+    if c.light == 0u {
+        return 0.0;
+    }
+    let normal = cross(c.v1 - c.v0, c.v2 - c.v0);
+    let area = 0.5 * sqrt(dot(normal, normal));
+    return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, distance, cosine);
+}

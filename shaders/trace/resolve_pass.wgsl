@@ -1,0 +1,35 @@
+//#use scrub
+//#use frame
+// Adds the batch's samples to their pixels: film::Moments::add. One thread a pixel: that of its first item.
+
+// Mean and count, squared deviations; two rows a pixel.
+@group(2) @binding(0) var<storage, read_write> film: array<vec4<f32>>;
+
+@compute @workgroup_size(WORKGROUP)
+fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= frame.items {
+        return;
+    }
+    let pixel = work[frame.first_item + id.x].x;
+    if id.x > 0u && work[frame.first_item + id.x - 1u].x == pixel {
+        return;
+    }
+    let at = 2u * ((pixel >> 16u) * frame.width + (pixel & 0xffffu));
+    let before = film[at];
+    var mean = before.xyz;
+    var count = before.w;
+    var squares = film[at + 1u].xyz;
+    for (var i = id.x; i < frame.items && work[frame.first_item + i].x == pixel; i++) {
+        var sample = path_row(i, PATH_RADIANCE).xyz;
+        if !(is_finite(sample.x) && is_finite(sample.y) && is_finite(sample.z)) {
+            sample = vec3<f32>(0.0);
+            atomicAdd(&counters[NONFINITE], 1u);
+        }
+        count += 1.0;
+        let off = sample - mean;
+        mean += off / count;
+        squares += off * (sample - mean);
+    }
+    film[at] = vec4<f32>(mean, count);
+    film[at + 1u] = vec4<f32>(squares, 0.0);
+}

@@ -1,0 +1,24 @@
+//#use frame
+//#use holes
+//#use traverse
+// Adds the light that nothing is in the way of.
+
+@compute @workgroup_size(WORKGROUP)
+fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= atomicLoad(&counters[SHADOWS]) {
+        return;
+    }
+    let path = lists[2u * frame.capacity + id.x];
+    if ALPHA {
+        let item = work[frame.first_item + path];
+        hole_pixel = item.x;
+        hole_sample = item.y;
+        hole_ray = 2u * atomicLoad(&counters[BOUNCE]) + 1u;
+    }
+    let origin = path_row(path, PATH_SHADOW);
+    let ray = Ray(origin.xyz, path_row(path, PATH_SHADOW + 1u).xyz, origin.w);
+    if !occluded(ray, frame.key) {
+        let radiance = path_row(path, PATH_RADIANCE).xyz + path_row(path, PATH_SHADOW + 2u).xyz;
+        set_path_row(path, PATH_RADIANCE, radiance, 0.0);
+    }
+}

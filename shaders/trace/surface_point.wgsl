@@ -1,0 +1,241 @@
+//#use bsdf
+//#use phong
+//#use shading
+//#use triangle
+//#use effects
+//#use texture
+// From a hit to what scatters there: trace/cpu/surface.rs.
+
+struct Point {
+    position: vec3<f32>,
+    magnitude: f32,
+    geometric: vec3<f32>,
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+    front: bool,
+    emitted: vec3<f32>,
+    absorption: vec3<f32>,
+    surface: BsdfSurface,
+    phong: PhongSurface,
+}
+
+struct Place {
+    uv: vec2<f32>,
+    color: vec4<f32>,
+}
+
+// AttributeRecord: the second row has tangents, the third and fourth texture coordinates; colours are last words of the first three.
+fn place_at(r0: vec4<u32>, r1: vec4<u32>, r2: vec4<u32>, r3: vec4<u32>, u: f32, v: f32) -> Place {
+    let w = 1.0 - u - v;
+    let a = bitcast<vec2<f32>>(r2.xy);
+    let b = bitcast<vec2<f32>>(vec2<u32>(r2.z, r3.x));
+    let c = bitcast<vec2<f32>>(r3.yz);
+    var color = vec4<f32>(1.0);
+    if EFFECT_VERTEX_COLOR {
+        color = texel_value(r0.w) * w + texel_value(r1.w) * u + texel_value(r2.w) * v;
+    }
+    return Place(a * w + b * u + c * v, color);
+}
+
+// surface::base
+fn base_of(material: u32, place: Place) -> vec4<f32> {
+    var base = bitcast<vec4<f32>>(material_row(material, 0u));
+    if EFFECT_VERTEX_COLOR {
+        base *= place.color;
+    }
+    if EFFECT_BASE_COLOR_TEXTURE {
+        let id = material_row(material, 8u).z;
+        if id != NO_TEXTURE {
+            base *= texture_value(id, place.uv, true);
+        }
+    }
+    return base;
+}
+
+// surface::is_there
+fn is_there(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
+    let material = corners_of(triangle).material;
+    let at = attributes_of(triangle);
+    let place = place_at(load(at), load(at + 1u), load(at + 2u), load(at + 3u), u, v);
+    let opacity = base_of(material, place).w;
+    let flags = material_row(material, 8u).x;
+    if (flags & FLAG_MASK) != 0u {
+        return opacity >= bitcast<f32>(material_row(material, 1u).w);
+    }
+    return (flags & FLAG_BLEND) == 0u || draw < opacity;
+}
+
+// surface::emission
+fn emission(material: u32, uv: vec2<f32>) -> vec3<f32> {
+    var radiance = bitcast<vec3<f32>>(material_row(material, 1u).xyz);
+    if EFFECT_EMISSIVE_TEXTURE {
+        let id = material_row(material, 9u).y;
+        if id != NO_TEXTURE {
+            radiance *= texture_value(id, uv, true).xyz;
+        }
+    }
+    return radiance;
+}
+
+// surface::emission_at
+fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3<f32> {
+    if EFFECT_EMISSIVE_TEXTURE {
+        let at = attributes_of(triangle);
+        return emission(material, place_at(load(at), load(at + 1u), load(at + 2u), load(at + 3u), u, v).uv);
+    }
+    return emission(material, vec2<f32>(0.0));
+}
+
+fn optional_texture(id: u32, uv: vec2<f32>, is_color: bool) -> vec4<f32> {
+    if id == NO_TEXTURE {
+        return vec4<f32>(1.0);
+    }
+    return texture_value(id, uv, is_color);
+}
+
+// surface::resolve
+fn resolve_surface(material: u32, place: Place, front: bool) -> BsdfSurface {
+    let base_color = base_of(material, place).xyz;
+    let basic = bitcast<vec4<f32>>(material_row(material, 2u));
+    let words = material_row(material, 8u);
+    var s: BsdfSurface;
+    s.base_color = base_color;
+    s.metallic = basic.x;
+    s.roughness = basic.y;
+    s.specular = basic.z;
+    s.ior = basic.w;
+    s.specular_color = vec3<f32>(1.0);
+    s.sheen_color = vec3<f32>(0.0);
+    s.sheen_roughness = 0.0;
+    s.anisotropy = 0.0;
+    s.clearcoat = 0.0;
+    s.clearcoat_roughness = 0.0;
+    s.transmission = 0.0;
+    s.thin = (words.x & FLAG_VOLUME) == 0u;
+    s.entering = front;
+    var specular_tint = 0.0;
+    if EFFECT_DIELECTRIC || EFFECT_TRANSMISSION {
+        let row = bitcast<vec4<f32>>(material_row(material, 3u));
+        s.specular_color = row.xyz;
+        specular_tint = row.w;
+    }
+    if EFFECT_SHEEN {
+        let row = bitcast<vec4<f32>>(material_row(material, 4u));
+        s.sheen_color = row.xyz;
+        s.sheen_roughness = row.w;
+    }
+    if EFFECT_ANISOTROPY || EFFECT_CLEARCOAT || EFFECT_TRANSMISSION {
+        let row = bitcast<vec4<f32>>(material_row(material, 5u));
+        s.anisotropy = row.x;
+        s.clearcoat = row.y;
+        s.clearcoat_roughness = row.z;
+        s.transmission = row.w;
+    }
+    if EFFECT_SURFACE_TEXTURE {
+        let metallic_roughness = optional_texture(words.w, place.uv, false);
+        s.roughness *= metallic_roughness.y;
+        s.metallic *= metallic_roughness.z;
+        let ids = material_row(material, 9u);
+        s.specular *= optional_texture(ids.z, place.uv, false).w;
+        s.specular_color *= optional_texture(ids.w, place.uv, true).xyz;
+        let more = material_row(material, 10u);
+        if EFFECT_CLEARCOAT {
+            s.clearcoat *= optional_texture(more.x, place.uv, false).x;
+            s.clearcoat_roughness *= optional_texture(more.y, place.uv, false).y;
+        }
+        if EFFECT_SHEEN {
+            s.sheen_color *= optional_texture(more.z, place.uv, true).xyz;
+            s.sheen_roughness *= optional_texture(more.w, place.uv, false).w;
+        }
+        if EFFECT_TRANSMISSION {
+            s.transmission *= optional_texture(material_row(material, 11u).x, place.uv, false).x;
+        }
+    }
+    if EFFECT_DIELECTRIC {
+        if specular_tint > 0.0 {
+            s.specular_color *= tint(base_color, specular_tint);
+        }
+    }
+    if EFFECT_SHEEN {
+        let sheen_tint = bitcast<f32>(words.y);
+        if sheen_tint > 0.0 {
+            s.sheen_color *= tint(base_color, sheen_tint);
+        }
+    }
+    return s;
+}
+
+// surface::point; `material` of the triangle that was hit goes with it.
+fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
+    let c = corners_of(hit.triangle);
+    let at = attributes_of(hit.triangle);
+    let r0 = load(at);
+    let r1 = load(at + 1u);
+    let r2 = load(at + 2u);
+    let r3 = load(at + 3u);
+    let toward = -direction;
+
+    let face = unit(cross(c.v1 - c.v0, c.v2 - c.v0));
+    let front = dot(face, toward) >= 0.0;
+    let side = select(-1.0, 1.0, front);
+
+    let place = place_at(r0, r1, r2, r3, hit.u, hit.v);
+    var normal = unit(across(oct_decode(r0.x), oct_decode(r0.y), oct_decode(r0.z), hit.u, hit.v));
+    if dot(normal, face) <= 0.0 {
+        normal = face;
+    }
+    let flags = material_row(c.material, 8u).x;
+    var tangent = vec3<f32>(1.0, 0.0, 0.0);
+    if EFFECT_NORMAL_MAP || EFFECT_ANISOTROPY {
+        let t = r1.xyz & vec3<u32>(0xfffffffeu);
+        tangent = across(oct_decode(t.x), oct_decode(t.y), oct_decode(t.z), hit.u, hit.v);
+    }
+    if EFFECT_NORMAL_MAP {
+        let id = material_row(c.material, 9u).x;
+        if id != NO_TEXTURE {
+            let texel = texture_value(id, place.uv, false).xyz;
+            let sign = select(1.0, -1.0, (r1.x & 1u) != 0u);
+            normal = mapped_normal(normal, tangent, sign, texel, bitcast<f32>(material_row(c.material, 6u).w));
+        }
+    }
+    var p: Point;
+    p.geometric = face * side;
+    p.z = visible_normal(normal * side, p.geometric, toward);
+    p.surface = resolve_surface(c.material, place, front);
+    var along = vec3<f32>(0.0);
+    if EFFECT_ANISOTROPY {
+        if p.surface.anisotropy > 0.0 {
+            along = tangent - p.z * dot(p.z, tangent);
+        }
+    }
+    if dot(along, along) > 1e-12 {
+        p.x = unit(along);
+        p.y = cross(p.z, p.x);
+    } else {
+        let xy = basis(p.z);
+        p.x = xy[0];
+        p.y = xy[1];
+    }
+    p.front = front;
+    p.emitted = vec3<f32>(0.0);
+    if EFFECT_EMISSIVE_TRIANGLES {
+        if front || (flags & FLAG_DOUBLE_SIDED) != 0u {
+            p.emitted = emission(c.material, place.uv);
+        }
+    }
+    p.absorption = vec3<f32>(0.0);
+    if EFFECT_ABSORPTION {
+        if (flags & FLAG_VOLUME) != 0u {
+            p.absorption = bitcast<vec3<f32>>(material_row(c.material, 6u).xyz);
+        }
+    }
+    if PHONG {
+        let lobe = bitcast<vec4<f32>>(material_row(c.material, 7u));
+        let diffuse = bitcast<f32>(material_row(c.material, 11u).y);
+        p.phong = PhongSurface(p.surface.base_color * diffuse, lobe.xyz, lobe.w);
+    }
+    p.position = point_at(c.v0, c.v1, c.v2, hit.u, hit.v);
+    p.magnitude = magnitude(c.v0, c.v1, c.v2);
+    return p;
+}
