@@ -39,9 +39,14 @@ fn sheared(shear: Shear, from_origin: vec3<f32>) -> vec3<f32> {
     return shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z;
 }
 
-// triangle::edge
+// triangle::edge. The corners in an order of their own, which changes nothing where products are rounded; a device that fuses one
+// of them with the difference would else answer the two triangles of an edge differently, and leave gaps.
 fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
-    return a.x * b.y - a.y * b.x;
+    let swapped = a.x > b.x || (a.x == b.x && a.y > b.y);
+    let p = select(a.xy, b.xy, swapped);
+    let q = select(b.xy, a.xy, swapped);
+    let area = p.x * q.y - p.y * q.x;
+    return select(area, -area, swapped);
 }
 
 // triangle::intersect
@@ -65,8 +70,8 @@ fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: 
     if abs(det) < MIN_DET {
         return miss;
     }
-    let u = e1 / det;
-    let v = e2 / det;
+    let u = abs(e1 / det);
+    let v = abs(e2 / det);
     return Meeting((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
 }
 

@@ -103,8 +103,9 @@ pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -
     if det.abs() < MIN_DET {
         return miss;
     }
-    let u = e1 / det;
-    let v = e2 / det;
+    // Not negative but for the sign of a zero.
+    let u = (e1 / det).abs();
+    let v = (e2 / det).abs();
     // A vertex' depth and two differences, not three products: one order of operations on every compiler.
     Meeting { t: (a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v }
 }

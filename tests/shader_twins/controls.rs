@@ -170,7 +170,8 @@ fn a_flipped_edge_or_a_lax_one_is_caught() {
         "if low.x > 0.0 || high.x < 0.0 || low.y > 0.0 || high.y < 0.0 || high.z < 0.0",
         "if false",
     );
-    caught(triangles::PROBES, "edge", "a.x * b.y - a.y * b.x", "a.x * b.y + a.y * b.x");
+    caught(triangles::PROBES, "edge", "select(area, -area, swapped)", "area");
+    caught(triangles::PROBES, "edge", "p.x * q.y - p.y * q.x", "p.x * q.y + p.y * q.x");
     caught(triangles::PROBES, "shear", "-(direction.y / direction.x)", "direction.y / direction.x");
     caught(triangles::PROBES, "offset_ray", "magnitude * OFFSET", "OFFSET");
 }

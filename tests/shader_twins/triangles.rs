@@ -89,9 +89,14 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "edge",
         module: "triangle",
-        words: [6, 1],
-        wgsl: "out_f(edge(in_v(0u), in_v(3u)));",
-        rust: |r, o| o.f(triangle::edge(r.v(0).into(), r.v(3).into())),
+        words: [6, 2],
+        // The sign of a zero is left open.
+        wgsl: "let e = edge(in_v(0u), in_v(3u)); out_f(abs(e)); out_b(e < 0.0);",
+        rust: |r, o| {
+            let e = triangle::edge(r.v(0).into(), r.v(3).into());
+            o.f(e.abs());
+            o.b(e < 0.0);
+        },
         rows: || {
             Rows::new(6).random("edge", |d, row| {
                 let a = vector(d, 1.0);
