@@ -1,7 +1,8 @@
 //! Scenes that others made. Counts are those of the data's own list.
 
 use crate::{assert_sound, open};
-use afterimage::scene::{Alpha, PunctualKind, Scene};
+use afterimage::report::clock::Stopwatch;
+use afterimage::scene::Scene;
 use std::io::Write;
 use std::path::Path;
 
@@ -13,11 +14,13 @@ fn real(name: &str) -> Option<Scene> {
         let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
         return None;
     }
-    let start = afterimage::report::clock::cpu_seconds();
+    let clock = Stopwatch::start();
     let scene = open(&path).unwrap();
-    if let (Some(start), Some(end)) = (start, afterimage::report::clock::cpu_seconds()) {
-        println!("{name}: {:.2} s of CPU time (all threads of this process)", end - start);
-    }
+    println!(
+        "{name}: {:?} ms of CPU time (other tests included), {:.0} ms on the clock",
+        clock.cpu_ms(),
+        clock.wall_ms()
+    );
     println!("warnings: {:#?}", scene.warnings);
     assert_sound(&scene);
     Some(scene)
