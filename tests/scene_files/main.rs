@@ -86,8 +86,13 @@ fn assert_sound(scene: &Scene) {
 #[track_caller]
 fn assert_triangles_sound(triangles: &Triangles, scene: &Scene) {
     let n = triangles.len();
-    let lengths =
-        [triangles.normals.len(), triangles.uvs.len(), triangles.tangents.len(), triangles.colors.len(), triangles.materials.len()];
+    let lengths = [
+        triangles.normals.len(),
+        triangles.uvs.len(),
+        triangles.tangents.len(),
+        triangles.colors.len(),
+        triangles.materials.len(),
+    ];
     assert_eq!(lengths, [n; 5]);
     assert!(triangles.positions.iter().flatten().all(|p| p.is_finite()));
     assert!(triangles.normals.iter().flatten().all(|v: &Vec3| (v.length() - 1.0).abs() < 1e-4));
@@ -95,7 +100,10 @@ fn assert_triangles_sound(triangles: &Triangles, scene: &Scene) {
     for (tangents, normals) in triangles.tangents.iter().zip(&triangles.normals) {
         for (t, n) in tangents.iter().zip(normals) {
             let direction = t.truncate();
-            assert!((direction.length() - 1.0).abs() < 1e-4 && direction.dot(*n).abs() < 1e-3 && t.w.abs() == 1.0, "{t} {n}");
+            assert!(
+                (direction.length() - 1.0).abs() < 1e-4 && direction.dot(*n).abs() < 1e-3 && t.w.abs() == 1.0,
+                "{t} {n}"
+            );
         }
     }
     assert!(triangles.colors.iter().flatten().all(|c: &Vec4| c.min_element() >= 0.0 && c.max_element() <= 1.0));

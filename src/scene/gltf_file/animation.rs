@@ -103,7 +103,7 @@ fn find(document: &Document, clip: &str) -> Result<usize, InputError> {
         let names = names.collect::<Vec<_>>().join(", ");
         InputError::new(
             document.subject,
-            format!("has no animation {:?}", shown(clip)),
+            format!("has no animation \"{}\"", shown(clip)),
             if names.is_empty() { "it has none at all".to_owned() } else { format!("expected one of {names}") },
         )
     })

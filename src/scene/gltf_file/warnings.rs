@@ -14,33 +14,40 @@ pub(super) struct Warnings {
 struct Entry {
     text: String,
     names: Vec<String>,
+    /// The thing that was named last, for things report one after the other.
+    last: String,
     count: u64,
+}
+
+impl Entry {
+    fn new(text: &str) -> Self {
+        Self { text: text.to_owned(), names: Vec::new(), last: String::new(), count: 0 }
+    }
 }
 
 impl Warnings {
     /// A warning that stands alone.
-    pub fn add(&mut self, text: impl Into<String>) {
-        let text = text.into();
+    pub fn add(&mut self, text: impl AsRef<str>) {
+        let text = text.as_ref();
         if self.entries.iter().all(|e| e.text != text) {
-            self.entries.push(Entry { text, names: Vec::new(), count: 0 });
+            self.entries.push(Entry::new(text));
         }
     }
 
-    /// A warning about one of several things. The texts are few, the things may be many.
+    /// A warning about one of several things. The texts are few, the things may be many; each counts once.
     pub fn about(&mut self, text: &str, name: impl FnOnce() -> String) {
         let at = self.entries.iter().position(|e| e.text == text).unwrap_or_else(|| {
-            self.entries.push(Entry { text: text.to_owned(), names: Vec::new(), count: 0 });
+            self.entries.push(Entry::new(text));
             self.entries.len() - 1
         });
         let entry = &mut self.entries[at];
-        entry.count += 1;
-        if entry.names.len() < NAMED {
-            let name = name();
-            if entry.names.contains(&name) {
-                entry.count -= 1;
-            } else {
-                entry.names.push(name);
+        let name = name();
+        if entry.last != name {
+            entry.count += 1;
+            if entry.names.len() < NAMED {
+                entry.names.push(name.clone());
             }
+            entry.last = name;
         }
     }
 
