@@ -1,8 +1,7 @@
 //#use frame
 // Between the others: what was appended becomes what is alive, and workgroups for it.
 
-// Workgroups along x, y and z of `extend` and `shade`, then of `shadow`.
-@group(2) @binding(0) var<storage, read_write> workgroups: array<u32, 6>;
+@group(2) @binding(0) var<storage, read_write> plan: array<u32, 9>;
 
 fn count_rays(rays: u32) {
     let before = atomicAdd(&counters[RAYS_LOW], rays);
@@ -11,34 +10,33 @@ fn count_rays(rays: u32) {
     }
 }
 
-@compute @workgroup_size(1)
-fn start() {
-    atomicStore(&counters[BOUNCE], 0u);
-    atomicStore(&counters[ACTIVE], frame.items);
+fn plan_paths(bounce: u32, paths: u32) {
     atomicStore(&counters[NEXT], 0u);
     atomicStore(&counters[SHADOWS], 0u);
-    count_rays(frame.items);
-    workgroups[0] = (frame.items + WORKGROUP - 1u) / WORKGROUP;
-    workgroups[1] = 1u;
-    workgroups[2] = 1u;
-    workgroups[4] = 1u;
-    workgroups[5] = 1u;
+    count_rays(paths);
+    plan[0] = (paths + WORKGROUP - 1u) / WORKGROUP;
+    plan[1] = 1u;
+    plan[2] = 1u;
+    plan[BOUNCE] = bounce;
+    plan[PATHS_ALIVE] = paths;
+}
+
+@compute @workgroup_size(1)
+fn start() {
+    plan_paths(0u, frame.items);
 }
 
 @compute @workgroup_size(1)
 fn count_shadows() {
     let shadows = atomicLoad(&counters[SHADOWS]);
     count_rays(shadows);
-    workgroups[3] = (shadows + WORKGROUP - 1u) / WORKGROUP;
+    plan[3] = (shadows + WORKGROUP - 1u) / WORKGROUP;
+    plan[4] = 1u;
+    plan[5] = 1u;
+    plan[SHADOW_RAYS] = shadows;
 }
 
 @compute @workgroup_size(1)
 fn count_paths() {
-    let next = atomicLoad(&counters[NEXT]);
-    atomicAdd(&counters[BOUNCE], 1u);
-    atomicStore(&counters[ACTIVE], next);
-    atomicStore(&counters[NEXT], 0u);
-    atomicStore(&counters[SHADOWS], 0u);
-    count_rays(next);
-    workgroups[0] = (next + WORKGROUP - 1u) / WORKGROUP;
+    plan_paths(plan[BOUNCE] + 1u, atomicLoad(&counters[NEXT]));
 }

@@ -1,11 +1,11 @@
-//#use frame
+//#use plan
 //#use holes
 //#use traverse
 // The nearest hit of every path that is alive.
 
 @compute @workgroup_size(WORKGROUP)
 fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= atomicLoad(&counters[ACTIVE]) {
+    if id.x >= plan[PATHS_ALIVE] {
         return;
     }
     let path = active_path(id.x);
@@ -13,7 +13,7 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
         let item = work[frame.first_item + path];
         hole_pixel = item.x;
         hole_sample = item.y;
-        hole_ray = 2u * atomicLoad(&counters[BOUNCE]);
+        hole_ray = 2u * plan[BOUNCE];
     }
     let ray = Ray(path_row(path, PATH_ORIGIN).xyz, path_row(path, PATH_DIRECTION).xyz, FAR_AWAY);
     let hit = closest(ray, frame.key);

@@ -17,13 +17,15 @@ struct TraceFrame {
 }
 
 // Words of `counters`.
-const BOUNCE: u32 = 0u;
-const ACTIVE: u32 = 1u;
-const NEXT: u32 = 2u;
-const SHADOWS: u32 = 3u;
-const RAYS_LOW: u32 = 4u;
-const RAYS_HIGH: u32 = 5u;
-const NONFINITE: u32 = 6u;
+const NEXT: u32 = 0u;
+const SHADOWS: u32 = 1u;
+const RAYS_LOW: u32 = 2u;
+const RAYS_HIGH: u32 = 3u;
+const NONFINITE: u32 = 4u;
+// Words of `plan`, after the workgroups along x, y and z of `extend` and `shade` and those of `shadow`.
+const BOUNCE: u32 = 6u;
+const PATHS_ALIVE: u32 = 7u;
+const SHADOW_RAYS: u32 = 8u;
 
 @group(1) @binding(0) var<uniform> frame: TraceFrame;
 // Pixel and sample of all that is to be traced; a batch of it is in flight.
@@ -32,7 +34,7 @@ const NONFINITE: u32 = 6u;
 @group(1) @binding(2) var<storage, read_write> paths: array<vec4<u32>>;
 // Numbers of paths: those alive at even bounces, at odd ones, those with a shadow ray; `capacity` each.
 @group(1) @binding(3) var<storage, read_write> lists: array<u32>;
-@group(1) @binding(4) var<storage, read_write> counters: array<atomic<u32>, 8>;
+@group(1) @binding(4) var<storage, read_write> counters: array<atomic<u32>, 5>;
 
 override WORKGROUP: u32 = 64u;
 
@@ -54,9 +56,4 @@ fn path_row(path: u32, row: u32) -> vec4<f32> {
 
 fn set_path_row(path: u32, row: u32, value: vec3<f32>, last: f32) {
     paths[path * PATH_ROWS + row] = bitcast<vec4<u32>>(vec4<f32>(value, last));
-}
-
-// Path of thread `i` among those alive.
-fn active_path(i: u32) -> u32 {
-    return lists[(atomicLoad(&counters[BOUNCE]) & 1u) * frame.capacity + i];
 }

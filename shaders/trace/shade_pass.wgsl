@@ -1,6 +1,7 @@
 //#use approx
 //#use rng
 //#use lights
+//#use plan
 // What every path finds where it hit, where it goes next, and the light it looks for: Paths::radiance.
 
 override MAX_DEPTH: u32 = 3u;
@@ -51,11 +52,11 @@ fn sample_at(p: Point, layers: Layers, wo: vec3<f32>, draws: vec4<f32>) -> Scatt
 
 @compute @workgroup_size(WORKGROUP)
 fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= atomicLoad(&counters[ACTIVE]) {
+    if id.x >= plan[PATHS_ALIVE] {
         return;
     }
     let path = active_path(id.x);
-    let bounce = atomicLoad(&counters[BOUNCE]);
+    let bounce = plan[BOUNCE];
     let ray = path_row(path, PATH_DIRECTION);
     let pdf = path_row(path, PATH_ORIGIN).w;
     var throughput = path_row(path, PATH_THROUGHPUT).xyz;

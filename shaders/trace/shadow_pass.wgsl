@@ -1,11 +1,11 @@
-//#use frame
+//#use plan
 //#use holes
 //#use traverse
 // Adds the light that nothing is in the way of.
 
 @compute @workgroup_size(WORKGROUP)
 fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= atomicLoad(&counters[SHADOWS]) {
+    if id.x >= plan[SHADOW_RAYS] {
         return;
     }
     let path = lists[2u * frame.capacity + id.x];
@@ -13,7 +13,7 @@ fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
         let item = work[frame.first_item + path];
         hole_pixel = item.x;
         hole_sample = item.y;
-        hole_ray = 2u * atomicLoad(&counters[BOUNCE]) + 1u;
+        hole_ray = 2u * plan[BOUNCE] + 1u;
     }
     let origin = path_row(path, PATH_SHADOW);
     let ray = Ray(origin.xyz, path_row(path, PATH_SHADOW + 1u).xyz, origin.w);

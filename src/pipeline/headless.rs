@@ -141,6 +141,11 @@ impl Headless {
         FrameStats::from_counters(&bytes).expect("as many bytes as counters have")
     }
 
+    /// Waits for all that was submitted, and reads a buffer that can be copied from.
+    pub(crate) fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
+        self.read_back(from.size(), |encoder, to| encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size()))
+    }
+
     fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
         let label = Some("afterimage");
         self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })

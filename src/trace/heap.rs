@@ -19,12 +19,16 @@ pub enum Section {
     Triangles,
     /// [`AttributeRecord`](super::AttributeRecord)s, four elements each.
     Attributes,
-    /// Parameters of materials.
+    /// [`MaterialRecord`](super::records::MaterialRecord)s.
     Materials,
-    /// Tables for choosing lights and directions.
-    Tables,
-    /// Texels of all textures.
+    /// [`TextureRecord`](super::records::TextureRecord)s.
+    Textures,
+    /// Texels of all textures, four an element.
     Texels,
+    /// [`MapRecord`](super::records::MapRecord)s of the environment.
+    Map,
+    /// Directional albedos of lobes.
+    Albedos,
     /// As `Nodes`, of the moving triangles.
     MovingNodes,
     /// As `Triangles`.
@@ -33,8 +37,10 @@ pub enum Section {
     MovingAttributes,
     /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
     MovingPrevious,
-    /// Lights, which may move.
-    Lights,
+    /// [`PickRecord`](super::records::PickRecord)s: the lights, which may move.
+    Picks,
+    /// [`PunctualRecord`](super::records::PunctualRecord)s.
+    Punctual,
 }
 
 impl Section {

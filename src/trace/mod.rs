@@ -10,6 +10,7 @@ pub mod cpu;
 pub mod effects;
 pub mod film;
 mod geometry;
+pub mod gpu;
 pub mod gpu_heap;
 pub mod gpu_rays;
 pub mod heap;

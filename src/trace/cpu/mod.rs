@@ -85,7 +85,7 @@ struct Done {
 }
 
 /// Key of a frame's draws.
-pub(super) fn path_key(seed: u64, frame: u64) -> u32 {
+pub(in crate::trace) fn path_key(seed: u64, frame: u64) -> u32 {
     // The counter's low word is no argument of a path's draws: it goes into the key.
     stream_key(seed, frame as u32, Purpose::Path, frame)
 }
