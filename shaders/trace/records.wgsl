@@ -1,4 +1,4 @@
-//#use traverse
+//#use geometry
 // Where records are in the heap, and what they are: trace/records.rs and record.rs.
 
 override MATERIALS: u32 = 0u;

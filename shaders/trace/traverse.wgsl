@@ -1,4 +1,5 @@
 //#use triangle
+//#use geometry
 // Rays through the hierarchies: twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (heap_texture or heap_buffer) and
 // `accept_hit` of whoever uses it.
 //
@@ -6,36 +7,21 @@
 // triangle, meta bytes; then bytes of the children's planes: min x and max x, min y and max y, min z and max z. A triangle is
 // three: a corner each, with flags, source and a spare word.
 
-// First elements of the nodes and triangles at rest and in motion.
+// First elements of the nodes at rest and in motion.
 override NODES: u32 = 0u;
-override TRIANGLES: u32 = 0u;
 override MOVING_NODES: u32 = 0u;
-override MOVING_TRIANGLES: u32 = 0u;
-// Number of triangles at rest, which is the index of the first that moves.
-override FIRST_MOVING: u32 = 0u;
-// Whether any triangle moves.
-override MOVES: bool = false;
 // Whether any material has an opacity that decides about hits.
 override ALPHA: bool = false;
 
 const NODE_SLACK: f32 = 1.0 / 524288.0;
 const MIN_DIRECTION: f32 = 1.0 / 1152921504606846976.0;
 const FLAG_ALPHA: u32 = 0x1000000u;
-const NO_TRIANGLE: u32 = 0xffffffffu;
 const STACK: u32 = 24u;
 
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
     t_max: f32,
-}
-
-// `triangle` is NO_TRIANGLE where nothing was hit.
-struct Hit {
-    triangle: u32,
-    t: f32,
-    u: f32,
-    v: f32,
 }
 
 // The nearest hit; `key` is handed to `accept_hit`.

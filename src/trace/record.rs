@@ -1,5 +1,6 @@
 //! Triangles as both tracers read them.
 
+use crate::kernel::direction::{oct_decode, oct_encode};
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3A, Vec4};
@@ -119,7 +120,7 @@ impl PreviousRecord {
 ///
 /// | words | hold |
 /// |---|---|
-/// | 0 to 2 | normals, octahedral, two 16-bit signed fractions |
+/// | 0 to 2 | normals, as [`oct_encode`] has them |
 /// | 3, 7, 11 | vertex colours, 8 bits a channel, red lowest |
 /// | 4 to 6 | tangents, as normals but the lowest bit: 1 for a bitangent sign of -1 |
 /// | 8 to 10, 12 to 14 | texture coordinates, u then v of each vertex, as floats |
@@ -152,10 +153,10 @@ impl AttributeRecord {
         let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
         for vertex in 0..3 {
             if let Some(n) = triangles.normals.get(source) {
-                words[vertex] = encode_direction(n[vertex]);
+                words[vertex] = direction_code(n[vertex]);
             }
             if let Some(t) = triangles.tangents.get(source) {
-                words[4 + vertex] = encode_direction(t[vertex].truncate()) & !1 | u32::from(t[vertex].w < 0.0);
+                words[4 + vertex] = direction_code(t[vertex].truncate()) & !1 | u32::from(t[vertex].w < 0.0);
             }
             if let Some(uv) = triangles.uvs.get(source) {
                 words[UV_WORDS[2 * vertex]] = finite(uv[vertex].x).to_bits();
@@ -173,36 +174,16 @@ impl AttributeRecord {
         let w = &self.words;
         let of = |word: usize| f32::from_bits(w[word]);
         Attributes {
-            normals: [0, 1, 2].map(|i| decode_direction(w[i])),
-            tangents: [4, 5, 6].map(|i| decode_direction(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
+            normals: [0, 1, 2].map(|i| oct_decode(w[i])),
+            tangents: [4, 5, 6].map(|i| oct_decode(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
             uvs: [0, 1, 2].map(|i| Vec2::new(of(UV_WORDS[2 * i]), of(UV_WORDS[2 * i + 1]))),
             colors: [3, 7, 11].map(|i| Vec4::from_array(w[i].to_le_bytes().map(|b| f32::from(b) / 255.0))),
         }
     }
 }
 
-/// Octahedral code of a direction (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
-/// 3(2), 2014), two 16-bit signed fractions; within 0.004 degrees. A vector that is no direction becomes +z.
-pub(super) fn encode_direction(n: Vec3) -> u32 {
-    let sum = n.x.abs() + n.y.abs() + n.z.abs();
-    if !(sum.is_finite() && sum > 0.0) {
-        return 0;
-    }
-    let (mut x, mut y) = (n.x / sum, n.y / sum);
-    if n.z < 0.0 {
-        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        (x, y) = ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y));
-    }
-    let code = |v: f32| u32::from((v * 32767.0).round() as i16 as u16);
-    code(x) | code(y) << 16
-}
-
-/// Inverse of [`encode_direction`].
-pub(super) fn decode_direction(code: u32) -> Vec3 {
-    let value = |bits: u32| f32::from(bits as u16 as i16) * (1.0 / 32767.0);
-    let (x, y) = (value(code), value(code >> 16));
-    let z = 1.0 - x.abs() - y.abs();
-    let fold = (-z).max(0.0);
-    let back = |v: f32| if v < 0.0 { v + fold } else { v - fold };
-    Vec3::new(back(x), back(y), z).normalize_or(Vec3::Z)
+/// Code of a direction; of one that is none that of +z.
+fn direction_code(direction: Vec3) -> u32 {
+    let sound = direction.is_finite() && direction != Vec3::ZERO;
+    oct_encode(if sound { direction } else { Vec3::Z })
 }

@@ -3,7 +3,7 @@
 use super::surface::emission_at;
 use crate::kernel::direction::{to_world, unit};
 use crate::kernel::light::{cone_falloff, distance_falloff, map_coordinates, map_direction, map_pdf};
-use crate::kernel::sampling::{area_pdf, cosine_hemisphere, cosine_hemisphere_pdf, triangle};
+use crate::kernel::sampling::{area_pdf, barycentrics, cosine_hemisphere, cosine_hemisphere_pdf};
 use crate::kernel::texel::{WRAP_CLAMP, WRAP_REPEAT, wrap_texel};
 use crate::kernel::triangle::{magnitude, offset_ray, point_at};
 use crate::trace::effects::{Effect, Effects};
@@ -71,7 +71,7 @@ fn from_triangle(
 ) -> Option<Arriving> {
     let light = world.geometry.triangle(index);
     let [v0, v1, v2] = light.positions();
-    let weights = triangle(place);
+    let weights = barycentrics(place);
     let across = (v1 - v0).cross(v2 - v0);
     let face = unit(across);
     let on_light = point_at(v0, v1, v2, weights.y, weights.z);
