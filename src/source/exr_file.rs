@@ -25,7 +25,7 @@ mod write;
 
 pub use decode::ExrFrame;
 pub use header::{ExrHeader, Vectors};
-pub use write::{ColorFormat, FrameToWrite, write};
+pub use write::{ColorFormat, FrameToWrite, write, write_channels};
 
 use crate::error::InputError;
 use std::panic::{AssertUnwindSafe, catch_unwind};

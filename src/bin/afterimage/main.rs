@@ -18,6 +18,7 @@ mod info;
 mod output;
 mod run;
 mod scanpath;
+mod trace;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -37,6 +38,8 @@ enum Command {
     Demo(demo::DemoArgs),
     /// Foveate a frame stream, enhance it, score it
     Run(Box<run::RunArgs>),
+    /// Render a scene by path tracing
+    Trace(Box<trace::TraceArgs>),
     /// Time the passes against a copy of the same bytes
     Bench(bench::BenchArgs),
     /// Write a synthetic scanpath
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
     let result = match cli.command {
         Command::Demo(args) => demo::demo(&args),
         Command::Run(args) => run::run(&args),
+        Command::Trace(args) => trace::trace(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Scanpath(args) => scanpath::scanpath(&args),
         Command::Info(args) => info::info(&args),

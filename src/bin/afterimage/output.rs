@@ -25,8 +25,8 @@ pub struct Table {
 
 impl Output {
     /// Makes the folder and a folder in it for each of `parts`. Frames that an earlier run left there are removed, if its
-    /// `report.json` says that they are this tool's.
-    pub fn create(root: &Path, parts: &[String]) -> Result<Self, Failure> {
+    /// `report` (`report.json` or `trace.json`) says that they are this tool's.
+    pub fn create(root: &Path, parts: &[String], report: &str) -> Result<Self, Failure> {
         let refuse = |path: &Path, error: &dyn std::fmt::Display| {
             Failure::Input(format!(
                 "{}: cannot be written ({error}); give --out a folder that can be made or written",
@@ -34,8 +34,7 @@ impl Output {
             ))
         };
         fs::create_dir_all(root).map_err(|e| refuse(root, &e))?;
-        let ours =
-            fs::read_to_string(root.join("report.json")).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
+        let ours = fs::read_to_string(root.join(report)).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
         let mut stale = vec![];
         for part in parts {
             stale.extend(numbered_frames(&root.join(part)));
@@ -49,7 +48,7 @@ impl Output {
         // A file that can be made is the proof that the folder can be written.
         let probe = root.join(".afterimage.partial");
         File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
-        for path in stale.into_iter().chain(ours.then(|| root.join("report.json"))) {
+        for path in stale.into_iter().chain(ours.then(|| root.join(report))) {
             fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
         }
         for part in parts {
@@ -71,15 +70,20 @@ impl Output {
         match format {
             FormatName::Png => self.picture(folder, index, &to_rgb8(encoded)),
             FormatName::Exr => {
-                let path = self.root.join(folder).join(format!("{index:06}.exr"));
+                let path = self.path(folder, index, "exr");
                 exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
             }
         }
     }
 
+    /// Where frame `index` of `folder` goes.
+    pub fn path(&self, folder: &str, index: usize, ending: &str) -> PathBuf {
+        self.root.join(folder).join(format!("{index:06}.{ending}"))
+    }
+
     /// A PNG as frame `index` of `folder`.
     pub fn picture(&self, folder: &str, index: usize, picture: &RgbImage) -> Result<(), Failure> {
-        let path = self.root.join(folder).join(format!("{index:06}.png"));
+        let path = self.path(folder, index, "png");
         write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
     }
 

@@ -111,10 +111,10 @@ struct Report<'a> {
 }
 
 #[derive(Serialize)]
-struct BackendReport {
-    kind: &'static str,
-    name: String,
-    driver: String,
+pub struct BackendReport {
+    pub kind: &'static str,
+    pub name: String,
+    pub driver: String,
 }
 
 #[derive(Serialize)]
@@ -159,7 +159,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan(args, source.info())?;
     // Proof that the input can be read, before anything is written.
     source.frame(0)?;
-    let out = Output::create(&args.out, &folders(args))?;
+    let out = Output::create(&args.out, &folders(args), "report.json")?;
     let report = plan.clip.run(source.as_mut(), &out)?;
     let json = Report {
         tool: "afterimage",
@@ -245,7 +245,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     }
     // Stills and endless scenes last as long as the eye looks.
     let frames = args.frames.or(if info.still { None } else { info.frames });
-    let backend = backend(args)?;
+    let backend = backend(args.backend)?;
     let track = args.gaze.resolve(&geometry, fps, frames)?;
     Ok(Plan {
         fps,
@@ -293,8 +293,8 @@ fn folders(args: &RunArgs) -> Vec<String> {
 }
 
 /// Chooses what computes, and says so.
-fn backend(args: &RunArgs) -> Result<Backend, Failure> {
-    let found = match args.backend {
+pub fn backend(name: BackendName) -> Result<Backend, Failure> {
+    let found = match name {
         BackendName::Cpu => None,
         BackendName::Auto => Headless::find(false),
         BackendName::Gpu => Some(
@@ -305,7 +305,7 @@ fn backend(args: &RunArgs) -> Result<Backend, Failure> {
     Ok(found.map_or(Backend::Cpu, Backend::Gpu))
 }
 
-fn backend_report(backend: &Backend) -> BackendReport {
+pub fn backend_report(backend: &Backend) -> BackendReport {
     match backend {
         Backend::Cpu => BackendReport {
             kind: "cpu",

@@ -61,14 +61,32 @@ pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     write_whole(path, |out| write_to(out, frame))
 }
 
+/// Writes float channels, whole or not at all.
+///
+/// # Errors
+/// If they are empty or differ in size, or the file cannot be written.
+pub fn write_channels(path: &Path, channels: &[(&str, &Image<f32>)]) -> io::Result<()> {
+    let size = channels.first().map_or([0, 0], |(_, image)| image.size());
+    if size.contains(&0) || channels.iter().any(|(_, image)| image.size() != size) {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "channels must have one size of at least 1x1 pixels"));
+    }
+    let channel =
+        |(name, image): &(&str, &Image<f32>)| AnyChannel::new(*name, FlatSamples::F32(image.pixels().to_vec()));
+    write_whole(path, |out| write_layer(out, size, channels.iter().map(channel).collect()))
+}
+
 fn write_to(out: &mut BufWriter<File>, frame: &FrameToWrite) -> io::Result<()> {
-    let [w, h] = frame.color.size().map(|s| s as usize);
+    write_layer(out, frame.color.size(), channels(frame))
+}
+
+fn write_layer(out: &mut BufWriter<File>, size: [u32; 2], channels: Vec<AnyChannel<FlatSamples>>) -> io::Result<()> {
+    let [w, h] = size.map(|s| s as usize);
     let encoding = Encoding {
         compression: Compression::ZIP16,
         blocks: exr::image::Blocks::ScanLines,
         line_order: LineOrder::Increasing,
     };
-    let channels = AnyChannels::sort(SmallVec::from_vec(channels(frame)));
+    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
     let layer = Layer::new((w, h), LayerAttributes::default(), encoding, channels);
     exr::image::Image::from_layer(layer).write().to_buffered(out).map_err(|e| match e {
         exr::error::Error::Io(e) => e,

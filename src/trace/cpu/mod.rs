@@ -89,3 +89,8 @@ pub(in crate::trace) fn path_key(seed: u64, frame: u64) -> u32 {
     // The counter's low word is no argument of a path's draws: it goes into the key.
     stream_key(seed, frame as u32, Purpose::Path, frame)
 }
+
+/// Whether a surface with holes is at least half there.
+pub(super) fn is_mostly_there(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
+    surface::is_there(world, triangle, u, v, 0.5, effects)
+}

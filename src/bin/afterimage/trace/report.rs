@@ -1,0 +1,188 @@
+//! What a trace did: on the screen, in `trace.json` and in `cameras.json`.
+
+use super::TraceArgs;
+use super::setup::Setup;
+use crate::run::{BackendReport, backend_report};
+use afterimage::report::clock::Stopwatch;
+use afterimage::trace::effects::Effects;
+use afterimage::trace::film::Film;
+use afterimage::trace::view::View;
+use serde::Serialize;
+
+/// Figures that add up over the frames.
+#[derive(Default)]
+pub struct Report {
+    pub cameras: Vec<View>,
+    rays: u64,
+    samples: u64,
+    seconds: f64,
+    cpu_seconds: Option<f64>,
+    nonfinite: u64,
+}
+
+#[derive(Serialize)]
+struct TraceJson<'a> {
+    tool: &'static str,
+    version: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    frames: u64,
+    fps: f32,
+    hfov_deg: f32,
+    spp: u32,
+    sampling: &'static str,
+    max_depth: u32,
+    integrator: String,
+    bsdf: String,
+    seed: u64,
+    backend: BackendReport,
+    triangles: u32,
+    load_ms: f64,
+    build_ms: f64,
+    compile_ms: f64,
+    /// As many as a uniform frame of `spp` samples has, and the share of them that was traced.
+    samples: Samples,
+    rays: u64,
+    seconds: f64,
+    cpu_seconds: Option<f64>,
+    million_rays_per_second: f64,
+    nonfinite_samples: u64,
+    effects: Vec<&'static str>,
+    warnings: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Samples {
+    traced: u64,
+    uniform: u64,
+    regions: Vec<u64>,
+    ideal_reduction: f64,
+    /// Not known from one run: of times, against a uniform run.
+    achieved_reduction: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct CamerasJson {
+    width: u32,
+    height: u32,
+    fps: f32,
+    horizontal_fov_deg: f32,
+    frames: Vec<CameraJson>,
+}
+
+#[derive(Serialize)]
+struct CameraJson {
+    frame: usize,
+    camera_to_world: [[f64; 4]; 4],
+}
+
+impl Report {
+    pub fn new(_args: &TraceArgs, _setup: &Setup) -> Self {
+        Self { cpu_seconds: Some(0.0), ..Self::default() }
+    }
+
+    /// Adds a frame.
+    pub fn count(&mut self, film: &Film, clock: &Stopwatch) {
+        self.rays += film.rays;
+        self.samples += film.moments.pixels().iter().map(|m| u64::from(m.count)).sum::<u64>();
+        self.nonfinite += film.nonfinite;
+        self.seconds += clock.wall_ms() * 1e-3;
+        self.cpu_seconds = self.cpu_seconds.zip(clock.cpu_ms()).map(|(s, ms)| s + ms * 1e-3);
+    }
+
+    /// What is compiled in, what of it the scene needs, and what it needs and does not get.
+    pub fn print_effects(&self, setup: &Setup) {
+        let (compiled, needed) = (setup.tracer.effects(&setup.world), setup.world.needs);
+        say!("compiled in:");
+        for effect in compiled.iter() {
+            let why = if needed.has(effect) { effect.reason() } else { "asked for; nothing in the scene needs it" };
+            say!("  {:<24} {why}", effect.name());
+        }
+        if compiled == Effects::NONE {
+            say!("  nothing but Lambert's scattering");
+        }
+        let left_out = Effects::all().without(compiled);
+        let missing: Vec<_> = left_out.iter().filter(|&e| needed.has(e)).map(|e| e.name()).collect();
+        if !missing.is_empty() {
+            say!("left out though the scene has it: {}", missing.join(", "));
+        }
+        let unused: Vec<_> = left_out.iter().filter(|&e| !needed.has(e)).map(|e| e.name()).collect();
+        say!("left out, as nothing needs it: {}", unused.join(", "));
+    }
+
+    pub fn json(&self, args: &TraceArgs, setup: &Setup) -> String {
+        let uniform = args.frames * u64::from(args.size[0]) * u64::from(args.size[1]) * u64::from(args.spp);
+        let report = TraceJson {
+            tool: "afterimage",
+            version: env!("CARGO_PKG_VERSION"),
+            scene: &args.scene,
+            size: args.size,
+            frames: args.frames,
+            fps: setup.fps,
+            hfov_deg: self.hfov_deg(),
+            spp: args.spp,
+            sampling: "uniform",
+            max_depth: args.max_depth,
+            integrator: format!("{:?}", args.integrator).to_lowercase(),
+            bsdf: format!("{:?}", args.bsdf).to_lowercase(),
+            seed: args.seed,
+            backend: backend_report(&setup.backend),
+            triangles: setup.world.geometry.len(),
+            load_ms: setup.load_ms,
+            build_ms: setup.build_ms,
+            compile_ms: setup.tracer.compile_time().as_secs_f64() * 1e3,
+            samples: Samples {
+                traced: self.samples,
+                uniform,
+                regions: vec![self.samples],
+                ideal_reduction: uniform as f64 / self.samples.max(1) as f64,
+                achieved_reduction: None,
+            },
+            rays: self.rays,
+            seconds: self.seconds,
+            cpu_seconds: self.cpu_seconds,
+            million_rays_per_second: self.rays as f64 / self.seconds * 1e-6,
+            nonfinite_samples: self.nonfinite,
+            effects: setup.tracer.effects(&setup.world).iter().map(|e| e.name()).collect(),
+            warnings: &setup.scene.warnings,
+        };
+        serde_json::to_string_pretty(&report).expect("the report has no map with keys other than strings") + "\n"
+    }
+
+    /// Poses in the axes of such files (z up), so that the frames are an input of `run` and the file one of `--camera`.
+    pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup) -> String {
+        let frames = self.cameras.iter().enumerate().map(|(frame, view)| {
+            let m = view.world_from_camera().transpose().to_cols_array_2d();
+            // (x, y, z) of the scene is (x, -z, y) there.
+            CameraJson { frame, camera_to_world: [m[0], m[2].map(|v| -v), m[1], m[3]] }
+        });
+        let cameras = CamerasJson {
+            width: args.size[0],
+            height: args.size[1],
+            fps: setup.fps,
+            horizontal_fov_deg: self.hfov_deg(),
+            frames: frames.collect(),
+        };
+        serde_json::to_string_pretty(&cameras).expect("numbers and lists only") + "\n"
+    }
+
+    pub fn print_summary(&self, args: &TraceArgs, setup: &Setup) {
+        say!(
+            "{}: {} triangles, {} frames of {}x{} at {} spp in {:.2} s, {:.2} million rays/s, on {}",
+            args.scene,
+            setup.world.geometry.len(),
+            args.frames,
+            args.size[0],
+            args.size[1],
+            args.spp,
+            self.seconds,
+            self.rays as f64 / self.seconds * 1e-6,
+            backend_report(&setup.backend).name,
+        );
+        say!("wrote {}", args.out.display());
+    }
+
+    fn hfov_deg(&self) -> f32 {
+        self.cameras.first().map_or(0.0, |view| view.geometry().hfov_deg())
+    }
+}

@@ -1,0 +1,205 @@
+//! What a trace needs before its first ray: scene, light, camera, tracer.
+
+use super::{TraceArgs, settings};
+use crate::failure::Failure;
+use crate::run::backend;
+use afterimage::pipeline::{Backend, Headless};
+use afterimage::report::clock::Stopwatch;
+use afterimage::scene::camera_file::CameraFile;
+use afterimage::scene::{Camera, Environment, Scene, SceneLimits};
+use afterimage::source::{FrameSource, ReadLimits, StillSource};
+use afterimage::trace::Tracer;
+use afterimage::trace::effects::{Effect, Effects};
+use afterimage::trace::settings::MAX_DEPTH;
+use afterimage::trace::view::View;
+use afterimage::trace::world::World;
+use std::path::Path;
+
+/// A scene ready to be traced.
+pub struct Setup {
+    pub scene: Scene,
+    pub world: World,
+    pub tracer: Tracer,
+    pub backend: Backend,
+    pub fps: f32,
+    /// Time that reading the scene, and that building its hierarchy took.
+    pub load_ms: f64,
+    pub build_ms: f64,
+    camera: CameraChoice,
+    size: [u32; 2],
+    hfov_deg: Option<f32>,
+    moves: bool,
+}
+
+enum CameraChoice {
+    /// The scene's, by number.
+    Scene(usize),
+    /// One that stands still.
+    Framing(Camera),
+    File(CameraFile),
+}
+
+/// Radiance of the sky for scenes that bring no light.
+const SOFT_WHITE: [f32; 3] = [1.0; 3];
+
+/// Largest image: pixel coordinates have 16 bits.
+const MAX_SIDE: u32 = 65_536;
+
+impl Setup {
+    pub fn new(args: &TraceArgs) -> Result<Self, Failure> {
+        check(args)?;
+        let clock = Stopwatch::start();
+        let mut scene = Scene::open_clip(&args.scene, args.clip.as_deref(), &SceneLimits::default())?;
+        for warning in &scene.warnings {
+            eprintln!("afterimage: warning: {warning}");
+        }
+        light(&mut scene, args)?;
+        let load_ms = clock.wall_ms();
+        let camera = choose_camera(&scene, args)?;
+        let backend = match backend(args.backend)? {
+            // Scenes take larger textures and buffers than frames.
+            Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
+            Backend::Cpu => Backend::Cpu,
+        };
+        let clock = Stopwatch::start();
+        let world = World::new(&scene);
+        let build_ms = clock.wall_ms();
+        let effects = parse_effects(&args.effects)?;
+        let tracer = Tracer::new(&backend, &world, settings(args, effects))
+            .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
+        let file_fps = match &camera {
+            CameraChoice::File(file) => file.fps,
+            _ => None,
+        };
+        let moves = scene.duration_s() > 0.0;
+        Ok(Self {
+            world,
+            tracer,
+            backend,
+            fps: args.fps.or(file_fps).unwrap_or(60.0),
+            load_ms,
+            build_ms,
+            camera,
+            size: args.size,
+            hfov_deg: args.hfov,
+            moves,
+            scene,
+        })
+    }
+
+    /// Moves everything to its place at `time_s`; the view then.
+    pub fn pose(&mut self, frame: u64, time_s: f64) -> Result<View, Failure> {
+        if self.moves {
+            let before = (time_s - 1.0 / f64::from(self.fps)).max(0.0);
+            self.world.pose(&self.scene, time_s, before);
+            self.tracer.update(&self.world).map_err(|e| Failure::Work(e.to_string()))?;
+        }
+        let (camera, hfov_deg) = match &self.camera {
+            CameraChoice::Scene(index) => (self.scene.pose(time_s).cameras[*index].clone(), self.hfov_deg),
+            CameraChoice::Framing(camera) => (camera.clone(), self.hfov_deg),
+            CameraChoice::File(file) => {
+                let world_from_camera = file.world_from_camera(frame, time_s);
+                let camera = Camera { name: String::new(), world_from_camera, vfov_deg: 40.0 };
+                (camera, self.hfov_deg.or(file.hfov_deg).or(Some(70.0)))
+            }
+        };
+        Ok(View::of_camera(&camera, self.size, hfov_deg)?)
+    }
+}
+
+fn check(args: &TraceArgs) -> Result<(), Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    let [w, h] = args.size;
+    if w > MAX_SIDE || h > MAX_SIDE || u64::from(w) * u64::from(h) > ReadLimits::default().max_pixels {
+        return refuse(format!("--size {w}x{h}: too large; expected at most 64 million pixels, {MAX_SIDE} a side"));
+    }
+    if args.spp == 0 || args.spp > 1 << 20 {
+        return refuse(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20));
+    }
+    if args.max_depth > MAX_DEPTH {
+        return refuse(format!("--max-depth {}: expected 0 to {MAX_DEPTH}", args.max_depth));
+    }
+    if args.frames == 0 || args.frames > 10_000_000 {
+        return refuse(format!("--frames {}: expected 1 to 10000000", args.frames));
+    }
+    if let Some(fps) = args.fps
+        && !(fps > 0.0 && fps <= 100_000.0)
+    {
+        return refuse(format!("--fps {fps}: expected a number above 0 and up to 100000"));
+    }
+    if !(args.exposure.abs() <= 64.0) {
+        return refuse(format!("--exposure {}: expected -64 to 64 stops", args.exposure));
+    }
+    Ok(())
+}
+
+/// Gives the scene the light that was asked for, or a sky if it has none.
+fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
+    let expected = "expected none, a radiance R,G,B of numbers from 0, or an .exr file";
+    match args.sky.as_deref() {
+        None => {
+            let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
+            let needs = Effects::needed(scene);
+            if !own.iter().any(|&e| needs.has(e)) && !args.scene.starts_with("builtin:") {
+                scene.environment = Environment::Constant(SOFT_WHITE);
+            }
+        }
+        Some("none") => scene.environment = Environment::Constant([0.0; 3]),
+        Some(file) if file.to_lowercase().ends_with(".exr") => {
+            let mut source = StillSource::open(Path::new(file), &ReadLimits::default())?;
+            scene.environment = Environment::Map(source.frame(0)?.color.map(|c| c.map(|v| v.max(0.0))));
+        }
+        Some(text) => {
+            let values: Vec<f32> = text.split(',').filter_map(|v| v.trim().parse().ok()).collect();
+            let sound =
+                values.len() == 3 && text.split(',').count() == 3 && values.iter().all(|v| (0.0..1e9).contains(v));
+            if !sound {
+                return Err(Failure::Input(format!("--sky {text}: {expected}")));
+            }
+            scene.environment = Environment::Constant([values[0], values[1], values[2]]);
+        }
+    }
+    Ok(())
+}
+
+fn choose_camera(scene: &Scene, args: &TraceArgs) -> Result<CameraChoice, Failure> {
+    let cameras = scene.pose(0.0).cameras;
+    let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
+    match args.camera.as_deref() {
+        None if cameras.is_empty() => Ok(CameraChoice::Framing(scene.framing_camera(aspect as f32))),
+        None => Ok(CameraChoice::Scene(0)),
+        Some(file) if file.to_lowercase().ends_with(".json") => {
+            Ok(CameraChoice::File(CameraFile::open(Path::new(file))?))
+        }
+        Some(name) => match cameras.iter().position(|c| c.name == name) {
+            Some(index) => Ok(CameraChoice::Scene(index)),
+            None => {
+                let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
+                let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                Err(Failure::Input(format!(
+                    "--camera {name}: the scene has no such camera; expected a .json file or one of its cameras: {there}"
+                )))
+            }
+        },
+    }
+}
+
+fn parse_effects(text: &str) -> Result<Option<Effects>, Failure> {
+    match text {
+        "auto" => Ok(None),
+        "all" => Ok(Some(Effects::all())),
+        "none" => Ok(Some(Effects::NONE)),
+        list => {
+            let find = |name: &str| {
+                Effect::ALL.iter().copied().find(|e| e.name() == name).ok_or_else(|| {
+                    let names: Vec<_> = Effect::ALL.iter().map(|e| e.name()).collect();
+                    Failure::Input(format!(
+                        "--effects: '{name}' is none; expected auto, all, none, or a list of {}",
+                        names.join(", ")
+                    ))
+                })
+            };
+            list.split(',').map(|name| find(name.trim())).collect::<Result<Effects, _>>().map(Some)
+        }
+    }
+}
