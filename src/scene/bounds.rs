@@ -1,7 +1,7 @@
 //! What a scene spans, and a camera that has all of it in view.
 
 use super::{Camera, Scene, Triangles};
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,11 +64,6 @@ impl Scene {
                 p.dot(back) + (p.dot(right).abs() / tan_x).max(p.dot(up).abs() / tan_y)
             })
             .fold(0.0, f64::max);
-        let eye = center + back * distance;
-        Camera {
-            name: String::new(),
-            world_from_camera: DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0)),
-            vfov_deg: FRAMING_VFOV_DEG,
-        }
+        Camera::look_at(center + back * distance, center, FRAMING_VFOV_DEG)
     }
 }

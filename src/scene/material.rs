@@ -73,7 +73,7 @@ pub struct Material {
     pub phong: Option<Phong>,
 }
 
-/// The thesis' material: Lambert with `base_color` and this lobe.
+/// The thesis' material: Lambert with `base_color` times (1 - `metallic`), and this lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phong {
     /// Specular albedo.

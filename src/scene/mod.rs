@@ -41,7 +41,7 @@ pub use bounds::Bounds;
 pub use camera::Camera;
 pub use light::{Environment, PunctualKind, PunctualLight};
 pub use limits::SceneLimits;
-pub use material::{Alpha, Material, TextureRef};
+pub use material::{Alpha, Material, Phong, TextureRef};
 pub use texture::{Texture, Wrap};
 pub use triangles::Triangles;
 

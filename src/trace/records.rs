@@ -78,7 +78,7 @@ impl MaterialRecord {
         let derived = m.base_color.map(|c| c * m.metallic + dielectric);
         let (phong_specular, phong_exponent) =
             m.phong.map_or((derived, 2.0 / (alpha * alpha) - 2.0), |p| (p.specular, p.exponent));
-        let diffuse_share = if m.phong.is_some() { 1.0 } else { 1.0 - m.metallic };
+        let diffuse_share = 1.0 - m.metallic;
         Self {
             base_color: m.base_color,
             opacity: m.opacity,

@@ -87,7 +87,7 @@ fn containers_and_descriptions_of_other_kinds() {
             .concat(),
             "recursion",
         ),
-        ("a.gltf", b"{\"asset\": {\"version\": \"2.0\", \"x\": \"\xFF\"}}".to_vec(), "not a glTF"),
+        ("a.gltf", b"{\"asset\": {\"version\": \"2.0\", \"generator\": \"\xFF\"}}".to_vec(), "not a glTF"),
         ("a.gltf", b"{\"asset\": {\"version\": \"2.0\"}, \"nodes\": 7}".to_vec(), "not a glTF"),
     ];
     for (name, bytes, word) in cases {

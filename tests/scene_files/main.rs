@@ -6,6 +6,7 @@ mod common;
 
 mod bad_input;
 mod builder;
+mod builtin;
 mod features;
 mod framing;
 mod limits;

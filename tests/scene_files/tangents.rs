@@ -1,6 +1,7 @@
 //! Tangents that a file leaves out.
 
 use crate::builder::{Gltf, png};
+use crate::common::Draws;
 use crate::open;
 use crate::real::path_of;
 use afterimage::scene::Scene;
@@ -67,6 +68,30 @@ fn vertices_that_a_thousand_triangles_share_take_no_square_time() {
     // Rims of 6e-5 from coordinates rounded to 6e-8: the direction is good to a few thousandths.
     for t in scene.still().tangents.iter().flatten() {
         assert!(t.abs_diff_eq(Vec4::new(1.0, 0.0, 0.0, 1.0), 0.02), "{t}");
+    }
+}
+
+/// Triangles on a grid so coarse that many have no area, share edges three times, or lie on each other.
+#[test]
+fn tangled_meshes_get_tangents_too() {
+    let mut draws = Draws::new("tangled meshes");
+    let extremes = [0.0, 1.0, -1.0, 0.5, 1e-30, 1e9, -1e9, 1e-20, 3e38, -3e38, f32::NAN];
+    for case in 0..400 {
+        let choices = if case % 2 == 0 { 3 } else { extremes.len() as u32 };
+        let mut pick = || extremes[(draws.bits() % choices) as usize];
+        let positions: Vec<[f32; 3]> = (0..24).map(|_| [pick(), pick(), pick()]).collect();
+        let uvs: Vec<[f32; 2]> = (0..24).map(|_| [pick(), pick()]).collect();
+        let normals: Vec<[f32; 3]> = (0..24).map(|_| [pick(), pick(), pick()]).collect();
+        let indices: Vec<u32> = (0..120).map(|_| draws.bits() % 24).collect();
+        let mut file = mapped(&[[0.0; 2]; 4], false);
+        let mut attributes = json!({"POSITION": file.floats(&positions), "TEXCOORD_0": file.floats(&uvs)});
+        if case % 4 < 2 {
+            attributes["NORMAL"] = json!(file.floats(&normals));
+        }
+        let indices = file.indices(&indices);
+        file.json["meshes"][0]["primitives"][0] = json!({"attributes": attributes, "indices": indices, "material": 0});
+        // Sound: that is all that can be asked.
+        file.open();
     }
 }
 

@@ -1,6 +1,5 @@
 //! The Cornell box.
 
-use super::shapes::block;
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;
 
@@ -42,4 +41,21 @@ pub fn cornell() -> Scene {
     block(&mut t, Vec3::splat(1.65), -18.0, Vec3::new(1.30, 0.0, 0.65), white);
     let camera = super::look_at([2.78, 2.78, -8.0], [2.78, 2.78, 0.0], 40.0);
     super::still("cornell", materials, t, camera, Environment::Constant([0.0; 3]))
+}
+
+/// A box between two corners, turned by `turn_deg` about the vertical through the origin and then moved: 12 triangles,
+/// outside in front.
+fn block(to: &mut Triangles, size: Vec3, turn_deg: f32, moved: Vec3, material: u32) {
+    let turn = glam::Quat::from_rotation_y(turn_deg.to_radians());
+    let corner = |x: u32, y: u32, z: u32| turn * (size * Vec3::new(x as f32, y as f32, z as f32)) + moved;
+    for face in [
+        [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+        [[1, 0, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0]],
+        [[1, 0, 1], [1, 0, 0], [1, 1, 0], [1, 1, 1]],
+        [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
+        [[0, 1, 1], [1, 1, 1], [1, 1, 0], [0, 1, 0]],
+        [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
+    ] {
+        to.push_quad(face.map(|[x, y, z]| corner(x, y, z)), material);
+    }
 }

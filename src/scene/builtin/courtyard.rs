@@ -1,6 +1,6 @@
 //! A courtyard of about 260,000 triangles in which every surface is rough: a scene for timing rays.
 
-use super::shapes::{direction, patch};
+use super::patch::{direction, patch};
 use crate::kernel::rng::{pcg4d, unit_draw};
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;

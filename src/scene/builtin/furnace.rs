@@ -1,6 +1,6 @@
 //! The white furnace: what returns exactly the light that falls on it cannot be seen.
 
-use super::shapes::direction;
+use super::patch::direction;
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;
 

@@ -1,8 +1,13 @@
 //! Scenes made by code: `builtin:NAME`.
 
+mod bunny;
+mod control;
 mod cornell;
 mod courtyard;
+mod cubes;
 mod furnace;
+mod mirror_room;
+mod patch;
 mod shapes;
 
 pub use cornell::cornell;
@@ -10,17 +15,23 @@ pub use courtyard::{courtyard, courtyard_of};
 pub use furnace::{furnace, furnace_of};
 
 use super::{Camera, Environment, Material, Pose, Scene, Triangles};
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 /// Names of the built-in scenes.
-pub const NAMES: &[&str] = &["cornell", "courtyard", "furnace"];
+pub const NAMES: &[&str] =
+    &["bunny-high", "bunny-low", "control", "cornell", "courtyard", "cubes", "furnace", "mirror-room"];
 
 /// The scene of that name.
 pub(crate) fn open(name: &str) -> Option<Scene> {
     Some(match name {
+        "bunny-high" => bunny::high(),
+        "bunny-low" => bunny::low(),
+        "control" => control::scene(),
         "cornell" => cornell(),
         "courtyard" => courtyard(),
+        "cubes" => cubes::scene(),
         "furnace" => furnace(),
+        "mirror-room" => mirror_room::scene(),
         _ => return None,
     })
 }
@@ -41,10 +52,5 @@ fn still(name: &str, materials: Vec<Material>, still: Triangles, camera: Camera,
 
 /// A camera at `eye` that looks at `target`, upright.
 fn look_at(eye: [f64; 3], target: [f64; 3], vfov_deg: f32) -> Camera {
-    let (eye, target) = (DVec3::from(eye), DVec3::from(target));
-    let back = (eye - target).normalize();
-    let right = DVec3::Y.cross(back).normalize();
-    let up = back.cross(right);
-    let world_from_camera = DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0));
-    Camera { name: "main".into(), world_from_camera, vfov_deg }
+    Camera { name: "main".into(), ..Camera::look_at(DVec3::from(eye), DVec3::from(target), vfov_deg) }
 }

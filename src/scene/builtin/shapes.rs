@@ -1,67 +1,80 @@
-//! Surfaces that built-in scenes are made of.
+//! Bodies and materials that the scenes are made of.
 
-use crate::scene::Triangles;
-use glam::{Vec2, Vec3};
+use crate::scene::{Material, Phong, Triangles};
+use glam::{Quat, Vec2, Vec3, Vec4};
+use std::f32::consts::{PI, TAU};
 
-/// The surface `at(u, v)` over the unit square as `cells` quadrilaterals along u and v, two triangles each, with smooth normals.
-/// The front is where u grows to the right and v upwards. Triangles without area (poles) are left out.
-pub(super) fn patch(to: &mut Triangles, cells: [u32; 2], material: u32, at: impl Fn(f32, f32) -> Vec3) {
-    let [columns, rows] = cells;
-    let point = |i: u32, j: u32| at(i as f32 / columns as f32, j as f32 / rows as f32);
-    let normal = |i: u32, j: u32, flat: Vec3| {
-        let (u, v) = (i as f32 / columns as f32, j as f32 / rows as f32);
-        let (du, dv) = (0.25 / columns as f32, 0.25 / rows as f32);
-        let along_u = at(u + du, v) - at(u - du, v);
-        let along_v = at(u, v + dv) - at(u, v - dv);
-        let smooth = along_u.cross(along_v).normalize_or(flat);
-        // Where the parametrisation folds (poles), the face knows better.
-        if smooth.dot(flat) > 0.0 { smooth } else { flat }
-    };
-    for j in 0..rows {
-        for i in 0..columns {
-            let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
-            for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-                let ids = [corners[a], corners[b], corners[c]];
-                let positions = ids.map(|[i, j]| point(i, j));
-                let [p, q, r] = positions;
-                let flat = (q - p).cross(r - p);
-                if flat.length_squared() < 1e-18 {
-                    continue;
+/// A matt material with a highlight, in both modes: Disney's with that roughness, Phong's with that exponent.
+pub(super) fn glossy(name: &str, base_color: [f32; 3], roughness: f32, exponent: f32) -> Material {
+    let phong = Some(Phong { specular: [0.1; 3], exponent });
+    Material { name: name.into(), base_color, roughness, double_sided: false, phong, ..Material::default() }
+}
+
+/// An ellipsoid, first scaled, then turned, then shifted.
+pub(super) struct Ellipsoid {
+    pub center: Vec3,
+    pub radii: Vec3,
+    pub rotation: Quat,
+    /// Faces around its y axis, 3 or more.
+    pub around: u32,
+    /// Rings of faces from pole to pole, 2 or more.
+    pub rings: u32,
+}
+
+impl Ellipsoid {
+    /// Adds 2 `around` (`rings` - 1) triangles: closed, with the normals of the smooth surface.
+    pub fn push(&self, material: u32, out: &mut Triangles) {
+        for ring in 0..self.rings {
+            for k in 0..self.around {
+                let [a, b] = [k, k + 1].map(|k| self.direction(ring, k));
+                let [c, d] = [k, k + 1].map(|k| self.direction(ring + 1, k));
+                // At the poles one side of the face is a point.
+                if ring > 0 {
+                    self.push_triangle([a, d, b], material, out);
                 }
-                to.push_flat(positions, material);
-                let last = to.len() - 1;
-                to.normals[last] = ids.map(|[i, j]| normal(i, j, flat.normalize()));
-                to.uvs[last] = ids.map(|[i, j]| Vec2::new(i as f32 / columns as f32, 1.0 - j as f32 / rows as f32));
+                if ring + 1 < self.rings {
+                    self.push_triangle([a, c, d], material, out);
+                }
             }
         }
     }
+
+    /// On the unit sphere, ring 0 at its top. The last meridian is the first one, to the last bit.
+    fn direction(&self, ring: u32, k: u32) -> Vec3 {
+        if ring == 0 || ring == self.rings {
+            return if ring == 0 { Vec3::Y } else { Vec3::NEG_Y };
+        }
+        let (sin_polar, cos_polar) = (PI * ring as f32 / self.rings as f32).sin_cos();
+        let (sin, cos) = (TAU * (k % self.around) as f32 / self.around as f32).sin_cos();
+        Vec3::new(sin_polar * sin, cos_polar, sin_polar * cos)
+    }
+
+    fn push_triangle(&self, directions: [Vec3; 3], material: u32, out: &mut Triangles) {
+        let normals = directions.map(|d| (self.rotation * (d / self.radii)).normalize());
+        out.positions.push(directions.map(|d| self.center + self.rotation * (d * self.radii)));
+        out.normals.push(normals);
+        out.uvs.push([Vec2::ZERO; 3]);
+        out.tangents.push(normals.map(|n| n.any_orthonormal_vector().extend(1.0)));
+        out.colors.push([Vec4::ONE; 3]);
+        out.materials.push(material);
+    }
 }
 
-/// Direction of longitude `u` and latitude `v`, both in \[0, 1\]; v = 0 is down.
-pub(super) fn direction(u: f32, v: f32) -> Vec3 {
-    let (sin_u, cos_u) = (u * std::f32::consts::TAU).sin_cos();
-    let (sin_v, cos_v) = (v * std::f32::consts::PI).sin_cos();
-    Vec3::new(sin_v * sin_u, -cos_v, sin_v * cos_u)
-}
-
-/// An ellipsoid of `cells` longitudes and latitudes: 2 x columns x (rows - 1) triangles, outside in front.
-pub(super) fn ellipsoid(to: &mut Triangles, center: Vec3, radii: Vec3, cells: [u32; 2], material: u32) {
-    patch(to, cells, material, |u, v| center + radii * direction(u, v));
-}
-
-/// A box between two corners, turned by `turn_deg` about the vertical through the origin and then moved: 12 triangles,
-/// outside in front.
-pub(super) fn block(to: &mut Triangles, size: Vec3, turn_deg: f32, moved: Vec3, material: u32) {
-    let turn = glam::Quat::from_rotation_y(turn_deg.to_radians());
-    let corner = |x: u32, y: u32, z: u32| turn * (size * Vec3::new(x as f32, y as f32, z as f32)) + moved;
-    for face in [
-        [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
-        [[1, 0, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0]],
-        [[1, 0, 1], [1, 0, 0], [1, 1, 0], [1, 1, 1]],
-        [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]],
-        [[0, 1, 1], [1, 1, 1], [1, 1, 0], [0, 1, 0]],
-        [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
-    ] {
-        to.push_quad(face.map(|[x, y, z]| corner(x, y, z)), material);
+/// Adds the 12 triangles of a box along the axes, seen from outside or, `inward`, from inside.
+pub(super) fn push_box(min: Vec3, max: Vec3, inward: bool, material: u32, out: &mut Triangles) {
+    let corner = |x: bool, y: bool, z: bool| Vec3::select(glam::BVec3::new(x, y, z), max, min);
+    for axis in 0..3 {
+        for upper in [false, true] {
+            // Counter-clockwise around the axis as seen from its far end.
+            let mut face = [(false, false), (true, false), (true, true), (false, true)].map(|(u, v)| match axis {
+                0 => corner(upper, u, v),
+                1 => corner(v, upper, u),
+                _ => corner(u, v, upper),
+            });
+            if upper == inward {
+                face.reverse();
+            }
+            out.push_quad(face, material);
+        }
     }
 }

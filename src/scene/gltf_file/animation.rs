@@ -22,6 +22,7 @@ pub(super) fn channels(
     };
     let Some(animation) = animations.get(index) else { return Ok(Vec::new()) };
     let name = || named("animation", index, animation.name.as_deref());
+    let targets = targets(document.root);
     let mut channels = Vec::new();
     for channel in &animation.channels {
         let node = document.look_up(&document.root.nodes, channel.target.node, "node")?;
@@ -39,7 +40,7 @@ pub(super) fn channels(
         let width = match property {
             Property::Translation | Property::Scale => 3,
             Property::Rotation => 4,
-            Property::Weights => targets(document, node),
+            Property::Weights => node.mesh.and_then(|mesh| targets.get(mesh.value()).copied()).unwrap_or(0),
         };
         if width == 0 {
             warnings.about("weights of morph targets that do not exist are left out", name);
@@ -51,11 +52,10 @@ pub(super) fn channels(
     Ok(channels)
 }
 
-/// Number of morph targets of a node's mesh.
-fn targets(document: &Document, node: &json::Node) -> usize {
-    let mesh = node.mesh.and_then(|mesh| document.root.meshes.get(mesh.value()));
-    let primitives = mesh.map_or(&[][..], |mesh| &mesh.primitives);
-    primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len)).max().unwrap_or(0)
+/// Number of morph targets of each mesh.
+fn targets(root: &json::Root) -> Vec<usize> {
+    let of = |mesh: &json::Mesh| mesh.primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len)).max();
+    root.meshes.iter().map(|mesh| of(mesh).unwrap_or(0)).collect()
 }
 
 fn curve(

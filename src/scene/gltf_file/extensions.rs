@@ -19,6 +19,9 @@ const SUPPORTED: [&str; 12] = [
     "KHR_texture_transform",
 ];
 
+/// Extensions that are named; no honest file uses as many.
+const MOST_NAMED: usize = 50;
+
 /// Refuses what a file cannot be read without.
 pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), InputError> {
     let Some(missing) = required.iter().find(|name| !SUPPORTED.contains(&name.as_str())) else { return Ok(()) };
@@ -38,7 +41,10 @@ pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), I
 pub(super) fn warn_of_unsupported(used: &[String], warnings: &mut Warnings) {
     let unsupported: BTreeSet<&str> =
         used.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
-    for name in unsupported {
+    for name in unsupported.iter().take(MOST_NAMED) {
         warnings.add(format!("extension {} is not supported and left out", shown(name)));
+    }
+    if unsupported.len() > MOST_NAMED {
+        warnings.add(format!("{} more extensions are not supported and left out", unsupported.len() - MOST_NAMED));
     }
 }

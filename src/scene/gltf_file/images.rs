@@ -84,10 +84,17 @@ impl<'a> Textures<'a> {
         }
         let decoded: Result<Vec<_>, _> =
             encoded.par_iter().map(|(image, encoded)| self.decoded(*image, encoded)).collect();
-        let decoded = decoded?;
+        let mut decoded = decoded?;
+        let mut uses = vec![0; decoded.len()];
+        for wanted in &self.wanted {
+            uses[place_of_image[&wanted.image]] += 1;
+        }
         let texture = |wanted: &Wanted| {
-            let (size, texels) = &decoded[place_of_image[&wanted.image]];
-            Texture { size: *size, texels: texels.clone(), wrap: wanted.wrap, nearest: wanted.nearest }
+            let place = place_of_image[&wanted.image];
+            uses[place] -= 1;
+            let (size, texels) = &mut decoded[place];
+            let texels = if uses[place] == 0 { std::mem::take(texels) } else { texels.clone() };
+            Texture { size: *size, texels, wrap: wanted.wrap, nearest: wanted.nearest }
         };
         Ok(self.wanted.iter().map(texture).collect())
     }
