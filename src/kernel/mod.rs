@@ -11,6 +11,7 @@ pub mod debug_view;
 pub mod depth;
 pub mod foveate;
 pub mod matched;
+pub mod octahedral;
 pub mod pack;
 pub mod reproject;
 pub mod resample;

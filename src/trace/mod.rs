@@ -15,4 +15,4 @@ mod record;
 
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
-pub use record::{AttributeRecord, Attributes, PreviousRecord, TriangleFlags, TriangleRecord};
+pub use record::{AttributeRecord, Attributes, AttributesAt, PreviousRecord, TriangleFlags, TriangleRecord};

@@ -1,5 +1,6 @@
 //! Triangles as both tracers read them.
 
+use crate::kernel::octahedral::{decode_direction, encode_direction};
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3A, Vec4};
@@ -130,6 +131,21 @@ pub struct Attributes {
     pub colors: [Vec4; 3],
 }
 
+/// Attributes at a point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttributesAt {
+    /// Shading normal, not normalised.
+    pub normal: Vec3,
+    /// Direction of growing u, not normalised.
+    pub tangent: Vec3,
+    /// Sign of the bitangent: the first corner's.
+    pub bitangent_sign: f32,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Factors of colour and alpha.
+    pub color: Vec4,
+}
+
 /// Words of the texture coordinates' components.
 const UV_WORDS: [usize; 6] = [8, 9, 10, 12, 13, 14];
 
@@ -139,10 +155,10 @@ impl AttributeRecord {
         let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
         for vertex in 0..3 {
             if let Some(n) = triangles.normals.get(source) {
-                words[vertex] = encode_direction(n[vertex]);
+                words[vertex] = direction_code(n[vertex]);
             }
             if let Some(t) = triangles.tangents.get(source) {
-                words[4 + vertex] = encode_direction(t[vertex].truncate()) & !1 | u32::from(t[vertex].w < 0.0);
+                words[4 + vertex] = direction_code(t[vertex].truncate()) & !1 | u32::from(t[vertex].w < 0.0);
             }
             if let Some(uv) = triangles.uvs.get(source) {
                 words[UV_WORDS[2 * vertex]] = finite(uv[vertex].x).to_bits();
@@ -155,7 +171,22 @@ impl AttributeRecord {
         Self { words }
     }
 
+    /// Interpolated with the weights of the second and the third corner. Twin: `attributes_at` in `shaders/trace/geometry.wgsl`.
+    #[inline]
+    pub fn at(&self, u: f32, v: f32) -> AttributesAt {
+        let Attributes { normals: n, tangents: t, uvs, colors: c } = self.unpack();
+        let w = (1.0 - u) - v;
+        AttributesAt {
+            normal: (n[0] * w + n[1] * u) + n[2] * v,
+            tangent: (t[0].truncate() * w + t[1].truncate() * u) + t[2].truncate() * v,
+            bitangent_sign: t[0].w,
+            uv: (uvs[0] * w + uvs[1] * u) + uvs[2] * v,
+            color: (c[0] * w + c[1] * u) + c[2] * v,
+        }
+    }
+
     /// All of it, decoded.
+    #[inline]
     pub fn unpack(&self) -> Attributes {
         let w = &self.words;
         let of = |word: usize| f32::from_bits(w[word]);
@@ -168,28 +199,8 @@ impl AttributeRecord {
     }
 }
 
-/// Octahedral code of a direction (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
-/// 3(2), 2014), two 16-bit signed fractions; within 0.004 degrees. A vector that is no direction becomes +z.
-pub(super) fn encode_direction(n: Vec3) -> u32 {
-    let sum = n.x.abs() + n.y.abs() + n.z.abs();
-    if !(sum.is_finite() && sum > 0.0) {
-        return 0;
-    }
-    let (mut x, mut y) = (n.x / sum, n.y / sum);
-    if n.z < 0.0 {
-        let sign = |v: f32| if v < 0.0 { -1.0 } else { 1.0 };
-        (x, y) = ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y));
-    }
-    let code = |v: f32| u32::from((v * 32767.0).round() as i16 as u16);
-    code(x) | code(y) << 16
-}
-
-/// Inverse of [`encode_direction`].
-pub(super) fn decode_direction(code: u32) -> Vec3 {
-    let value = |bits: u32| f32::from(bits as u16 as i16) * (1.0 / 32767.0);
-    let (x, y) = (value(code), value(code >> 16));
-    let z = 1.0 - x.abs() - y.abs();
-    let fold = (-z).max(0.0);
-    let back = |v: f32| if v < 0.0 { v + fold } else { v - fold };
-    Vec3::new(back(x), back(y), z).normalize_or(Vec3::Z)
+/// Octahedral code; of a vector that is no direction, that of +z.
+fn direction_code(n: Vec3) -> u32 {
+    let sum = n.abs().element_sum();
+    if sum.is_finite() && sum >= f32::MIN_POSITIVE { encode_direction(n) } else { 0 }
 }

@@ -1,8 +1,9 @@
-//! Rays and triangles.
+//! Rays and triangles, directions.
 
 use crate::common::Draws;
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
+use afterimage::kernel::octahedral;
 use afterimage::kernel::triangle::{self, Shear};
 use glam::{Vec3, Vec3A};
 
@@ -174,5 +175,27 @@ pub const PROBES: &[Probe] = &[
                 row.push(scaled(d, -20, 20));
             })
         },
+    },
+    Probe {
+        name: "encode_direction",
+        module: "octahedral",
+        words: [3, 1],
+        wgsl: "out_u(encode_direction(in_v(0u)));",
+        rust: |r, o| o.u(octahedral::encode_direction(r.v(0))),
+        rows: || {
+            let axis = floats(&[1.0, -1.0, 0.5, -0.25, 1e-3]);
+            Rows::new(3).cross(&[&axis, &axis, &axis]).random("encode_direction", |d, row| {
+                let v = vector(d, 1.0);
+                push(row, v);
+            })
+        },
+    },
+    Probe {
+        name: "decode_direction",
+        module: "octahedral",
+        words: [1, 3],
+        wgsl: "out_v(decode_direction(in_u(0u)));",
+        rust: |r, o| o.v(octahedral::decode_direction(r.u(0))),
+        rows: || Rows::new(1).cross(&[&words()]).random("decode_direction", |d, row| row.push(d.bits())),
     },
 ];
