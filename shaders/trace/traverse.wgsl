@@ -22,7 +22,7 @@ const NODE_SLACK: f32 = 1.0 / 524288.0;
 const MIN_DIRECTION: f32 = 1.0 / 1152921504606846976.0;
 const FLAG_ALPHA: u32 = 0x1000000u;
 const NO_TRIANGLE: u32 = 0xffffffffu;
-const STACK: u32 = 24u;
+const STACK: u32 = 32u;
 
 struct Ray {
     origin: vec3<f32>,

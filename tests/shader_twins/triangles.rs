@@ -41,7 +41,7 @@ fn ray_and_triangle(d: &mut Draws, row: &mut Vec<u32>) {
     };
     let target = triangle::point_at(corners[0], corners[1], corners[2], u, v);
     let mut direction = (target - origin).normalize_or(Vec3::X);
-    if d.bits() % 8 == 0 {
+    if d.bits().is_multiple_of(8) {
         direction[(d.bits() % 3) as usize] = 0.0;
     }
     let shear = triangle::shear(direction.normalize_or(Vec3::Y));
@@ -101,7 +101,7 @@ pub const PROBES: &[Probe] = &[
         rows: || {
             Rows::new(6).random("edge", |d, row| {
                 let a = vector(d, 1.0);
-                let b = if d.bits() % 2 == 0 { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
+                let b = if d.bits().is_multiple_of(2) { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
                 push(row, a);
                 push(row, b);
             })

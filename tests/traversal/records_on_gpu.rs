@@ -44,7 +44,8 @@ fn dressed(name: &str, count: u32) -> Triangles {
     let mut triangles = soup(name, count as usize, Vec3::ZERO, 1.0);
     for i in 0..count as usize {
         triangles.normals[i] = [0; 3].map(|_| direction(&mut d));
-        triangles.tangents[i] = [0; 3].map(|_| direction(&mut d).extend(if d.bits() % 2 == 0 { 1.0 } else { -1.0 }));
+        triangles.tangents[i] =
+            [0; 3].map(|_| direction(&mut d).extend(if d.bits().is_multiple_of(2) { 1.0 } else { -1.0 }));
         triangles.uvs[i] = [0; 3].map(|_| Vec2::new(d.range(-9.0, 9.0), d.range(-9.0, 9.0)));
         triangles.colors[i] = [0; 3].map(|_| Vec4::new(d.uniform(), d.uniform(), d.uniform(), d.uniform()));
         triangles.materials[i] = i as u32 % 2;

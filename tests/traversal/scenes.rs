@@ -52,7 +52,7 @@ pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
         vec3(-0.0, 0.6, -0.8),
     ];
     let ray = |i: usize| {
-        let direction = if i % 4 == 0 { axes[i / 4 % axes.len()] } else { direction(&mut d) };
+        let direction = if i.is_multiple_of(4) { axes[i / 4 % axes.len()] } else { direction(&mut d) };
         Ray { origin: center + point(&mut d, 1.5 * half), direction, t_max: f32::INFINITY }
     };
     (0..count).map(ray).collect()
