@@ -40,7 +40,11 @@ struct Hit {
 
 // The nearest hit; `key` is handed to `accept_hit`.
 fn closest(ray: Ray, key: u32) -> Hit {
-    var hit = traverse(ray, key, NODES, TRIANGLES, 0u, Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0), false);
+    let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
+    if !is_ray(ray) {
+        return none;
+    }
+    var hit = traverse(ray, key, NODES, TRIANGLES, 0u, none, false);
     if MOVES {
         hit = traverse(ray, key, MOVING_NODES, MOVING_TRIANGLES, FIRST_MOVING, hit, false);
     }
@@ -50,6 +54,9 @@ fn closest(ray: Ray, key: u32) -> Hit {
 // Whether anything is hit.
 fn occluded(ray: Ray, key: u32) -> bool {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
+    if !is_ray(ray) {
+        return false;
+    }
     if traverse(ray, key, NODES, TRIANGLES, 0u, none, true).triangle != NO_TRIANGLE {
         return true;
     }
@@ -57,6 +64,15 @@ fn occluded(ray: Ray, key: u32) -> bool {
         return traverse(ray, key, MOVING_NODES, MOVING_TRIANGLES, FIRST_MOVING, none, true).triangle != NO_TRIANGLE;
     }
     return false;
+}
+
+// Whether the ray can hit anything: finite but for its limit, with a direction.
+fn is_ray(ray: Ray) -> bool {
+    let nowhere = (bitcast<vec3<u32>>(ray.origin) & vec3<u32>(0x7fffffffu)) >= vec3<u32>(0x7f800000u);
+    let direction = bitcast<vec3<u32>>(ray.direction) & vec3<u32>(0x7fffffffu);
+    let wild = direction >= vec3<u32>(0x7f800000u);
+    let limit = bitcast<u32>(ray.t_max) & 0x7fffffffu;
+    return !any(nowhere) && !any(wild) && any(direction != vec3<u32>(0u)) && limit <= 0x7f800000u;
 }
 
 // Bvh::traverse. `first` is the index of the hierarchy's first triangle.

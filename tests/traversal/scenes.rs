@@ -96,3 +96,18 @@ pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     }
     triangles
 }
+
+/// Rays that can hit nothing: not finite, without a direction or a limit.
+pub fn no_rays() -> Vec<Ray> {
+    let mut out = vec![Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: f32::NAN }];
+    for (origin, direction) in [
+        (Vec3::NAN, Vec3::X),
+        (Vec3::ZERO, Vec3::NAN),
+        (Vec3::ZERO, Vec3::ZERO),
+        (Vec3::INFINITY, Vec3::X),
+        (Vec3::ZERO, vec3(f32::INFINITY, 0.0, 0.0)),
+    ] {
+        out.extend([f32::INFINITY, 1.0, 0.0, -1.0, f32::NAN].map(|t_max| Ray { origin, direction, t_max }));
+    }
+    out
+}
