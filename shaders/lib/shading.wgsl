@@ -4,11 +4,6 @@
 
 const GRAZING: f32 = 1e-3;
 
-// shading::across
-fn across(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, u: f32, v: f32) -> vec3<f32> {
-    return a * (1.0 - u - v) + b * u + c * v;
-}
-
 // shading::mapped_normal
 fn mapped_normal(normal: vec3<f32>, tangent: vec3<f32>, sign: f32, texel: vec3<f32>, scale: f32) -> vec3<f32> {
     let along = unit(tangent - normal * dot(normal, tangent));

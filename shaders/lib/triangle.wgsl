@@ -1,6 +1,6 @@
 // Twin of src/kernel/triangle.rs: rays and triangles (Woop, Benthin and Wald, JCGT 2(1), 2013).
 
-const OFFSET: f32 = 1.0 / 262144.0;
+const ORIGIN_OFFSET: f32 = 1.0 / 262144.0;
 const MIN_DET: f32 = 1e-36;
 
 struct Shear {
@@ -88,5 +88,5 @@ fn magnitude(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> f32 {
 
 // triangle::offset_ray
 fn offset_ray(point: vec3<f32>, normal: vec3<f32>, magnitude: f32) -> vec3<f32> {
-    return point + normal * (magnitude * OFFSET);
+    return point + normal * (magnitude * ORIGIN_OFFSET);
 }

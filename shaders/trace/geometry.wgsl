@@ -1,19 +1,73 @@
-// Where triangles are in the heap, and hits on them.
+//#use octahedral
+//#use texel
+//#use hit
+// What is stored of a triangle: twin of src/trace/record.rs and geometry.rs. A triangle's index is that of its hit.
 
-// First elements of the triangles at rest and in motion.
-override TRIANGLES: u32 = 0u;
-override MOVING_TRIANGLES: u32 = 0u;
-// Number of triangles at rest, which is the index of the first that moves.
-override FIRST_MOVING: u32 = 0u;
-// Whether any triangle moves.
-override MOVES: bool = false;
+override ATTRIBUTES: u32 = 0u;
+override MOVING_ATTRIBUTES: u32 = 0u;
+override MOVING_PREVIOUS: u32 = 0u;
 
-const NO_TRIANGLE: u32 = 0xffffffffu;
+const FLAG_EMISSIVE: u32 = 0x2000000u;
+const FLAG_TRANSMISSIVE: u32 = 0x4000000u;
 
-// `triangle` is NO_TRIANGLE where nothing was hit.
-struct Hit {
-    triangle: u32,
-    t: f32,
-    u: f32,
-    v: f32,
+// Corners in world space, material and FLAG_ bits, index in the source, and one more than its row in the table of lights.
+struct Triangle {
+    corners: array<vec3<f32>, 3>,
+    material: u32,
+    flags: u32,
+    source: u32,
+    light: u32,
+}
+
+// At a point of a triangle. Normal and tangent are interpolated, not normalised; the bitangent's sign is the first corner's.
+struct Attributes {
+    normal: vec3<f32>,
+    tangent: vec3<f32>,
+    bitangent_sign: f32,
+    uv: vec2<f32>,
+    color: vec4<f32>,
+}
+
+fn is_moving(triangle: u32) -> bool {
+    return MOVES && triangle >= FIRST_MOVING;
+}
+
+// First element of a record of `size` elements.
+fn record_at(triangle: u32, still: u32, moving: u32, size: u32) -> u32 {
+    return select(still + triangle * size, moving + (triangle - FIRST_MOVING) * size, is_moving(triangle));
+}
+
+fn triangle_at(triangle: u32) -> Triangle {
+    let at = record_at(triangle, TRIANGLES, MOVING_TRIANGLES, 3u);
+    let r0 = load(at);
+    let r1 = load(at + 1u);
+    let r2 = load(at + 2u);
+    let corners = array<vec3<f32>, 3>(
+        bitcast<vec3<f32>>(r0.xyz), bitcast<vec3<f32>>(r1.xyz), bitcast<vec3<f32>>(r2.xyz));
+    return Triangle(corners, r0.w & 0xffffffu, r0.w & 0xff000000u, r1.w, r2.w);
+}
+
+// Corners a frame ago; those of now where nothing moves.
+fn previous_corners(triangle: u32) -> array<vec3<f32>, 3> {
+    let at = select(TRIANGLES + triangle * 3u, MOVING_PREVIOUS + (triangle - FIRST_MOVING) * 3u, is_moving(triangle));
+    return array<vec3<f32>, 3>(
+        bitcast<vec3<f32>>(load(at).xyz), bitcast<vec3<f32>>(load(at + 1u).xyz), bitcast<vec3<f32>>(load(at + 2u).xyz));
+}
+
+// AttributeRecord::at
+fn attributes_at(triangle: u32, u: f32, v: f32) -> Attributes {
+    let at = record_at(triangle, ATTRIBUTES, MOVING_ATTRIBUTES, 4u);
+    let normals = load(at);
+    let tangents = load(at + 1u);
+    let uv0 = load(at + 2u);
+    let uv1 = load(at + 3u);
+    let w = (1.0 - u) - v;
+    let normal = (decode_direction(normals.x) * w + decode_direction(normals.y) * u) + decode_direction(normals.z) * v;
+    let tangent = (decode_direction(tangents.x & ~1u) * w + decode_direction(tangents.y & ~1u) * u)
+        + decode_direction(tangents.z & ~1u) * v;
+    let a = bitcast<vec2<f32>>(uv0.xy);
+    let b = bitcast<vec2<f32>>(vec2<u32>(uv0.z, uv1.x));
+    let c = bitcast<vec2<f32>>(uv1.yz);
+    let color = (texel_value(normals.w) * w + texel_value(tangents.w) * u) + texel_value(uv0.w) * v;
+    return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color);
 }

@@ -57,18 +57,18 @@ fn look(p: Point, draws: vec4<f32>, more: vec4<f32>) -> Arriving {
 
 // lights::from_triangle
 fn from_triangle(position: vec3<f32>, index: u32, chosen: f32, place: vec2<f32>) -> Arriving {
-    let c = corners_of(index);
+    let c = triangle_at(index);
     let weights = barycentrics(place);
-    let normal = cross(c.v1 - c.v0, c.v2 - c.v0);
+    let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
     let face = unit(normal);
-    let on_light = point_at(c.v0, c.v1, c.v2, weights.y, weights.z);
+    let on_light = point_at(c.corners[0], c.corners[1], c.corners[2], weights.y, weights.z);
     let cosine = dot(face, position - on_light);
     let double_sided = (material_row(c.material, 8u).x & FLAG_DOUBLE_SIDED) != 0u;
     if cosine <= 0.0 && !double_sided {
         return nothing_arrives();
     }
     let side = select(-face, face, cosine > 0.0);
-    let to = offset_ray(on_light, side, magnitude(c.v0, c.v1, c.v2)) - position;
+    let to = offset_ray(on_light, side, magnitude(c.corners[0], c.corners[1], c.corners[2])) - position;
     let distance = sqrt(dot(to, to));
     let direction = unit(to);
     let area = 0.5 * sqrt(dot(normal, normal));
@@ -166,11 +166,11 @@ fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
 
 // lights::triangle_pdf
 fn triangle_pdf(triangle: u32, distance: f32, cosine: f32) -> f32 {
-    let c = corners_of(triangle);
+    let c = triangle_at(triangle);
     if c.light == 0u {
         return 0.0;
     }
-    let normal = cross(c.v1 - c.v0, c.v2 - c.v0);
+    let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
     let area = 0.5 * sqrt(dot(normal, normal));
     return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, distance, cosine);
 }

@@ -3,6 +3,7 @@
 //#use shading
 //#use triangle
 //#use effects
+//#use geometry
 //#use texture
 // From a hit to what scatters there: trace/cpu/surface.rs.
 
@@ -20,26 +21,8 @@ struct Point {
     phong: PhongSurface,
 }
 
-struct Place {
-    uv: vec2<f32>,
-    color: vec4<f32>,
-}
-
-// AttributeRecord: the second row has tangents, the third and fourth texture coordinates; colours are last words of the first three.
-fn place_at(r0: vec4<u32>, r1: vec4<u32>, r2: vec4<u32>, r3: vec4<u32>, u: f32, v: f32) -> Place {
-    let w = 1.0 - u - v;
-    let a = bitcast<vec2<f32>>(r2.xy);
-    let b = bitcast<vec2<f32>>(vec2<u32>(r2.z, r3.x));
-    let c = bitcast<vec2<f32>>(r3.yz);
-    var color = vec4<f32>(1.0);
-    if EFFECT_VERTEX_COLOR {
-        color = texel_value(r0.w) * w + texel_value(r1.w) * u + texel_value(r2.w) * v;
-    }
-    return Place(a * w + b * u + c * v, color);
-}
-
 // surface::base
-fn base_of(material: u32, place: Place) -> vec4<f32> {
+fn base_of(material: u32, place: Attributes) -> vec4<f32> {
     var base = bitcast<vec4<f32>>(material_row(material, 0u));
     if EFFECT_VERTEX_COLOR {
         base *= place.color;
@@ -55,9 +38,8 @@ fn base_of(material: u32, place: Place) -> vec4<f32> {
 
 // surface::is_there
 fn is_there(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
-    let material = corners_of(triangle).material;
-    let at = attributes_of(triangle);
-    let place = place_at(load(at), load(at + 1u), load(at + 2u), load(at + 3u), u, v);
+    let material = triangle_at(triangle).material;
+    let place = attributes_at(triangle, u, v);
     let opacity = base_of(material, place).w;
     let flags = material_row(material, 8u).x;
     if (flags & FLAG_MASK) != 0u {
@@ -81,8 +63,7 @@ fn emission(material: u32, uv: vec2<f32>) -> vec3<f32> {
 // surface::emission_at
 fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3<f32> {
     if EFFECT_EMISSIVE_TEXTURE {
-        let at = attributes_of(triangle);
-        return emission(material, place_at(load(at), load(at + 1u), load(at + 2u), load(at + 3u), u, v).uv);
+        return emission(material, attributes_at(triangle, u, v).uv);
     }
     return emission(material, vec2<f32>(0.0));
 }
@@ -95,7 +76,7 @@ fn optional_texture(id: u32, uv: vec2<f32>, is_color: bool) -> vec4<f32> {
 }
 
 // surface::resolve
-fn resolve_surface(material: u32, place: Place, front: bool) -> BsdfSurface {
+fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface {
     let base_color = base_of(material, place).xyz;
     let basic = bitcast<vec4<f32>>(material_row(material, 2u));
     let words = material_row(material, 8u);
@@ -168,35 +149,28 @@ fn resolve_surface(material: u32, place: Place, front: bool) -> BsdfSurface {
 
 // surface::point; `material` of the triangle that was hit goes with it.
 fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
-    let c = corners_of(hit.triangle);
-    let at = attributes_of(hit.triangle);
-    let r0 = load(at);
-    let r1 = load(at + 1u);
-    let r2 = load(at + 2u);
-    let r3 = load(at + 3u);
+    let c = triangle_at(hit.triangle);
+    let v0 = c.corners[0];
+    let v1 = c.corners[1];
+    let v2 = c.corners[2];
+    let place = attributes_at(hit.triangle, hit.u, hit.v);
     let toward = -direction;
 
-    let face = unit(cross(c.v1 - c.v0, c.v2 - c.v0));
+    let face = unit(cross(v1 - v0, v2 - v0));
     let front = dot(face, toward) >= 0.0;
     let side = select(-1.0, 1.0, front);
 
-    let place = place_at(r0, r1, r2, r3, hit.u, hit.v);
-    var normal = unit(across(oct_decode(r0.x), oct_decode(r0.y), oct_decode(r0.z), hit.u, hit.v));
+    var normal = unit(place.normal);
     if dot(normal, face) <= 0.0 {
         normal = face;
     }
     let flags = material_row(c.material, 8u).x;
-    var tangent = vec3<f32>(1.0, 0.0, 0.0);
-    if EFFECT_NORMAL_MAP || EFFECT_ANISOTROPY {
-        let t = r1.xyz & vec3<u32>(0xfffffffeu);
-        tangent = across(oct_decode(t.x), oct_decode(t.y), oct_decode(t.z), hit.u, hit.v);
-    }
     if EFFECT_NORMAL_MAP {
         let id = material_row(c.material, 9u).x;
         if id != NO_TEXTURE {
             let texel = texture_value(id, place.uv, false).xyz;
-            let sign = select(1.0, -1.0, (r1.x & 1u) != 0u);
-            normal = mapped_normal(normal, tangent, sign, texel, bitcast<f32>(material_row(c.material, 6u).w));
+            let scale = bitcast<f32>(material_row(c.material, 6u).w);
+            normal = mapped_normal(normal, place.tangent, place.bitangent_sign, texel, scale);
         }
     }
     var p: Point;
@@ -206,7 +180,7 @@ fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
     var along = vec3<f32>(0.0);
     if EFFECT_ANISOTROPY {
         if p.surface.anisotropy > 0.0 {
-            along = tangent - p.z * dot(p.z, tangent);
+            along = place.tangent - p.z * dot(p.z, place.tangent);
         }
     }
     if dot(along, along) > 1e-12 {
@@ -235,7 +209,7 @@ fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
         let diffuse = bitcast<f32>(material_row(c.material, 11u).y);
         p.phong = PhongSurface(p.surface.base_color * diffuse, lobe.xyz, lobe.w);
     }
-    p.position = point_at(c.v0, c.v1, c.v2, hit.u, hit.v);
-    p.magnitude = magnitude(c.v0, c.v1, c.v2);
+    p.position = point_at(v0, v1, v2, hit.u, hit.v);
+    p.magnitude = magnitude(v0, v1, v2);
     return p;
 }

@@ -1,11 +1,11 @@
 //#use triangle
-//#use geometry
+//#use hit
 // Rays through the hierarchies: twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (heap_texture or heap_buffer) and
 // `accept_hit` of whoever uses it.
 //
 // An element of the heap is vec4<u32>. A node is five: corner and exponents with the mask of inner children; first child, first
 // triangle, meta bytes; then bytes of the children's planes: min x and max x, min y and max y, min z and max z. A triangle is
-// three: a corner each, with flags, source and a spare word.
+// three: a corner each, with flags, source and light.
 
 // First elements of the nodes at rest and in motion.
 override NODES: u32 = 0u;
@@ -16,7 +16,7 @@ override ALPHA: bool = false;
 const NODE_SLACK: f32 = 1.0 / 524288.0;
 const MIN_DIRECTION: f32 = 1.0 / 1152921504606846976.0;
 const FLAG_ALPHA: u32 = 0x1000000u;
-const STACK: u32 = 24u;
+const STACK: u32 = 32u;
 
 struct Ray {
     origin: vec3<f32>,
@@ -26,7 +26,11 @@ struct Ray {
 
 // The nearest hit; `key` is handed to `accept_hit`.
 fn closest(ray: Ray, key: u32) -> Hit {
-    var hit = traverse(ray, key, NODES, TRIANGLES, 0u, Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0), false);
+    let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
+    if !is_ray(ray) {
+        return none;
+    }
+    var hit = traverse(ray, key, NODES, TRIANGLES, 0u, none, false);
     if MOVES {
         hit = traverse(ray, key, MOVING_NODES, MOVING_TRIANGLES, FIRST_MOVING, hit, false);
     }
@@ -36,6 +40,9 @@ fn closest(ray: Ray, key: u32) -> Hit {
 // Whether anything is hit.
 fn occluded(ray: Ray, key: u32) -> bool {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
+    if !is_ray(ray) {
+        return false;
+    }
     if traverse(ray, key, NODES, TRIANGLES, 0u, none, true).triangle != NO_TRIANGLE {
         return true;
     }
@@ -43,6 +50,15 @@ fn occluded(ray: Ray, key: u32) -> bool {
         return traverse(ray, key, MOVING_NODES, MOVING_TRIANGLES, FIRST_MOVING, none, true).triangle != NO_TRIANGLE;
     }
     return false;
+}
+
+// Whether the ray can hit anything: finite but for its limit, with a direction.
+fn is_ray(ray: Ray) -> bool {
+    let nowhere = (bitcast<vec3<u32>>(ray.origin) & vec3<u32>(0x7fffffffu)) >= vec3<u32>(0x7f800000u);
+    let direction = bitcast<vec3<u32>>(ray.direction) & vec3<u32>(0x7fffffffu);
+    let wild = direction >= vec3<u32>(0x7f800000u);
+    let limit = bitcast<u32>(ray.t_max) & 0x7fffffffu;
+    return !any(nowhere) && !any(wild) && any(direction != vec3<u32>(0u)) && limit <= 0x7f800000u;
 }
 
 // Bvh::traverse. `first` is the index of the hierarchy's first triangle.

@@ -23,6 +23,8 @@ pub mod light;
 pub mod matched;
 #[cfg(feature = "lab")]
 pub mod microfacet;
+#[cfg(feature = "lab")]
+pub mod octahedral;
 pub mod pack;
 #[cfg(feature = "lab")]
 pub mod phong;
@@ -39,5 +41,6 @@ pub mod surface;
 pub mod taa;
 #[cfg(feature = "lab")]
 pub mod texel;
+#[cfg(feature = "lab")]
 pub mod triangle;
 pub mod wrs;

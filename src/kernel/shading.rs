@@ -4,12 +4,6 @@ use super::color::luma;
 use super::direction::unit;
 use glam::{Vec2, Vec3};
 
-/// Value inside a triangle from those at its corners; `u` and `v` are the shares of the second and third corner.
-#[inline]
-pub fn across(a: Vec3, b: Vec3, c: Vec3, u: f32, v: f32) -> Vec3 {
-    a * (1.0 - u - v) + b * u + c * v
-}
-
 /// The normal that a tangent-space normal map shows: `texel` red, green and blue in \[0, 1\], its x and y scaled by `scale`.
 /// `tangent` need not be perpendicular; `sign` is that of the bitangent. The surface's own normal where the map says nothing.
 #[inline]

@@ -13,7 +13,7 @@ use glam::{Vec3, Vec3A};
 /// Spacing of the origin of a secondary ray from its surface, as a share of the largest coordinate of the triangle's vertices.
 /// A hit point made of barycentrics is off by at most 7 * 2^-24 of it (Pharr, Jakob and Humphreys, "Physically Based Rendering",
 /// 4th edition, 6.8.5), the test's distance by as much; this is 32 times 2^-23.
-pub const OFFSET: f32 = 1.0 / 262_144.0;
+pub const ORIGIN_OFFSET: f32 = 1.0 / 262_144.0;
 
 /// Sums of edge functions below this are zero-area triangles: their products have left the normal floats.
 pub const MIN_DET: f32 = 1e-36;
@@ -129,5 +129,5 @@ pub fn magnitude(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
 /// world's origin.
 #[inline]
 pub fn offset_ray(point: Vec3, normal: Vec3, magnitude: f32) -> Vec3 {
-    point + normal * (magnitude * OFFSET)
+    point + normal * (magnitude * ORIGIN_OFFSET)
 }

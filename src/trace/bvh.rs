@@ -11,7 +11,7 @@ use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
 /// Entries of a traversal's stack; `shaders/trace/traverse.wgsl` has as many.
-pub(super) const STACK: usize = 24;
+const STACK: usize = 32;
 
 /// Coordinates beyond this are taken for broken: squares of their differences would leave the floats.
 const MAX_COORDINATE: f32 = 1e15;
@@ -119,6 +119,11 @@ impl Bvh {
         self.dropped
     }
 
+    /// Entries of its stack of 32 that the deepest traversal takes.
+    pub fn stack_needed(&self) -> usize {
+        stack_needed(&self.nodes)
+    }
+
     /// Number of nodes, of 80 bytes each.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
@@ -212,7 +217,8 @@ fn bounds(corners: &[Vec3; 3]) -> Aabb {
     Aabb::new(a.min(b).min(c), a.max(b).max(c))
 }
 
-/// Nodes, and indices of boxes in the order of leaves.
+/// Nodes, and indices of boxes in the order of leaves. Halves have at most 32 levels, of which the last has no inner nodes: they
+/// always fit the stack. No scene is known that needs them.
 fn hierarchy(boxes: &[Aabb]) -> (Vec<CwBvhNode>, Vec<u32>) {
     for halve in [false, true] {
         let binary = bvh2::build(boxes, halve);

@@ -142,6 +142,15 @@ impl GpuHeap {
     }
 }
 
+/// Values of the overrides of `geometry`: where its records are.
+pub fn geometry_constants(heap: &Heap) -> [(&'static str, f64); 3] {
+    [
+        ("ATTRIBUTES", f64::from(heap.base(Section::Attributes))),
+        ("MOVING_ATTRIBUTES", f64::from(heap.base(Section::MovingAttributes))),
+        ("MOVING_PREVIOUS", f64::from(heap.base(Section::MovingPrevious))),
+    ]
+}
+
 /// Values of the overrides of `traverse` and of the heap's accessor.
 pub fn traversal_constants(
     heap: &Heap,

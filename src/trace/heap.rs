@@ -100,27 +100,34 @@ pub struct Heap {
 
 /// Collects sections. Each section is given at most once.
 #[derive(Clone, Debug, Default)]
-pub struct HeapBuilder {
-    parts: Vec<(Section, Vec<[u32; 4]>)>,
+pub struct HeapBuilder<'a> {
+    parts: Vec<Part<'a>>,
 }
 
-impl HeapBuilder {
+/// Contents of a section, and its size.
+#[derive(Clone, Copy, Debug)]
+struct Part<'a> {
+    section: Section,
+    bytes: &'a [u8],
+    elements: u64,
+}
+
+impl<'a> HeapBuilder<'a> {
     /// A section with these contents.
-    pub fn fill<T: NoUninit>(&mut self, section: Section, records: &[T]) -> &mut Self {
+    pub fn fill<T: NoUninit>(&mut self, section: Section, records: &'a [T]) -> &mut Self {
         self.reserve(section, records, 0)
     }
 
     /// A section with these contents and room for `capacity` elements.
-    pub fn reserve<T: NoUninit>(&mut self, section: Section, records: &[T], capacity: usize) -> &mut Self {
+    pub fn reserve<T: NoUninit>(&mut self, section: Section, records: &'a [T], capacity: usize) -> &mut Self {
         let bytes: &[u8] = bytemuck::cast_slice(records);
-        let mut elements = vec![[0; 4]; bytes.len().div_ceil(ELEMENT_BYTES).max(capacity)];
-        bytemuck::cast_slice_mut(&mut elements)[..bytes.len()].copy_from_slice(bytes);
-        self.parts.push((section, elements));
+        let elements = bytes.len().div_ceil(ELEMENT_BYTES).max(capacity) as u64;
+        self.parts.push(Part { section, bytes, elements });
         self
     }
 
     /// Nodes, triangles and attributes. `most_moving` is the largest number of moving triangles at any time.
-    pub fn geometry(&mut self, geometry: &Geometry, most_moving: usize) -> &mut Self {
+    pub fn geometry(&mut self, geometry: &'a Geometry, most_moving: usize) -> &mut Self {
         let (still, moving) = (&geometry.still, &geometry.moving);
         self.reserve(Section::Nodes, &still.nodes, NODE_ELEMENTS)
             .fill(Section::Triangles, still.triangles())
@@ -140,18 +147,18 @@ impl HeapBuilder {
     /// # Errors
     /// If the device has no room for them.
     pub fn finish(&mut self, limits: HeapLimits) -> Result<Heap, HeapError> {
-        self.parts.sort_by_key(|&(section, _)| section);
+        self.parts.sort_by_key(|part| part.section);
         let mut width_log2 = MIN_WIDTH.ilog2();
         loop {
             let width = 1_u64 << width_log2;
             let mut end = 0_u64;
             let mut starts = vec![];
-            for (section, part) in &self.parts {
-                if section.is_moving() {
+            for part in &self.parts {
+                if part.section.is_moving() {
                     end = end.next_multiple_of(width);
                 }
                 starts.push(end);
-                end += part.len() as u64;
+                end = end.saturating_add(part.elements).min(1 << 62);
             }
             end = end.next_multiple_of(width).max(width);
             let rows = end / width;
@@ -163,9 +170,10 @@ impl HeapBuilder {
                 return Err(HeapError::TooLarge { elements: end, available: limits.elements });
             }
             let mut heap = Heap { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
-            for ((section, part), base) in self.parts.drain(..).zip(starts) {
-                heap.elements[base as usize..][..part.len()].copy_from_slice(&part);
-                heap.places.push(Place { section, base: base as u32, capacity: part.len() as u32 });
+            for (part, base) in self.parts.drain(..).zip(starts) {
+                let to = bytemuck::cast_slice_mut(&mut heap.elements[base as usize..]);
+                to[..part.bytes.len()].copy_from_slice(part.bytes);
+                heap.places.push(Place { section: part.section, base: base as u32, capacity: part.elements as u32 });
             }
             return Ok(heap);
         }

@@ -27,5 +27,5 @@ pub mod world;
 
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
-pub use record::{AttributeRecord, Attributes, PreviousRecord, TriangleFlags, TriangleRecord};
+pub use record::{AttributeRecord, Attributes, AttributesAt, PreviousRecord, TriangleFlags, TriangleRecord};
 pub use tracer::Tracer;

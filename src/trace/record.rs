@@ -1,6 +1,6 @@
 //! Triangles as both tracers read them.
 
-use crate::kernel::direction::{oct_decode, oct_encode};
+use crate::kernel::octahedral::{decode_direction, encode_direction};
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3A, Vec4};
@@ -33,11 +33,8 @@ impl TriangleFlags {
     }
 }
 
-/// In place of one more than its row in the table of lights: the triangle is no light.
-const NO_LIGHT: u32 = 0;
-
 /// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
-/// of the triangle in its source, and its row in the table of lights.
+/// of the triangle in its source, and one more than its row in the table of lights (0: it is no light).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TriangleRecord {
@@ -54,7 +51,7 @@ impl TriangleRecord {
         let material = triangles.materials.get(source as usize).copied().unwrap_or(0).min(Self::MAX_MATERIAL);
         let flags = materials.get(material as usize).map_or(0, TriangleFlags::of);
         let row = |v: Vec3, word: u32| v.extend(f32::from_bits(word)).to_array();
-        Self { rows: [row(v0, material | flags), row(v1, source), row(v2, NO_LIGHT)] }
+        Self { rows: [row(v0, material | flags), row(v1, source), row(v2, 0)] }
     }
 
     /// Corners in world space.
@@ -120,7 +117,7 @@ impl PreviousRecord {
 ///
 /// | words | hold |
 /// |---|---|
-/// | 0 to 2 | normals, as [`oct_encode`] has them |
+/// | 0 to 2 | normals, octahedral, two 16-bit signed fractions |
 /// | 3, 7, 11 | vertex colours, 8 bits a channel, red lowest |
 /// | 4 to 6 | tangents, as normals but the lowest bit: 1 for a bitangent sign of -1 |
 /// | 8 to 10, 12 to 14 | texture coordinates, u then v of each vertex, as floats |
@@ -142,6 +139,21 @@ pub struct Attributes {
     pub uvs: [Vec2; 3],
     /// Factors of colour and alpha, in steps of 1/255.
     pub colors: [Vec4; 3],
+}
+
+/// Attributes at a point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttributesAt {
+    /// Shading normal, not normalised.
+    pub normal: Vec3,
+    /// Direction of growing u, not normalised.
+    pub tangent: Vec3,
+    /// Sign of the bitangent: the first corner's.
+    pub bitangent_sign: f32,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Factors of colour and alpha.
+    pub color: Vec4,
 }
 
 /// Words of the texture coordinates' components.
@@ -169,21 +181,36 @@ impl AttributeRecord {
         Self { words }
     }
 
+    /// Interpolated with the weights of the second and the third corner. Twin: `attributes_at` in `shaders/trace/geometry.wgsl`.
+    #[inline]
+    pub fn at(&self, u: f32, v: f32) -> AttributesAt {
+        let Attributes { normals: n, tangents: t, uvs, colors: c } = self.unpack();
+        let w = (1.0 - u) - v;
+        AttributesAt {
+            normal: (n[0] * w + n[1] * u) + n[2] * v,
+            tangent: (t[0].truncate() * w + t[1].truncate() * u) + t[2].truncate() * v,
+            bitangent_sign: t[0].w,
+            uv: (uvs[0] * w + uvs[1] * u) + uvs[2] * v,
+            color: (c[0] * w + c[1] * u) + c[2] * v,
+        }
+    }
+
     /// All of it, decoded.
+    #[inline]
     pub fn unpack(&self) -> Attributes {
         let w = &self.words;
         let of = |word: usize| f32::from_bits(w[word]);
         Attributes {
-            normals: [0, 1, 2].map(|i| oct_decode(w[i])),
-            tangents: [4, 5, 6].map(|i| oct_decode(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
+            normals: [0, 1, 2].map(|i| decode_direction(w[i])),
+            tangents: [4, 5, 6].map(|i| decode_direction(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
             uvs: [0, 1, 2].map(|i| Vec2::new(of(UV_WORDS[2 * i]), of(UV_WORDS[2 * i + 1]))),
             colors: [3, 7, 11].map(|i| Vec4::from_array(w[i].to_le_bytes().map(|b| f32::from(b) / 255.0))),
         }
     }
 }
 
-/// Code of a direction; of one that is none that of +z.
-fn direction_code(direction: Vec3) -> u32 {
-    let sound = direction.is_finite() && direction != Vec3::ZERO;
-    oct_encode(if sound { direction } else { Vec3::Z })
+/// Octahedral code; of a vector that is no direction, that of +z.
+fn direction_code(n: Vec3) -> u32 {
+    let sum = n.abs().element_sum();
+    if sum.is_finite() && sum >= f32::MIN_POSITIVE { encode_direction(n) } else { 0 }
 }

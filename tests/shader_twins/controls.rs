@@ -173,5 +173,12 @@ fn a_flipped_edge_or_a_lax_one_is_caught() {
     caught(triangles::PROBES, "edge", "select(area, -area, swapped)", "area");
     caught(triangles::PROBES, "edge", "p.x * q.y - p.y * q.x", "p.x * q.y + p.y * q.x");
     caught(triangles::PROBES, "shear", "-(direction.y / direction.x)", "direction.y / direction.x");
-    caught(triangles::PROBES, "offset_ray", "magnitude * OFFSET", "OFFSET");
+    caught(triangles::PROBES, "offset_ray", "magnitude * ORIGIN_OFFSET", "ORIGIN_OFFSET");
+}
+
+#[test]
+fn a_direction_folded_or_rounded_wrongly_is_caught() {
+    caught(triangles::PROBES, "encode_direction", "x * DIRECTION_STEPS + 0.5", "x * DIRECTION_STEPS");
+    caught(triangles::PROBES, "encode_direction", "if n.z < 0.0", "if n.z > 0.0");
+    caught(triangles::PROBES, "decode_direction", "if z < 0.0", "if z > 0.5");
 }

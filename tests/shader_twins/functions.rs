@@ -87,3 +87,8 @@ fn taa_is_bit_equal() {
 fn triangle_is_bit_equal_h80() {
     check_module(triangles::PROBES, "triangle");
 }
+
+#[test]
+fn octahedral_is_bit_equal() {
+    check_module(triangles::PROBES, "octahedral");
+}

@@ -1,8 +1,9 @@
-//! Rays and triangles.
+//! Rays and triangles, directions.
 
 use crate::common::Draws;
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
+use afterimage::kernel::octahedral;
 use afterimage::kernel::triangle::{self, Shear};
 use glam::{Vec3, Vec3A};
 
@@ -40,7 +41,7 @@ fn ray_and_triangle(d: &mut Draws, row: &mut Vec<u32>) {
     };
     let target = triangle::point_at(corners[0], corners[1], corners[2], u, v);
     let mut direction = (target - origin).normalize_or(Vec3::X);
-    if d.bits() % 8 == 0 {
+    if d.bits().is_multiple_of(8) {
         direction[(d.bits() % 3) as usize] = 0.0;
     }
     let shear = triangle::shear(direction.normalize_or(Vec3::Y));
@@ -100,7 +101,7 @@ pub const PROBES: &[Probe] = &[
         rows: || {
             Rows::new(6).random("edge", |d, row| {
                 let a = vector(d, 1.0);
-                let b = if d.bits() % 2 == 0 { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
+                let b = if d.bits().is_multiple_of(2) { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
                 push(row, a);
                 push(row, b);
             })
@@ -174,5 +175,27 @@ pub const PROBES: &[Probe] = &[
                 row.push(scaled(d, -20, 20));
             })
         },
+    },
+    Probe {
+        name: "encode_direction",
+        module: "octahedral",
+        words: [3, 1],
+        wgsl: "out_u(encode_direction(in_v(0u)));",
+        rust: |r, o| o.u(octahedral::encode_direction(r.v(0))),
+        rows: || {
+            let axis = floats(&[1.0, -1.0, 0.5, -0.25, 1e-3]);
+            Rows::new(3).cross(&[&axis, &axis, &axis]).random("encode_direction", |d, row| {
+                let v = vector(d, 1.0);
+                push(row, v);
+            })
+        },
+    },
+    Probe {
+        name: "decode_direction",
+        module: "octahedral",
+        words: [1, 3],
+        wgsl: "out_v(decode_direction(in_u(0u)));",
+        rust: |r, o| o.v(octahedral::decode_direction(r.u(0))),
+        rows: || Rows::new(1).cross(&[&words()]).random("decode_direction", |d, row| row.push(d.bits())),
     },
 ];

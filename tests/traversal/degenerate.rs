@@ -39,7 +39,8 @@ fn h81_triangles_that_no_ray_can_meet_are_dropped_and_counted() {
 #[test]
 fn h81_crowds_of_alike_triangles_take_no_longer_than_others() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
-    let crowds: [(&str, &dyn Fn(f32) -> [Vec3; 3]); 4] = [
+    type Corners<'a> = &'a dyn Fn(f32) -> [Vec3; 3];
+    let crowds: [(&str, Corners<'_>); 4] = [
         ("copies", &|_| corners),
         ("a row", &|i| corners.map(|c| c + Vec3::X * i)),
         ("around one centre", &|i| [vec3(-i - 1.0, 0.0, 0.0), vec3(i + 1.0, 0.0, 0.0), vec3(0.0, 0.0, 1.0)]),
@@ -51,7 +52,8 @@ fn h81_crowds_of_alike_triangles_take_no_longer_than_others() {
             triangles.push_flat(corners(i as f32), 0);
         }
         let bvh = Bvh::build(&triangles, None, &[]);
-        println!("{name}: {} nodes, {} dropped", bvh.node_count(), bvh.dropped());
+        println!("{name}: {} nodes, {} dropped, stack {}", bvh.node_count(), bvh.dropped(), bvh.stack_needed());
+        assert!(bvh.stack_needed() <= 32);
         let mut d = Draws::new(name);
         for _ in 0..20 {
             let ray = Ray { origin: point(&mut d, 1.0) + Vec3::Z, direction: -Vec3::Z, t_max: f32::INFINITY };

@@ -2,7 +2,7 @@
 
 use crate::common::Draws;
 use crate::gpu;
-use crate::scenes::{all, direction, rays, soup, sphere};
+use crate::scenes::{all, direction, no_rays, rays, soup, sphere};
 use afterimage::scene::{Alpha, Material};
 use afterimage::trace::gpu_heap::{GpuHeap, Storage};
 use afterimage::trace::gpu_rays::{GpuRays, Question};
@@ -83,6 +83,13 @@ fn random_soups() {
             rig.check(&name, &rays);
         }
     }
+}
+
+#[test]
+fn a_ray_that_is_no_ray_hits_nothing() {
+    let geometry = resting(Bvh::build(&soup("no ray on the device", 500, Vec3::ZERO, 1.0), None, &[]));
+    let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
+    rig.check("no rays", &no_rays());
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
         vec3(-0.0, 0.6, -0.8),
     ];
     let ray = |i: usize| {
-        let direction = if i % 4 == 0 { axes[i / 4 % axes.len()] } else { direction(&mut d) };
+        let direction = if i.is_multiple_of(4) { axes[i / 4 % axes.len()] } else { direction(&mut d) };
         Ray { origin: center + point(&mut d, 1.5 * half), direction, t_max: f32::INFINITY }
     };
     (0..count).map(ray).collect()
@@ -95,4 +95,19 @@ pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
         triangles.push_flat(face.map(|p| center + p * radius), 0);
     }
     triangles
+}
+
+/// Rays that can hit nothing: not finite, without a direction or a limit.
+pub fn no_rays() -> Vec<Ray> {
+    let mut out = vec![Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: f32::NAN }];
+    for (origin, direction) in [
+        (Vec3::NAN, Vec3::X),
+        (Vec3::ZERO, Vec3::NAN),
+        (Vec3::ZERO, Vec3::ZERO),
+        (Vec3::INFINITY, Vec3::X),
+        (Vec3::ZERO, vec3(f32::INFINITY, 0.0, 0.0)),
+    ] {
+        out.extend([f32::INFINITY, 1.0, 0.0, -1.0, f32::NAN].map(|t_max| Ray { origin, direction, t_max }));
+    }
+    out
 }

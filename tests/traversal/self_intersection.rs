@@ -2,7 +2,7 @@
 
 use crate::common::Draws;
 use crate::scenes::{all, direction, point, sphere};
-use afterimage::kernel::triangle::{OFFSET, magnitude, offset_ray, point_at};
+use afterimage::kernel::triangle::{ORIGIN_OFFSET, magnitude, offset_ray, point_at};
 use afterimage::scene::Triangles;
 use afterimage::trace::{Bvh, Ray};
 use glam::{Vec3, vec3};
@@ -23,7 +23,7 @@ fn stopped(triangles: &Triangles, outside: impl Fn(Vec3) -> Vec3, name: &str) ->
         let largest = magnitude(a, b, c);
         let origin = offset_ray(hit, normal, largest);
         // The offset and three roundings to floats of the size of the largest coordinate.
-        assert!((origin - hit).length() <= largest * (OFFSET + 3.0 * f32::EPSILON), "{origin} from {hit}");
+        assert!((origin - hit).length() <= largest * (ORIGIN_OFFSET + 3.0 * f32::EPSILON), "{origin} from {hit}");
         let mut direction = direction(&mut d);
         // Grazing ones as well: down to 1e-3 above the surface.
         let above = direction.dot(normal);

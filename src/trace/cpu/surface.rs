@@ -4,12 +4,12 @@ use super::texture::texture;
 use crate::kernel::bsdf::{Lobes, Surface};
 use crate::kernel::direction::{basis, unit};
 use crate::kernel::phong::PhongSurface;
-use crate::kernel::shading::{across, mapped_normal, tint, visible_normal};
+use crate::kernel::shading::{mapped_normal, tint, visible_normal};
 use crate::kernel::triangle::{magnitude, point_at};
 use crate::trace::effects::{Effect, Effects};
 use crate::trace::records::{FLAG_BLEND, FLAG_DOUBLE_SIDED, FLAG_MASK, FLAG_VOLUME, MaterialRecord, NO_TEXTURE};
 use crate::trace::world::World;
-use crate::trace::{Attributes, Hit};
+use crate::trace::{AttributesAt, Hit};
 use glam::{Vec2, Vec3, Vec4};
 
 /// A point on a surface as a ray from outside or inside sees it.
@@ -37,7 +37,7 @@ pub(super) struct Point {
 /// The point that a ray of direction `direction` (of length 1) hits.
 pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> Point {
     let triangle = world.geometry.triangle(hit.triangle);
-    let attributes = world.geometry.attributes(hit.triangle).unpack();
+    let place = world.geometry.attributes(hit.triangle).at(hit.u, hit.v);
     let material = &world.materials[triangle.material() as usize];
     let [v0, v1, v2] = triangle.positions();
     let toward = -direction;
@@ -47,26 +47,19 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
     let side = if front { 1.0 } else { -1.0 };
     let geometric = face * side;
 
-    let place = Place::new(&attributes, hit.u, hit.v);
-    let [n0, n1, n2] = attributes.normals;
-    let mut normal = unit(across(n0, n1, n2, hit.u, hit.v));
+    let mut normal = unit(place.normal);
     // A shading normal on the wrong side of its own face says nothing.
     if normal.dot(face) <= 0.0 {
         normal = face;
     }
-    let mut tangent = Vec3::X;
-    if effects.has(Effect::NormalMap) || effects.has(Effect::Anisotropy) {
-        let [t0, t1, t2] = attributes.tangents.map(Vec4::truncate);
-        tangent = across(t0, t1, t2, hit.u, hit.v);
-    }
     if effects.has(Effect::NormalMap) && material.normal_texture != NO_TEXTURE {
         let texel = texture(world, material.normal_texture, place.uv, false).truncate();
-        normal = mapped_normal(normal, tangent, attributes.tangents[0].w, texel, material.normal_scale);
+        normal = mapped_normal(normal, place.tangent, place.bitangent_sign, texel, material.normal_scale);
     }
     let normal = visible_normal(normal * side, geometric, toward);
     let mut along = Vec3::ZERO;
     if effects.has(Effect::Anisotropy) && material.anisotropy > 0.0 {
-        along = tangent - normal * normal.dot(tangent);
+        along = place.tangent - normal * normal.dot(place.tangent);
     }
     let frame = if along.dot(along) > 1e-12 {
         let x = unit(along);
@@ -94,23 +87,8 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
     Point { position, magnitude, geometric, frame, front, emitted, absorption, surface, phong }
 }
 
-/// Texture coordinates and vertex colour at a hit.
-struct Place {
-    uv: Vec2,
-    color: Vec4,
-}
-
-impl Place {
-    fn new(attributes: &Attributes, u: f32, v: f32) -> Self {
-        let [a, b, c] = attributes.uvs;
-        let [k0, k1, k2] = attributes.colors;
-        let w = 1.0 - u - v;
-        Self { uv: a * w + b * u + c * v, color: k0 * w + k1 * u + k2 * v }
-    }
-}
-
 /// Base colour and opacity.
-fn base(world: &World, material: &MaterialRecord, place: &Place, effects: Effects) -> Vec4 {
+fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects: Effects) -> Vec4 {
     let mut base = Vec3::from(material.base_color).extend(material.opacity);
     if effects.has(Effect::VertexColor) {
         base *= place.color;
@@ -124,7 +102,7 @@ fn base(world: &World, material: &MaterialRecord, place: &Place, effects: Effect
 /// Whether a path whose draw is `draw` meets a surface with holes at this point.
 pub(super) fn is_there(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
-    let place = Place::new(&world.geometry.attributes(triangle).unpack(), u, v);
+    let place = world.geometry.attributes(triangle).at(u, v);
     let opacity = base(world, material, &place, effects).w;
     if material.flags & FLAG_MASK != 0 {
         return opacity >= material.cutoff;
@@ -144,12 +122,12 @@ fn emission(world: &World, material: &MaterialRecord, uv: Vec2, effects: Effects
 /// Radiance that a triangle emits at barycentrics.
 pub(super) fn emission_at(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> Vec3 {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
-    let place = Place::new(&world.geometry.attributes(triangle).unpack(), u, v);
+    let place = world.geometry.attributes(triangle).at(u, v);
     emission(world, material, place.uv, effects)
 }
 
 /// Parameters with their textures and tints.
-fn resolve(world: &World, m: &MaterialRecord, place: &Place, front: bool, effects: Effects) -> Surface {
+fn resolve(world: &World, m: &MaterialRecord, place: &AttributesAt, front: bool, effects: Effects) -> Surface {
     let base_color = base(world, m, place, effects).truncate();
     let mut s = Surface {
         base_color,
