@@ -76,3 +76,23 @@ fn ln(x: f32) -> f32 {
     let tail = p + e * -2.1219444e-4 - 0.5 * z;
     return m + tail + e * 0.6933594;
 }
+
+// approx::sin_cos_turns: (sin, cos) of 2 pi x.
+fn sin_cos_turns(x: f32) -> vec2<f32> {
+    let n = floor(x * 4.0 + 0.5);
+    let r = x - n * 0.25;
+    let z = r * r;
+    let s = (((-75.445656 * z + 81.593765) * z - 41.34167) * z + 6.2831855) * r;
+    let c = (((59.3497 * z - 85.44714) * z + 64.93936) * z - 19.739208) * z + 1.0;
+    let quarter = i32(n) & 3;
+    if quarter == 0 {
+        return vec2<f32>(s, c);
+    }
+    if quarter == 1 {
+        return vec2<f32>(c, -s);
+    }
+    if quarter == 2 {
+        return vec2<f32>(-s, -c);
+    }
+    return vec2<f32>(-c, s);
+}

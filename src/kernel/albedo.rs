@@ -1,6 +1,6 @@
 //! Directional albedos of the lobes, interpolated in tables that are computed once by quadrature.
 
-use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, MIN_WIDTH, schlick_weight};
+use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, schlick_weight};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Cosines of the tables of GGX and of sheen.
@@ -50,24 +50,23 @@ fn albedo_cell(tables: &AlbedoTables, index: u32) -> Vec4 {
 
 /// Position on an axis of `count` knots of `t` in \[0, 1\]: the knot before it, and how far it is to the next.
 #[inline]
-fn albedo_knot(t: f32, count: u32) -> Vec2 {
+pub fn albedo_knot(t: f32, count: u32) -> Vec2 {
     let x = t.clamp(0.0, 1.0) * (count - 1) as f32;
     let knot = x.floor().min((count - 2) as f32);
     Vec2::new(knot, x - knot)
 }
 
 /// Where a cosine lies on its axis. Masking changes over cosines of about the width, however small it is, so the axis is
-/// stretched there.
+/// stretched there. From GGX' width, not its root: compilers take the square of a root for the number itself.
 #[inline]
-pub fn albedo_cosine(cosine: f32, roughness: f32) -> f32 {
-    let width = (roughness * roughness).clamp(MIN_WIDTH, 1.0);
+pub fn albedo_cosine(cosine: f32, width: f32) -> f32 {
     let k = (1.0 - 0.75 * width) * width;
     (cosine * (1.0 + k)) / (cosine + k)
 }
 
 /// Bilinear interpolation in the first table.
 #[inline]
-fn albedo_plane(tables: &AlbedoTables, x: f32, y: f32) -> Vec4 {
+pub fn albedo_plane(tables: &AlbedoTables, x: f32, y: f32) -> Vec4 {
     let kx = albedo_knot(x, COSINES);
     let ky = albedo_knot(y, ROUGHNESSES);
     let i = ky.x as u32 * COSINES + kx.x as u32;
@@ -80,11 +79,11 @@ fn albedo_plane(tables: &AlbedoTables, x: f32, y: f32) -> Vec4 {
     low + (high - low) * ky.y
 }
 
-/// Directional albedo of GGX with reflectance 1, and with reflectance (1 - v.h)^5. Reflectance `f0` at normal incidence has
+/// Directional albedo of GGX of `width` with reflectance 1, and with reflectance (1 - v.h)^5. Reflectance `f0` at normal incidence has
 /// f0 (x - y) + y.
 #[inline]
-pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> Vec2 {
-    let e = albedo_plane(tables, albedo_cosine(cosine, roughness), roughness);
+pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, width: f32) -> Vec2 {
+    let e = albedo_plane(tables, albedo_cosine(cosine, width), width.sqrt());
     // Stored over what a smooth surface has.
     Vec2::new(e.x, e.x * schlick_weight(cosine) + e.y)
 }
@@ -94,27 +93,30 @@ pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> Vec2 {
 /// The shadowing of stretched facets depends on both directions of the plane, so no single width stands for it.
 #[inline]
 pub fn stretched_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
-    let slanted = wo.x * wo.x + wo.y * wo.y;
-    let azimuth = if slanted > 1e-12 { (wo.x * wo.x) / slanted } else { 0.5 };
-    let roughness = a.x.sqrt();
+    let slanted = wo.x.abs() + wo.y.abs();
+    let azimuth = if slanted > 1e-6 { wo.x.abs() / slanted } else { 0.5 };
     let aspect = ((a.y / a.x).sqrt() - MIN_ASPECT) / (1.0 - MIN_ASPECT);
-    let kx = albedo_knot(albedo_cosine(wo.z, roughness), STRETCHED[0]);
+    let kx = albedo_knot(albedo_cosine(wo.z, a.x), STRETCHED[0]);
     let ky = albedo_knot(azimuth, STRETCHED[1]);
-    let kz = albedo_knot(roughness, STRETCHED[2]);
+    let kz = albedo_knot(a.x.sqrt(), STRETCHED[2]);
     let kw = albedo_knot(aspect, STRETCHED[3]);
-    let mut sum = Vec4::ZERO;
-    for corner in 0..8_u32 {
-        let y = ky.x as u32 + (corner & 1);
-        let z = kz.x as u32 + ((corner >> 1) & 1);
-        let w = kw.x as u32 + (corner >> 2);
-        let i = STRETCHED_BASE + ((w * STRETCHED[2] + z) * STRETCHED[1] + y) * STRETCHED[0] + kx.x as u32;
-        let wy = if (corner & 1) == 1 { ky.y } else { 1.0 - ky.y };
-        let wz = if ((corner >> 1) & 1) == 1 { kz.y } else { 1.0 - kz.y };
-        let ww = if (corner >> 2) == 1 { kw.y } else { 1.0 - kw.y };
-        let low = albedo_cell(tables, i);
-        let high = albedo_cell(tables, i + 1);
-        sum += (low + (high - low) * kx.y) * ((wy * wz) * ww);
+    let row = STRETCHED[0];
+    let mut parts = [Vec4::ZERO; 4];
+    for (corner, part) in parts.iter_mut().enumerate() {
+        let z = kz.x as u32 + (corner as u32 & 1);
+        let w = kw.x as u32 + (corner as u32 >> 1);
+        let i = STRETCHED_BASE + ((w * STRETCHED[2] + z) * STRETCHED[1] + ky.x as u32) * row + kx.x as u32;
+        let a = albedo_cell(tables, i);
+        let b = albedo_cell(tables, i + 1);
+        let c = albedo_cell(tables, i + row);
+        let d = albedo_cell(tables, i + row + 1);
+        let low = a + (b - a) * kx.y;
+        let high = c + (d - c) * kx.y;
+        *part = low + (high - low) * ky.y;
     }
+    let low = parts[0] + (parts[1] - parts[0]) * kz.y;
+    let high = parts[2] + (parts[3] - parts[2]) * kz.y;
+    let sum = low + (high - low) * kw.y;
     Vec2::new(sum.x, sum.x * schlick_weight(wo.z) + sum.y)
 }
 
@@ -129,9 +131,9 @@ pub fn sheen_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> f32 {
 /// What single scattering at a rough boundary returns in reflection and refraction together: by Fresnel's equations, and with
 /// no reflection but the total one.
 #[inline]
-pub fn glass_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32, ior: f32, entering: bool) -> Vec2 {
-    let kx = albedo_knot(albedo_cosine(cosine, roughness).sqrt(), GLASS_COSINES);
-    let ky = albedo_knot(roughness, GLASS_ROUGHNESSES);
+pub fn glass_albedo(tables: &AlbedoTables, cosine: f32, width: f32, ior: f32, entering: bool) -> Vec2 {
+    let kx = albedo_knot(albedo_cosine(cosine, width).sqrt(), GLASS_COSINES);
+    let ky = albedo_knot(width.sqrt(), GLASS_ROUGHNESSES);
     let kz = albedo_knot((((2.0 * (ior - 1.0)) / (ior + 1.0)).sqrt() - IOR_ROOT) / (1.0 - IOR_ROOT), GLASS_IORS);
     let row = GLASS_COSINES;
     let plane = GLASS_COSINES * GLASS_ROUGHNESSES;

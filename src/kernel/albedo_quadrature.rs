@@ -97,10 +97,10 @@ fn stretched(v: DVec3, a: DVec2) -> f64 {
     (x * x + y * y + v.z * v.z).sqrt()
 }
 
-/// Direction at the cosine `z`, at an azimuth with the squared cosine `azimuth`.
+/// Direction at the cosine `z` whose x and y are as `azimuth` to 1 - `azimuth`.
 fn seen_from(z: f64, azimuth: f64) -> DVec3 {
-    let r = (1.0 - z * z).max(0.0).sqrt();
-    DVec3::new(r * azimuth.sqrt(), r * (1.0 - azimuth).max(0.0).sqrt(), z)
+    let r = (1.0 - z * z).max(0.0).sqrt() / (azimuth * azimuth + (1.0 - azimuth) * (1.0 - azimuth)).sqrt();
+    DVec3::new(r * azimuth, r * (1.0 - azimuth), z)
 }
 
 fn mirrored(v: DVec3, h: DVec3) -> DVec3 {

@@ -12,8 +12,8 @@ use super::color::luma;
 use super::direction::unit;
 use super::microfacet::{
     MIN_SHEEN_ROUGHNESS, charlie_d, charlie_lambda, charlie_visibility, fresnel_dielectric, ggx_d, ggx_length,
-    ggx_mean_roughness, ggx_widths, mirrored, reflectance_at_normal, refracted, refraction_discriminant,
-    schlick_weight, vndf_sample,
+    ggx_mean_width, ggx_widths, mirrored, reflectance_at_normal, refracted, refraction_discriminant, schlick_weight,
+    vndf_sample,
 };
 use super::sampling::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::{Vec2, Vec3};
@@ -205,8 +205,8 @@ pub fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
     // Integrals over the azimuth and mu of mu f(mu), (1 - mu)^5 = P: P -> 1/42, mu P -> 1/168, mu^2 P -> 1/504.
     let rise_i = b / 42.0 + rc / 168.0;
     let rise_o = b / 2.0 + rc / 3.0;
-    let squares = (r * r) * (1.0 - cosine * cosine) * (11.0 / 1008.0);
-    let both = (b / 42.0 + rc / 84.0) * b + (rc * rc) / 504.0 + squares;
+    let squares = ((11.0 / 1008.0) * r) * r * (1.0 - cosine * cosine);
+    let both = ((rc * rc) / 504.0 + squares) + (b / 42.0 + rc / 84.0) * b;
     (rise_i + (rise_o + both) * p) * 2.0 + 1.0
 }
 
@@ -256,13 +256,13 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     if lobes.clearcoat {
         let amount = surface.clearcoat.clamp(0.0, 1.0);
         let coat_roughness = surface.clearcoat_roughness.clamp(0.0, 1.0);
-        let e = ggx_albedo(tables, z, coat_roughness);
+        coat_width = ggx_widths(coat_roughness, 0.0).x;
+        let e = ggx_albedo(tables, z, coat_width);
         let f0 = reflectance_at_normal(COAT_IOR);
         let scale = amount * (f0 * ((1.0 - e.x) / e.x) + 1.0);
         coat = scale * f0;
         coat_rise = scale * (1.0 - f0);
         coat_albedo = ((f0 * (e.x - e.y) + e.y) * scale).min(1.0);
-        coat_width = ggx_widths(coat_roughness, 0.0).x;
     }
     let below_coat = 1.0 - coat_albedo;
     let mut sheen = Vec3::ZERO;
@@ -286,9 +286,9 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
 
     // The base: reflection of the dielectric and the metal, and what it leaves.
     let mut e = Vec2::new(1.0, 0.0);
-    let width_roughness = ggx_mean_roughness(widths);
+    let mean_width = ggx_mean_width(widths);
     if lobes.specular || lobes.metal || lobes.transmission {
-        e = ggx_albedo(tables, z, width_roughness);
+        e = ggx_albedo(tables, z, mean_width);
         if lobes.anisotropy && anisotropy > 0.0 {
             e += stretched_albedo(tables, wo, widths);
         }
@@ -332,7 +332,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         // What single scattering returns with Fresnel's reflectance, and without it but for total internal reflection.
         let mut returned = Vec2::new(e.x, e.x);
         if !thin {
-            returned = glass_albedo(tables, z, width_roughness, ior, surface.entering);
+            returned = glass_albedo(tables, z, mean_width, ior, surface.entering);
         }
         let amount = (dielectric * transmission) * below;
         glass = Vec3::splat(amount) / (glass_reflect * (returned.x - returned.y) + Vec3::splat(returned.y));
@@ -371,17 +371,17 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
 
 /// Probability that a facet of the glass under the cosine `cosine` is taken for a mirror.
 #[inline]
-fn mirror_chance(layers: &Layers, fresnel: f32) -> f32 {
+fn mirror_chance(glass_reflect: Vec3, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
     }
-    fresnel * layers.glass_reflect.x.max(layers.glass_reflect.y).max(layers.glass_reflect.z)
+    fresnel * glass_reflect.x.max(glass_reflect.y).max(glass_reflect.z)
 }
 
 /// Fresnel's reflectance as the glass scales it; total internal reflection is never scaled.
 #[inline]
-fn glass_fresnel(layers: &Layers, fresnel: f32) -> Vec3 {
-    if fresnel >= 1.0 { Vec3::ONE } else { layers.glass_reflect * fresnel }
+fn glass_fresnel(glass_reflect: Vec3, fresnel: f32) -> Vec3 {
+    if fresnel >= 1.0 { Vec3::ONE } else { glass_reflect * fresnel }
 }
 
 /// The lobes above the horizon.
@@ -413,8 +413,8 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
         pdf += layers.chances[1] * density;
         if lobes.transmission {
             let fresnel = fresnel_dielectric(vh, layers.eta);
-            value += (layers.glass * glass_fresnel(layers, fresnel)) * shape;
-            pdf += (layers.chances[3] * mirror_chance(layers, fresnel)) * density;
+            value += (layers.glass * glass_fresnel(layers.glass_reflect, fresnel)) * shape;
+            pdf += (layers.chances[3] * mirror_chance(layers.glass_reflect, fresnel)) * density;
         }
     }
     if lobes.clearcoat {
@@ -459,23 +459,20 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     let d = (2.0 * ggx_d(h, layers.widths)) * jacobian;
     let shape = (d * below.z) / (below.z * length_o + wo.z * length_i);
     let density = d / (wo.z + length_o);
-    let through = Vec3::ONE - glass_fresnel(layers, fresnel);
+    let through = Vec3::ONE - glass_fresnel(layers.glass_reflect, fresnel);
     Scatter {
         value: (layers.glass * layers.glass_color) * through * shape,
-        pdf: (layers.chances[3] * (1.0 - mirror_chance(layers, fresnel))) * density,
+        pdf: (layers.chances[3] * (1.0 - mirror_chance(layers.glass_reflect, fresnel))) * density,
     }
 }
 
 /// Value and density of `wi`. 0 where `wo` is below the horizon.
 #[inline]
 pub fn eval(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
-    if wo.z <= 0.0 || wi.z == 0.0 {
-        return Scatter::NONE;
-    }
-    if wi.z > 0.0 {
+    if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi, lobes);
     }
-    if lobes.transmission && layers.chances[3] > 0.0 {
+    if lobes.transmission && wo.z > 0.0 && wi.z < 0.0 && layers.chances[3] > 0.0 {
         return eval_transmission(layers, wo, wi);
     }
     Scatter::NONE
@@ -505,7 +502,7 @@ pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = wo.dot(h).clamp(0.0, 1.0);
         wi = mirrored(wo, h);
-        if u[3] >= mirror_chance(layers, fresnel_dielectric(vh, layers.eta)) {
+        if u[3] >= mirror_chance(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
             side = -1.0;
             if layers.thin {
                 wi.z = -wi.z;

@@ -23,10 +23,10 @@ pub fn ggx_widths(roughness: f32, anisotropy: f32) -> Vec2 {
     Vec2::new((width / aspect).min(1.0), (width * aspect).max(MIN_WIDTH))
 }
 
-/// Perceptual roughness of the isotropic GGX with the mean square of the widths.
+/// Width of the isotropic GGX with the same mean square of slopes along both axes.
 #[inline]
-pub fn ggx_mean_roughness(a: Vec2) -> f32 {
-    (0.5 * (a.x * a.x + a.y * a.y)).sqrt().sqrt()
+pub fn ggx_mean_width(a: Vec2) -> f32 {
+    (0.5 * (a.x * a.x + a.y * a.y)).sqrt()
 }
 
 /// Length of `v` stretched by the widths: sqrt(ax^2 x^2 + ay^2 y^2 + z^2), |z| sqrt(1 + tan^2 a^2) = |z| (1 + 2 Lambda).
@@ -146,7 +146,7 @@ pub fn charlie_d(cosine: f32, a: f32) -> f32 {
 
 /// The curve L of their shadowing, fitted for a = 1 and a = 0 and blended by (1 - a)^2.
 #[inline]
-fn charlie_curve(x: f32, a: f32) -> f32 {
+pub fn charlie_curve(x: f32, a: f32) -> f32 {
     let w = (1.0 - a) * (1.0 - a);
     let top = 21.5473 + 3.7772 * w;
     let slope = 3.82987 - 0.50552 * w;

@@ -20,7 +20,7 @@ pub struct PhongSurface {
 
 /// `x`^`y` for x in \[0, 1\], y in \[0, 1e6\]; 0^0 is 1. Results below e^-60 are e^-60, or 0 at x = 0.
 #[inline]
-fn phong_power(x: f32, y: f32) -> f32 {
+pub fn phong_power(x: f32, y: f32) -> f32 {
     if y <= 0.0 {
         return 1.0;
     }

@@ -57,7 +57,7 @@ pub fn uniform_sphere_pdf() -> f32 {
 
 /// Barycentric coordinates of a point of a triangle, uniform in area (Turk 1990).
 #[inline]
-pub fn triangle(u: Vec2) -> Vec3 {
+pub fn barycentrics(u: Vec2) -> Vec3 {
     let s = u.x.sqrt();
     let y = u.y * s;
     Vec3::new(1.0 - s, s - y, y)

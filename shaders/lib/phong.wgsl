@@ -1,0 +1,72 @@
+//#use approx
+//#use sampling
+// Twin of src/kernel/phong.rs. `Sampled` and `Scatter` are (wi), value, density in one struct.
+
+struct PhongSurface {
+    diffuse: vec3<f32>,
+    specular: vec3<f32>,
+    exponent: f32,
+}
+
+struct PhongScatter {
+    wi: vec3<f32>,
+    value: vec3<f32>,
+    pdf: f32,
+}
+
+// phong::phong_power
+fn phong_power(x: f32, y: f32) -> f32 {
+    if y <= 0.0 {
+        return 1.0;
+    }
+    if x <= 0.0 {
+        return 0.0;
+    }
+    return exp(max(ln(max(x, 1e-30)) * y, -60.0));
+}
+
+// phong::phong_chance
+fn phong_chance(surface: PhongSurface) -> f32 {
+    let diffuse = (surface.diffuse.x + surface.diffuse.y) + surface.diffuse.z;
+    let specular = (surface.specular.x + surface.specular.y) + surface.specular.z;
+    let sum = diffuse + specular;
+    if sum > 0.0 {
+        return specular / sum;
+    }
+    return 0.0;
+}
+
+// phong::phong_diffuse
+fn phong_diffuse(surface: PhongSurface, wi: vec3<f32>) -> vec3<f32> {
+    return surface.diffuse * (max(wi.z, 0.0) * FRAC_1_PI);
+}
+
+// phong::phong_specular
+fn phong_specular(surface: PhongSurface, wo: vec3<f32>, wi: vec3<f32>) -> vec3<f32> {
+    let cosine = clamp(wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y), 0.0, 1.0);
+    let top = (surface.exponent + 2.0) / (2.0 * PI);
+    return surface.specular * ((top * phong_power(cosine, surface.exponent)) * max(wi.z, 0.0));
+}
+
+// phong::phong_eval
+fn phong_eval(surface: PhongSurface, wo: vec3<f32>, wi: vec3<f32>) -> PhongScatter {
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return PhongScatter(wi, vec3<f32>(0.0), 0.0);
+    }
+    let value = phong_diffuse(surface, wi) + phong_specular(surface, wo, wi);
+    return PhongScatter(wi, value, uniform_hemisphere_pdf(wi.z));
+}
+
+// phong::phong_sample
+fn phong_sample(surface: PhongSurface, wo: vec3<f32>, u: vec3<f32>) -> PhongScatter {
+    let wi = uniform_hemisphere(vec2<f32>(u.y, u.z));
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return PhongScatter(wi, vec3<f32>(0.0), 0.0);
+    }
+    let chance = phong_chance(surface);
+    let pdf = uniform_hemisphere_pdf(wi.z);
+    if u.x < chance {
+        return PhongScatter(wi, phong_specular(surface, wo, wi) / chance, pdf);
+    }
+    return PhongScatter(wi, phong_diffuse(surface, wi) / (1.0 - chance), pdf);
+}

@@ -1,0 +1,75 @@
+//#use approx
+// Twin of src/kernel/sampling.rs.
+
+const FRAC_1_PI: f32 = 0.318309886183790671538;
+
+// sampling::disk
+fn disk(u: vec2<f32>) -> vec2<f32> {
+    let r = sqrt(u.x);
+    let sc = sin_cos_turns(u.y);
+    return vec2<f32>(r * sc.y, r * sc.x);
+}
+
+// sampling::cosine_hemisphere
+fn cosine_hemisphere(u: vec2<f32>) -> vec3<f32> {
+    let d = disk(u);
+    return vec3<f32>(d.x, d.y, sqrt(max(1.0 - u.x, 0.0)));
+}
+
+// sampling::cosine_hemisphere_pdf
+fn cosine_hemisphere_pdf(z: f32) -> f32 {
+    return max(z, 0.0) * FRAC_1_PI;
+}
+
+// sampling::uniform_hemisphere
+fn uniform_hemisphere(u: vec2<f32>) -> vec3<f32> {
+    let r = sqrt(max(u.x * (2.0 - u.x), 0.0));
+    let sc = sin_cos_turns(u.y);
+    return vec3<f32>(r * sc.y, r * sc.x, 1.0 - u.x);
+}
+
+// sampling::uniform_hemisphere_pdf
+fn uniform_hemisphere_pdf(z: f32) -> f32 {
+    return select(0.0, 0.5f * FRAC_1_PI, z >= 0.0);
+}
+
+// sampling::uniform_sphere
+fn uniform_sphere(u: vec2<f32>) -> vec3<f32> {
+    let r = 2.0 * sqrt(max(u.x * (1.0 - u.x), 0.0));
+    let sc = sin_cos_turns(u.y);
+    return vec3<f32>(r * sc.y, r * sc.x, 1.0 - 2.0 * u.x);
+}
+
+// sampling::uniform_sphere_pdf
+fn uniform_sphere_pdf() -> f32 {
+    return 0.25f * FRAC_1_PI;
+}
+
+// sampling::barycentrics
+fn barycentrics(u: vec2<f32>) -> vec3<f32> {
+    let s = sqrt(u.x);
+    let y = u.y * s;
+    return vec3<f32>(1.0 - s, s - y, y);
+}
+
+// sampling::area_pdf
+fn area_pdf(area: f32, distance: f32, cosine: f32) -> f32 {
+    let projected = area * abs(cosine);
+    if projected > 1e-30 {
+        return (distance * distance) / projected;
+    }
+    return 0.0;
+}
+
+// sampling::power_heuristic
+fn power_heuristic(own: f32, other: f32) -> f32 {
+    if own > other {
+        let r = other / own;
+        return 1.0 / (r * r + 1.0);
+    }
+    if other > 0.0 {
+        let r = own / other;
+        return (r * r) / (r * r + 1.0);
+    }
+    return 0.0;
+}

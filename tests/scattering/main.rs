@@ -1,0 +1,8 @@
+//! The scattering kernels: energy, densities, reciprocity, hard cases; H83.
+#![cfg(feature = "lab")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod furnace;
+mod surfaces;
