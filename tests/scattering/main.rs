@@ -4,5 +4,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod densities;
 mod furnace;
+mod hard;
+mod laws;
 mod surfaces;
