@@ -31,22 +31,28 @@ const MODULES: &[Module] = &[
     module!("foveation", "mip_level"),
     module!("foveation", "mip_show"),
     module!("lib", "acuity"),
+    #[cfg(feature = "lab")]
     module!("lib", "albedo"),
     module!("lib", "approx"),
+    #[cfg(feature = "lab")]
     module!("lib", "bsdf"),
     module!("lib", "color"),
     module!("lib", "debug_view"),
     module!("lib", "depth"),
+    #[cfg(feature = "lab")]
     module!("lib", "direction"),
     module!("lib", "foveate"),
     module!("lib", "matched"),
+    #[cfg(feature = "lab")]
     module!("lib", "microfacet"),
     module!("lib", "pack"),
+    #[cfg(feature = "lab")]
     module!("lib", "phong"),
     module!("lib", "reproject"),
     module!("lib", "resample"),
     module!("lib", "reservoir"),
     module!("lib", "rng"),
+    #[cfg(feature = "lab")]
     module!("lib", "sampling"),
     module!("lib", "scrub"),
     module!("lib", "surface"),

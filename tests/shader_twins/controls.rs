@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{decisions, foveation, gpu, matching, mathematics, state, surfaces};
+use crate::{decisions, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -158,4 +158,27 @@ fn a_wrong_antialiasing_is_caught() {
         "(roots(candidate) - clipped) * alpha",
         "(roots(candidate) - clipped) * (1.01 * alpha)",
     );
+}
+
+#[test]
+fn a_wrong_direction_or_density_is_caught() {
+    caught(scattering::PROBES, "sin_cos_turns", "return vec2<f32>(c, -s);", "return vec2<f32>(c, s);");
+    caught(scattering::PROBES, "oct_encode", "q.y * OCT_STEPS + 32767.5", "q.y * OCT_STEPS + 32767.0");
+    caught(scattering::PROBES, "power_heuristic", "return 1.0 / (r * r + 1.0);", "return 1.0 / (r + 1.0);");
+    caught(scattering::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
+    caught(scattering::PROBES, "phong_sample", "/ (1.0 - chance)", "");
+}
+
+#[test]
+fn a_wrong_lobe_is_caught() {
+    caught(scattering_lobes::PROBES, "eval", "pdf += layers.chances.y * density;", "pdf += layers.chances.y * shape;");
+    caught(
+        scattering_lobes::PROBES,
+        "eval",
+        "jacobian = (vh * -lh) / (root * root);",
+        "jacobian = vh / (root * root);",
+    );
+    caught(scattering_lobes::PROBES, "sample", "wi.z = -wi.z;", "wi = -wi;");
+    caught(scattering_lobes::PROBES, "layers", "1.0 - coat_albedo", "1.0 - coat");
+    caught(scattering_lobes::PROBES, "glass_albedo", "select(e.zw, e.xy, entering)", "e.xy");
 }
