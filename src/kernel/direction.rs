@@ -9,7 +9,7 @@ const OCT_STEPS: f32 = 32767.0;
 #[inline]
 pub fn unit(v: Vec3) -> Vec3 {
     let m = v.x.abs().max(v.y.abs()).max(v.z.abs());
-    if m >= 1e-30 && m <= 1e30 {
+    if (1e-30..=1e30).contains(&m) {
         // Over the largest component first: squares neither overflow nor vanish.
         let s = v / m;
         return s / s.dot(s).sqrt();
