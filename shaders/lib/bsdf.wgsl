@@ -191,8 +191,9 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
         }
         let amount = (dielectric * transmission) * below;
         glass = vec3<f32>(amount) / (glass_reflect * (returned.x - returned.y) + vec3<f32>(returned.y));
-        let f = glass_reflect * fresnel_dielectric(z, eta);
-        glass_chance = luma((vec3<f32>(1.0) - f) * base + f) * amount;
+        let f = glass_fresnel(glass_reflect, fresnel_dielectric(z, eta));
+        let least = select(0.0, 0.1, eta < 1.0);
+        glass_chance = max(luma((vec3<f32>(1.0) - f) * base + f), least) * amount;
     }
 
     let diffuse_chance = luma(diffuse_albedo) + sheen_chance;

@@ -1,7 +1,5 @@
 // Twin of src/kernel/direction.rs.
 
-const OCT_STEPS: f32 = 32767.0;
-
 // direction::unit
 fn unit(v: vec3<f32>) -> vec3<f32> {
     let m = max(max(abs(v.x), abs(v.y)), abs(v.z));
@@ -37,31 +35,4 @@ fn to_world(v: vec3<f32>, x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec3<f32>
         v.x * x.y + v.y * y.y + v.z * z.y,
         v.x * x.z + v.y * y.z + v.z * z.z,
     );
-}
-
-// direction::oct_fold
-fn oct_fold(p: vec2<f32>) -> vec2<f32> {
-    let x = select(abs(p.y) - 1.0, 1.0 - abs(p.y), p.x >= 0.0);
-    let y = select(abs(p.x) - 1.0, 1.0 - abs(p.x), p.y >= 0.0);
-    return vec2<f32>(x, y);
-}
-
-// direction::oct_encode
-fn oct_encode(v: vec3<f32>) -> u32 {
-    let sum = (abs(v.x) + abs(v.y)) + abs(v.z);
-    let p = vec2<f32>(v.x / sum, v.y / sum);
-    let q = select(oct_fold(p), p, v.z >= 0.0);
-    let x = u32(clamp(floor(q.x * OCT_STEPS + 32767.5), 0.0, 65534.0));
-    let y = u32(clamp(floor(q.y * OCT_STEPS + 32767.5), 0.0, 65534.0));
-    return x | (y << 16u);
-}
-
-// direction::oct_decode
-fn oct_decode(word: u32) -> vec3<f32> {
-    let x = (f32(word & 0xffffu) - OCT_STEPS) / OCT_STEPS;
-    let y = (f32(word >> 16u) - OCT_STEPS) / OCT_STEPS;
-    let z = (1.0 - abs(x)) - abs(y);
-    let p = vec2<f32>(x, y);
-    let q = select(oct_fold(p), p, z >= 0.0);
-    return unit(vec3<f32>(q.x, q.y, z));
 }

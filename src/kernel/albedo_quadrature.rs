@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 
 /// Points along the cosine, and around half a turn, whose other half is its mirror image.
 const POINTS: [usize; 2] = [24, 12];
+/// The same for refraction, whose total reflection has an edge.
+const GLASS_POINTS: [usize; 2] = [32, 16];
 /// The same for stretched GGX, whose table is of small differences.
 const STRETCHED_POINTS: [usize; 2] = [16, 10];
 
@@ -117,24 +119,29 @@ fn ggx(wo: DVec3, a: DVec2, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2]
     })
 }
 
-/// What returns from a rough boundary: with Fresnel's reflectance, and with no reflection but the total one.
-fn glass(wo: DVec3, a: DVec2, eta: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2] {
+/// What returns from a rough boundary into a medium of `ior`: with Fresnel's reflectance, and with no reflection but the total
+/// one; the same for the way out.
+fn glass(wo: DVec3, a: DVec2, ior: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 4] {
     let facets = Facets::new(wo, a);
     facets.mean(rings, spokes, |h| {
-        let c = wo.dot(h).min(1.0);
         let up = mirrored(wo, h);
         let reflected = if up.z > 0.0 { facets.shadowing(up) } else { 0.0 };
-        let k = 1.0 - (1.0 - c * c) / (eta * eta);
-        if k <= 0.0 {
-            return [reflected, reflected];
-        }
-        let t = k.sqrt();
-        let s = (c - eta * t) / (c + eta * t);
-        let p = (eta * c - t) / (eta * c + t);
-        let f = 0.5 * (s * s + p * p);
-        let down = (c / eta - t) * h - wo / eta;
-        let through = if down.z < 0.0 { facets.shadowing(down) } else { 0.0 };
-        [f * reflected + (1.0 - f) * through, through]
+        let c = wo.dot(h).min(1.0);
+        let way = |eta: f64| {
+            let k = 1.0 - (1.0 - c * c) / (eta * eta);
+            if k <= 0.0 {
+                return [reflected, reflected];
+            }
+            let t = k.sqrt();
+            let s = (c - eta * t) / (c + eta * t);
+            let p = (eta * c - t) / (eta * c + t);
+            let f = 0.5 * (s * s + p * p);
+            let down = (c / eta - t) * h - wo / eta;
+            let through = if down.z < 0.0 { facets.shadowing(down) } else { 0.0 };
+            [f * reflected + (1.0 - f) * through, through]
+        };
+        let [[a, b], [c, d]] = [way(ior), way(1.0 / ior)];
+        [a, b, c, d]
     })
 }
 
@@ -182,6 +189,8 @@ impl AlbedoTables {
     pub fn compute() -> Self {
         let rings = gauss(POINTS[0]);
         let spokes = half_turn(POINTS[1]);
+        let glass_rings = gauss(GLASS_POINTS[0]);
+        let glass_spokes = half_turn(GLASS_POINTS[1]);
         let few_rings = gauss(STRETCHED_POINTS[0]);
         let few = half_turn(STRETCHED_POINTS[1]);
         let around: Vec<[f64; 2]> = few.iter().flat_map(|&[c, s]| [[c, s], [c, -s]]).collect();
@@ -206,11 +215,8 @@ impl AlbedoTables {
             let eta = (1.0 + ratio) / (1.0 - ratio);
             let a = width_at(r);
             let z = cosine_at(x * x, a);
-            let [enter, leave] = [
-                glass(seen_from(z, 1.0), DVec2::splat(a), eta, &rings, &spokes),
-                glass(seen_from(z, 1.0), DVec2::splat(a), 1.0 / eta, &rings, &spokes),
-            ];
-            Vec4::new(enter[0] as f32, enter[1] as f32, leave[0] as f32, leave[1] as f32)
+            let sums = glass(seen_from(z, 1.0), DVec2::splat(a), eta, &glass_rings, &glass_spokes);
+            Vec4::from_array(sums.map(|x| x as f32))
         });
         let third = (0..STRETCHED.iter().product()).into_par_iter().map(|i: u32| {
             let [nx, ny, nz, nw] = STRETCHED;

@@ -1,7 +1,9 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{decisions, foveation, gpu, matching, mathematics, state, surfaces, triangles};
+use crate::{
+    decisions, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -181,4 +183,26 @@ fn a_direction_folded_or_rounded_wrongly_is_caught() {
     caught(triangles::PROBES, "encode_direction", "x * DIRECTION_STEPS + 0.5", "x * DIRECTION_STEPS");
     caught(triangles::PROBES, "encode_direction", "if n.z < 0.0", "if n.z > 0.0");
     caught(triangles::PROBES, "decode_direction", "if z < 0.0", "if z > 0.5");
+}
+
+#[test]
+fn a_wrong_direction_or_density_is_caught() {
+    caught(scattering::PROBES, "sin_cos_turns", "return vec2<f32>(c, -s);", "return vec2<f32>(c, s);");
+    caught(scattering::PROBES, "power_heuristic", "return 1.0 / (r * r + 1.0);", "return 1.0 / (r + 1.0);");
+    caught(scattering::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
+    caught(scattering::PROBES, "phong_sample", "/ (1.0 - chance)", "");
+}
+
+#[test]
+fn a_wrong_lobe_is_caught() {
+    caught(scattering_lobes::PROBES, "eval", "pdf += layers.chances.y * density;", "pdf += layers.chances.y * shape;");
+    caught(
+        scattering_lobes::PROBES,
+        "eval",
+        "jacobian = (vh * -lh) / (root * root);",
+        "jacobian = vh / (root * root);",
+    );
+    caught(scattering_lobes::PROBES, "sample", "wi.z = -wi.z;", "wi = -wi;");
+    caught(scattering_lobes::PROBES, "layers", "1.0 - coat_albedo", "1.0 - coat");
+    caught(scattering_lobes::PROBES, "glass_albedo", "select(e.zw, e.xy, entering)", "e.xy");
 }

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, matching, mathematics, state, surfaces, triangles};
+use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -11,6 +11,7 @@ fn acuity_is_bit_equal_h61_h62_h64_h65() {
 #[test]
 fn approx_is_bit_equal_h38_h61() {
     check_module(mathematics::PROBES, "approx");
+    check_module(scattering::PROBES, "approx");
 }
 
 #[test]
@@ -91,4 +92,34 @@ fn triangle_is_bit_equal_h80() {
 #[test]
 fn octahedral_is_bit_equal() {
     check_module(triangles::PROBES, "octahedral");
+}
+
+#[test]
+fn direction_is_bit_equal() {
+    check_module(scattering::PROBES, "direction");
+}
+
+#[test]
+fn sampling_is_bit_equal_h83() {
+    check_module(scattering::PROBES, "sampling");
+}
+
+#[test]
+fn microfacet_is_bit_equal_h83() {
+    check_module(scattering::PROBES, "microfacet");
+}
+
+#[test]
+fn phong_is_bit_equal() {
+    check_module(scattering::PROBES, "phong");
+}
+
+#[test]
+fn albedo_is_bit_equal() {
+    check_module(scattering_lobes::PROBES, "albedo");
+}
+
+#[test]
+fn bsdf_is_bit_equal_h83() {
+    check_module(scattering_lobes::PROBES, "bsdf");
 }

@@ -1,6 +1,6 @@
 //! The WGSL library against the Rust kernel, function by function, bit for bit; hard cases H01-H04, H15, H17-H21, H23, H28,
-//! H30-H39, H41, H42, H45, H47, H54, H57, H61, H64, H65, H71, H80.
-#![cfg(feature = "gpu")]
+//! H30-H39, H41, H42, H45, H47, H54, H57, H61, H64, H65, H71, H80, H83.
+#![cfg(feature = "lab")]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -15,6 +15,8 @@ mod matching;
 mod mathematics;
 mod modules;
 mod probe;
+mod scattering;
+mod scattering_lobes;
 mod state;
 mod surfaces;
 mod triangles;

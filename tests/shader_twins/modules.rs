@@ -1,7 +1,7 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
-use crate::{decisions, foveation, matching, mathematics, state, surfaces, triangles};
-use afterimage::gpu::shader::{Composed, compose_with, module_names};
+use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
+use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -35,16 +35,14 @@ fn every_module_composes_and_is_valid() {
     let names: Vec<_> = module_names().collect();
     assert!(names.len() >= 11);
     for name in names {
-        let variants: &[&[&str]] = match name {
-            // What it needs is said by its user: where the heap is, which hits count.
-            "geometry" => &[&["heap_texture", "accept_all", "geometry"]],
-            "hits_pass" | "traverse" => {
-                &[&["heap_texture", "accept_all", "hits_pass"], &["heap_buffer", "accept_all", "hits_pass"]]
-            }
-            _ => &[&[name]],
-        };
-        for parts in variants {
-            validate(&compose_with(parts, "")).unwrap_or_else(|e| panic!("{name}: {e}"));
+        // What a module's users provide: where the heap is, which hits count.
+        let source = compose(name).source;
+        let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
+        let heaps: &[Option<&str>] = if lacks("load") { &[Some("heap_texture"), Some("heap_buffer")] } else { &[None] };
+        let accept = lacks("accept_hit").then_some("accept_all");
+        for heap in heaps {
+            let parts: Vec<&str> = heap.iter().copied().chain(accept).chain([name]).collect();
+            validate(&compose_with(&parts, "")).unwrap_or_else(|e| panic!("{name}: {e}"));
         }
     }
 }
@@ -89,8 +87,21 @@ const WGSL_ONLY: &[(&str, &str)] =
 const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
-const PRIVATE: &[&str] =
-    &["fifth_root", "folded", "fraction", "fraction_bits", "half_is_infinite", "lab_f", "pcg4d_mix", "saturating_add"];
+const PRIVATE: &[&str] = &[
+    "compensation",
+    "eval_reflection",
+    "eval_transmission",
+    "fifth_root",
+    "folded",
+    "fraction",
+    "fraction_bits",
+    "glass_fresnel",
+    "half_is_infinite",
+    "lab_f",
+    "mirror_chance",
+    "pcg4d_mix",
+    "saturating_add",
+];
 
 fn stems() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/lib");
@@ -126,6 +137,8 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
         state::PROBES,
         surfaces::PROBES,
         triangles::PROBES,
+        scattering::PROBES,
+        scattering_lobes::PROBES,
     ];
     let probed = lists.into_iter().flatten().map(|p| p.name);
     let covered: BTreeSet<String> = probed.chain(PRIVATE.iter().copied()).map(str::to_owned).collect();

@@ -1,6 +1,7 @@
 //! A probe: one library function over a table of words, on the adapter and by its Rust twin.
 
 use crate::gpu;
+use crate::scattering_lobes::heap;
 use afterimage::gpu::shader::compose_with;
 use glam::Vec3;
 
@@ -64,11 +65,15 @@ impl Probe {
     /// The library and an entry point `main` that runs one row per invocation.
     pub fn source(&self) -> String {
         let [ins, outs] = self.words;
+        let heap = heap(self.module).len();
         let harness = format!(
             "@group(0) @binding(0) var<storage, read> probe_in: array<u32>;
 @group(0) @binding(1) var<storage, read_write> probe_out: array<u32>;
 var<private> probe_read: u32;
 var<private> probe_write: u32;
+fn load(i: u32) -> vec4<u32> {{
+    return vec4<u32>(probe_in[4u * i], probe_in[4u * i + 1u], probe_in[4u * i + 2u], probe_in[4u * i + 3u]);
+}}
 fn in_u(k: u32) -> u32 {{ return probe_in[probe_read + k]; }}
 fn in_f(k: u32) -> f32 {{ return bitcast<f32>(in_u(k)); }}
 fn in_v(k: u32) -> vec3<f32> {{ return vec3<f32>(in_f(k), in_f(k + 1u), in_f(k + 2u)); }}
@@ -78,8 +83,8 @@ fn out_b(x: bool) {{ out_u(select(0u, 1u, x)); }}
 fn out_v(x: vec3<f32>) {{ out_f(x.x); out_f(x.y); out_f(x.z); }}
 @compute @workgroup_size({workgroup})
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
-    if id.x >= arrayLength(&probe_in) / {ins}u {{ return; }}
-    probe_read = id.x * {ins}u;
+    if id.x >= (arrayLength(&probe_in) - {heap}u) / {ins}u {{ return; }}
+    probe_read = {heap}u + id.x * {ins}u;
     probe_write = id.x * {outs}u;
     {wgsl}
 }}
@@ -92,11 +97,23 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 
     /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin.
     pub fn differences(&self, device: &wgpu::Device, queue: &wgpu::Queue, source: &str) -> (usize, Vec<String>) {
-        let rows = (self.rows)();
+        self.differences_of(device, queue, source, &(self.rows)())
+    }
+
+    /// The same for `rows`.
+    pub fn differences_of(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        source: &str,
+        rows: &Rows,
+    ) -> (usize, Vec<String>) {
         let [ins, outs] = self.words;
         assert_eq!(rows.width, ins, "{}", self.name);
         let count = rows.words.len() / ins;
-        let got = gpu::run_probe(device, queue, source, "main", &rows.words, count * outs);
+        // The heap comes first, so that where it lies does not depend on the rows.
+        let inputs = [heap(self.module), rows.words.clone()].concat();
+        let got = gpu::run_probe(device, queue, source, "main", &inputs, count * outs);
         let mut lines = vec![];
         for (input, got) in rows.words.chunks(ins).zip(got.chunks(outs)) {
             let mut expected = Out::default();
