@@ -42,6 +42,8 @@ const MODULES: &[Module] = &[
     #[cfg(feature = "lab")]
     module!("lib", "direction"),
     module!("lib", "foveate"),
+    #[cfg(feature = "lab")]
+    module!("lib", "layers"),
     module!("lib", "matched"),
     #[cfg(feature = "lab")]
     module!("lib", "microfacet"),

@@ -18,6 +18,8 @@ pub mod depth;
 #[cfg(feature = "lab")]
 pub mod direction;
 pub mod foveate;
+#[cfg(feature = "lab")]
+pub mod layers;
 pub mod matched;
 #[cfg(feature = "lab")]
 pub mod microfacet;

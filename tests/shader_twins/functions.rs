@@ -113,3 +113,8 @@ fn albedo_is_bit_equal() {
 fn bsdf_is_bit_equal_h83() {
     check_module(scattering_lobes::PROBES, "bsdf");
 }
+
+#[test]
+fn layers_is_bit_equal_h83() {
+    check_module(scattering_lobes::PROBES, "layers");
+}

@@ -41,7 +41,7 @@ fn around_z(d: &mut Draws, z: f32) -> Vec3 {
 /// A unit vector of either side.
 pub fn anywhere(d: &mut Draws) -> Vec3 {
     let v = above(d);
-    if d.bits() % 2 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
+    if d.bits() & 1 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
 }
 
 /// 0, 1, or anything between.
