@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
 
 use crate::probe::Probe;
-use crate::{decisions, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces};
+use crate::{decisions, facets, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces};
 
 #[track_caller]
 fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
@@ -165,7 +165,7 @@ fn a_wrong_direction_or_density_is_caught() {
     caught(scattering::PROBES, "sin_cos_turns", "return vec2<f32>(c, -s);", "return vec2<f32>(c, s);");
     caught(scattering::PROBES, "oct_encode", "q.y * OCT_STEPS + 32767.5", "q.y * OCT_STEPS + 32767.0");
     caught(scattering::PROBES, "power_heuristic", "return 1.0 / (r * r + 1.0);", "return 1.0 / (r + 1.0);");
-    caught(scattering::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
+    caught(facets::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
     caught(scattering::PROBES, "phong_sample", "/ (1.0 - chance)", "");
 }
 

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces};
+use crate::{decisions, facets, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -96,7 +96,7 @@ fn sampling_is_bit_equal_h83() {
 
 #[test]
 fn microfacet_is_bit_equal_h83() {
-    check_module(scattering::PROBES, "microfacet");
+    check_module(facets::PROBES, "microfacet");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces};
+use crate::{decisions, facets, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces};
 use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -132,6 +132,7 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
         state::PROBES,
         surfaces::PROBES,
         scattering::PROBES,
+        facets::PROBES,
         scattering_lobes::PROBES,
     ];
     let probed = lists.into_iter().flatten().map(|p| p.name);
