@@ -373,3 +373,24 @@ fn h65_weight_at_90_degrees_has_its_floor() {
     let inv = 1.0 / acuity::cell_density(2.5);
     assert_abs_diff_eq!(acuity::candidate_weight(90.0, 2.5, inv), 0.0013, epsilon = 1e-4);
 }
+
+#[test]
+fn sin_cos_turns_holds_its_stated_accuracy_and_is_exact_at_the_quarters() {
+    let error = |x: f32, [s, c]: [f32; 2]| {
+        let angle = f64::from(x) * std::f64::consts::TAU;
+        (f64::from(s) - angle.sin()).abs().max((f64::from(c) - angle.cos()).abs())
+    };
+    let turns = || (-400_000..=400_000).map(|i| i as f32 * 5e-6);
+    let worst = turns().map(|x| error(x, approx::sin_cos_turns(x))).fold(0.0, f64::max);
+    println!("sin_cos_turns: worst error {worst:.2e}");
+    assert!(worst < 2e-7);
+    for (x, exact) in [(0.0, [0.0, 1.0]), (0.25, [1.0, 0.0]), (0.5, [0.0, -1.0]), (0.75, [-1.0, 0.0])] {
+        assert_eq!(approx::sin_cos_turns(x), exact);
+    }
+    // The planted error: one term fewer of the sine.
+    let short = |r: f32| {
+        let z = r * r;
+        [((81.593_765 * z - 41.341_67) * z + 6.283_185_5) * r, (r * std::f32::consts::TAU).cos()]
+    };
+    assert!(error(0.12, short(0.12)) > 1e-6);
+}

@@ -31,30 +31,43 @@ const MODULES: &[Module] = &[
     module!("foveation", "mip_level"),
     module!("foveation", "mip_show"),
     module!("lib", "acuity"),
+    #[cfg(feature = "lab")]
     module!("lib", "albedo"),
     module!("lib", "approx"),
+    #[cfg(feature = "lab")]
     module!("lib", "bsdf"),
     module!("lib", "color"),
     module!("lib", "debug_view"),
     module!("lib", "depth"),
+    #[cfg(feature = "lab")]
     module!("lib", "direction"),
     module!("lib", "foveate"),
+    #[cfg(feature = "lab")]
+    module!("lib", "layers"),
+    #[cfg(feature = "lab")]
     module!("lib", "light"),
     module!("lib", "matched"),
+    #[cfg(feature = "lab")]
     module!("lib", "microfacet"),
+    #[cfg(feature = "lab")]
     module!("lib", "octahedral"),
     module!("lib", "pack"),
+    #[cfg(feature = "lab")]
     module!("lib", "phong"),
     module!("lib", "reproject"),
     module!("lib", "resample"),
     module!("lib", "reservoir"),
     module!("lib", "rng"),
+    #[cfg(feature = "lab")]
     module!("lib", "sampling"),
     module!("lib", "scrub"),
+    #[cfg(feature = "lab")]
     module!("lib", "shading"),
     module!("lib", "surface"),
     module!("lib", "taa"),
+    #[cfg(feature = "lab")]
     module!("lib", "texel"),
+    #[cfg(feature = "lab")]
     module!("lib", "triangle"),
     module!("lib", "wrs"),
     module!("pass", "chain_pass"),
@@ -63,26 +76,47 @@ const MODULES: &[Module] = &[
     module!("pass", "smr_pass"),
     module!("pass", "taa_pass"),
     module!("pass", "wrs_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "accept_all"),
+    #[cfg(feature = "lab")]
     module!("trace", "count_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "effects"),
+    #[cfg(feature = "lab")]
     module!("trace", "extend_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "frame"),
+    #[cfg(feature = "lab")]
     module!("trace", "generate_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "geometry"),
+    #[cfg(feature = "lab")]
     module!("trace", "heap_buffer"),
+    #[cfg(feature = "lab")]
     module!("trace", "heap_texture"),
+    #[cfg(feature = "lab")]
     module!("trace", "hit"),
+    #[cfg(feature = "lab")]
     module!("trace", "hits_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "holes"),
+    #[cfg(feature = "lab")]
     module!("trace", "lights"),
+    #[cfg(feature = "lab")]
     module!("trace", "plan"),
+    #[cfg(feature = "lab")]
     module!("trace", "records"),
+    #[cfg(feature = "lab")]
     module!("trace", "resolve_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "shade_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "shadow_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "surface_point"),
+    #[cfg(feature = "lab")]
     module!("trace", "texture"),
+    #[cfg(feature = "lab")]
     module!("trace", "traverse"),
 ];
 

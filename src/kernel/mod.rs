@@ -19,6 +19,8 @@ pub mod depth;
 pub mod direction;
 pub mod foveate;
 #[cfg(feature = "lab")]
+pub mod layers;
+#[cfg(feature = "lab")]
 pub mod light;
 pub mod matched;
 #[cfg(feature = "lab")]

@@ -56,8 +56,8 @@ pub fn white(d: &mut Draws) -> Surface {
         sheen_color: Vec3::splat(sheen),
         sheen_roughness: share(d),
         transmission: share(d),
-        thin: d.bits() % 2 == 0,
-        entering: d.bits() % 2 == 0,
+        thin: d.bits() & 1 == 0,
+        entering: d.bits() & 1 == 0,
         ..WHITE
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::probe::Probe;
 use crate::{
-    decisions, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+    decisions, facets, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
 };
 
 #[track_caller]
@@ -189,7 +189,7 @@ fn a_direction_folded_or_rounded_wrongly_is_caught() {
 fn a_wrong_direction_or_density_is_caught() {
     caught(scattering::PROBES, "sin_cos_turns", "return vec2<f32>(c, -s);", "return vec2<f32>(c, s);");
     caught(scattering::PROBES, "power_heuristic", "return 1.0 / (r * r + 1.0);", "return 1.0 / (r + 1.0);");
-    caught(scattering::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
+    caught(facets::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
     caught(scattering::PROBES, "phong_sample", "/ (1.0 - chance)", "");
 }
 

@@ -1,7 +1,9 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
+use crate::{
+    decisions, facets, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -106,7 +108,7 @@ fn sampling_is_bit_equal_h83() {
 
 #[test]
 fn microfacet_is_bit_equal_h83() {
-    check_module(scattering::PROBES, "microfacet");
+    check_module(facets::PROBES, "microfacet");
 }
 
 #[test]
@@ -122,4 +124,9 @@ fn albedo_is_bit_equal() {
 #[test]
 fn bsdf_is_bit_equal_h83() {
     check_module(scattering_lobes::PROBES, "bsdf");
+}
+
+#[test]
+fn layers_is_bit_equal_h83() {
+    check_module(scattering_lobes::PROBES, "layers");
 }

@@ -9,6 +9,7 @@ mod gpu;
 
 mod controls;
 mod decisions;
+mod facets;
 mod foveation;
 mod functions;
 mod matching;

@@ -1,6 +1,8 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
+use crate::{
+    decisions, facets, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+};
 use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -138,6 +140,7 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
         surfaces::PROBES,
         triangles::PROBES,
         scattering::PROBES,
+        facets::PROBES,
         scattering_lobes::PROBES,
     ];
     let probed = lists.into_iter().flatten().map(|p| p.name);

@@ -1,18 +1,18 @@
-//! Functions of scattering that need no tables: direction, sampling, microfacet, phong.
+//! Functions of scattering that need no tables: direction, sampling, phong.
 
 use crate::common::Draws;
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
 use afterimage::kernel::bsdf::{Sampled, Scatter};
 use afterimage::kernel::phong::PhongSurface;
-use afterimage::kernel::{direction, microfacet, phong, sampling};
+use afterimage::kernel::{direction, phong, sampling};
 use glam::{Vec2, Vec3};
 
 pub fn two(r: &Row<'_>, k: usize) -> Vec2 {
     Vec2::new(r.f(k), r.f(k + 1))
 }
 
-fn put_two(o: &mut Out, v: Vec2) {
+pub fn put_two(o: &mut Out, v: Vec2) {
     o.f(v.x);
     o.f(v.y);
 }
@@ -41,7 +41,7 @@ fn around_z(d: &mut Draws, z: f32) -> Vec3 {
 /// A unit vector of either side.
 pub fn anywhere(d: &mut Draws) -> Vec3 {
     let v = above(d);
-    if d.bits() % 2 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
+    if d.bits() & 1 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
 }
 
 /// 0, 1, or anything between.
@@ -53,49 +53,20 @@ pub fn share(d: &mut Draws) -> f32 {
     }
 }
 
-fn width(d: &mut Draws) -> f32 {
-    match d.bits() % 4 {
-        0 => 1e-3,
-        1 => 1.0,
-        _ => d.range(1e-3, 1.0),
-    }
-}
-
-fn draw(d: &mut Draws) -> u32 {
+pub fn draw(d: &mut Draws) -> u32 {
     range(d, 0.0, 1.0)
 }
 
 /// Rows of two draws, their ends among them.
-fn two_draws(name: &str) -> Rows {
+pub fn two_draws(name: &str) -> Rows {
     let ends = [draws(), floats(&[1.0])].concat();
     Rows::new(2).cross(&[&ends, &ends]).random(name, |d, row| row.extend([draw(d), draw(d)]))
 }
 
 /// Rows of one number from 0 to 1.
-fn one_share(name: &str) -> Rows {
+pub fn one_share(name: &str) -> Rows {
     let ends = [draws(), floats(&[1.0, 1e-7])].concat();
     Rows::new(1).cross(&[&ends]).random(name, |d, row| row.push(draw(d)))
-}
-
-/// Rows of a direction above and widths.
-fn seen(name: &str, more: usize) -> Rows {
-    Rows::new(5 + more).random(name, |d, row| {
-        put(row, above(d));
-        row.extend([width(d), width(d)].map(f32::to_bits));
-        (0..more).for_each(|_| row.push(draw(d)));
-    })
-}
-
-fn vector_and_normal(name: &str, more: usize) -> Rows {
-    Rows::new(6 + more).random(name, |d, row| {
-        put(row, above(d));
-        put(row, above(d));
-        (0..more).for_each(|_| row.push(range(d, 0.3, 3.0)));
-    })
-}
-
-fn widths_rows(name: &str, count: usize) -> Rows {
-    Rows::new(count).random(name, |d, row| (0..count).for_each(|_| row.push(width(d).to_bits())))
 }
 
 fn material(r: &Row<'_>) -> PhongSurface {
@@ -269,164 +240,6 @@ pub const PROBES: &[Probe] = &[
             Rows::new(2)
                 .cross(&[&ends, &ends])
                 .random("power_heuristic", |d, row| row.extend([scaled(d, -20, 20), scaled(d, -20, 20)]))
-        },
-    },
-    Probe {
-        name: "ggx_widths",
-        module: "microfacet",
-        words: [2, 2],
-        wgsl: "let a = ggx_widths(in_f(0u), in_f(1u)); out_f(a.x); out_f(a.y);",
-        rust: |r, o| put_two(o, microfacet::ggx_widths(r.f(0), r.f(1))),
-        rows: || two_draws("ggx_widths"),
-    },
-    Probe {
-        name: "ggx_mean_width",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(ggx_mean_width(vec2<f32>(in_f(0u), in_f(1u))));",
-        rust: |r, o| o.f(microfacet::ggx_mean_width(two(r, 0))),
-        rows: || widths_rows("ggx_mean_width", 2),
-    },
-    Probe {
-        name: "ggx_length",
-        module: "microfacet",
-        words: [5, 1],
-        wgsl: "out_f(ggx_length(in_v(0u), vec2<f32>(in_f(3u), in_f(4u))));",
-        rust: |r, o| o.f(microfacet::ggx_length(r.v(0), two(r, 3))),
-        rows: || seen("ggx_length", 0),
-    },
-    Probe {
-        name: "ggx_d",
-        module: "microfacet",
-        words: [5, 1],
-        wgsl: "out_f(ggx_d(in_v(0u), vec2<f32>(in_f(3u), in_f(4u))));",
-        rust: |r, o| o.f(microfacet::ggx_d(r.v(0), two(r, 3))),
-        rows: || seen("ggx_d", 0),
-    },
-    Probe {
-        name: "smith_g1",
-        module: "microfacet",
-        words: [5, 1],
-        wgsl: "out_f(smith_g1(in_v(0u), vec2<f32>(in_f(3u), in_f(4u))));",
-        rust: |r, o| o.f(microfacet::smith_g1(r.v(0), two(r, 3))),
-        rows: || seen("smith_g1", 0),
-    },
-    Probe {
-        name: "smith_g2",
-        module: "microfacet",
-        words: [4, 1],
-        wgsl: "out_f(smith_g2(in_f(0u), in_f(1u), in_f(2u), in_f(3u)));",
-        rust: |r, o| o.f(microfacet::smith_g2(r.f(0), r.f(1), r.f(2), r.f(3))),
-        rows: || widths_rows("smith_g2", 4),
-    },
-    Probe {
-        name: "vndf_sample",
-        module: "microfacet",
-        words: [7, 3],
-        wgsl: "out_v(vndf_sample(in_v(0u), vec2<f32>(in_f(3u), in_f(4u)), vec2<f32>(in_f(5u), in_f(6u))));",
-        rust: |r, o| o.v(microfacet::vndf_sample(r.v(0), two(r, 3), two(r, 5))),
-        rows: || seen("vndf_sample", 2),
-    },
-    Probe {
-        name: "vndf_pdf",
-        module: "microfacet",
-        words: [8, 1],
-        wgsl: "out_f(vndf_pdf(in_v(0u), in_v(3u), vec2<f32>(in_f(6u), in_f(7u))));",
-        rust: |r, o| o.f(microfacet::vndf_pdf(r.v(0), r.v(3), two(r, 6))),
-        rows: || {
-            Rows::new(8).random("vndf_pdf", |d, row| {
-                put(row, above(d));
-                put(row, above(d));
-                row.extend([width(d), width(d)].map(f32::to_bits));
-            })
-        },
-    },
-    Probe {
-        name: "schlick_weight",
-        module: "microfacet",
-        words: [1, 1],
-        wgsl: "out_f(schlick_weight(in_f(0u)));",
-        rust: |r, o| o.f(microfacet::schlick_weight(r.f(0))),
-        rows: || one_share("schlick_weight"),
-    },
-    Probe {
-        name: "reflectance_at_normal",
-        module: "microfacet",
-        words: [1, 1],
-        wgsl: "out_f(reflectance_at_normal(in_f(0u)));",
-        rust: |r, o| o.f(microfacet::reflectance_at_normal(r.f(0))),
-        rows: || {
-            Rows::new(1)
-                .cross(&[&floats(&[1.0, 1.5, 3.0])])
-                .random("reflectance_at_normal", |d, row| row.push(range(d, 1.0, 4.0)))
-        },
-    },
-    Probe {
-        name: "fresnel_dielectric",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(fresnel_dielectric(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(microfacet::fresnel_dielectric(r.f(0), r.f(1))),
-        rows: || Rows::new(2).random("fresnel_dielectric", |d, row| row.extend([draw(d), range(d, 0.3, 3.0)])),
-    },
-    Probe {
-        name: "refraction_discriminant",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(refraction_discriminant(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(microfacet::refraction_discriminant(r.f(0), r.f(1))),
-        rows: || Rows::new(2).random("refraction_discriminant", |d, row| row.extend([draw(d), range(d, 0.3, 3.0)])),
-    },
-    Probe {
-        name: "mirrored",
-        module: "microfacet",
-        words: [6, 3],
-        wgsl: "out_v(mirrored(in_v(0u), in_v(3u)));",
-        rust: |r, o| o.v(microfacet::mirrored(r.v(0), r.v(3))),
-        rows: || vector_and_normal("mirrored", 0),
-    },
-    Probe {
-        name: "refracted",
-        module: "microfacet",
-        words: [7, 3],
-        wgsl: "out_v(refracted(in_v(0u), in_v(3u), in_f(6u)));",
-        rust: |r, o| o.v(microfacet::refracted(r.v(0), r.v(3), r.f(6))),
-        rows: || vector_and_normal("refracted", 1),
-    },
-    Probe {
-        name: "charlie_d",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(charlie_d(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(microfacet::charlie_d(r.f(0), r.f(1))),
-        rows: || Rows::new(2).random("charlie_d", |d, row| row.extend([draw(d), range(d, 0.01, 1.0)])),
-    },
-    Probe {
-        name: "charlie_curve",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(charlie_curve(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(microfacet::charlie_curve(r.f(0), r.f(1))),
-        rows: || Rows::new(2).random("charlie_curve", |d, row| row.extend([draw(d), range(d, 0.01, 1.0)])),
-    },
-    Probe {
-        name: "charlie_lambda",
-        module: "microfacet",
-        words: [2, 1],
-        wgsl: "out_f(charlie_lambda(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(microfacet::charlie_lambda(r.f(0), r.f(1))),
-        rows: || Rows::new(2).random("charlie_lambda", |d, row| row.extend([draw(d), range(d, 0.01, 1.0)])),
-    },
-    Probe {
-        name: "charlie_visibility",
-        module: "microfacet",
-        words: [4, 1],
-        wgsl: "out_f(charlie_visibility(in_f(0u), in_f(1u), in_f(2u), in_f(3u)));",
-        rust: |r, o| o.f(microfacet::charlie_visibility(r.f(0), r.f(1), r.f(2), r.f(3))),
-        rows: || {
-            Rows::new(4).random("charlie_visibility", |d, row| {
-                row.extend([draw(d), scaled(d, -4, 14), draw(d), scaled(d, -4, 14)]);
-            })
         },
     },
     Probe {

@@ -7,6 +7,7 @@ use crate::scattering::{above, anywhere, put, put_sampled, put_scatter, share, t
 use crate::values::*;
 use afterimage::kernel::albedo::{self, AlbedoTables};
 use afterimage::kernel::bsdf::{self, Layers, Lobes, Surface};
+use afterimage::kernel::layers;
 use glam::{Vec2, Vec3};
 use std::sync::LazyLock;
 
@@ -14,7 +15,7 @@ static TABLES: LazyLock<AlbedoTables> = LazyLock::new(AlbedoTables::compute);
 
 /// What `load` reads while `module` is probed.
 pub fn heap(module: &str) -> Vec<u32> {
-    if ["albedo", "bsdf"].contains(&module) { TABLES.words().flatten().collect() } else { vec![] }
+    if ["albedo", "bsdf", "layers"].contains(&module) { TABLES.words().flatten().collect() } else { vec![] }
 }
 
 /// Words of a surface in a row.
@@ -46,13 +47,13 @@ fn put_surface(d: &mut Draws, row: &mut Vec<u32>) {
     put(row, color(d));
     row.push(range(d, 1.0, 3.2));
     (0..3).for_each(|_| row.push(share(d).to_bits()));
-    let sheen = if d.bits() % 2 == 0 { Vec3::ZERO } else { color(d) };
+    let sheen = if d.bits() & 1 == 0 { Vec3::ZERO } else { color(d) };
     put(row, sheen);
     row.extend([share(d), share(d)].map(f32::to_bits));
     row.push(d.bits() & 3);
 }
 
-fn layers(r: &Row<'_>) -> Layers {
+fn layers_of(r: &Row<'_>) -> Layers {
     bsdf::layers(&surface(r), r.v(SURFACE), &TABLES, Lobes::ALL)
 }
 
@@ -205,10 +206,10 @@ pub const PROBES: &[Probe] = &[
     },
     Probe {
         name: "retro_albedo",
-        module: "bsdf",
+        module: "layers",
         words: [2, 1],
         wgsl: "out_f(retro_albedo(in_f(0u), in_f(1u)));",
-        rust: |r, o| o.f(bsdf::retro_albedo(r.f(0), r.f(1))),
+        rust: |r, o| o.f(layers::retro_albedo(r.f(0), r.f(1))),
         rows: || pair("retro_albedo"),
     },
     Probe {
@@ -227,10 +228,10 @@ pub const PROBES: &[Probe] = &[
     },
     Probe {
         name: "reflect_albedo",
-        module: "bsdf",
+        module: "layers",
         words: [5, 3],
         wgsl: "out_v(reflect_albedo(in_v(0u), vec2<f32>(in_f(3u), in_f(4u))));",
-        rust: |r, o| o.v(bsdf::reflect_albedo(r.v(0), two(r, 3))),
+        rust: |r, o| o.v(layers::reflect_albedo(r.v(0), two(r, 3))),
         rows: || {
             Rows::new(5).random("reflect_albedo", |d, row| {
                 (0..3).for_each(|_| row.push(share(d).to_bits()));
@@ -240,7 +241,7 @@ pub const PROBES: &[Probe] = &[
     },
     Probe {
         name: "layers",
-        module: "bsdf",
+        module: "layers",
         words: [SURFACE + 3, 37],
         wgsl: layered!(
             "out_f(l.widths.x); out_f(l.widths.y); out_v(l.diffuse); out_f(l.retro); out_f(l.retro_roughness);
@@ -248,7 +249,7 @@ pub const PROBES: &[Probe] = &[
     out_f(l.coat_rise); out_v(l.sheen); out_f(l.sheen_width); out_f(l.sheen_lambda); out_v(l.glass);
     out_v(l.glass_color); out_v(l.glass_reflect); out_f(l.eta); out_b(l.thin); out_v(l.chances.xyz); out_f(l.chances.w);"
         ),
-        rust: |r, o| put_layers(o, &layers(r)),
+        rust: |r, o| put_layers(o, &layers_of(r)),
         rows: || surfaces("layers", 0, |_, _| {}),
     },
     Probe {
@@ -256,7 +257,7 @@ pub const PROBES: &[Probe] = &[
         module: "bsdf",
         words: [SURFACE + 6, 4],
         wgsl: layered!("let r = eval(l, wo, in_v(22u)); out_v(r.value); out_f(r.pdf);"),
-        rust: |r, o| put_scatter(o, &bsdf::eval(&layers(r), r.v(SURFACE), r.v(SURFACE + 3), Lobes::ALL)),
+        rust: |r, o| put_scatter(o, &bsdf::eval(&layers_of(r), r.v(SURFACE), r.v(SURFACE + 3), Lobes::ALL)),
         rows: || surfaces("eval", 3, |d, row| put(row, anywhere(d))),
     },
     Probe {
@@ -269,14 +270,16 @@ pub const PROBES: &[Probe] = &[
         ),
         rust: |r, o| {
             let u = std::array::from_fn(|k| r.f(SURFACE + 3 + k));
-            put_sampled(o, &bsdf::sample(&layers(r), r.v(SURFACE), u, Lobes::ALL));
+            put_sampled(o, &bsdf::sample(&layers_of(r), r.v(SURFACE), u, Lobes::ALL));
         },
         rows: || surfaces("sample", 4, |d, row| (0..4).for_each(|_| row.push(one_draw(d)))),
     },
 ];
 
+type Switch = (&'static str, fn(&Lobes) -> bool);
+
 /// Name of each override, and whether a surface needs it.
-const SWITCHES: [(&str, fn(&Lobes) -> bool); 7] = [
+const SWITCHES: [Switch; 7] = [
     ("LOBE_RETRO", |l| l.retro),
     ("LOBE_SPECULAR", |l| l.specular),
     ("LOBE_METAL", |l| l.metal),
