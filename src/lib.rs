@@ -50,7 +50,7 @@
 //! - [`stats`], [`warning`]: what a frame came to, and what was odd about it.
 //! - [`gpu`] and [`cpu`]: the two executors of the same passes, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
 //!   they share, one function a formula.
-//! - With the feature `lab`: `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
+//! - With the feature `lab`: `scene` (glTF and built-in scenes), `trace` (path tracing), `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
 //!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric` and `report`.
 //!
 //! Results do not depend on the number of threads: same seed, same frames, same bytes.
