@@ -14,6 +14,7 @@ struct TraceFrame {
     map_size: vec2<u32>,
     items: u32,
     capacity: u32,
+    jitter: f32,
 }
 
 // Words of `counters`.

@@ -13,8 +13,8 @@ fn generate(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let item = work[frame.first_item + path];
     let draws = path_draws(item.x, item.y, DRAWS_CAMERA, frame.key);
-    let px = f32(item.x & 0xffffu) + (draws.x - 0.5);
-    let py = f32(item.x >> 16u) + (draws.y - 0.5);
+    let px = f32(item.x & 0xffffu) + (draws.x - 0.5) * frame.jitter;
+    let py = f32(item.x >> 16u) + (draws.y - 0.5) * frame.jitter;
     set_path_row(path, PATH_ORIGIN, frame.origin, 0.0);
     set_path_row(path, PATH_DIRECTION, unit(frame.corner + frame.right * px + frame.down * py), 0.0);
     set_path_row(path, PATH_THROUGHPUT, vec3<f32>(1.0), 0.0);

@@ -18,6 +18,7 @@ pub mod measure;
 mod node;
 mod record;
 pub mod records;
+pub mod sampling;
 pub mod settings;
 pub mod surfaces;
 mod tracer;

@@ -3,6 +3,7 @@
 use crate::display::ViewGeometry;
 use crate::error::SettingsError;
 use crate::scene::Camera;
+use crate::trace::sampling::Lattice;
 use glam::{DMat4, DVec3, Vec3};
 
 /// Where a frame is seen from, and through which pixels.
@@ -10,6 +11,7 @@ use glam::{DMat4, DVec3, Vec3};
 pub struct View {
     geometry: ViewGeometry,
     world_from_camera: DMat4,
+    lattice: Option<Lattice>,
 }
 
 /// Rays of a view: `corner + right x + down y` goes through pixel (x, y), whose centre is at integers.
@@ -23,12 +25,14 @@ pub struct ViewRays {
     pub right: Vec3,
     /// From one pixel to its neighbour below.
     pub down: Vec3,
+    /// Edge of the square that samples are spread over, in pixels.
+    pub jitter: f32,
 }
 
 impl View {
     /// `geometry` seen from `world_from_camera` (rigid; x right, y up, looking along -z).
     pub fn new(geometry: ViewGeometry, world_from_camera: DMat4) -> Self {
-        Self { geometry, world_from_camera }
+        Self { geometry, world_from_camera, lattice: None }
     }
 
     /// What a scene's camera sees in a picture of `size_px`, with its own field of view or `hfov_deg` (horizontal, degrees).
@@ -64,6 +68,11 @@ impl View {
         matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
 
+    /// The same view of which only the points of a lattice are sampled: its pixels are those points.
+    pub fn on_lattice(&self, lattice: &Lattice) -> Self {
+        Self { lattice: Some(*lattice), ..*self }
+    }
+
     /// Its rays.
     pub fn rays(&self) -> ViewRays {
         let (scale, offset) = self.geometry.scale_offset();
@@ -72,11 +81,15 @@ impl View {
             let v = DVec3::new(f64::from(x), -f64::from(y), -f64::from(z));
             self.world_from_camera.transform_vector3(v).as_vec3()
         };
+        let origin = self.world_from_camera.w_axis.truncate().as_vec3();
+        let (first, step, jitter) =
+            self.lattice.map_or(([0.0; 2], 1.0, 1.0), |l| (l.first_px, l.step as f32, l.footprint_px / l.step as f32));
         ViewRays {
-            origin: self.world_from_camera.w_axis.truncate().as_vec3(),
-            corner: to_world(offset[0], offset[1], 1.0),
-            right: to_world(scale[0], 0.0, 0.0),
-            down: to_world(0.0, scale[1], 0.0),
+            origin,
+            corner: to_world(offset[0] + scale[0] * first[0], offset[1] + scale[1] * first[1], 1.0),
+            right: to_world(scale[0] * step, 0.0, 0.0),
+            down: to_world(0.0, scale[1] * step, 0.0),
+            jitter,
         }
     }
 

@@ -57,7 +57,8 @@ impl CpuTracer {
                 let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
                 for item in *items {
                     let draws = path_draws(item.pixel, item.sample, DRAWS_CAMERA, paths.key);
-                    let (px, py) = (x as f32 + (draws[0] - 0.5), y as f32 + (draws[1] - 0.5));
+                    let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
+                    let py = y as f32 + (draws[1] - 0.5) * rays.jitter;
                     let direction = unit(rays.corner + rays.right * px + rays.down * py);
                     let (radiance, traced) = paths.radiance(rays.origin, direction, item.pixel, item.sample);
                     let sound = radiance.is_finite();

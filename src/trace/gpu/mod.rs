@@ -113,6 +113,8 @@ impl GpuTracer {
             map_size: world.map_size,
             items: 0,
             capacity: BATCH,
+            jitter: rays.jitter,
+            unused: [0; 3],
         };
         let device = &self.device.device;
         let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();

@@ -25,6 +25,8 @@ pub(super) struct FrameWords {
     pub map_size: [u32; 2],
     pub items: u32,
     pub capacity: u32,
+    pub jitter: f32,
+    pub unused: [u32; 3],
 }
 
 /// Bytes of a path: `PATH_ROWS`.

@@ -1,0 +1,112 @@
+//! Values between samples.
+
+use super::lattice::Lattice;
+use crate::image::Image;
+use crate::kernel::resample::catmull_rom;
+use crate::trace::film::Film;
+use glam::Vec3;
+
+/// Between the points of a lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Filter {
+    /// Of the four nearest points.
+    Linear,
+    /// Catmull-Rom's cubic, of sixteen.
+    Bicubic,
+}
+
+impl Filter {
+    /// How far it looks, in steps of the lattice.
+    pub fn reach(self) -> f32 {
+        match self {
+            Self::Linear => 1.5,
+            Self::Bicubic => 3.0,
+        }
+    }
+}
+
+/// The film's value at a pixel. Points without samples are left out, where a cubic lacks one the linear blend stands in.
+pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Filter) -> Vec3 {
+    let at = lattice.coordinate(px);
+    let base = at.map(|v| v.floor());
+    let part = [at[0] - base[0], at[1] - base[1]];
+    let tap = |dx: i32, dy: i32| {
+        let x = (base[0] as i32 + dx).clamp(0, lattice.points[0] as i32 - 1);
+        let y = (base[1] as i32 + dy).clamp(0, lattice.points[1] as i32 - 1);
+        let moments = film.moments.at(x as usize, y as usize);
+        (moments.count > 0).then_some(moments.mean)
+    };
+    // On a point: its own value, whoever its neighbours are.
+    if part == [0.0; 2]
+        && let Some(value) = tap(0, 0)
+    {
+        return value;
+    }
+    if filter == Filter::Bicubic {
+        let (wx, wy) = (catmull_rom(part[0]), catmull_rom(part[1]));
+        let mut sum = Some(Vec3::ZERO);
+        for (j, wy) in wy.iter().enumerate() {
+            for (i, wx) in wx.iter().enumerate() {
+                sum = sum.zip(tap(i as i32 - 1, j as i32 - 1)).map(|(sum, value)| sum + value * (wx * wy));
+            }
+        }
+        if let Some(sum) = sum {
+            // The cubic overshoots at edges; radiance has no negative values.
+            return sum.max(Vec3::ZERO);
+        }
+    }
+    let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let weight = (if dx == 0 { 1.0 - part[0] } else { part[0] }) * (if dy == 0 { 1.0 - part[1] } else { part[1] });
+        if let Some(value) = tap(dx, dy) {
+            sum += value * weight;
+            weights += weight;
+        }
+    }
+    if weights > 0.0 { sum / weights } else { Vec3::ZERO }
+}
+
+/// A frame from scattered samples by pull and push (Gortler et al., "The Lumigraph", 1996, section 3.4): means of 2x2 pixels upwards until
+/// all is covered, then each level fills what the one below it lacks.
+pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
+    let mut levels: Vec<Image<(Vec3, f32)>> = vec![film.moments.map(|m| (m.mean, if m.count > 0 { 1.0 } else { 0.0 }))];
+    while let Some(last) = levels.last()
+        && last.size() != [1, 1]
+    {
+        let size = last.size().map(|s| s.div_ceil(2));
+        levels.push(Image::from_fn_parallel(size, |[x, y]| {
+            let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let (x, y) = ((2 * x + dx) as usize, (2 * y + dy) as usize);
+                if x < last.width() && y < last.height() {
+                    let (value, w) = last.at(x, y);
+                    sum += value * w;
+                    weight += w;
+                }
+            }
+            // A covered pixel is covered, however many samples it has.
+            (if weight > 0.0 { sum / weight } else { Vec3::ZERO }, weight.min(1.0))
+        }));
+    }
+    let mut coarse = levels.pop().expect("there is the frame itself").map(|(value, _)| value);
+    while let Some(fine) = levels.pop() {
+        coarse = Image::from_fn_parallel(fine.size(), |[x, y]| {
+            let (value, weight) = fine.at(x as usize, y as usize);
+            if weight >= 1.0 { value } else { value * weight + upsampled(&coarse, x, y) * (1.0 - weight) }
+        });
+    }
+    coarse.map(|c| c.to_array())
+}
+
+/// The coarser level at a pixel of the finer one, between its nearest four.
+fn upsampled(coarse: &Image<Vec3>, x: u32, y: u32) -> Vec3 {
+    let axis = |v: u32, len: usize| {
+        let near = (v / 2) as i32;
+        let far = near + if v % 2 == 0 { -1 } else { 1 };
+        [near, far].map(|i| i.clamp(0, len as i32 - 1) as usize)
+    };
+    let ([x0, x1], [y0, y1]) = (axis(x, coarse.width()), axis(y, coarse.height()));
+    let top = coarse.at(x0, y0) * 0.75 + coarse.at(x1, y0) * 0.25;
+    let bottom = coarse.at(x0, y1) * 0.75 + coarse.at(x1, y1) * 0.25;
+    top * 0.75 + bottom * 0.25
+}

@@ -1,0 +1,154 @@
+//! Foveated sampling: where a frame is sampled how densely for a gaze, and how the rest is filled in.
+//!
+//! A frame is traced on lattices: points a few pixels apart, in rings around the gaze. A tracer sees a lattice as a small frame of
+//! its own ([`View::on_lattice`]) and traces a list of its points; nothing is done for the others.
+
+mod acuity;
+mod fill;
+mod lattice;
+mod layers;
+mod regions;
+mod rings;
+
+pub use acuity::Acuity;
+pub use lattice::Lattice;
+pub use layers::Layers;
+pub use regions::Regions;
+
+use super::Tracer;
+use super::film::Film;
+use super::view::View;
+use super::work::WorkItem;
+use super::world::World;
+use crate::display::ViewGeometry;
+use crate::image::Image;
+use rings::Ring;
+
+/// How samples are spread over a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Sampling {
+    /// As many everywhere.
+    #[default]
+    Uniform,
+    /// Three regions with blocks (Mohanto et al. 2023).
+    Regions(Regions),
+    /// Nested lattices with blend masks (thesis).
+    Layers(Layers),
+    /// As dense as the eye's cells, with another set of pixels every frame.
+    Acuity(Acuity),
+}
+
+/// What a frame is to be sampled at: from the inside out.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    size_px: [u32; 2],
+    gaze_px: [f32; 2],
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Rings(Vec<Ring>),
+    /// Pixels, one after the other by rows, and samples of each.
+    Scattered {
+        targets: Vec<[u32; 2]>,
+        samples: u32,
+        lod: Image<f32>,
+    },
+}
+
+/// A frame sampled by a plan and filled in.
+#[derive(Clone, Debug)]
+pub struct FoveatedFrame {
+    /// Linear radiance.
+    pub color: Image<[f32; 3]>,
+    /// Level of detail, log2 of the distance of samples in pixels.
+    pub lod: Image<f32>,
+    /// Samples of each ring.
+    pub samples: Vec<u64>,
+    /// Rays of all kinds.
+    pub rays: u64,
+    /// Samples that were not finite and count as black.
+    pub nonfinite: u64,
+}
+
+impl Sampling {
+    /// The plan of frame number `frame` for a gaze; `samples` are those of a pixel where it is sampled most, unless the pattern
+    /// states its own.
+    pub fn plan(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32, frame: u64) -> Plan {
+        let size_px = geometry.size_px();
+        let kind = match self {
+            Self::Uniform => Kind::Rings(vec![Ring::everywhere(size_px, samples)]),
+            Self::Regions(regions) => Kind::Rings(regions.rings(geometry, samples)),
+            Self::Layers(layers) => Kind::Rings(layers.rings(geometry, gaze_px, samples)),
+            Self::Acuity(acuity) => {
+                let (targets, lod) = acuity.targets(geometry, gaze_px, frame);
+                Kind::Scattered { targets, samples, lod }
+            }
+        };
+        Plan { size_px, gaze_px, kind }
+    }
+}
+
+impl Plan {
+    /// Number of samples it asks for.
+    pub fn samples(&self) -> Vec<u64> {
+        match &self.kind {
+            Kind::Rings(rings) => {
+                let count = |i: usize| rings[i].targets(rings, i, self.size_px, self.gaze_px).count() as u64;
+                (0..rings.len()).map(|i| count(i) * u64::from(rings[i].samples)).collect()
+            }
+            Kind::Scattered { targets, samples, .. } => vec![targets.len() as u64 * u64::from(*samples)],
+        }
+    }
+
+    /// Traces it and fills in the rest.
+    pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
+        let mut done = FoveatedFrame {
+            color: Image::filled(self.size_px, [0.0; 3]),
+            lod: Image::filled(self.size_px, 0.0),
+            samples: vec![],
+            rays: 0,
+            nonfinite: 0,
+        };
+        let mut add = |view: &View, size, targets: &mut dyn Iterator<Item = [u32; 2]>, samples: u32| {
+            let mut film = Film::new(size);
+            let mut count = 0;
+            let mut targets = targets.peekable();
+            // By parts: a list of all samples of a large frame would take more memory than the frame.
+            while targets.peek().is_some() {
+                let part = targets.by_ref().take((PART / samples.max(1) as usize).max(1));
+                let items: Vec<_> = part.flat_map(|[x, y]| (0..samples).map(move |s| WorkItem::new(x, y, s))).collect();
+                tracer.trace(world, view, frame, &items, &mut film);
+                count += items.len() as u64;
+            }
+            done.samples.push(count);
+            done.rays += film.rays;
+            done.nonfinite += film.nonfinite;
+            film
+        };
+        match &self.kind {
+            Kind::Rings(rings) => {
+                let films: Vec<Film> = rings
+                    .iter()
+                    .enumerate()
+                    .map(|(i, ring)| {
+                        let view = view.on_lattice(&ring.lattice);
+                        let mut targets = ring.targets(rings, i, self.size_px, self.gaze_px);
+                        add(&view, ring.lattice.points, &mut targets, ring.samples)
+                    })
+                    .collect();
+                (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
+            }
+            Kind::Scattered { targets, samples, lod } => {
+                let film = add(view, self.size_px, &mut targets.iter().copied(), *samples);
+                done.color = fill::pull_push(&film);
+                done.lod = lod.clone();
+            }
+        }
+        done
+    }
+}
+
+/// Samples that are handed to the tracer at once.
+const PART: usize = 1 << 20;
