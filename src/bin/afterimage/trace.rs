@@ -1,5 +1,6 @@
 //! `afterimage trace`: render a scene.
 
+mod pattern;
 mod report;
 mod setup;
 
@@ -14,12 +15,14 @@ use afterimage::report::picture::to_rgb8;
 use afterimage::source::exr_file::{self, FrameToWrite};
 use afterimage::trace::effects::Effects;
 use afterimage::trace::film::Film;
+use afterimage::trace::sampling::Sampling;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::surfaces::Surfaces;
 use afterimage::trace::view::View;
 use afterimage::trace::work;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use pattern::PatternArgs;
 use report::Report;
 use setup::Setup;
 use std::io::IsTerminal;
@@ -28,8 +31,10 @@ use std::path::PathBuf;
 /// Render a scene by path tracing
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage trace builtin:cornell --size 512x512 --spp 64 --out out/cornell\n  \
-    afterimage trace scene.glb --frames 60 --aov depth,motion --out out/scene\n\n\
-    Writes OUT/color/000000.exr and .png ..., OUT/depth and OUT/motion on request, OUT/cameras.json and OUT/trace.json.\n\
+    afterimage trace scene.glb --frames 60 --aov depth,motion --out out/scene\n  \
+    afterimage trace scene.glb --sampling regions --region-spp 32,8,4 --gaze viewing.csv --frames 60 --out out/foveated\n\n\
+    Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... on request, OUT/gaze.csv of foveated frames, OUT/cameras.json\n\
+    and OUT/trace.json.\n\
     With --aov depth,motion the folder OUT/color is an input for `afterimage run`.")]
 pub struct TraceArgs {
     /// A scene: .gltf, .glb, or builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes,
@@ -57,12 +62,11 @@ pub struct TraceArgs {
     /// Which of the scene's animations plays, by name or number; default: the first
     #[arg(long, value_name = "NAME")]
     pub clip: Option<String>,
-    /// Samples per pixel
+    /// Samples per pixel (of the fovea, where foveated; regions have --region-spp)
     #[arg(long, default_value_t = 32, value_name = "N")]
     pub spp: u32,
-    /// How samples are spread over the frame
-    #[arg(long, value_enum, default_value = "uniform")]
-    pub sampling: SamplingName,
+    #[command(flatten)]
+    pub pattern: PatternArgs,
     /// Most scattering events after the camera ray, 0 to 64
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub max_depth: u32,
@@ -102,13 +106,6 @@ pub struct TraceArgs {
     pub verbose: bool,
 }
 
-/// Names of sampling patterns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SamplingName {
-    /// As many everywhere
-    Uniform,
-}
-
 /// Names of integrators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum IntegratorName {
@@ -146,8 +143,10 @@ pub enum AovName {
     Depth,
     /// Pixels, y down, previous minus current
     Motion,
-    /// Variance of each pixel's mean
+    /// Variance of each pixel's mean; of uniform sampling
     Variance,
+    /// Level of detail, log2 of the distance of samples in pixels
+    Lod,
 }
 
 /// Names of tone mappings.
@@ -173,31 +172,54 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     if args.verbose {
         report.print_effects(&setup);
     }
+    let sampling = args.pattern.sampling()?;
     let bar = progress(args.frames * u64::from(args.size[1]));
     let mut previous: Option<View> = None;
+    let mut gaze: Option<Vec<[f32; 2]>> = None;
     for frame in 0..args.frames {
         let time_s = frame as f64 / f64::from(setup.fps);
         let view = setup.pose(frame, time_s)?;
         let clock = Stopwatch::start();
-        let mut film = Film::new(args.size);
-        for rows in bands(args) {
-            let items = work::uniform(args.size[0], rows.clone(), 0..args.spp);
-            setup.tracer.trace(&setup.world, &view, frame, &items, &mut film);
-            bar.inc(u64::from(rows.end - rows.start));
-        }
-        report.count(&film, &clock);
-        write(args, &out, &setup, frame as usize, &film, &view, previous.as_ref().unwrap_or(&view))?;
+        let picture = if sampling == Sampling::Uniform {
+            let mut film = Film::new(args.size);
+            for rows in bands(args) {
+                let items = work::uniform(args.size[0], rows.clone(), 0..args.spp);
+                setup.tracer.trace(&setup.world, &view, frame, &items, &mut film);
+                bar.inc(u64::from(rows.end - rows.start));
+            }
+            report.count_film(&film, &clock);
+            Picture { color: film.color(), variance: Some(film.variance()), lod: Image::filled(args.size, 0.0) }
+        } else {
+            if gaze.is_none() {
+                gaze = Some(args.pattern.gaze(view.geometry(), setup.fps, args.frames)?);
+            }
+            let at = gaze.as_ref().map_or([0.0; 2], |g| g[frame as usize]);
+            let plan = sampling.plan(view.geometry(), at, args.spp, frame);
+            let done = plan.trace(&setup.tracer, &setup.world, &view, frame);
+            bar.inc(u64::from(args.size[1]));
+            report.count_foveated(&done, args.pattern.ideal_samples(&sampling, view.geometry(), at, args.spp), &clock);
+            Picture { color: done.color, variance: None, lod: done.lod }
+        };
+        write(args, &out, &setup, frame as usize, &picture, &view, previous.as_ref().unwrap_or(&view))?;
         report.cameras.push(view);
         previous = Some(view);
     }
+    if let Some(gaze) = &gaze {
+        out.gaze("gaze.csv", gaze)?;
+    }
     bar.finish_and_clear();
     out.text("cameras.json", &report.cameras_json(args, &setup))?;
-    for part in ["color"] {
-        out.text(&format!("{part}/cameras.json"), &report.cameras_json(args, &setup))?;
-    }
+    out.text("color/cameras.json", &report.cameras_json(args, &setup))?;
     out.text("trace.json", &report.json(args, &setup))?;
     report.print_summary(args, &setup);
     Ok(())
+}
+
+/// A frame as it is written.
+struct Picture {
+    color: Image<[f32; 3]>,
+    variance: Option<Image<[f32; 3]>>,
+    lod: Image<f32>,
 }
 
 /// Rows that are traced together.
@@ -209,7 +231,9 @@ fn bands(args: &TraceArgs) -> Vec<std::ops::Range<u32>> {
 
 fn folders(args: &TraceArgs) -> Vec<String> {
     let mut folders = vec!["color".to_owned()];
-    for (aov, name) in [(AovName::Depth, "depth"), (AovName::Motion, "motion"), (AovName::Variance, "variance")] {
+    for (aov, name) in
+        [(AovName::Depth, "depth"), (AovName::Motion, "motion"), (AovName::Variance, "variance"), (AovName::Lod, "lod")]
+    {
         if args.aov.contains(&aov) {
             folders.push(name.to_owned());
         }
@@ -222,11 +246,11 @@ fn write(
     out: &Output,
     setup: &Setup,
     index: usize,
-    film: &Film,
+    picture: &Picture,
     view: &View,
     previous: &View,
 ) -> Result<(), Failure> {
-    let color = film.color();
+    let color = &picture.color;
     let wants = |aov| args.aov.contains(&aov);
     let mut depth = None;
     let mut motion = None;
@@ -261,8 +285,12 @@ fn write(
     if let Some(motion) = &motion {
         channels("motion", &[("motion.X", &motion.map(|m| m[0])), ("motion.Y", &motion.map(|m| m[1]))])?;
     }
-    if wants(AovName::Variance) {
-        let variance = film.variance();
+    if wants(AovName::Lod) {
+        channels("lod", &[("lod", &picture.lod)])?;
+    }
+    if wants(AovName::Variance)
+        && let Some(variance) = &picture.variance
+    {
         let [r, g, b] = [0, 1, 2].map(|i| variance.map(|v| v[i]));
         channels("variance", &[("R", &r), ("G", &g), ("B", &b)])?;
     }

@@ -6,6 +6,7 @@ use crate::run::{BackendReport, backend_report};
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::effects::Effects;
 use afterimage::trace::film::Film;
+use afterimage::trace::sampling::FoveatedFrame;
 use afterimage::trace::view::View;
 use serde::Serialize;
 
@@ -14,7 +15,8 @@ use serde::Serialize;
 pub struct Report {
     pub cameras: Vec<View>,
     rays: u64,
-    samples: u64,
+    regions: Vec<u64>,
+    ideal_samples: Option<f64>,
     seconds: f64,
     cpu_seconds: Option<f64>,
     nonfinite: u64,
@@ -40,7 +42,6 @@ struct TraceJson<'a> {
     load_ms: f64,
     build_ms: f64,
     compile_ms: f64,
-    /// As many as a uniform frame of `spp` samples has, and the share of them that was traced.
     samples: Samples,
     rays: u64,
     seconds: f64,
@@ -56,8 +57,11 @@ struct Samples {
     traced: u64,
     uniform: u64,
     regions: Vec<u64>,
-    ideal_reduction: f64,
-    /// Not known from one run: of times, against a uniform run.
+    /// Of samples.
+    reduction: f64,
+    /// Of samples, if regions had no blends and no borders.
+    ideal_reduction: Option<f64>,
+    /// Of times: not known without a uniform run to compare with, which `bench trace` makes.
     achieved_reduction: Option<f64>,
 }
 
@@ -78,14 +82,29 @@ struct CameraJson {
 
 impl Report {
     pub fn new(_args: &TraceArgs, _setup: &Setup) -> Self {
-        Self { cpu_seconds: Some(0.0), ..Self::default() }
+        Self { cpu_seconds: Some(0.0), ideal_samples: Some(0.0), ..Self::default() }
     }
 
-    /// Adds a frame.
-    pub fn count(&mut self, film: &Film, clock: &Stopwatch) {
-        self.rays += film.rays;
-        self.samples += film.moments.pixels().iter().map(|m| u64::from(m.count)).sum::<u64>();
-        self.nonfinite += film.nonfinite;
+    /// Adds a frame that was sampled alike everywhere.
+    pub fn count_film(&mut self, film: &Film, clock: &Stopwatch) {
+        let samples = film.moments.pixels().iter().map(|m| u64::from(m.count)).sum();
+        self.count(&[samples], film.rays, film.nonfinite, clock);
+        self.ideal_samples = self.ideal_samples.map(|s| s + samples as f64);
+    }
+
+    /// Adds a foveated frame.
+    pub fn count_foveated(&mut self, frame: &FoveatedFrame, ideal_samples: Option<f64>, clock: &Stopwatch) {
+        self.count(&frame.samples, frame.rays, frame.nonfinite, clock);
+        self.ideal_samples = self.ideal_samples.zip(ideal_samples).map(|(a, b)| a + b);
+    }
+
+    fn count(&mut self, samples: &[u64], rays: u64, nonfinite: u64, clock: &Stopwatch) {
+        self.regions.resize(samples.len().max(self.regions.len()), 0);
+        for (sum, n) in self.regions.iter_mut().zip(samples) {
+            *sum += n;
+        }
+        self.rays += rays;
+        self.nonfinite += nonfinite;
         self.seconds += clock.wall_ms() * 1e-3;
         self.cpu_seconds = self.cpu_seconds.zip(clock.cpu_ms()).map(|(s, ms)| s + ms * 1e-3);
     }
@@ -111,7 +130,11 @@ impl Report {
     }
 
     pub fn json(&self, args: &TraceArgs, setup: &Setup) -> String {
-        let uniform = args.frames * u64::from(args.size[0]) * u64::from(args.size[1]) * u64::from(args.spp);
+        let uniform = args.frames
+            * u64::from(args.size[0])
+            * u64::from(args.size[1])
+            * u64::from(args.pattern.most_samples(args.spp));
+        let traced = self.regions.iter().sum::<u64>();
         let report = TraceJson {
             tool: "afterimage",
             version: env!("CARGO_PKG_VERSION"),
@@ -121,7 +144,7 @@ impl Report {
             fps: setup.fps,
             hfov_deg: self.hfov_deg(),
             spp: args.spp,
-            sampling: "uniform",
+            sampling: args.pattern.sampling.name(),
             max_depth: args.max_depth,
             integrator: format!("{:?}", args.integrator).to_lowercase(),
             bsdf: format!("{:?}", args.bsdf).to_lowercase(),
@@ -132,10 +155,11 @@ impl Report {
             build_ms: setup.build_ms,
             compile_ms: setup.tracer.compile_time().as_secs_f64() * 1e3,
             samples: Samples {
-                traced: self.samples,
+                traced,
                 uniform,
-                regions: vec![self.samples],
-                ideal_reduction: uniform as f64 / self.samples.max(1) as f64,
+                regions: self.regions.clone(),
+                reduction: uniform as f64 / traced.max(1) as f64,
+                ideal_reduction: self.ideal_samples.map(|ideal| uniform as f64 / ideal.max(1.0)),
                 achieved_reduction: None,
             },
             rays: self.rays,

@@ -130,6 +130,9 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     if !(args.exposure.abs() <= 64.0) {
         return refuse(format!("--exposure {}: expected -64 to 64 stops", args.exposure));
     }
+    if args.aov.contains(&super::AovName::Variance) && args.pattern.sampling != super::pattern::SamplingName::Uniform {
+        return refuse("--aov variance: filled pixels have none; expected --sampling uniform with it".into());
+    }
     Ok(())
 }
 
