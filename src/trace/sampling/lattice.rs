@@ -22,7 +22,7 @@ impl Lattice {
         Self { step, first_px: [half; 2], points, footprint_px: step as f32 }
     }
 
-    /// Single pixels, every `step`-th, one of them under the gaze.
+    /// Single pixels, every `step`-th, one of them under the gaze, which is finite.
     pub fn through(step: u32, gaze_px: [f32; 2], size_px: [u32; 2]) -> Self {
         let step = step.max(1);
         let mut first_px = [0.0; 2];
@@ -30,8 +30,7 @@ impl Lattice {
         for axis in 0..2 {
             let last = size_px[axis].saturating_sub(1) as f32;
             // A gaze off the frame shifts the lattice all the same.
-            let gaze = if gaze_px[axis].is_finite() { gaze_px[axis].round().clamp(-1e6, 1e6) } else { 0.0 };
-            let first = gaze.rem_euclid(step as f32);
+            let first = gaze_px[axis].round().rem_euclid(step as f32);
             first_px[axis] = first;
             points[axis] = ((last - first).max(0.0) / step as f32).floor() as u32 + 1;
         }

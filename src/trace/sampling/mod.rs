@@ -77,6 +77,10 @@ impl Sampling {
     /// states its own.
     pub fn plan(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32, frame: u64) -> Plan {
         let size_px = geometry.size_px();
+        // A gaze that is no place is the middle; one far off is far off, at a distance that floats can tell.
+        let middle = size_px.map(|s| 0.5 * (s as f32 - 1.0));
+        let sound = gaze_px.iter().all(|g| g.is_finite());
+        let gaze_px = if sound { gaze_px.map(|g| g.clamp(-1e6, 1e6)) } else { middle };
         let kind = match self {
             Self::Uniform => Kind::Rings(vec![Ring::everywhere(size_px, samples)]),
             Self::Regions(regions) => Kind::Rings(regions.rings(geometry, samples)),
@@ -100,6 +104,16 @@ impl Plan {
             }
             Kind::Scattered { targets, samples, .. } => vec![targets.len() as u64 * u64::from(*samples)],
         }
+    }
+
+    /// Points that are sampled, on each ring's own lattice.
+    pub fn targets(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let (rings, scattered): (&[Ring], &[[u32; 2]]) = match &self.kind {
+            Kind::Rings(rings) => (rings, &[]),
+            Kind::Scattered { targets, .. } => (&[], targets),
+        };
+        let of = move |(i, ring): (usize, &Ring)| ring.targets(rings, i, self.size_px, self.gaze_px);
+        rings.iter().enumerate().flat_map(of).chain(scattered.iter().copied())
     }
 
     /// Traces it and fills in the rest.
