@@ -1,7 +1,9 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use crate::probe::check_module;
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
+use crate::{
+    decisions, foveation, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+};
 
 #[test]
 fn acuity_is_bit_equal_h61_h62_h64_h65() {
@@ -52,6 +54,7 @@ fn reservoir_is_bit_equal_h01_h02_h04_h15_h17_h18_h21() {
 #[test]
 fn rng_is_bit_equal_h23_h26_and_for_a_million_words_h28() {
     check_module(state::PROBES, "rng");
+    check_module(lighting::PROBES, "rng");
 }
 
 #[test]
@@ -122,4 +125,19 @@ fn albedo_is_bit_equal() {
 #[test]
 fn bsdf_is_bit_equal_h83() {
     check_module(scattering_lobes::PROBES, "bsdf");
+}
+
+#[test]
+fn light_is_bit_equal() {
+    check_module(lighting::PROBES, "light");
+}
+
+#[test]
+fn shading_is_bit_equal() {
+    check_module(lighting::PROBES, "shading");
+}
+
+#[test]
+fn texel_is_bit_equal() {
+    check_module(lighting::PROBES, "texel");
 }

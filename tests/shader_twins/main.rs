@@ -11,6 +11,7 @@ mod controls;
 mod decisions;
 mod foveation;
 mod functions;
+mod lighting;
 mod matching;
 mod mathematics;
 mod modules;

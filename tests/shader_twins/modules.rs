@@ -1,6 +1,8 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
-use crate::{decisions, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles};
+use crate::{
+    decisions, foveation, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+};
 use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -132,6 +134,7 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
     let lists = [
         decisions::PROBES,
         foveation::PROBES,
+        lighting::PROBES,
         matching::PROBES,
         mathematics::PROBES,
         state::PROBES,
