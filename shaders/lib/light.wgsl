@@ -1,6 +1,8 @@
 //#use approx
 // Twin of src/kernel/light.rs.
 
+const MAP_AREA: f32 = 19.739208;
+
 // light::distance_falloff
 fn distance_falloff(distance: f32, range: f32) -> f32 {
     let ratio = distance / range;
@@ -39,5 +41,5 @@ fn map_direction(u: f32, v: f32) -> MapDirection {
 
 // light::map_pdf
 fn map_pdf(chosen: f32, texels: f32, sine: f32) -> f32 {
-    return chosen * texels / (19.739208 * max(sine, 1e-6));
+    return chosen * texels / (MAP_AREA * max(sine, 1e-6));
 }

@@ -53,10 +53,10 @@ fn barycentrics(u: vec2<f32>) -> vec3<f32> {
 }
 
 // sampling::area_pdf
-fn area_pdf(area: f32, distance: f32, cosine: f32) -> f32 {
+fn area_pdf(area: f32, distance_squared: f32, cosine: f32) -> f32 {
     let projected = area * abs(cosine);
     if projected > 1e-30 {
-        return (distance * distance) / projected;
+        return distance_squared / projected;
     }
     return 0.0;
 }

@@ -35,5 +35,5 @@ fn hue(color: vec3<f32>) -> vec3<f32> {
 
 // shading::tint
 fn tint(color: vec3<f32>, amount: f32) -> vec3<f32> {
-    return vec3<f32>(1.0) + (hue(color) - vec3<f32>(1.0)) * amount;
+    return vec3<f32>(1.0 - amount) + hue(color) * amount;
 }

@@ -69,11 +69,11 @@ fn from_triangle(position: vec3<f32>, index: u32, chosen: f32, place: vec2<f32>)
     }
     let side = select(-face, face, cosine > 0.0);
     let to = offset_ray(on_light, side, magnitude(c.corners[0], c.corners[1], c.corners[2])) - position;
-    let distance = sqrt(dot(to, to));
+    let squared = dot(to, to);
     let direction = unit(to);
     let area = 0.5 * sqrt(dot(normal, normal));
-    let pdf = chosen * area_pdf(area, distance, dot(face, direction));
-    return Arriving(direction, distance, emission_at(index, c.material, weights.y, weights.z), pdf, true);
+    let pdf = chosen * area_pdf(area, squared, dot(face, direction));
+    return Arriving(direction, sqrt(squared), emission_at(index, c.material, weights.y, weights.z), pdf, true);
 }
 
 // lights::from_punctual
@@ -172,5 +172,5 @@ fn triangle_pdf(triangle: u32, distance: f32, cosine: f32) -> f32 {
     }
     let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
     let area = 0.5 * sqrt(dot(normal, normal));
-    return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, distance, cosine);
+    return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, distance * distance, cosine);
 }

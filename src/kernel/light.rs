@@ -2,7 +2,7 @@
 
 use super::approx::{atan2_upper, sin_cos_turns};
 use glam::Vec3;
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::FRAC_1_PI;
 
 /// Share of its intensity that a point or spot light sends over `distance`, 1/m^2: the inverse square, windowed so that it ends
 /// at `range` (KHR_lights_punctual; infinity: it never ends). Distances below a millimetre count as one.
@@ -44,5 +44,8 @@ pub fn map_direction(u: f32, v: f32) -> (Vec3, f32) {
 /// Density over directions, 1/sr, of a uniform point in one of `texels` texels of a map, chosen with probability `chosen`.
 #[inline]
 pub fn map_pdf(chosen: f32, texels: f32, sine: f32) -> f32 {
-    chosen * texels / (2.0 * PI * PI * sine.max(1e-6))
+    chosen * texels / (MAP_AREA * sine.max(1e-6))
 }
+
+/// Twice the square of pi: longitudes times angles from the axis.
+const MAP_AREA: f32 = 19.739_208;

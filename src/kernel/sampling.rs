@@ -63,12 +63,13 @@ pub fn barycentrics(u: Vec2) -> Vec3 {
     Vec3::new(1.0 - s, s - y, y)
 }
 
-/// Density in 1/sr of a uniform point on a surface of `area`, seen at `distance` under the cosine `cosine` of its normal; 0
-/// where it is seen edge on or has no area.
+/// Density in 1/sr of a uniform point on a surface of `area`, seen from a distance whose square is `distance_squared` under the
+/// cosine `cosine` of its normal; 0 where it is seen edge on or has no area. The square, as a compiler would take the square of
+/// a root for what is under it.
 #[inline]
-pub fn area_pdf(area: f32, distance: f32, cosine: f32) -> f32 {
+pub fn area_pdf(area: f32, distance_squared: f32, cosine: f32) -> f32 {
     let projected = area * cosine.abs();
-    if projected > 1e-30 { (distance * distance) / projected } else { 0.0 }
+    if projected > 1e-30 { distance_squared / projected } else { 0.0 }
 }
 
 /// Weight of a sample whose own strategy has density `own` and the other one `other`: own^2 / (own^2 + other^2) (Veach 1997,

@@ -42,5 +42,5 @@ pub fn hue(color: Vec3) -> Vec3 {
 /// White for `amount` 0, the hue of `color` for 1.
 #[inline]
 pub fn tint(color: Vec3, amount: f32) -> Vec3 {
-    Vec3::ONE + (hue(color) - Vec3::ONE) * amount
+    Vec3::splat(1.0 - amount) + hue(color) * amount
 }

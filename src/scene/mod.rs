@@ -82,6 +82,31 @@ pub struct Pose {
 }
 
 impl Scene {
+    /// A scene made by code: `still`, and what is in `pose`, which stays where it is.
+    ///
+    /// # Errors
+    /// If attributes are missing or a material does not exist.
+    pub fn made(
+        name: &str,
+        materials: Vec<Material>,
+        still: Triangles,
+        pose: Pose,
+        environment: Environment,
+    ) -> Result<Self, InputError> {
+        for triangles in [&still, &pose.moving] {
+            let known = |m: &u32| (*m as usize) < materials.len();
+            if !(triangles.is_complete() && triangles.materials.iter().all(known)) {
+                return Err(InputError::new(
+                    name,
+                    "has triangles without all attributes or with a material that it lacks",
+                    "give each triangle an entry in every array and the index of one of the materials",
+                ));
+            }
+        }
+        let (textures, warnings) = (vec![], vec![]);
+        Ok(Self { name: name.into(), materials, textures, environment, warnings, still, rest: pose, animated: None })
+    }
+
     /// Reads what the user named: a `.gltf` or `.glb` file, or `builtin:NAME`. Of a file's animations the first one plays.
     ///
     /// # Errors

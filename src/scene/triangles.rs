@@ -32,6 +32,12 @@ impl Triangles {
         self.positions.is_empty()
     }
 
+    /// Whether every triangle has an entry in each array.
+    pub(crate) fn is_complete(&self) -> bool {
+        let others = [self.normals.len(), self.uvs.len(), self.tangents.len(), self.colors.len(), self.materials.len()];
+        others == [self.len(); 5]
+    }
+
     /// Makes room for `more` triangles.
     pub(crate) fn reserve(&mut self, more: usize) {
         self.positions.reserve(more);

@@ -2,7 +2,8 @@
 
 use crate::probe::Probe;
 use crate::{
-    decisions, facets, foveation, gpu, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+    decisions, facets, foveation, gpu, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces,
+    triangles,
 };
 
 #[track_caller]
@@ -205,4 +206,29 @@ fn a_wrong_lobe_is_caught() {
     caught(scattering_lobes::PROBES, "sample", "wi.z = -wi.z;", "wi = -wi;");
     caught(scattering_lobes::PROBES, "layers", "1.0 - coat_albedo", "1.0 - coat");
     caught(scattering_lobes::PROBES, "glass_albedo", "select(e.zw, e.xy, entering)", "e.xy");
+}
+
+#[test]
+fn a_wrong_light_or_place_in_a_map_is_caught() {
+    caught(lighting::PROBES, "distance_falloff", "1.0 - squared * squared", "1.0 - squared");
+    caught(lighting::PROBES, "cone_falloff", "return t * t;", "return t;");
+    caught(lighting::PROBES, "map_coordinates", "direction.x < 0.0)", "direction.x > 0.0)");
+    caught(lighting::PROBES, "map_direction", "-(longitude.y * sine)", "longitude.y * sine");
+    caught(lighting::PROBES, "map_pdf", "MAP_AREA: f32 = 19.739208", "MAP_AREA: f32 = 19.73921");
+}
+
+#[test]
+fn a_wrong_normal_texel_or_draw_is_caught() {
+    caught(lighting::PROBES, "mapped_normal", "cross(normal, along) * sign", "cross(normal, along)");
+    caught(lighting::PROBES, "visible_normal", "GRAZING - seen", "GRAZING");
+    caught(lighting::PROBES, "hue", "if y > 1e-6", "if y > 1e-5");
+    caught(lighting::PROBES, "wrap_coordinate", "2.0 * floor(u * 0.5)", "floor(u)");
+    caught(lighting::PROBES, "wrap_texel", "2 * n - 1 - i", "2 * n - i");
+    caught(lighting::PROBES, "texel_value", "/ 255.0", "* 0.003921569");
+    caught(
+        lighting::PROBES,
+        "path_draws",
+        "vec4<u32>(pixel, sample, dimension, key)",
+        "vec4<u32>(sample, pixel, dimension, key)",
+    );
 }

@@ -2,7 +2,8 @@
 
 use crate::probe::check_module;
 use crate::{
-    decisions, facets, foveation, matching, mathematics, scattering, scattering_lobes, state, surfaces, triangles,
+    decisions, facets, foveation, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces,
+    triangles,
 };
 
 #[test]
@@ -54,6 +55,7 @@ fn reservoir_is_bit_equal_h01_h02_h04_h15_h17_h18_h21() {
 #[test]
 fn rng_is_bit_equal_h23_h26_and_for_a_million_words_h28() {
     check_module(state::PROBES, "rng");
+    check_module(lighting::PROBES, "rng");
 }
 
 #[test]
@@ -129,4 +131,19 @@ fn bsdf_is_bit_equal_h83() {
 #[test]
 fn layers_is_bit_equal_h83() {
     check_module(scattering_lobes::PROBES, "layers");
+}
+
+#[test]
+fn light_is_bit_equal() {
+    check_module(lighting::PROBES, "light");
+}
+
+#[test]
+fn shading_is_bit_equal() {
+    check_module(lighting::PROBES, "shading");
+}
+
+#[test]
+fn texel_is_bit_equal() {
+    check_module(lighting::PROBES, "texel");
 }

@@ -12,6 +12,7 @@ mod decisions;
 mod facets;
 mod foveation;
 mod functions;
+mod lighting;
 mod matching;
 mod mathematics;
 mod modules;

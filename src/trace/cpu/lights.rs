@@ -83,11 +83,12 @@ fn from_triangle(
     // To just before the light: the ray must not end on it.
     let side = if cosine > 0.0 { face } else { -face };
     let to = offset_ray(on_light, side, magnitude(v0, v1, v2)) - position;
-    let distance = to.dot(to).sqrt();
+    let squared = to.dot(to);
     let direction = unit(to);
     let area = 0.5 * across.dot(across).sqrt();
-    let pdf = chosen * area_pdf(area, distance, face.dot(direction));
+    let pdf = chosen * area_pdf(area, squared, face.dot(direction));
     let radiance = emission_at(world, index, weights.y, weights.z, effects);
+    let distance = squared.sqrt();
     (pdf > 0.0).then_some(Arriving { direction, distance, radiance, pdf, can_be_hit: true })
 }
 
@@ -181,5 +182,5 @@ pub(super) fn triangle_pdf(world: &World, index: u32, distance: f32, cosine: f32
     let [v0, v1, v2] = light.positions();
     let across = (v1 - v0).cross(v2 - v0);
     let area = 0.5 * across.dot(across).sqrt();
-    world.picks[row as usize].chosen * area_pdf(area, distance, cosine)
+    world.picks[row as usize].chosen * area_pdf(area, distance * distance, cosine)
 }

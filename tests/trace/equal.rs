@@ -1,0 +1,48 @@
+//! Same seed: the device's film is the CPU's, bit for bit.
+
+use crate::rig::{Rig, device, differing};
+use crate::scenes::{SMALL, builtin, shared};
+use afterimage::scene::builtin::courtyard_of;
+use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
+
+const INTEGRATORS: [Integrator; 3] = [Integrator::Mis, Integrator::Nee, Integrator::Naive];
+const SPP: u32 = 2;
+
+/// Every integrator and both models, the storages in turns; fails where any bit of the film differs.
+#[track_caller]
+fn check(rig: &Rig) {
+    let Some(device) = device() else { return };
+    let mut storage = Storage::Buffer;
+    let mut failures = vec![];
+    for integrator in INTEGRATORS {
+        for bsdf in [Bsdf::Principled, Bsdf::Phong] {
+            storage = if storage == Storage::Buffer { Storage::Texture } else { Storage::Buffer };
+            let settings = TraceSettings { integrator, bsdf, max_depth: 4, seed: 7, effects: None };
+            let cpu = rig.cpu(settings, SPP);
+            let gpu = rig.gpu(&device, settings, storage, SPP);
+            let count = differing(&cpu, &gpu);
+            let what = format!("{}, {integrator:?}, {bsdf:?}, {storage:?}: {count} pixels differ", rig.name);
+            println!("{what}");
+            if count > 0 || (cpu.rays, cpu.nonfinite) != (gpu.rays, gpu.nonfinite) {
+                failures.push(format!("{what}; rays {} and {}", cpu.rays, gpu.rays));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn built_in_scenes() {
+    for name in ["cornell", "furnace", "cubes", "mirror-room", "bunny-low", "control"] {
+        check(&Rig::new(builtin(name), [48, 32]));
+    }
+    check(&Rig::new(courtyard_of(4000), [48, 32]));
+}
+
+#[test]
+fn scenes_that_others_made() {
+    for scene in SMALL.iter().filter_map(|name| shared(name)) {
+        check(&Rig::new(scene, [32, 24]));
+    }
+}

@@ -1,0 +1,12 @@
+//! The path tracer as a whole: CPU against GPU, integrators against each other and against closed forms, energy, effects, depth
+//! and motion, bad input; hard cases H80-H84.
+#![cfg(feature = "lab")]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/gpu.rs"]
+mod gpu;
+
+mod equal;
+mod rig;
+mod scenes;
