@@ -1,7 +1,7 @@
 //! `afterimage trace`: render a scene.
 
 mod report;
-mod setup;
+pub mod setup;
 
 use crate::args::parse_size;
 use crate::failure::Failure;
