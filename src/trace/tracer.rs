@@ -49,6 +49,14 @@ impl Tracer {
         }
     }
 
+    /// Bytes of the scene on the device; `None` on the CPU.
+    pub fn scene_bytes(&self) -> Option<u64> {
+        match self {
+            Self::Cpu(_) => None,
+            Self::Gpu(tracer) => Some(tracer.scene_bytes()),
+        }
+    }
+
     /// To be called after [`World::pose`].
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 mod pattern;
 mod report;
-mod setup;
+pub mod setup;
 
 use crate::args::parse_size;
 use crate::failure::Failure;

@@ -2,6 +2,7 @@
 //! together, one step of one kind at a time: `generate`, then for each bounce `extend`, `shade`, `shadow`; how many are left is
 //! known on the device only.
 
+mod clock;
 mod passes;
 mod paths;
 
@@ -15,6 +16,7 @@ use super::work::WorkItem;
 use super::world::World;
 use crate::image::Image;
 use crate::pipeline::Headless;
+use clock::Clock;
 use glam::Vec3;
 use passes::Passes;
 use paths::{FrameWords, Paths};
@@ -94,6 +96,33 @@ impl GpuTracer {
 
     /// Adds the samples of `items`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
     pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
+        self.work(world, view, frame, items, film, None);
+    }
+
+    /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
+    /// none, or for more than 2048 batches.
+    pub fn trace_timed(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        items: &[WorkItem],
+        film: &mut Film,
+    ) -> Option<Duration> {
+        let clock = Clock::new(&self.device, batches(items).len() as u32);
+        self.work(world, view, frame, items, film, clock.as_ref());
+        Some(clock?.read(&self.device))
+    }
+
+    fn work(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        items: &[WorkItem],
+        film: &mut Film,
+        clock: Option<&Clock>,
+    ) {
         if items.is_empty() {
             return;
         }
@@ -119,11 +148,12 @@ impl GpuTracer {
         let device = &self.device.device;
         let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();
         let run = self.paths.run(device, &self.passes, &self.on_device, items, &before);
-        for (first, count) in batches(items) {
+        for ((first, count), index) in batches(items).into_iter().zip(0..) {
             words.first_item = first;
             words.items = count;
             let mut encoder = device.create_command_encoder(&Default::default());
-            run.record(device, &mut encoder, &self.passes, &words, self.settings.max_depth);
+            let timestamps = clock.map(|c| c.around(index));
+            run.record(device, &mut encoder, &self.passes, &words, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
             // A software device would otherwise hold all batches at once.
             self.device.wait();

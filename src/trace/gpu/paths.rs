@@ -128,6 +128,7 @@ impl Run<'_> {
         passes: &Passes,
         words: &FrameWords,
         max_depth: u32,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
         // Through the encoder: a write by the queue would give all batches of a submission the last words.
         let contents = bytemuck::bytes_of(words);
@@ -138,7 +139,8 @@ impl Run<'_> {
 
         let plan = &self.paths.plan;
         let (written, read) = (&self.paths.plan_written, &self.paths.plan_read);
-        let mut pass = encoder.begin_compute_pass(&Default::default());
+        let desc = wgpu::ComputePassDescriptor { label: Some("trace"), timestamp_writes: timestamps };
+        let mut pass = encoder.begin_compute_pass(&desc);
         pass.set_bind_group(0, &self.heap, &[]);
         pass.set_bind_group(1, &self.bound, &[]);
         let groups = words.items.div_ceil(WORKGROUP);

@@ -140,13 +140,8 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
 fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
     let expected = "expected none, a radiance R,G,B of numbers from 0, or an .exr file";
     match args.sky.as_deref() {
-        None => {
-            let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
-            let needs = Effects::needed(scene);
-            if !own.iter().any(|&e| needs.has(e)) && !args.scene.starts_with("builtin:") {
-                scene.environment = Environment::Constant(SOFT_WHITE);
-            }
-        }
+        None if !args.scene.starts_with("builtin:") => light_if_dark(scene),
+        None => {}
         Some("none") => scene.environment = Environment::Constant([0.0; 3]),
         Some(file) if file.to_lowercase().ends_with(".exr") => {
             let mut source = StillSource::open(Path::new(file), &ReadLimits::default())?;
@@ -163,6 +158,15 @@ fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Gives the scene a soft white sky if nothing in it shines.
+pub fn light_if_dark(scene: &mut Scene) {
+    let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
+    let needs = Effects::needed(scene);
+    if !own.iter().any(|&e| needs.has(e)) {
+        scene.environment = Environment::Constant(SOFT_WHITE);
+    }
 }
 
 fn choose_camera(scene: &Scene, args: &TraceArgs) -> Result<CameraChoice, Failure> {

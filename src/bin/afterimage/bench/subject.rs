@@ -1,0 +1,106 @@
+//! A scene to be timed, and what traces it.
+
+use super::{BenchArgs, Traces};
+use crate::failure::Failure;
+use crate::run::NO_ADAPTER;
+use crate::trace::setup::light_if_dark;
+use afterimage::pipeline::{Backend, Headless};
+use afterimage::report::clock::Stopwatch;
+use afterimage::scene::{Scene, SceneLimits};
+use afterimage::trace::film::Film;
+use afterimage::trace::view::View;
+use afterimage::trace::work::{WorkItem, uniform};
+use afterimage::trace::world::World;
+use afterimage::trace::{Tracer, settings::TraceSettings};
+
+/// A scene, seen by its first camera or, without any, as a whole. One sample a pixel.
+pub struct Subject {
+    pub name: String,
+    pub world: World,
+    view: View,
+    items: Vec<WorkItem>,
+    size: [u32; 2],
+}
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug)]
+pub struct Took {
+    /// CPU time of the process; wall time where the system does not tell.
+    pub cpu_ms: f64,
+    pub wall_ms: f64,
+    /// Of the kernels, by the clock of a real GPU.
+    pub device_ms: Option<f64>,
+    pub rays: u64,
+}
+
+impl Subject {
+    pub fn open(name: &str, size: [u32; 2]) -> Result<Self, Failure> {
+        let mut scene = Scene::open(name, &SceneLimits::default())?;
+        for warning in &scene.warnings {
+            eprintln!("afterimage: warning: {warning}");
+        }
+        light_if_dark(&mut scene);
+        let aspect = size[0] as f32 / size[1] as f32;
+        let camera = scene.pose(0.0).cameras.into_iter().next().unwrap_or_else(|| scene.framing_camera(aspect));
+        let view = View::of_camera(&camera, size, None)?;
+        let world = World::new(&scene);
+        Ok(Self { name: name.to_owned(), world, view, items: uniform(size[0], 0..size[1], 0..1), size })
+    }
+
+    /// A tracer of it.
+    pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, Failure> {
+        Tracer::new(backend, &self.world, settings).map_err(|e| Failure::Input(format!("{}: {e}", self.name)))
+    }
+
+    /// Traces frame `index`.
+    pub fn frame(&self, tracer: &Tracer, index: u64) -> Took {
+        self.trace(tracer, index, &self.items)
+    }
+
+    /// Traces a few samples only: every kernel runs.
+    pub fn few(&self, tracer: &Tracer) -> Took {
+        self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
+    }
+
+    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+        let mut film = Film::new(self.size);
+        let watch = Stopwatch::start();
+        let device = match tracer {
+            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &self.view, index, items, &mut film),
+            Tracer::Cpu(tracer) => {
+                tracer.trace(&self.world, &self.view, index, items, &mut film);
+                None
+            }
+        };
+        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        Took {
+            cpu_ms: cpu_ms.unwrap_or(wall_ms),
+            wall_ms,
+            device_ms: device.map(|d| d.as_secs_f64() * 1e3),
+            rays: film.rays,
+        }
+    }
+}
+
+/// What is to be timed: the CPU, an adapter, or both.
+pub fn backends(args: &BenchArgs) -> Result<Vec<Backend>, Failure> {
+    let mut backends = vec![];
+    if args.backend != Traces::Gpu {
+        backends.push(Backend::Cpu);
+    }
+    if args.backend != Traces::Cpu {
+        match Headless::find_roomy(true) {
+            Some(gpu) => backends.push(Backend::Gpu(gpu)),
+            None if args.backend == Traces::Gpu => {
+                return Err(Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")));
+            }
+            None => {}
+        }
+    }
+    Ok(backends)
+}
+
+/// Whether its own clock tells more than the process's CPU time.
+pub fn is_real_gpu(backend: &Backend) -> bool {
+    matches!(backend, Backend::Gpu(gpu) if !gpu.is_software())
+}
