@@ -83,6 +83,8 @@ const MODULES: &[Module] = &[
     #[cfg(feature = "lab")]
     module!("trace", "effects"),
     #[cfg(feature = "lab")]
+    module!("trace", "expand_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "extend_pass"),
     #[cfg(feature = "lab")]
     module!("trace", "frame"),

@@ -7,7 +7,7 @@ use super::gpu::GpuTracer;
 use super::heap::HeapError;
 use super::settings::TraceSettings;
 use super::view::View;
-use super::work::WorkItem;
+use super::work::Work;
 use super::world::World;
 use crate::pipeline::Backend;
 use std::time::Duration;
@@ -68,11 +68,11 @@ impl Tracer {
         }
     }
 
-    /// Adds the samples of `items`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
-    pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
+    /// Adds the samples of `work`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         match self {
-            Self::Cpu(tracer) => tracer.trace(world, view, frame, items, film),
-            Self::Gpu(tracer) => tracer.trace(world, view, frame, items, film),
+            Self::Cpu(tracer) => tracer.trace(world, view, frame, work, film),
+            Self::Gpu(tracer) => tracer.trace(world, view, frame, work, film),
         }
     }
 }

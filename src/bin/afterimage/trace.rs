@@ -19,7 +19,7 @@ use afterimage::trace::sampling::Sampling;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::surfaces::Surfaces;
 use afterimage::trace::view::View;
-use afterimage::trace::work;
+use afterimage::trace::work::Spans;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use pattern::PatternArgs;
@@ -183,8 +183,8 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         let picture = if sampling == Sampling::Uniform {
             let mut film = Film::new(args.size);
             for rows in bands(args) {
-                let items = work::uniform(args.size[0], rows.clone(), 0..args.spp);
-                setup.tracer.trace(&setup.world, &view, frame, &items, &mut film);
+                let spans = Spans::uniform(args.size[0], rows.clone(), 0..args.spp);
+                setup.tracer.trace(&setup.world, &view, frame, &spans, &mut film);
                 bar.inc(u64::from(rows.end - rows.start));
             }
             report.count_film(&film, &clock);

@@ -9,7 +9,7 @@ use super::effects::Effects;
 use super::film::{Film, Moments};
 use super::settings::TraceSettings;
 use super::view::View;
-use super::work::WorkItem;
+use super::work::Work;
 use super::world::World;
 use crate::kernel::direction::unit;
 use crate::kernel::rng::{Purpose, path_draws, stream_key};
@@ -34,8 +34,8 @@ impl CpuTracer {
         self.settings.effects.unwrap_or(world.needs)
     }
 
-    /// Adds the samples of `items`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
-    pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
+    /// Adds the samples of `work`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         let paths = Paths {
             world,
             integrator: self.settings.integrator,
@@ -47,20 +47,20 @@ impl CpuTracer {
         let rays = view.rays();
         let width = film.moments.width();
         let moments = &film.moments;
-        let pixels: Vec<&[WorkItem]> = items.chunk_by(|a, b| a.pixel == b.pixel).collect();
+        let pixels = work.into().by_pixel();
         let done: Vec<Done> = pixels
             .par_iter()
             .with_min_len(32)
-            .map(|items| {
-                let [x, y] = items[0].xy();
+            .map(|(id, samples)| {
+                let [x, y] = [id & 0xffff, id >> 16];
                 let index = y as usize * width + x as usize;
                 let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
-                for item in *items {
-                    let draws = path_draws(item.pixel, item.sample, DRAWS_CAMERA, paths.key);
+                for sample in samples.numbers() {
+                    let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);
                     let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
                     let py = y as f32 + (draws[1] - 0.5) * rays.jitter;
                     let direction = unit(rays.corner + rays.right * px + rays.down * py);
-                    let (radiance, traced) = paths.radiance(rays.origin, direction, item.pixel, item.sample);
+                    let (radiance, traced) = paths.radiance(rays.origin, direction, *id, sample);
                     let sound = radiance.is_finite();
                     done.moments.add(if sound { radiance } else { Vec3::ZERO });
                     done.nonfinite += u64::from(!sound);

@@ -3,6 +3,7 @@
 //! known on the device only.
 
 mod clock;
+mod expand;
 mod passes;
 mod paths;
 
@@ -12,11 +13,12 @@ use super::gpu_heap::{GpuHeap, Storage, traversal_constants};
 use super::heap::{Heap, HeapBuilder, HeapError, Section};
 use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
-use super::work::WorkItem;
+use super::work::Work;
 use super::world::World;
 use crate::image::Image;
 use crate::pipeline::Headless;
 use clock::Clock;
+use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
 use paths::{FrameWords, Paths};
@@ -36,6 +38,7 @@ pub struct GpuTracer {
     heap: Heap,
     on_device: GpuHeap,
     passes: Passes,
+    expand: Expand,
     paths: Paths,
     /// Time that compiling the kernels took, as far as the driver does it now.
     pub compile_time: Duration,
@@ -67,9 +70,10 @@ impl GpuTracer {
         let started = Instant::now();
         let passes =
             Passes::new(&device.device, &on_device, storage, &constants(world, &heap, &settings, effects, storage));
+        let expand = Expand::new(&device.device);
         let compile_time = started.elapsed();
         let paths = Paths::new(&device.device, &passes, BATCH);
-        Ok(Self { device, settings, effects, heap, on_device, passes, paths, compile_time })
+        Ok(Self { device, settings, effects, heap, on_device, passes, expand, paths, compile_time })
     }
 
     /// What is compiled in.
@@ -94,36 +98,29 @@ impl GpuTracer {
         Ok(())
     }
 
-    /// Adds the samples of `items`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
-    pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
-        self.work(world, view, frame, items, film, None);
+    /// Adds the samples of `work`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
+    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
+        self.work_off(world, view, frame, work.into(), film, None);
     }
 
     /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
     /// none, or for more than 2048 batches.
-    pub fn trace_timed(
+    pub fn trace_timed<'w>(
         &self,
         world: &World,
         view: &View,
         frame: u64,
-        items: &[WorkItem],
+        work: impl Into<Work<'w>>,
         film: &mut Film,
     ) -> Option<Duration> {
-        let clock = Clock::new(&self.device, batches(items).len() as u32);
-        self.work(world, view, frame, items, film, clock.as_ref());
+        let work = work.into();
+        let clock = Clock::new(&self.device, batches(work).len() as u32);
+        self.work_off(world, view, frame, work, film, clock.as_ref());
         Some(clock?.read(&self.device))
     }
 
-    fn work(
-        &self,
-        world: &World,
-        view: &View,
-        frame: u64,
-        items: &[WorkItem],
-        film: &mut Film,
-        clock: Option<&Clock>,
-    ) {
-        if items.is_empty() {
+    fn work_off(&self, world: &World, view: &View, frame: u64, work: Work, film: &mut Film, clock: Option<&Clock>) {
+        if batches(work).is_empty() {
             return;
         }
         let rays = view.rays();
@@ -147,11 +144,13 @@ impl GpuTracer {
         };
         let device = &self.device.device;
         let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();
-        let run = self.paths.run(device, &self.passes, &self.on_device, items, &before);
-        for ((first, count), index) in batches(items).into_iter().zip(0..) {
-            words.first_item = first;
-            words.items = count;
+        let (list, expansion) = self.expand.list(device, work);
+        let run = self.paths.run(device, &self.passes, &self.on_device, &list, &before);
+        for (batch, index) in batches(work).into_iter().zip(0..) {
+            words.first_item = batch.first_item;
+            words.items = batch.items;
             let mut encoder = device.create_command_encoder(&Default::default());
+            self.expand.record(device, &mut encoder, expansion.as_ref(), &batch);
             let timestamps = clock.map(|c| c.around(index));
             run.record(device, &mut encoder, &self.passes, &words, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
@@ -164,25 +163,6 @@ impl GpuTracer {
         film.rays += counters.rays;
         film.nonfinite += counters.nonfinite;
     }
-}
-
-/// Ranges of items, first and number, of whole pixels where a pixel has no more samples than a batch.
-fn batches(items: &[WorkItem]) -> Vec<(u32, u32)> {
-    let mut ranges = vec![];
-    let mut first = 0;
-    while first < items.len() {
-        let mut end = items.len().min(first + BATCH as usize);
-        if end < items.len() {
-            // Not in the middle of a pixel, unless it fills the batch: then its mean goes on in the next.
-            let same = items[first..end].iter().rev().take_while(|i| i.pixel == items[end].pixel).count();
-            if same < end - first {
-                end -= same;
-            }
-        }
-        ranges.push((first as u32, (end - first) as u32));
-        first = end;
-    }
-    ranges
 }
 
 fn rows_of(m: &Moments) -> [[f32; 4]; 2] {

@@ -3,7 +3,6 @@
 use super::passes::{Passes, WORKGROUP};
 use crate::pipeline::Headless;
 use crate::trace::gpu_heap::GpuHeap;
-use crate::trace::work::WorkItem;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 use wgpu::util::DeviceExt;
@@ -85,20 +84,19 @@ impl Paths {
         }
     }
 
-    /// Uploads work and film.
+    /// Uploads the film, and binds it and the list of work.
     pub fn run<'a>(
         &'a self,
         device: &wgpu::Device,
         passes: &Passes,
         heap: &GpuHeap,
-        items: &[WorkItem],
+        work: &wgpu::Buffer,
         film: &[[f32; 4]],
     ) -> Run<'a> {
         let filled = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let to_read = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let work = filled("work", bytemuck::cast_slice(items), BufferUsages::STORAGE);
         let film = filled("film", bytemuck::cast_slice(film), to_read);
         let counters = filled("counters", &[0; COUNTER_BYTES as usize], to_read);
         let bind = |layout, resources: &[wgpu::BindingResource]| {
@@ -107,7 +105,7 @@ impl Paths {
                 numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("trace"), layout, entries: &entries })
         };
-        let shared = [&self.frame, &work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
+        let shared = [&self.frame, work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
         Run {
             paths: self,
             heap: bind(&passes.heap_layout, &[heap.binding()]),

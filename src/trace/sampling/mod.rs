@@ -18,7 +18,7 @@ pub use regions::Regions;
 use super::Tracer;
 use super::film::Film;
 use super::view::View;
-use super::work::WorkItem;
+use super::work::Spans;
 use super::world::World;
 use crate::display::ViewGeometry;
 use crate::image::Image;
@@ -127,16 +127,9 @@ impl Plan {
         };
         let mut add = |view: &View, size, targets: &mut dyn Iterator<Item = [u32; 2]>, samples: u32| {
             let mut film = Film::new(size);
-            let mut count = 0;
-            let mut targets = targets.peekable();
-            // By parts: a list of all samples of a large frame would take more memory than the frame.
-            while targets.peek().is_some() {
-                let part = targets.by_ref().take((PART / samples.max(1) as usize).max(1));
-                let items: Vec<_> = part.flat_map(|[x, y]| (0..samples).map(move |s| WorkItem::new(x, y, s))).collect();
-                tracer.trace(world, view, frame, &items, &mut film);
-                count += items.len() as u64;
-            }
-            done.samples.push(count);
+            let spans = Spans::new(targets, 0..samples);
+            tracer.trace(world, view, frame, &spans, &mut film);
+            done.samples.push(spans.len());
             done.rays += film.rays;
             done.nonfinite += film.nonfinite;
             film
@@ -163,6 +156,3 @@ impl Plan {
         done
     }
 }
-
-/// Samples that are handed to the tracer at once.
-const PART: usize = 1 << 20;

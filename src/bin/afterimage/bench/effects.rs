@@ -1,3 +1,5 @@
 use super::BenchArgs;
 use crate::failure::Failure;
-pub fn bench(_: &BenchArgs, _: [u32; 2], _: u64) -> Result<(), Failure> { Ok(()) }
+pub fn bench(_: &BenchArgs, _: [u32; 2], _: u64) -> Result<(), Failure> {
+    Ok(())
+}
