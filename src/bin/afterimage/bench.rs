@@ -2,6 +2,7 @@
 
 mod clock;
 mod effects;
+mod foveated;
 mod post;
 mod rays;
 mod subject;
@@ -17,7 +18,7 @@ use std::path::PathBuf;
 /// Time the passes, the path tracer, or its effects
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json\n  \
-    afterimage bench trace --scene builtin:courtyard\n  \
+    afterimage bench trace --scene builtin:courtyard --foveated\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
 pub struct BenchArgs {
     /// What is timed
@@ -44,6 +45,9 @@ pub struct BenchArgs {
     /// effects: also compare with kernels from which an effect's text was cut out
     #[arg(long)]
     pub removal: bool,
+    /// trace: also time foveated frames against uniform ones
+    #[arg(long)]
+    pub foveated: bool,
     /// Also write the figures as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,

@@ -1,5 +1,6 @@
 //! `afterimage bench trace`: how many rays a second the tracers follow.
 
+use super::foveated::{self, PatternReport};
 use super::subject::{Subject, Took, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
@@ -43,6 +44,8 @@ struct TracerReport {
     /// Million rays a second: of the device's time if it has a clock, else of wall time.
     mrays_per_second: Option<f64>,
     scene_bytes_per_triangle: Option<f64>,
+    /// With `--foveated`.
+    foveated: Vec<PatternReport>,
 }
 
 /// Times the tracers for `size` and `frames`.
@@ -78,6 +81,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 device_ms,
                 mrays_per_core_second: rate(&|t| t.cpu_ms),
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
+                foveated: if args.foveated { foveated::measure(&subject, tracer) } else { vec![] },
                 scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
             }
         });
@@ -120,6 +124,10 @@ fn print(report: &Report) {
                 t.backend.name,
                 t.backend.kind,
             );
+        }
+        for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
+            say!("  foveated against uniform, CPU time, {} ({})", t.backend.name, t.backend.kind);
+            foveated::print(&t.foveated);
         }
     }
 }

@@ -8,6 +8,7 @@ use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Scene, SceneLimits};
 use afterimage::trace::film::Film;
+use afterimage::trace::sampling::{FoveatedFrame, Sampling};
 use afterimage::trace::view::View;
 use afterimage::trace::work::{WorkItem, uniform};
 use afterimage::trace::world::World;
@@ -17,7 +18,7 @@ use afterimage::trace::{Tracer, settings::TraceSettings};
 pub struct Subject {
     pub name: String,
     pub world: World,
-    view: View,
+    pub view: View,
     items: Vec<WorkItem>,
     size: [u32; 2],
 }
@@ -60,6 +61,21 @@ impl Subject {
     /// Traces a few samples only: every kernel runs.
     pub fn few(&self, tracer: &Tracer) -> Took {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
+    }
+
+    /// Traces a foveated frame; with its CPU time in milliseconds, wall time where the system does not tell.
+    pub fn foveated(
+        &self,
+        tracer: &Tracer,
+        sampling: &Sampling,
+        gaze_px: [f32; 2],
+        samples: u32,
+        index: u64,
+    ) -> (FoveatedFrame, f64) {
+        let watch = Stopwatch::start();
+        let plan = sampling.plan(self.view.geometry(), gaze_px, samples, index);
+        let frame = plan.trace(tracer, &self.world, &self.view, index);
+        (frame, watch.cpu_ms().unwrap_or(watch.wall_ms()))
     }
 
     fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
