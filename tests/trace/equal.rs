@@ -1,7 +1,7 @@
 //! Same seed: the device's film is the CPU's, bit for bit.
 
 use crate::rig::{Rig, device, differing};
-use crate::scenes::{SMALL, builtin, shared};
+use crate::scenes::{SMALL, builtin, shared, under_a_map, under_a_screen, under_lamps};
 use afterimage::scene::builtin::courtyard_of;
 use afterimage::trace::gpu_heap::Storage;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
@@ -38,6 +38,24 @@ fn built_in_scenes() {
         check(&Rig::new(builtin(name), [48, 32]));
     }
     check(&Rig::new(courtyard_of(4000), [48, 32]));
+}
+
+#[test]
+fn kinds_of_light() {
+    for scene in [under_a_map(), under_lamps(), under_a_screen()] {
+        check(&Rig::new(scene, [48, 32]));
+    }
+}
+
+#[test]
+fn one_wrong_last_bit_is_caught() {
+    let Some(device) = device() else { return };
+    let mut rig = Rig::new(builtin("cornell"), [48, 32]);
+    let gpu = rig.gpu(&device, TraceSettings::default(), Storage::Texture, SPP);
+    assert_eq!(differing(&rig.cpu(TraceSettings::default(), SPP), &gpu), 0);
+    let red = &mut rig.world.materials[1].base_color[0];
+    *red = red.next_up();
+    assert_ne!(differing(&rig.cpu(TraceSettings::default(), SPP), &gpu), 0);
 }
 
 #[test]

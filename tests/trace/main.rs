@@ -7,6 +7,11 @@ mod common;
 #[path = "../common/gpu.rs"]
 mod gpu;
 
+mod agree;
+mod chance;
+mod closed_form;
 mod equal;
+mod radiosity;
 mod rig;
 mod scenes;
+mod statistics;
