@@ -130,11 +130,11 @@ fn sample(layers: Layers, wo: vec3<f32>, u: vec4<f32>) -> Scatter {
     var side = 1.0;
     if at < layers.chances.x {
         wi = cosine_hemisphere(direction);
-    } else if at < up_to_reflect {
+    } else if (LOBE_SPECULAR || LOBE_METAL) && at < up_to_reflect {
         wi = mirrored(wo, vndf_sample(wo, layers.widths, direction));
-    } else if at < up_to_coat {
+    } else if LOBE_CLEARCOAT && at < up_to_coat {
         wi = mirrored(wo, vndf_sample(wo, vec2<f32>(layers.coat_width), direction));
-    } else if at < total {
+    } else if LOBE_TRANSMISSION && at < total {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = clamp(dot(wo, h), 0.0, 1.0);
         wi = mirrored(wo, h);

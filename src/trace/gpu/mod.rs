@@ -64,12 +64,26 @@ impl GpuTracer {
         settings: TraceSettings,
         storage: Storage,
     ) -> Result<Self, HeapError> {
+        Self::with_text(device, world, settings, storage, |text| text)
+    }
+
+    /// As [`with_storage`](Self::with_storage), with each kernel's text as `edit` returns it: for measurements of what text costs.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_text(
+        device: Arc<Headless>,
+        world: &World,
+        settings: TraceSettings,
+        storage: Storage,
+        edit: impl Fn(String) -> String,
+    ) -> Result<Self, HeapError> {
         let effects = settings.effects.unwrap_or(world.needs);
-        let heap = heap(world, storage.limits(&device.device.limits()))?;
+        let heap = heap(world, effects, storage.limits(&device.device.limits()))?;
         let on_device = GpuHeap::new(&device.device, &device.queue, &heap, storage);
         let started = Instant::now();
-        let passes =
-            Passes::new(&device.device, &on_device, storage, &constants(world, &heap, &settings, effects, storage));
+        let constants = constants(world, &heap, &settings, effects, storage);
+        let passes = Passes::new(&device.device, &on_device, storage, &constants, edit);
         let expand = Expand::new(&device.device);
         let compile_time = started.elapsed();
         let paths = Paths::new(&device.device, &passes, BATCH);
@@ -175,11 +189,14 @@ fn moments_of(rows: &[[f32; 4]; 2]) -> Moments {
 }
 
 /// Everything that the kernels read.
-fn heap(world: &World, limits: super::heap::HeapLimits) -> Result<Heap, HeapError> {
+fn heap(world: &World, effects: Effects, limits: super::heap::HeapLimits) -> Result<Heap, HeapError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
+    // Room for one where nothing moves: a node of zeros has no children.
+    let most_moving =
+        if effects.has(Effect::MovingObjects) { world.geometry.moving.triangles().len().max(1) } else { 0 };
     let mut builder = HeapBuilder::default();
     builder
-        .geometry(&world.geometry, world.geometry.moving.triangles().len())
+        .geometry(&world.geometry, most_moving)
         .fill(Section::Materials, &world.materials)
         .fill(Section::Textures, &world.textures)
         .fill(Section::Texels, &world.texels)

@@ -27,7 +27,13 @@ pub(super) struct Passes {
 }
 
 impl Passes {
-    pub fn new(device: &wgpu::Device, heap: &GpuHeap, storage: Storage, constants: &[(&'static str, f64)]) -> Self {
+    pub fn new(
+        device: &wgpu::Device,
+        heap: &GpuHeap,
+        storage: Storage,
+        constants: &[(&'static str, f64)],
+        edit: impl Fn(String) -> String,
+    ) -> Self {
         let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("trace"), entries })
         };
@@ -48,7 +54,7 @@ impl Passes {
                 bind_group_layouts: &[Some(&heap_layout), Some(&frame_layout), third],
                 immediate_size: 0,
             });
-            let source = compose_with(&[storage.module(), module], "").source;
+            let source = edit(compose_with(&[storage.module(), module], "").source);
             // A kernel is told of the overrides that it has.
             let has = |name: &str| source.contains(&format!("override {name}:"));
             let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| has(name)).collect();
