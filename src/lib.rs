@@ -70,6 +70,8 @@ pub mod metric;
 #[cfg(feature = "lab")]
 pub mod pipeline;
 #[cfg(feature = "lab")]
+pub mod raster;
+#[cfg(feature = "lab")]
 pub mod report;
 #[cfg(feature = "lab")]
 pub mod scanpath;

@@ -77,6 +77,20 @@ const MODULES: &[Module] = &[
     module!("pass", "taa_pass"),
     module!("pass", "wrs_pass"),
     #[cfg(feature = "lab")]
+    module!("raster", "color_pass"),
+    #[cfg(feature = "lab")]
+    module!("raster", "raster_frame"),
+    #[cfg(feature = "lab")]
+    module!("raster", "raster_material"),
+    #[cfg(feature = "lab")]
+    module!("raster", "scenery"),
+    #[cfg(feature = "lab")]
+    module!("raster", "sky_pass"),
+    #[cfg(feature = "lab")]
+    module!("raster", "sun_pass"),
+    #[cfg(feature = "lab")]
+    module!("raster", "surface_pass"),
+    #[cfg(feature = "lab")]
     module!("trace", "accept_all"),
     #[cfg(feature = "lab")]
     module!("trace", "count_pass"),

@@ -113,8 +113,13 @@ impl Headless {
 
     /// Waits for all that was submitted, and reads a layer of an `Rgba32Float` texture.
     pub fn read_rgb(&self, texture: &Texture, layer: u32) -> Image<[f32; 3]> {
+        self.read::<[f32; 4]>(texture, layer).map(|[r, g, b, _]| [r, g, b])
+    }
+
+    /// Waits for all that was submitted, and reads a layer of a texture whose texels are laid out like `T`.
+    pub(crate) fn read<T: bytemuck::Pod>(&self, texture: &Texture, layer: u32) -> Image<T> {
         let [width, height] = [texture.width(), texture.height()];
-        let padded = (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let padded = (width * size_of::<T>() as u32).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };
         let bytes = self.read_back(u64::from(padded) * u64::from(height), |encoder, buffer| {
             let mut from = texture.as_image_copy();
@@ -122,13 +127,11 @@ impl Headless {
             let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
             encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer, layout }, size);
         });
-        let mut image = Image::filled([width, height], [0.0; 3]);
+        let mut image = Image::filled([width, height], T::zeroed());
         let rows = image.pixels_mut().chunks_mut(width as usize);
         for (to, from) in rows.zip(bytes.chunks_exact(padded as usize)) {
-            let from: &[[f32; 4]] = bytemuck::cast_slice(&from[..width as usize * 16]);
-            for (to, &[r, g, b, _]) in to.iter_mut().zip(from) {
-                *to = [r, g, b];
-            }
+            let to: &mut [u8] = bytemuck::cast_slice_mut(to);
+            to.copy_from_slice(&from[..to.len()]);
         }
         image
     }

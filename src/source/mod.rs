@@ -1,15 +1,19 @@
-//! Where frames come from: stills, EXR sequences, analytic scenes. All hand out frames in one form.
+//! Where frames come from: stills, EXR sequences, analytic scenes, rendered scenes. All hand out frames in one form.
 
 pub mod analytic;
 pub mod cameras;
 pub mod exr_file;
 pub mod limits;
 pub mod motion_check;
+pub mod raster;
+pub mod scene_camera;
 pub mod sequence;
 pub mod still;
 
 pub use analytic::AnalyticSource;
 pub use limits::ReadLimits;
+pub use raster::RasterSource;
+pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
 
@@ -81,6 +85,11 @@ pub struct SceneOptions {
     pub fps: Option<f32>,
 }
 
+/// Whether what the user named is a scene, which a renderer makes frames of ([`RasterSource`]), and not frames.
+pub fn is_scene(input: &str) -> bool {
+    input.starts_with("builtin:") || matches!(extension(Path::new(input)).as_str(), "gltf" | "glb")
+}
+
 /// Opens what the user named: a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
 ///
 /// # Errors
@@ -89,7 +98,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     // A scheme in front names a source that is no file. Checked first, so that no file hides it.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
-        Some(("builtin", _)) => return Err(scene_error(input)),
+        _ if is_scene(input) => return Err(scene_error(input)),
         _ => {}
     }
     if let Some([w, h]) = scene.size {
@@ -105,7 +114,6 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     }
     match extension(path).as_str() {
         "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
-        "gltf" | "glb" => Err(scene_error(input)),
         _ if !path.exists() => Err(InputError::new(
             input,
             "does not exist",
@@ -138,11 +146,7 @@ fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Resul
 }
 
 fn scene_error(input: &str) -> InputError {
-    InputError::new(
-        input,
-        "is a scene, and scenes need a renderer that this version does not have yet",
-        "render it elsewhere to EXR frames with motion vectors and give their folder",
-    )
+    InputError::new(input, "is a scene, and scenes need a renderer on a device", "open it as a RasterSource")
 }
 
 /// The ending of a file name in lower case, without the dot; empty if there is none.

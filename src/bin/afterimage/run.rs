@@ -21,8 +21,8 @@ use std::path::PathBuf;
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
-    /// A still (.png, .jpg, .exr), a folder of .exr frames, or analytic:NAME with NAME one of still, lateral, turn, occluder,
-    /// light-step, scroll
+    /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with NAME one
+    /// of still, lateral, turn, occluder, light-step, scroll
     pub input: String,
     /// Folder for everything that is written
     #[arg(long, value_name = "DIR")]
@@ -38,9 +38,16 @@ pub struct RunArgs {
     /// Horizontal field of view of the flat view, degrees; default: the input's, else 70
     #[arg(long, value_name = "DEG")]
     pub hfov: Option<f32>,
-    /// Size of analytic scenes, pixels; default 640x360
+    /// Size of scenes, pixels; default 640x360
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
+    /// What renders a scene; default: raster
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub source: Option<SourceName>,
+    /// Where a scene is seen from: one of its cameras, a .json file (a cameras.json, or a path of keyframes), or lateral, orbit,
+    /// framing; default: the scene's first camera, gliding sideways if nothing moves
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub camera: Option<String>,
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
@@ -89,6 +96,13 @@ pub enum BackendName {
     Cpu,
     /// Any adapter, a software one too
     Gpu,
+}
+
+/// Names of what renders scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SourceName {
+    /// Render passes on a device, a software one if there is no other
+    Raster,
 }
 
 #[derive(Serialize)]
@@ -192,8 +206,34 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
 }
 
 fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    let scene = source::SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
-    Ok(source::open(&args.input, limits, &scene)?)
+    let options = source::SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
+    if source::is_scene(&args.input) {
+        return match args.source.unwrap_or(SourceName::Raster) {
+            SourceName::Raster => rasterised(args, limits, &options),
+        };
+    }
+    if args.source.is_some() || args.camera.is_some() {
+        let option = if args.source.is_some() { "--source" } else { "--camera" };
+        return Err(Failure::Input(format!(
+            "{option}: {} brings its own frames; expected a scene (.gltf, .glb, builtin:NAME), or leave it out",
+            args.input
+        )));
+    }
+    Ok(source::open(&args.input, limits, &options)?)
+}
+
+/// A scene by render passes. They need a device even where the methods run on the CPU.
+fn rasterised(
+    args: &RunArgs,
+    limits: &ReadLimits,
+    options: &source::SceneOptions,
+) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    let device = Headless::find_roomy(true).ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
+    let source = source::RasterSource::open(&args.input, limits, options, args.camera.as_deref(), device)?;
+    for warning in source.warnings() {
+        eprintln!("afterimage: warning: {warning}");
+    }
+    Ok(Box::new(source))
 }
 
 /// What can be wrong before anything is opened.

@@ -1,0 +1,162 @@
+//! Vertices: triangles grouped by material, as vertex buffers have them.
+
+use crate::scene::{Alpha, Material, Triangles};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Corner {
+    pub position: [f32; 3],
+    normal: [f32; 3],
+    tangent: [f32; 4],
+    uv: [f32; 2],
+    /// Normalised.
+    color: [u16; 4],
+}
+
+/// Bytes of a [`Corner`].
+pub(super) const STRIDE: u64 = size_of::<Corner>() as u64;
+
+/// What a corner is read from: its own buffer, and its position in the buffer of a frame ago.
+pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
+    wgpu::VertexBufferLayout {
+        array_stride: STRIDE,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Unorm16x4
+        ],
+    },
+    wgpu::VertexBufferLayout {
+        array_stride: STRIDE,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![5 => Float32x3],
+    },
+];
+
+/// How a material is drawn, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    /// Everywhere.
+    Opaque,
+    /// With holes.
+    Mask,
+    /// Over what is behind: blended by opacity, or lets light pass.
+    Blend,
+}
+
+impl Kind {
+    pub fn of(material: &Material) -> Self {
+        match material.alpha {
+            Alpha::Blend => Self::Blend,
+            _ if material.transmission > 0.0 => Self::Blend,
+            Alpha::Mask { .. } => Self::Mask,
+            Alpha::Opaque => Self::Opaque,
+        }
+    }
+}
+
+/// Vertices that are drawn with one material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    pub kind: Kind,
+    pub material: u32,
+    pub vertices: Range<u32>,
+}
+
+/// Order in which triangles are in their buffer: by kind, then material, else as they were.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grouped {
+    order: Vec<u32>,
+    pub parts: Vec<Part>,
+}
+
+impl Grouped {
+    pub fn new(triangles: &Triangles, materials: &[Material]) -> Self {
+        let key = |i: u32| {
+            let material = triangles.materials[i as usize];
+            (materials.get(material as usize).map_or(Kind::Opaque, Kind::of), material)
+        };
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        order.sort_by_key(|&i| key(i));
+        let mut parts = vec![];
+        let mut first = 0;
+        for run in order.chunk_by(|&a, &b| key(a) == key(b)) {
+            let (kind, material) = key(run[0]);
+            let end = first + 3 * run.len() as u32;
+            parts.push(Part { kind, material, vertices: first..end });
+            first = end;
+        }
+        Self { order, parts }
+    }
+
+    /// The corners of `triangles`, which have the materials that the groups were made of.
+    pub fn corners(&self, triangles: &Triangles) -> Vec<Corner> {
+        let mut corners = vec![Corner::default(); 3 * self.order.len()];
+        corners.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(corners, &i)| {
+            let i = i as usize;
+            for (k, corner) in corners.iter_mut().enumerate() {
+                *corner = Corner {
+                    position: triangles.positions[i][k].to_array(),
+                    normal: triangles.normals[i][k].to_array(),
+                    tangent: triangles.tangents[i][k].to_array(),
+                    uv: triangles.uvs[i][k].to_array(),
+                    color: triangles.colors[i][k].to_array().map(|v| (v.clamp(0.0, 1.0) * 65535.0).round() as u16),
+                };
+            }
+        });
+        corners
+    }
+
+    /// The middles of the triangles that are blended, with the first vertex and material of each.
+    pub fn blended(&self, corners: &[Corner]) -> Vec<Blended> {
+        let parts = self.parts.iter().filter(|p| p.kind == Kind::Blend);
+        parts
+            .flat_map(|part| {
+                part.vertices.clone().step_by(3).map(|first| {
+                    let of = |k: u32| Vec3::from(corners[(first + k) as usize].position);
+                    Blended { first, material: part.material, middle: (of(0) + of(1) + of(2)) / 3.0 }
+                })
+            })
+            .collect()
+    }
+}
+
+/// A triangle that is blended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blended {
+    pub first: u32,
+    pub material: u32,
+    pub middle: Vec3,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+
+    #[test]
+    fn triangles_are_grouped_by_kind_then_material_and_keep_their_order() {
+        let blend = Material { alpha: Alpha::Blend, ..Material::default() };
+        let glass = Material { transmission: 1.0, ..Material::default() };
+        let mask = Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..Material::default() };
+        let materials = [blend, Material::default(), mask, glass];
+        let mut triangles = Triangles::default();
+        for (i, m) in [3, 0, 1, 2, 1, 0].into_iter().enumerate() {
+            triangles.push_flat([vec3(i as f32, 0.0, 0.0), vec3(i as f32, 1.0, 0.0), vec3(i as f32, 0.0, 1.0)], m);
+        }
+        let grouped = Grouped::new(&triangles, &materials);
+        let kinds: Vec<_> = grouped.parts.iter().map(|p| (p.kind, p.material, p.vertices.clone())).collect();
+        assert_eq!(
+            kinds,
+            [(Kind::Opaque, 1, 0..6), (Kind::Mask, 2, 6..9), (Kind::Blend, 0, 9..15), (Kind::Blend, 3, 15..18)]
+        );
+        let corners = grouped.corners(&triangles);
+        let x: Vec<f32> = corners.iter().step_by(3).map(|c| c.position[0]).collect();
+        assert_eq!(x, [2.0, 4.0, 3.0, 1.0, 5.0, 0.0]);
+        assert_eq!(grouped.blended(&corners).iter().map(|b| b.first).collect::<Vec<_>>(), [9, 12, 15]);
+    }
+}

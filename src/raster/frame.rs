@@ -1,0 +1,88 @@
+//! What a frame is told, as `shaders/raster/raster_frame.wgsl` reads it.
+
+use crate::trace::view::View;
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+/// A camera: from the eye to homogeneous pixels.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Eye {
+    high: [f32; 4],
+    low: [f32; 4],
+    x: [f32; 4],
+    y: [f32; 4],
+    along: [f32; 4],
+}
+
+/// The uniform of a frame.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct FrameWords {
+    now: Eye,
+    before: Eye,
+    turned: [[f32; 4]; 3],
+    corner: [f32; 4],
+    right: [f32; 4],
+    down: [f32; 4],
+    size: [f32; 2],
+    near: f32,
+    unused: f32,
+}
+
+/// Rows from a direction to homogeneous pixels, and columns from pixels to a direction, in f64.
+struct Pixels {
+    rows: [DVec3; 3],
+    corner: DVec3,
+    right: DVec3,
+    down: DVec3,
+}
+
+impl Pixels {
+    fn of(view: &View) -> Self {
+        let m = view.world_from_camera();
+        let (right, below, ahead) = (m.x_axis.truncate(), -m.y_axis.truncate(), -m.z_axis.truncate());
+        let (scale, offset) = view.geometry().scale_offset();
+        let [sx, sy] = scale.map(f64::from);
+        let [ox, oy] = offset.map(f64::from);
+        Self {
+            rows: [right / sx - ahead * (ox / sx), below / sy - ahead * (oy / sy), ahead],
+            corner: right * ox + below * oy + ahead,
+            right: right * sx,
+            down: below * sy,
+        }
+    }
+}
+
+impl Eye {
+    fn of(view: &View, pixels: &Pixels) -> Self {
+        let at = view.world_from_camera().w_axis.truncate();
+        let high = at.as_vec3();
+        let low = at - high.as_dvec3();
+        let [x, y, along] = pixels.rows.map(row);
+        Self { high: high.extend(0.0).to_array(), low: row(low), x, y, along }
+    }
+}
+
+fn row(v: DVec3) -> [f32; 4] {
+    v.as_vec3().extend(0.0).to_array()
+}
+
+impl FrameWords {
+    /// A frame seen through `view` that was seen through `previous`; what is nearer than `near` metres is not seen.
+    pub fn new(view: &View, previous: &View, near: f32) -> Self {
+        let (now, before) = (Pixels::of(view), Pixels::of(previous));
+        let turned = [now.right, now.down, now.corner].map(|d| row(DVec3::from(before.rows.map(|r| r.dot(d)))));
+        Self {
+            now: Eye::of(view, &now),
+            before: Eye::of(previous, &before),
+            turned,
+            corner: row(now.corner),
+            right: row(now.right),
+            down: row(now.down),
+            size: view.geometry().size_px().map(|s| s as f32),
+            near,
+            unused: 0.0,
+        }
+    }
+}
