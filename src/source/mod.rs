@@ -9,6 +9,7 @@ pub mod raster;
 pub mod scene_camera;
 pub mod sequence;
 pub mod still;
+pub mod traced;
 
 pub use analytic::AnalyticSource;
 pub use limits::ReadLimits;
@@ -16,6 +17,7 @@ pub use raster::RasterSource;
 pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
+pub use traced::TracedSource;
 
 use crate::error::InputError;
 use crate::image::Image;
@@ -129,20 +131,26 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
 
 fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<AnalyticSource, InputError> {
     let size = scene.size.unwrap_or(analytic::DEFAULT_SIZE);
-    let pixels = u64::from(size[0]) * u64::from(size[1]);
-    if pixels > limits.max_pixels {
-        return Err(InputError::new(
-            format!("analytic:{name}"),
-            format!("{}x{} pixels are above the limit of {} million", size[0], size[1], limits.max_pixels / 1_000_000),
-            format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
-        ));
-    }
+    check_size(&format!("analytic:{name}"), size, limits)?;
     AnalyticSource::new(
         name,
         size,
         scene.hfov_deg.unwrap_or(analytic::DEFAULT_HFOV_DEG),
         scene.fps.unwrap_or(analytic::DEFAULT_FPS),
     )
+}
+
+/// Refuses frames to be rendered that are larger than those that may be read.
+fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<(), InputError> {
+    let pixels = u64::from(w) * u64::from(h);
+    if pixels <= limits.max_pixels {
+        return Ok(());
+    }
+    Err(InputError::new(
+        subject,
+        format!("{w}x{h} pixels are above the limit of {} million", limits.max_pixels / 1_000_000),
+        format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
+    ))
 }
 
 fn scene_error(input: &str) -> InputError {

@@ -1,7 +1,7 @@
 //! Frames of a scene by the rasteriser.
 
 use super::scene_camera::SceneCamera;
-use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo};
+use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
 use crate::error::InputError;
 use crate::pipeline::Headless;
 use crate::raster::{Raster, RasterSettings};
@@ -42,22 +42,7 @@ impl RasterSource {
         device: Arc<Headless>,
     ) -> Result<Self, InputError> {
         let size = options.size.unwrap_or(DEFAULT_SIZE);
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        if pixels > limits.max_pixels {
-            return Err(InputError::new(
-                input,
-                format!(
-                    "{}x{} pixels are above the limit of {} million",
-                    size[0],
-                    size[1],
-                    limits.max_pixels / 1_000_000
-                ),
-                format!(
-                    "choose a smaller size, or raise the limit with --max-megapixels {}",
-                    pixels.div_ceil(1_000_000)
-                ),
-            ));
-        }
+        check_size(input, size, limits)?;
         let scene = Scene::open(input, &SceneLimits::default())?;
         let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
         Self::new(device, scene, camera, options.fps, RasterSettings::default())

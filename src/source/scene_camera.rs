@@ -44,6 +44,7 @@ enum CameraPath {
 impl SceneCamera {
     /// A camera by what the user named: a camera of the scene, a `.json` file ([`CameraFile`]), or one of
     ///
+    /// - `still`: the scene's first camera, else `framing`;
     /// - `framing`: one that stands still with all of the scene in view;
     /// - `lateral`: the scene's first camera, else `framing`, that glides to the right and back. At its fastest it moves an
     ///   eighteenth of the scene's radius a second where it stands inside the scene's box (1 m/s in a hall of 36 m), else a fifth of
@@ -68,8 +69,8 @@ impl SceneCamera {
         let found = name.and_then(|name| cameras.iter().position(|c| c.name == name));
         let (path, camera) = match name {
             _ if let Some(index) = found => (CameraPath::Scene(index), cameras[index].clone()),
-            None if scene.duration_s() > 0.0 && !cameras.is_empty() => (CameraPath::Scene(0), first()),
-            None if scene.duration_s() > 0.0 => (CameraPath::Framing(first()), first()),
+            Some("still") => (own_path(&cameras, &first()), first()),
+            None if scene.duration_s() > 0.0 => (own_path(&cameras, &first()), first()),
             None | Some("lateral") => (lateral(scene, &first()), first()),
             Some("orbit") => {
                 let (_, middle) = middle(scene);
@@ -91,7 +92,7 @@ impl SceneCamera {
                 return Err(InputError::new(
                     format!("--camera {name}"),
                     "the scene has no such camera",
-                    format!("expected lateral, orbit, framing, a .json file, or one of its cameras: {there}"),
+                    format!("expected still, lateral, orbit, framing, a .json file, or one of its cameras: {there}"),
                 ));
             }
         };
@@ -150,6 +151,11 @@ impl SceneCamera {
         };
         View::new(self.geometry, world_from_camera)
     }
+}
+
+/// The scene's first camera, or one that stands still.
+fn own_path(cameras: &[Camera], framing: &Camera) -> CameraPath {
+    if cameras.is_empty() { CameraPath::Framing(framing.clone()) } else { CameraPath::Scene(0) }
 }
 
 fn flat(scene: &Scene, size_px: [u32; 2], hfov_deg: f32) -> Result<ViewGeometry, InputError> {

@@ -155,6 +155,18 @@ impl World {
     }
 }
 
+/// Radiance of the sky that scenes without light get.
+const SOFT_WHITE: [f32; 3] = [1.0; 3];
+
+/// Gives a scene a soft white sky if nothing in it shines.
+pub fn light_if_dark(scene: &mut Scene) {
+    let needs = Effects::needed(scene);
+    let shines = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
+    if !shines.iter().any(|&e| needs.has(e)) {
+        scene.environment = Environment::Constant(SOFT_WHITE);
+    }
+}
+
 /// Smallest and largest corner.
 fn bounds(triangles: &[TriangleRecord]) -> [Vec3; 2] {
     let corners = triangles.iter().flat_map(|t| t.positions());

@@ -10,6 +10,7 @@ use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
 use afterimage::settings::Method;
 use afterimage::source::{self, FrameSource, ReadLimits, SourceInfo};
+use afterimage::trace::settings::TraceSettings;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -41,6 +42,9 @@ pub struct RunArgs {
     /// Size of scenes, pixels; default 640x360
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
+    /// Samples a pixel of --source trace
+    #[arg(long, default_value_t = 32, value_name = "N")]
+    pub spp: u32,
     /// What renders a scene; default: raster
     #[arg(long, value_enum, value_name = "NAME")]
     pub source: Option<SourceName>,
@@ -103,6 +107,8 @@ pub enum BackendName {
 pub enum SourceName {
     /// Render passes on a device, a software one if there is no other
     Raster,
+    /// Path tracing with --spp samples a pixel
+    Trace,
 }
 
 #[derive(Serialize)]
@@ -210,6 +216,7 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
     if source::is_scene(&args.input) {
         return match args.source.unwrap_or(SourceName::Raster) {
             SourceName::Raster => rasterised(args, limits, &options),
+            SourceName::Trace => traced(args, limits, &options),
         };
     }
     if args.source.is_some() || args.camera.is_some() {
@@ -223,6 +230,28 @@ fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Sen
 }
 
 /// A scene by render passes. They need a device even where the methods run on the CPU.
+fn traced(
+    args: &RunArgs,
+    limits: &ReadLimits,
+    options: &source::SceneOptions,
+) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    if args.spp == 0 || args.spp > 1 << 20 {
+        return Err(Failure::Input(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20)));
+    }
+    let backend = match backend(args.backend)? {
+        // Scenes take larger textures and buffers than frames.
+        Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
+        Backend::Cpu => Backend::Cpu,
+    };
+    let settings = TraceSettings { seed: args.seed, ..TraceSettings::default() };
+    let camera = args.camera.as_deref();
+    let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, args.spp)?;
+    for warning in source.warnings() {
+        eprintln!("afterimage: warning: {warning}");
+    }
+    Ok(Box::new(source))
+}
+
 fn rasterised(
     args: &RunArgs,
     limits: &ReadLimits,

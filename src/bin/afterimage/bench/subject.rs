@@ -3,7 +3,6 @@
 use super::{BenchArgs, Traces};
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
-use crate::trace::setup::light_if_dark;
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Scene, SceneLimits};
@@ -11,7 +10,7 @@ use afterimage::trace::film::Film;
 use afterimage::trace::sampling::{FoveatedFrame, Sampling};
 use afterimage::trace::view::View;
 use afterimage::trace::work::{WorkItem, uniform};
-use afterimage::trace::world::World;
+use afterimage::trace::world::{World, light_if_dark};
 use afterimage::trace::{Tracer, settings::TraceSettings};
 
 /// A scene, seen by its first camera or, without any, as a whole. One sample a pixel.

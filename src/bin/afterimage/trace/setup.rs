@@ -5,14 +5,14 @@ use crate::failure::Failure;
 use crate::run::backend;
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;
-use afterimage::scene::camera_file::CameraFile;
-use afterimage::scene::{Camera, Environment, Scene, SceneLimits};
-use afterimage::source::{FrameSource, ReadLimits, StillSource};
+use afterimage::scene::{Environment, Scene, SceneLimits};
+use afterimage::source::raster::DEFAULT_FPS;
+use afterimage::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
 use afterimage::trace::Tracer;
 use afterimage::trace::effects::{Effect, Effects};
 use afterimage::trace::settings::MAX_DEPTH;
 use afterimage::trace::view::View;
-use afterimage::trace::world::World;
+use afterimage::trace::world::{World, light_if_dark};
 use std::path::Path;
 
 /// A scene ready to be traced.
@@ -25,22 +25,9 @@ pub struct Setup {
     /// Time that reading the scene, and that building its hierarchy took.
     pub load_ms: f64,
     pub build_ms: f64,
-    camera: CameraChoice,
-    size: [u32; 2],
-    hfov_deg: Option<f32>,
+    camera: SceneCamera,
     moves: bool,
 }
-
-enum CameraChoice {
-    /// The scene's, by number.
-    Scene(usize),
-    /// One that stands still.
-    Framing(Camera),
-    File(CameraFile),
-}
-
-/// Radiance of the sky for scenes that bring no light.
-const SOFT_WHITE: [f32; 3] = [1.0; 3];
 
 /// Largest image: pixel coordinates have 16 bits.
 const MAX_SIDE: u32 = 65_536;
@@ -55,7 +42,8 @@ impl Setup {
         }
         light(&mut scene, args)?;
         let load_ms = clock.wall_ms();
-        let camera = choose_camera(&scene, args)?;
+        let name = args.camera.as_deref().unwrap_or("still");
+        let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
         let backend = match backend(args.backend)? {
             // Scenes take larger textures and buffers than frames.
             Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
@@ -67,21 +55,15 @@ impl Setup {
         let effects = parse_effects(&args.effects)?;
         let tracer = Tracer::new(&backend, &world, settings(args, effects))
             .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
-        let file_fps = match &camera {
-            CameraChoice::File(file) => file.fps,
-            _ => None,
-        };
         let moves = scene.duration_s() > 0.0;
         Ok(Self {
             world,
             tracer,
             backend,
-            fps: args.fps.or(file_fps).unwrap_or(60.0),
+            fps: args.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS),
             load_ms,
             build_ms,
             camera,
-            size: args.size,
-            hfov_deg: args.hfov,
             moves,
             scene,
         })
@@ -94,16 +76,7 @@ impl Setup {
             self.world.pose(&self.scene, time_s, before);
             self.tracer.update(&self.world).map_err(|e| Failure::Work(e.to_string()))?;
         }
-        let (camera, hfov_deg) = match &self.camera {
-            CameraChoice::Scene(index) => (self.scene.pose(time_s).cameras[*index].clone(), self.hfov_deg),
-            CameraChoice::Framing(camera) => (camera.clone(), self.hfov_deg),
-            CameraChoice::File(file) => {
-                let world_from_camera = file.world_from_camera(frame, time_s);
-                let camera = Camera { name: String::new(), world_from_camera, vfov_deg: 40.0 };
-                (camera, self.hfov_deg.or(file.hfov_deg).or(Some(70.0)))
-            }
-        };
-        Ok(View::of_camera(&camera, self.size, hfov_deg)?)
+        Ok(self.camera.view(&self.scene, frame, time_s))
     }
 }
 
@@ -158,37 +131,6 @@ fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Gives the scene a soft white sky if nothing in it shines.
-pub fn light_if_dark(scene: &mut Scene) {
-    let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
-    let needs = Effects::needed(scene);
-    if !own.iter().any(|&e| needs.has(e)) {
-        scene.environment = Environment::Constant(SOFT_WHITE);
-    }
-}
-
-fn choose_camera(scene: &Scene, args: &TraceArgs) -> Result<CameraChoice, Failure> {
-    let cameras = scene.pose(0.0).cameras;
-    let aspect = f64::from(args.size[0]) / f64::from(args.size[1]);
-    match args.camera.as_deref() {
-        None if cameras.is_empty() => Ok(CameraChoice::Framing(scene.framing_camera(aspect as f32))),
-        None => Ok(CameraChoice::Scene(0)),
-        Some(file) if file.to_lowercase().ends_with(".json") => {
-            Ok(CameraChoice::File(CameraFile::open(Path::new(file))?))
-        }
-        Some(name) => match cameras.iter().position(|c| c.name == name) {
-            Some(index) => Ok(CameraChoice::Scene(index)),
-            None => {
-                let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
-                let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-                Err(Failure::Input(format!(
-                    "--camera {name}: the scene has no such camera; expected a .json file or one of its cameras: {there}"
-                )))
-            }
-        },
-    }
 }
 
 fn parse_effects(text: &str) -> Result<Option<Effects>, Failure> {

@@ -1,0 +1,112 @@
+//! Frames of a scene by path tracing.
+
+use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
+use super::scene_camera::SceneCamera;
+use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
+use crate::error::InputError;
+use crate::pipeline::Backend;
+use crate::scene::{Scene, SceneLimits};
+use crate::trace::Tracer;
+use crate::trace::film::Film;
+use crate::trace::settings::TraceSettings;
+use crate::trace::surfaces::Surfaces;
+use crate::trace::work::Spans;
+use crate::trace::world::{World, light_if_dark};
+
+/// Samples that are traced at once: their paths' film stays small.
+const STEP: u32 = 1 << 20;
+
+/// A scene seen by a camera, path-traced frame by frame with the same number of samples everywhere.
+///
+/// As of [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and motion are
+/// those at the pixels' centres, without noise.
+pub struct TracedSource {
+    info: SourceInfo,
+    scene: Scene,
+    world: World,
+    tracer: Tracer,
+    camera: SceneCamera,
+    fps: f64,
+    samples: u32,
+}
+
+impl TracedSource {
+    /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that [`SceneCamera::choose`] finds by
+    /// `camera`, to be traced with `samples` samples a pixel. A scene without light stands under a soft white sky.
+    ///
+    /// # Errors
+    /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
+    pub fn open(
+        input: &str,
+        limits: &ReadLimits,
+        options: &SceneOptions,
+        camera: Option<&str>,
+        backend: &Backend,
+        settings: TraceSettings,
+        samples: u32,
+    ) -> Result<Self, InputError> {
+        let size = options.size.unwrap_or(DEFAULT_SIZE);
+        check_size(input, size, limits)?;
+        let mut scene = Scene::open(input, &SceneLimits::default())?;
+        light_if_dark(&mut scene);
+        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
+        let world = World::new(&scene);
+        let tracer = Tracer::new(backend, &world, settings)
+            .map_err(|e| InputError::new(input, e.to_string(), "trace it on the CPU"))?;
+        let fps = options.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
+        if !(fps.is_finite() && fps > 0.0) {
+            let problem = format!("the frame rate is {fps}");
+            return Err(InputError::new(input, problem, "expected frames per second above 0"));
+        }
+        let info = SourceInfo {
+            name: scene.name.clone(),
+            size,
+            frames: camera.frames(),
+            fps: Some(fps),
+            hfov_deg: Some(camera.geometry().hfov_deg()),
+            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
+        };
+        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples: samples.max(1) })
+    }
+
+    /// What the file asks for and is not done.
+    pub fn warnings(&self) -> &[String] {
+        &self.scene.warnings
+    }
+}
+
+impl FrameSource for TracedSource {
+    fn info(&self) -> &SourceInfo {
+        &self.info
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        let before = index.saturating_sub(1);
+        let times = [index, before].map(|i| i as f64 / self.fps);
+        if self.scene.duration_s() > 0.0 {
+            self.world.pose(&self.scene, times[0], times[1]);
+            self.tracer
+                .update(&self.world)
+                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "trace it on the CPU"))?;
+        }
+        let view = self.camera.view(&self.scene, index, times[0]);
+        let previous = self.camera.view(&self.scene, before, times[1]);
+        let [width, height] = self.info.size;
+        let mut film = Film::new(self.info.size);
+        let rows = (STEP / width.saturating_mul(self.samples).max(1)).max(1);
+        for first in (0..height).step_by(rows as usize) {
+            let spans = Spans::uniform(width, first..(first + rows).min(height), 0..self.samples);
+            self.tracer.trace(&self.world, &view, index, &spans, &mut film);
+        }
+        let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
+        Ok(SourceFrame {
+            color: film.color(),
+            depth: Some(seen.depth),
+            motion: Some(seen.motion),
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&previous)),
+            cut: index == 0,
+            nonfinite: film.nonfinite,
+        })
+    }
+}
