@@ -40,7 +40,7 @@ cargo test --locked --all-features
 step "examples"
 # With the features of the tests, so that nothing is compiled twice. 05 is a long experiment.
 for example in 01_smallest 02_moving_camera 03_scanpath 04_stereo 06_gpu_headless 07_gpu_moving_camera 08_gpu_scanpath \
-    09_gpu_stereo 10_cpu_fallback 11_debug_views 12_engine; do
+    09_gpu_stereo 10_cpu_fallback 11_debug_views 12_engine 16_path_trace; do
     cargo run --locked --quiet --all-features --example "$example"
 done
 
