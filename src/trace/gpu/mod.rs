@@ -24,6 +24,9 @@ use std::time::{Duration, Instant};
 /// Paths in flight at once.
 pub const BATCH: u32 = 1 << 17;
 
+/// Work items on the device at once.
+const MOST_ITEMS: usize = 1 << 22;
+
 /// A scene's tracer on a device. Same seed, same device, same image: appending to lists is unordered, but no result depends on
 /// the order.
 #[derive(Debug)]
@@ -94,9 +97,13 @@ impl GpuTracer {
 
     /// Adds the samples of `items`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
     pub fn trace(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
-        if items.is_empty() {
-            return;
+        // Longer lists would not fit a binding of default limits.
+        for items in items.chunks(MOST_ITEMS) {
+            self.trace_list(world, view, frame, items, film);
         }
+    }
+
+    fn trace_list(&self, world: &World, view: &View, frame: u64, items: &[WorkItem], film: &mut Film) {
         let rays = view.rays();
         let size = film.moments.size();
         let mut words = FrameWords {
@@ -134,21 +141,25 @@ impl GpuTracer {
     }
 }
 
-/// Ranges of items, first and number, of whole pixels where a pixel has no more samples than a batch.
+/// Most samples of a pixel in a batch: software Vulkan leaves a loop after 65,535 rounds, and `resolve` has one a sample.
+const MOST_OF_A_PIXEL: usize = 1 << 15;
+
+/// Ranges of items, first and number. A pixel's mean goes on from one to the next.
 fn batches(items: &[WorkItem]) -> Vec<(u32, u32)> {
     let mut ranges = vec![];
     let mut first = 0;
     while first < items.len() {
-        let mut end = items.len().min(first + BATCH as usize);
-        if end < items.len() {
-            // Not in the middle of a pixel, unless it fills the batch: then its mean goes on in the next.
-            let same = items[first..end].iter().rev().take_while(|i| i.pixel == items[end].pixel).count();
-            if same < end - first {
-                end -= same;
+        let batch = &items[first..items.len().min(first + BATCH as usize)];
+        let runs = batch.chunk_by(|a, b| a.pixel == b.pixel);
+        let mut count = 0;
+        for run in runs {
+            count += run.len().min(MOST_OF_A_PIXEL);
+            if run.len() > MOST_OF_A_PIXEL {
+                break;
             }
         }
-        ranges.push((first as u32, (end - first) as u32));
-        first = end;
+        ranges.push((first as u32, count as u32));
+        first += count;
     }
     ranges
 }
