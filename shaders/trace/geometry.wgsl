@@ -68,6 +68,7 @@ fn attributes_at(triangle: u32, u: f32, v: f32) -> Attributes {
     let a = bitcast<vec2<f32>>(uv0.xy);
     let b = bitcast<vec2<f32>>(vec2<u32>(uv0.z, uv1.x));
     let c = bitcast<vec2<f32>>(uv1.yz);
-    let color = (texel_value(normals.w) * w + texel_value(tangents.w) * u) + texel_value(uv0.w) * v;
+    let color0 = texel_value(normals.w);
+    let color = (color0 + (texel_value(tangents.w) - color0) * u) + (texel_value(uv0.w) - color0) * v;
     return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color);
 }

@@ -191,7 +191,8 @@ impl AttributeRecord {
             tangent: (t[0].truncate() * w + t[1].truncate() * u) + t[2].truncate() * v,
             bitangent_sign: t[0].w,
             uv: (uvs[0] * w + uvs[1] * u) + uvs[2] * v,
-            color: (c[0] * w + c[1] * u) + c[2] * v,
+            // Corners alike are that colour exactly, so that white ones change nothing.
+            color: (c[0] + (c[1] - c[0]) * u) + (c[2] - c[0]) * v,
         }
     }
 

@@ -79,6 +79,8 @@ impl MaterialRecord {
         let (phong_specular, phong_exponent) =
             m.phong.map_or((derived, 2.0 / (alpha * alpha) - 2.0), |p| (p.specular, p.exponent));
         let diffuse_share = 1.0 - m.metallic;
+        // What nothing enters has no inside.
+        let absorption = if m.volume && m.transmission > 0.0 { m.absorption } else { [0.0; 3] };
         Self {
             base_color: m.base_color,
             opacity: m.opacity,
@@ -96,7 +98,7 @@ impl MaterialRecord {
             clearcoat: m.clearcoat,
             clearcoat_roughness: m.clearcoat_roughness,
             transmission: m.transmission,
-            absorption: m.absorption,
+            absorption,
             normal_scale: m.normal_scale,
             phong_specular,
             phong_exponent,

@@ -114,6 +114,12 @@ impl<'a> From<&'a [WorkItem]> for Work<'a> {
     }
 }
 
+impl<'a, const N: usize> From<&'a [WorkItem; N]> for Work<'a> {
+    fn from(items: &'a [WorkItem; N]) -> Self {
+        Self::List(items)
+    }
+}
+
 impl<'a> From<&'a Vec<WorkItem>> for Work<'a> {
     fn from(items: &'a Vec<WorkItem>) -> Self {
         Self::List(items)

@@ -185,8 +185,10 @@ fn expected(room: &Room) -> Expected {
             let hit = room.hit(eye, w, f64::INFINITY);
             quads.push(hit.map(|h| h.0));
             if let Some((q, t)) = hit {
-                let patch = room.quads[q].patch_at(eye + w * t);
-                (0..3).for_each(|b| sum[b] += room.quads[q].bounces[b][patch] / 9.0);
+                let (p, quad) = (eye + w * t, &room.quads[q]);
+                // Edges of shadows are finer than patches: the lamp's light at the very point.
+                sum[0] += quad.reflectance / PI * room.from_lamp(p, quad.normal) / 9.0;
+                (1..3).for_each(|b| sum[b] += quad.bounces[b][quad.patch_at(p)] / 9.0);
             }
         }
         e.seen.push(quads[0].filter(|_| quads.iter().all(|q| *q == quads[0])));

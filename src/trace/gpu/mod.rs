@@ -28,6 +28,9 @@ use std::time::{Duration, Instant};
 /// Paths in flight at once.
 pub const BATCH: u32 = 1 << 17;
 
+/// Work items on the device at once.
+const MOST_ITEMS: usize = 1 << 22;
+
 /// A scene's tracer on a device. Same seed, same device, same image: appending to lists is unordered, but no result depends on
 /// the order.
 #[derive(Debug)]
@@ -114,7 +117,15 @@ impl GpuTracer {
 
     /// Adds the samples of `work`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
     pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
-        self.work_off(world, view, frame, work.into(), film, None);
+        match work.into() {
+            // Longer lists would not fit a binding of default limits.
+            Work::List(items) => {
+                for items in items.chunks(MOST_ITEMS) {
+                    self.work_off(world, view, frame, items.into(), film, None);
+                }
+            }
+            spans => self.work_off(world, view, frame, spans, film, None),
+        }
     }
 
     /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
