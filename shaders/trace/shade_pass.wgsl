@@ -71,7 +71,7 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let p = point_of(hit, ray.xyz);
-    if EFFECT_ABSORPTION {
+    if EFFECT_TRANSMISSION {
         if !p.front {
             let depth = p.absorption * -hit.t;
             throughput *= vec3<f32>(exp(depth.x), exp(depth.y), exp(depth.z));

@@ -24,10 +24,8 @@ struct Point {
 // surface::base
 fn base_of(material: u32, place: Attributes) -> vec4<f32> {
     var base = bitcast<vec4<f32>>(material_row(material, 0u));
-    if EFFECT_VERTEX_COLOR {
+    if EFFECT_BASE_COLOR {
         base *= place.color;
-    }
-    if EFFECT_BASE_COLOR_TEXTURE {
         let id = material_row(material, 8u).z;
         if id != NO_TEXTURE {
             base *= texture_value(id, place.uv, true);
@@ -199,7 +197,7 @@ fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
         }
     }
     p.absorption = vec3<f32>(0.0);
-    if EFFECT_ABSORPTION {
+    if EFFECT_TRANSMISSION {
         if (flags & FLAG_VOLUME) != 0u {
             p.absorption = bitcast<vec3<f32>>(material_row(c.material, 6u).xyz);
         }

@@ -38,13 +38,11 @@ effects! {
     Anisotropy "anisotropy" "a highlight that is stretched",
     Clearcoat "clearcoat" "a coated material",
     Sheen "sheen" "a material with sheen",
-    Transmission "transmission" "a material that light passes through",
-    Absorption "absorption" "a body that absorbs light inside",
-    BaseColorTexture "base-color-texture" "a base colour from an image",
+    Transmission "transmission" "a material that light passes through, and that may absorb it",
+    BaseColor "base-color" "a base colour from an image or on vertices",
     SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from an image",
     NormalMap "normal-map" "a normal map",
     EmissiveTexture "emissive-texture" "an emissive colour from an image",
-    VertexColor "vertex-color" "colours on vertices",
     Alpha "alpha" "a surface with holes or partly transparent",
     EmissiveTriangles "emissive-triangles" "a surface that emits light",
     PunctualLights "punctual-lights" "a point, spot or directional light",
@@ -109,7 +107,7 @@ impl Effects {
         materials
             .map(|(m, _)| Self::of_material(m))
             .fold(Self::NONE, Self::union)
-            .set(Effect::VertexColor, colored)
+            .union(if colored { Self::NONE.set(Effect::BaseColor, true) } else { Self::NONE })
             .union(Self::of_light(&rest.lights, &scene.environment))
             .set(Effect::MovingObjects, !rest.moving.is_empty())
     }
@@ -133,8 +131,7 @@ impl Effects {
             .set(Effect::Clearcoat, m.clearcoat > 0.0)
             .set(Effect::Sheen, m.sheen_color != [0.0; 3])
             .set(Effect::Transmission, m.transmission > 0.0)
-            .set(Effect::Absorption, m.transmission > 0.0 && m.volume && m.absorption != [0.0; 3])
-            .set(Effect::BaseColorTexture, m.base_color_texture.is_some())
+            .set(Effect::BaseColor, m.base_color_texture.is_some())
             .set(Effect::SurfaceTexture, surface_textures.iter().any(Option::is_some))
             .set(Effect::NormalMap, m.normal_texture.is_some())
             .set(Effect::EmissiveTexture, glows && m.emissive_texture.is_some())

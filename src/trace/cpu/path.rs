@@ -62,7 +62,7 @@ impl Paths<'_> {
                 break;
             };
             let p = point(self.world, &hit, state.ray.direction, self.effects);
-            if self.effects.has(Effect::Absorption) && !p.front {
+            if self.effects.has(Effect::Transmission) && !p.front {
                 state.throughput *= (p.absorption * -hit.t).map(exp);
             }
             radiance += state.throughput * self.from_surface(&state, &p, &hit);

@@ -74,7 +74,7 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
         emitted = emission(world, material, place.uv, effects);
     }
     let mut absorption = Vec3::ZERO;
-    if effects.has(Effect::Absorption) && material.flags & FLAG_VOLUME != 0 {
+    if effects.has(Effect::Transmission) && material.flags & FLAG_VOLUME != 0 {
         absorption = Vec3::from(material.absorption);
     }
     let surface = resolve(world, material, &place, front, effects);
@@ -90,11 +90,11 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
 /// Base colour and opacity.
 fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects: Effects) -> Vec4 {
     let mut base = Vec3::from(material.base_color).extend(material.opacity);
-    if effects.has(Effect::VertexColor) {
+    if effects.has(Effect::BaseColor) {
         base *= place.color;
-    }
-    if effects.has(Effect::BaseColorTexture) && material.base_color_texture != NO_TEXTURE {
-        base *= texture(world, material.base_color_texture, place.uv, true);
+        if material.base_color_texture != NO_TEXTURE {
+            base *= texture(world, material.base_color_texture, place.uv, true);
+        }
     }
     base
 }

@@ -24,7 +24,7 @@ use serde::Serialize;
 const WARM_UP: u64 = 2;
 
 /// Times that kernels are compiled.
-const COMPILES: usize = 5;
+const COMPILES: usize = 3;
 
 /// Built-in scenes, of which the first is diffuse only and the last needs most lobes.
 const SCENES: [&str; 4] = ["builtin:courtyard", "builtin:cornell", "builtin:mirror-room", "builtin:furnace"];
