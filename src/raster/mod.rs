@@ -16,7 +16,8 @@
 //! morphing); that of the sky is the camera's rotation.
 //!
 //! - **Alpha.** MASK: with holes by the cutoff; in the colour an edge covers samples as far as opacity says. BLEND and what light
-//!   passes through: after the sky, triangles from back to front by their middles, without writing the colour pass' depth.
+//!   passes through: after the sky, from back to front by material and within it by triangle, without writing the colour pass'
+//!   depth.
 //!   Depth and motion are theirs where they are more than half opaque, as [`Surfaces`](crate::trace::surfaces::Surfaces) has it;
 //!   surfaces that light passes through count as there.
 //! - **Light.** Punctual lights and the sun as the tracer has them, up to 64, only the sun with shadows. Emissive triangles as

@@ -11,7 +11,7 @@ use wgpu::{
     StoreOp,
 };
 
-/// Triangles of one material that are blended one after the other, as a range of the index buffer.
+/// Triangles of one material that are blended, as a range of the index buffer.
 struct Run {
     is_moving: bool,
     material: u32,
@@ -142,26 +142,29 @@ impl Raster {
         pass.draw(vertices, 0..1);
     }
 
-    /// The triangles that are blended, farthest first by the middles' distance along the view axis.
+    /// The triangles that are blended: groups of one material by the mean of their middles' distances along the view axis,
+    /// farthest first, and within each the triangles by theirs. A draw a group, as a draw a triangle would cost more than the
+    /// order of interlocked groups is worth.
     fn back_to_front(&self, device: &Device, view: &View) -> (Option<Buffer>, Vec<Run>) {
         let at = view.world_from_camera().w_axis.truncate().as_vec3();
         let ahead = -view.world_from_camera().z_axis.truncate().as_vec3();
-        let sets = [(false, &self.still), (true, &self.moving)];
-        let mut all: Vec<_> = sets
-            .into_iter()
-            .flat_map(|(is_moving, set)| set.blended.iter().map(move |b| ((b.middle - at).dot(ahead), is_moving, b)))
-            .collect();
-        // Stable: what is as far stays in the file's order.
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut indices = vec![];
-        let mut runs: Vec<Run> = vec![];
-        for (_, is_moving, b) in all {
-            let first = indices.len() as u32;
-            indices.extend([b.first, b.first + 1, b.first + 2]);
-            match runs.last_mut().filter(|r| r.is_moving == is_moving && r.material == b.material) {
-                Some(run) => run.indices.end = first + 3,
-                None => runs.push(Run { is_moving, material: b.material, indices: first..first + 3 }),
+        let mut groups = vec![];
+        for (is_moving, set) in [(false, &self.still), (true, &self.moving)] {
+            for blended in set.blended.chunk_by(|a, b| a.material == b.material) {
+                let mut group: Vec<_> = blended.iter().map(|b| ((b.middle - at).dot(ahead), b.first)).collect();
+                // Stable: what is as far stays in the file's order.
+                group.sort_by(|a, b| b.0.total_cmp(&a.0));
+                let mean = group.iter().map(|(far, _)| f64::from(*far)).sum::<f64>() / group.len() as f64;
+                groups.push((mean, is_moving, blended[0].material, group));
             }
+        }
+        groups.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut indices: Vec<u32> = vec![];
+        let mut runs = vec![];
+        for (_, is_moving, material, group) in groups {
+            let first = indices.len() as u32;
+            indices.extend(group.iter().flat_map(|&(_, v)| [v, v + 1, v + 2]));
+            runs.push(Run { is_moving, material, indices: first..indices.len() as u32 });
         }
         let buffer = (!indices.is_empty()).then(|| filled(device, bytemuck::cast_slice(&indices), BufferUsages::INDEX));
         (buffer, runs)
