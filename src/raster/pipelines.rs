@@ -60,11 +60,11 @@ impl Pipelines {
             })
         };
         let [surface, sun, color, sky] = ["surface_pass", "sun_pass", "color_pass", "sky_pass"].map(module);
-        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColorTexture)]);
+        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
         let mut shading = constants(
             effects,
             &[
-                ("BASE_COLOR_TEXTURE", Effect::BaseColorTexture),
+                ("BASE_COLOR_TEXTURE", Effect::BaseColor),
                 ("SURFACE_TEXTURE", Effect::SurfaceTexture),
                 ("NORMAL_MAP", Effect::NormalMap),
                 ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
