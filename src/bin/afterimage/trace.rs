@@ -23,6 +23,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use report::Report;
 use setup::Setup;
 use std::io::IsTerminal;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -180,10 +181,12 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         let view = setup.pose(frame, time_s)?;
         let clock = Stopwatch::start();
         let mut film = Film::new(args.size);
-        for rows in bands(args) {
-            let items = work::uniform(args.size[0], rows.clone(), 0..args.spp);
+        for (rows, samples) in steps(args) {
+            if samples.start == 0 {
+                bar.inc(u64::from(rows.end - rows.start));
+            }
+            let items = work::uniform(args.size[0], rows, samples);
             setup.tracer.trace(&setup.world, &view, frame, &items, &mut film);
-            bar.inc(u64::from(rows.end - rows.start));
         }
         report.count(&film, &clock);
         write(args, &out, &setup, frame as usize, &film, &view, previous.as_ref().unwrap_or(&view))?;
@@ -200,11 +203,17 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Rows that are traced together.
-fn bands(args: &TraceArgs) -> Vec<std::ops::Range<u32>> {
+/// Rows and samples that are traced together.
+fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
     let [w, h] = args.size;
-    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(args.spp))).clamp(1, u64::from(h)) as u32;
-    (0..h).step_by(rows as usize).map(|y| y..(y + rows).min(h)).collect()
+    let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
+    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(samples))).clamp(1, u64::from(h)) as u32;
+    ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
+}
+
+/// 0 to `end`, `step` at a time.
+fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
+    (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
 }
 
 fn folders(args: &TraceArgs) -> Vec<String> {
