@@ -205,7 +205,8 @@ fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
     if PHONG {
         let lobe = bitcast<vec4<f32>>(material_row(c.material, 7u));
         let diffuse = bitcast<f32>(material_row(c.material, 11u).y);
-        p.phong = PhongSurface(p.surface.base_color * diffuse, lobe.xyz, lobe.w);
+        let held = clamp(p.surface.base_color * diffuse, vec3<f32>(0.0), vec3<f32>(1.0));
+        p.phong = PhongSurface(held, lobe.xyz, lobe.w);
     }
     p.position = point_at(v0, v1, v2, hit.u, hit.v);
     p.magnitude = magnitude(v0, v1, v2);

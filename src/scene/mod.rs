@@ -121,14 +121,21 @@ impl Scene {
     /// As [`open`](Self::open), and if there is no such animation.
     pub fn open_clip(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Result<Self, InputError> {
         if let Some(("builtin", name)) = input.split_once(':') {
-            return builtin::open(name).ok_or_else(|| {
+            let scene = builtin::open(name).ok_or_else(|| {
                 InputError::new(
                     input,
                     "is not a built-in scene",
                     "expected builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes, \
                      mirror-room, courtyard",
                 )
-            });
+            })?;
+            return match clip {
+                None => Ok(scene),
+                Some(clip) => {
+                    let problem = format!("has no animation '{clip}', nor any other");
+                    Err(InputError::new(input, problem, "leave the animation out"))
+                }
+            };
         }
         let extension = Path::new(input).extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {

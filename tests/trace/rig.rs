@@ -16,7 +16,6 @@ use std::sync::{Arc, OnceLock};
 /// A scene ready to be traced.
 pub struct Rig {
     pub name: String,
-    pub scene: Scene,
     pub world: World,
     pub view: View,
 }
@@ -31,7 +30,7 @@ impl Rig {
 
     pub fn seen_by(scene: Scene, camera: &Camera, size: [u32; 2]) -> Self {
         let view = View::of_camera(camera, size, None).unwrap();
-        Self { name: scene.name.clone(), world: World::new(&scene), scene, view }
+        Self { name: scene.name.clone(), world: World::new(&scene), view }
     }
 
     pub fn size(&self) -> [u32; 2] {

@@ -26,6 +26,7 @@ use pattern::PatternArgs;
 use report::Report;
 use setup::Setup;
 use std::io::IsTerminal;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -182,10 +183,12 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         let clock = Stopwatch::start();
         let picture = if sampling == Sampling::Uniform {
             let mut film = Film::new(args.size);
-            for rows in bands(args) {
-                let spans = Spans::uniform(args.size[0], rows.clone(), 0..args.spp);
+            for (rows, samples) in steps(args) {
+                if samples.start == 0 {
+                    bar.inc(u64::from(rows.end - rows.start));
+                }
+                let spans = Spans::uniform(args.size[0], rows, samples);
                 setup.tracer.trace(&setup.world, &view, frame, &spans, &mut film);
-                bar.inc(u64::from(rows.end - rows.start));
             }
             report.count_film(&film, &clock);
             Picture { color: film.color(), variance: Some(film.variance()), lod: Image::filled(args.size, 0.0) }
@@ -222,11 +225,17 @@ struct Picture {
     lod: Image<f32>,
 }
 
-/// Rows that are traced together.
-fn bands(args: &TraceArgs) -> Vec<std::ops::Range<u32>> {
+/// Rows and samples that are traced together.
+fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
     let [w, h] = args.size;
-    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(args.spp))).clamp(1, u64::from(h)) as u32;
-    (0..h).step_by(rows as usize).map(|y| y..(y + rows).min(h)).collect()
+    let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
+    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(samples))).clamp(1, u64::from(h)) as u32;
+    ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
+}
+
+/// 0 to `end`, `step` at a time.
+fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
+    (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
 }
 
 fn folders(args: &TraceArgs) -> Vec<String> {

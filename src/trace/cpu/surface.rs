@@ -79,7 +79,8 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
     }
     let surface = resolve(world, material, &place, front, effects);
     let phong = PhongSurface {
-        diffuse: surface.base_color * material.phong_diffuse,
+        // Held to what conserves energy, as the principled model does; it also keeps compilers from taking the factor out of sums.
+        diffuse: (surface.base_color * material.phong_diffuse).clamp(Vec3::ZERO, Vec3::ONE),
         specular: Vec3::from(material.phong_specular),
         exponent: material.phong_exponent,
     };
