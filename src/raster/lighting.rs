@@ -1,5 +1,6 @@
 //! Light as the rasteriser has it: a list of lights without extent, panels, a sun with a shadow map, and what comes from all around.
 
+use super::bounce;
 use crate::image::Image;
 use crate::kernel::color::luma;
 use crate::scene::{Environment, Material, PunctualKind, PunctualLight, Scene, Triangles};
@@ -33,6 +34,18 @@ pub(super) struct LightWords {
     has_shadow: f32,
     unused: f32,
 }
+
+impl LightWords {
+    /// What a panel sends, W.
+    pub fn power(&self) -> Vec3 {
+        let sides = if self.kind == TWO_SIDED { 2.0 } else { 1.0 };
+        Vec3::from(self.intensity) * (sides * PI * self.area)
+    }
+}
+
+/// Kinds of panels.
+const ONE_SIDED: u32 = 3;
+const TWO_SIDED: u32 = 4;
 
 /// All of them.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -76,7 +89,7 @@ impl Lighting {
         let bounced = if needs.has(Effect::Environment) || added_sun {
             Vec3::ZERO
         } else {
-            bounced(scene, &rest.moving, &rest.lights, &panels, high - low)
+            bounce::radiance(scene, &rest.moving, &rest.lights, &panels, high - low)
         };
         Self {
             ambient: ambient(&environment),
@@ -206,7 +219,7 @@ fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
         let material = &materials[s.material as usize];
         LightWords {
             position: (s.middle / s.area).as_vec3().to_array(),
-            kind: if material.double_sided { 4 } else { 3 },
+            kind: if material.double_sided { TWO_SIDED } else { ONE_SIDED },
             direction: s.normal.normalize_or(DVec3::NEG_Y).as_vec3().to_array(),
             intensity: material.emissive,
             area: s.area as f32,
@@ -214,46 +227,9 @@ fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
         }
     };
     let mut panels: Vec<LightWords> = sums.iter().map(words).collect();
-    let power = |p: &LightWords| luma(Vec3::from(p.intensity)) * p.area;
-    panels.sort_by(|a, b| power(b).total_cmp(&power(a)));
+    panels.sort_by(|a, b| luma(b.power()).total_cmp(&luma(a.power())));
     panels.truncate(MAX_LIGHTS / 2);
     panels
-}
-
-/// Radiance after many bounces, as in an integrating sphere: power over the walls' area, times albedo / (1 - albedo). The walls
-/// are those of the scene's box.
-fn bounced(scene: &Scene, moving: &Triangles, lights: &[PunctualLight], panels: &[LightWords], size: Vec3) -> Vec3 {
-    let walls = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-    if !(walls.is_finite() && walls > 0.0) {
-        return Vec3::ZERO;
-    }
-    let mut power = Vec3::ZERO;
-    for l in lights {
-        power += Vec3::from(l.intensity)
-            * match l.kind {
-                PunctualKind::Directional => 0.0,
-                PunctualKind::Point => 4.0 * PI,
-                PunctualKind::Spot { cos_outer, .. } => 2.0 * PI * (1.0 - cos_outer),
-            };
-    }
-    for p in panels {
-        let sides = if p.kind == 4 { 2.0 } else { 1.0 };
-        power += Vec3::from(p.intensity) * (sides * PI * p.area);
-    }
-    let mut sum = Vec3::ZERO;
-    let mut total = 0.0;
-    for triangles in [scene.still(), moving] {
-        for (&[a, b, c], &m) in triangles.positions.iter().zip(&triangles.materials) {
-            let area = 0.5 * (b - a).cross(c - a).length();
-            if let Some(material) = scene.materials.get(m as usize).filter(|_| area.is_finite()) {
-                sum += Vec3::from(material.base_color) * area;
-                total += area;
-            }
-        }
-    }
-    let albedo = (sum / f32::max(total, 1e-30)).clamp(Vec3::ZERO, Vec3::splat(0.9));
-    let radiance = power * albedo / ((Vec3::ONE - albedo) * walls * PI);
-    if radiance.is_finite() { radiance } else { Vec3::ZERO }
 }
 
 /// Irradiance from the environment on faces towards +x, -x, +y, -y, +z, -z.

@@ -17,15 +17,15 @@
 //!
 //! - **Alpha.** MASK: with holes by the cutoff; in the colour an edge covers samples as far as opacity says. BLEND and what light
 //!   passes through: after the sky, from back to front by material and within it by triangle, without writing the colour pass'
-//!   depth.
-//!   Depth and motion are theirs where they are more than half opaque, as [`Surfaces`](crate::trace::surfaces::Surfaces) has it;
+//!   depth. Depth and motion are theirs where they are more than half opaque, as [`Surfaces`](crate::trace::surfaces::Surfaces) has it;
 //!   surfaces that light passes through count as there.
 //! - **Light.** Punctual lights and the sun as the tracer has them, up to 64, only the sun with shadows. Emissive triangles as
 //!   one disk a material and direction, at most 32, without shadows, where they are at time 0. The sky without occlusion: its
-//!   irradiance on six faces, its mirror image by roughness. Light from other surfaces is the mean of an integrating sphere of
-//!   the scene's box, in scenes without a sky.
+//!   irradiance on six faces, its mirror image by roughness. Light from other surfaces is that of an integrating sphere with
+//!   the walls of the scene's box and as open as the scene is, in scenes without a sky.
 //! - **Refraction** is not there: through glass one sees straight on, dimmed by the base colour's luminance.
 
+mod bounce;
 mod corners;
 mod frame;
 mod lighting;

@@ -85,9 +85,11 @@ fn depth_is_that_of_rays_and_reversed() {
     let frame = draw(&device, &scene, [&view; 2], [0.0; 2]);
     let d = compare(&frame, &rays(&scene, [&view; 2], [0.0; 2]));
     println!("{d:?}");
-    // A vertex off by 1/256 px moves a plane's 1/distance by at most what it differs over 1/128 px; floors near the horizon, the
-    // steepest here, differ by a tenth a pixel.
-    assert!(d.distance < 1e-3 && d.motion_px == 0.0, "{d:?}");
+    // Eight roundings of 2^-24 in the drawing and as many in the ray, were it not for vertices that may be off by 1/256 px: floors
+    // near the horizon, the steepest here, differ by some percent a pixel.
+    assert!(d.distance < 1e-3, "{d:?}");
+    // Nothing moves, and that to the bit but for the sky, whose pixels went through a matrix.
+    assert!(frame.motion.pixels().iter().flatten().all(|m| m.abs() < 1e-6));
     // The buffer itself: near over distance, so 0 for the sky and larger for what is nearer.
     assert!(frame.distance.pixels().iter().any(|v| v.is_infinite()));
 }

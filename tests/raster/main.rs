@@ -1,7 +1,7 @@
 //! The rasteriser: motion and depth against rays, colours against closed forms, and what it shows of every scene.
+#![cfg(feature = "lab")]
 
 #[path = "../common/gpu.rs"]
-#[allow(dead_code)]
 mod gpu;
 
 mod geometry;

@@ -62,9 +62,9 @@ fn likeness(input: &str) -> Option<f64> {
     Some(psnr)
 }
 
-/// Light from other surfaces and the sky's occlusion are guessed, so pictures are alike, not equal: what is in the wrong place,
-/// black or twice as bright is below 10 dB.
-const ALIKE_DB: f64 = 10.0;
+/// Light from other surfaces and the sky's occlusion are guessed, so pictures are alike, not equal: half of the picture black
+/// where it should be white is 3 dB, and all of it off by a quarter of white, as where twice too bright, 12 dB.
+const ALIKE_DB: f64 = 12.0;
 
 #[test]
 fn builtin_scenes_look_like_traced_ones() {
