@@ -24,6 +24,7 @@ cargo fmt --check
 
 step "lints, in every combination of features that users meet"
 cargo clippy --locked --all-targets --all-features -- -D warnings
+cargo clippy --locked -- -D warnings
 cargo clippy --locked --no-default-features -- -D warnings
 cargo clippy --locked --no-default-features --features lab -- -D warnings
 

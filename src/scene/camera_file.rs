@@ -5,6 +5,7 @@ use crate::source::cameras::{self, Cameras};
 use crate::source::exr_file::one_line;
 use glam::{DMat3, DMat4, DVec3};
 use serde::Deserialize;
+use std::cmp::Ordering;
 use std::path::Path;
 
 /// Where the camera is over time, in the scene's axes.
@@ -96,7 +97,9 @@ impl CameraFile {
         if keys.is_empty() {
             return Err(error("has no keyframe".into()));
         }
-        if let Some(i) = (1..keys.len()).find(|&i| !(keys[i - 1].time_s < keys[i].time_s)) {
+        if let Some(i) =
+            (1..keys.len()).find(|&i| keys[i].time_s.partial_cmp(&keys[i - 1].time_s) != Some(Ordering::Greater))
+        {
             return Err(error(format!("has keyframe {i} at {} s, not after the one before", keys[i].time_s)));
         }
         if let Some(i) = keys.iter().position(|k| looking(DVec3::from(k.position), DVec3::from(k.target)).is_none()) {

@@ -102,7 +102,7 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
 fn upsampled(coarse: &Image<Vec3>, x: u32, y: u32) -> Vec3 {
     let axis = |v: u32, len: usize| {
         let near = (v / 2) as i32;
-        let far = near + if v % 2 == 0 { -1 } else { 1 };
+        let far = near + if v.is_multiple_of(2) { -1 } else { 1 };
         [near, far].map(|i| i.clamp(0, len as i32 - 1) as usize)
     };
     let ([x0, x1], [y0, y1]) = (axis(x, coarse.width()), axis(y, coarse.height()));

@@ -100,7 +100,7 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     {
         return refuse(format!("--fps {fps}: expected a number above 0 and up to 100000"));
     }
-    if !(args.exposure.abs() <= 64.0) {
+    if !(-64.0..=64.0).contains(&args.exposure) {
         return refuse(format!("--exposure {}: expected -64 to 64 stops", args.exposure));
     }
     if args.aov.contains(&super::AovName::Variance) && args.pattern.sampling != super::pattern::SamplingName::Uniform {
