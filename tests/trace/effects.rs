@@ -44,7 +44,7 @@ fn texture(d: &mut Draws) -> Texture {
     let wrap = || [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
     let texels = (0..size[0] * size[1]).map(|_| d.bits().to_le_bytes()).collect();
     let wrap = [wrap()[d.bits() as usize % 3], wrap()[d.bits() as usize % 3]];
-    Texture { size, texels, wrap, nearest: d.bits() % 4 == 0 }
+    Texture { size, texels, wrap, nearest: d.bits().is_multiple_of(4) }
 }
 
 fn material(d: &mut Draws) -> Material {

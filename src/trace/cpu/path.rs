@@ -58,14 +58,14 @@ impl Paths<'_> {
         for bounce in 0..=self.max_depth {
             rays += 1;
             let Some(hit) = self.closest(&state.ray, pixel, sample, 2 * bounce) else {
-                radiance += state.throughput * self.from_sky(&state);
+                radiance += state.throughput * self.sky_light(&state);
                 break;
             };
             let p = point(self.world, &hit, state.ray.direction, self.effects);
             if self.effects.has(Effect::Absorption) && !p.front {
                 state.throughput *= (p.absorption * -hit.t).map(exp);
             }
-            radiance += state.throughput * self.from_surface(&state, &p, &hit);
+            radiance += state.throughput * self.surface_light(&state, &p, &hit);
             if bounce == self.max_depth {
                 break;
             }
@@ -126,14 +126,14 @@ impl Paths<'_> {
         }
     }
 
-    fn from_sky(&self, state: &State) -> Vec3 {
+    fn sky_light(&self, state: &State) -> Vec3 {
         if !self.effects.has(Effect::Environment) {
             return Vec3::ZERO;
         }
         sky(self.world, state.ray.direction, self.effects) * self.share(state, state.sky_pdf)
     }
 
-    fn from_surface(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
+    fn surface_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
         if !self.effects.has(Effect::EmissiveTriangles) || !brings_light(p.emitted) {
             return Vec3::ZERO;
         }
