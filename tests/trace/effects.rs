@@ -163,7 +163,7 @@ fn supersets(needed: Effects, number: u32) -> Vec<Effects> {
 
 #[test]
 fn unneeded_effects_change_no_bit_on_the_cpu() {
-    for number in 0..300 {
+    for number in 0..200 {
         let rig = Rig::new(random_scene(number), SIZE);
         let needed = rig.world.needs;
         let film = rig.cpu(settings(needed, number), SPP);
@@ -195,7 +195,7 @@ fn unneeded_effects_change_no_bit_on_the_gpu() {
 #[test]
 fn a_needed_effect_that_is_left_out_is_missed() {
     let mut missed = Effects::NONE;
-    for number in 0..300 {
+    for number in 0..60 {
         let rig = Rig::new(random_scene(number), SIZE);
         let film = rig.cpu(settings(rig.world.needs, number), SPP);
         for effect in rig.world.needs.without(missed).iter() {

@@ -9,6 +9,10 @@ use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 const INTEGRATORS: [Integrator; 3] = [Integrator::Mis, Integrator::Nee, Integrator::Naive];
 const SPP: u32 = 2;
 
+fn other(storage: Storage) -> Storage {
+    if storage == Storage::Buffer { Storage::Texture } else { Storage::Buffer }
+}
+
 /// Every integrator and both models, the storages in turns; fails where any bit of the film differs.
 #[track_caller]
 fn check(rig: &Rig) {
@@ -16,8 +20,10 @@ fn check(rig: &Rig) {
     let mut storage = Storage::Buffer;
     let mut failures = vec![];
     for integrator in INTEGRATORS {
+        // Each model with each storage in turn.
+        storage = other(storage);
         for bsdf in [Bsdf::Principled, Bsdf::Phong] {
-            storage = if storage == Storage::Buffer { Storage::Texture } else { Storage::Buffer };
+            storage = other(storage);
             let settings = TraceSettings { integrator, bsdf, max_depth: 4, seed: 7, effects: None };
             let cpu = rig.cpu(settings, SPP);
             let gpu = rig.gpu(&device, settings, storage, SPP);

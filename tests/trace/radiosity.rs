@@ -97,7 +97,7 @@ impl Room {
     }
 
     /// Irradiance from the lamp at a point with a normal: the rule of midpoints over the lamp.
-    fn lamp_light(&self, p: DVec3, normal: DVec3) -> f64 {
+    fn irradiance(&self, p: DVec3, normal: DVec3) -> f64 {
         let lamp = self.quads.iter().find(|q| q.emitted > 0.0).unwrap();
         let mut sum = 0.0;
         for i in 0..LAMP * LAMP {
@@ -142,7 +142,7 @@ impl Room {
                 let patch = |i: usize| {
                     let p = q.center(i);
                     if bounce == 0 {
-                        return q.reflectance / PI * self.lamp_light(p, q.normal);
+                        return q.reflectance / PI * self.irradiance(p, q.normal);
                     }
                     // Spokes turned from patch to patch, so that their pattern averages out.
                     let turn = (i as f64 * 0.618).fract();
@@ -187,7 +187,7 @@ fn expected(room: &Room) -> Expected {
             if let Some((q, t)) = hit {
                 let (p, quad) = (eye + w * t, &room.quads[q]);
                 // Edges of shadows are finer than patches: the lamp's light at the very point.
-                sum[0] += quad.reflectance / PI * room.lamp_light(p, quad.normal) / 9.0;
+                sum[0] += quad.reflectance / PI * room.irradiance(p, quad.normal) / 9.0;
                 (1..3).for_each(|b| sum[b] += quad.bounces[b][quad.patch_at(p)] / 9.0);
             }
         }

@@ -93,6 +93,8 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
     let text = source(compose_with(&[storage.module(), "accept_all", "geometry"], PROBE).source);
     let mut constants = traversal_constants(&heap, &geometry, true, storage);
     constants.extend(geometry_constants(&heap));
+    // Overrides that the probe does not use are not in it.
+    constants.retain(|(name, _)| text.contains(&format!("override {name}:")));
     let words = gpu::validated(&device, "the probe", || {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,

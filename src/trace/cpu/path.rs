@@ -65,7 +65,7 @@ impl Paths<'_> {
             if self.effects.has(Effect::Transmission) && !p.front {
                 state.throughput *= (p.absorption * -hit.t).map(exp);
             }
-            radiance += state.throughput * self.emitted_light(&state, &p, &hit);
+            radiance += state.throughput * self.surface_light(&state, &p, &hit);
             if bounce == self.max_depth {
                 break;
             }
@@ -133,7 +133,7 @@ impl Paths<'_> {
         sky(self.world, state.ray.direction, self.effects) * self.share(state, state.sky_pdf)
     }
 
-    fn emitted_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
+    fn surface_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
         if !self.effects.has(Effect::EmissiveTriangles) || !brings_light(p.emitted) {
             return Vec3::ZERO;
         }
