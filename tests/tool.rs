@@ -319,6 +319,48 @@ fn bench_times_every_pass_against_the_copy() {
 }
 
 #[test]
+fn bench_counts_the_rays_of_the_tracer() {
+    let folder = Folder::new();
+    let json = folder.text("rays.json");
+    let small = ["--size", "32x18", "--backend", "cpu", "--scene", "builtin:cornell", "--json", &json];
+    succeeds(&[&["bench", "trace"], &small[..]].concat());
+    let report = read_json(Path::new(&json));
+    let tracer = &report["scenes"][0]["tracers"][0];
+    // A camera ray a pixel at least, and no more than two a bounce and the last.
+    assert!((576..=576 * 7).contains(&tracer["rays_per_frame"].as_u64().unwrap()));
+    assert!(tracer["mrays_per_core_second"].as_f64().unwrap() > 0.0);
+    refuses(&["bench", "trace", "--scene", "builtin:none"], &["builtin:none"]);
+    refuses(&["bench", "effects", "--frames", "3"], &["30"]);
+}
+
+#[test]
+fn bench_prices_effects_between_the_markers() {
+    let folder = Folder::new();
+    let (page, json) = (folder.text("effects.md"), folder.text("effects.json"));
+    let small = ["--size", "16x9", "--backend", "cpu", "--scene", "builtin:cornell", "--json", &json, "--out", &page];
+    let command = [&["bench", "effects"], &small[..]].concat();
+    succeeds(&command);
+    let table = std::fs::read_to_string(&page).unwrap();
+    std::fs::write(&page, format!("before\n{table}after\n")).unwrap();
+    succeeds(&command);
+    let text = std::fs::read_to_string(&page).unwrap();
+    assert!(text.starts_with("before\n<!--") && text.ends_with("-->\nafter\n"), "{text}");
+    for word in [
+        "### builtin:cornell",
+        "| auto again |",
+        "| clearcoat |",
+        "| auto and clearcoat |",
+        "| emissive-triangles | needed |",
+    ] {
+        assert!(text.contains(word), "{word} in {text}");
+    }
+    let prices = &read_json(Path::new(&json))["scenes"][0]["prices"][0];
+    assert_eq!(prices[0]["ratio"]["median"].as_f64(), Some(1.0));
+    std::fs::write(&page, "no markers").unwrap();
+    refuses(&command, &["markers"]);
+}
+
+#[test]
 fn help_states_units_and_an_example() {
     for command in ["demo", "run", "bench", "scanpath", "info"] {
         let text = succeeds(&[command, "--help"]);

@@ -19,6 +19,7 @@ use afterimage::trace::gpu_heap::Storage;
 use afterimage::trace::settings::TraceSettings;
 use removed::REMOVALS;
 use serde::Serialize;
+use std::io::IsTerminal;
 
 /// Frames before the watch starts.
 const WARM_UP: u64 = 2;
@@ -96,7 +97,9 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 compile_in_turn(&small, backend, &mut lanes)?;
             }
             prices.push(priced(&lanes));
-            eprintln!("{name}: {} done", backend_report(backend).kind);
+            if std::io::stderr().is_terminal() {
+                eprintln!("{name}: {} done", backend_report(backend).kind);
+            }
             drop(lanes);
             if args.removal && matches!(backend, Backend::Gpu(_)) {
                 removals.extend(price_removals(&subject, backend, frames)?);
