@@ -219,8 +219,34 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
     refuses(&run(still, &out, &["--gaze", "1,x"]), &["X,Y"]);
     refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
-    refuses(&run("scene.glb", &out, &[]), &["renderer"]);
+    refuses(&run(still, &out, &["--camera", "lateral"]), &["--camera", "scene"]);
+    refuses(&run("analytic:still", &out, &["--source", "raster"]), &["--source", "scene"]);
     assert!(!folder.path("out").exists(), "nothing was written");
+}
+
+#[test]
+fn scenes_are_rasterised_and_go_through_every_method() {
+    let folder = Folder::new();
+    let mut args =
+        vec!["run", "builtin:cubes", "--source", "raster", "--size", "96x54", "--frames", "3", "--fps", "30"];
+    let out = folder.text("out");
+    args.extend(["--method", "none,taa,wrs,smr", "--backend", "cpu", "--out", &out]);
+    let output = tool(&args);
+    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        assert!(String::from_utf8_lossy(&output.stderr).contains("adapter"));
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = read_json(&folder.path("out/report.json"));
+    assert_eq!((&report["fps"], &report["frames"]), (&serde_json::json!(30.0), &serde_json::json!(3)));
+    for method in ["none", "taa", "wrs", "smr"] {
+        assert!(folder.path(&format!("out/{method}/000002.png")).is_file());
+        assert_eq!(report["methods"][method]["nonfinite_out"], 0);
+    }
+    refuses(&["run", "builtin:cubes", "--camera", "left", "--out", &folder.text("none")], &["left", "lateral"]);
+    refuses(&["run", "builtin:none", "--out", &folder.text("none")], &["builtin:none", "courtyard"]);
+    refuses(&["run", "no/such.glb", "--out", &folder.text("none")], &["such.glb"]);
 }
 
 #[test]
