@@ -154,7 +154,11 @@ fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<()
 }
 
 fn scene_error(input: &str) -> InputError {
-    InputError::new(input, "is a scene, and scenes need a renderer on a device", "open it as a RasterSource")
+    InputError::new(
+        input,
+        "is a scene, and scenes need a renderer",
+        "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
+    )
 }
 
 /// The ending of a file name in lower case, without the dot; empty if there is none.
