@@ -1,4 +1,5 @@
-//! `afterimage trace` as other programs use it: what it writes, and how it refuses.
+//! `afterimage trace` as other programs use afterimage::trace::effects::Effect;
+use it: what it writes, and how it refuses.
 #![cfg(feature = "cli")]
 
 use afterimage::source::{FrameSource, ReadLimits, StillSource};
@@ -138,7 +139,7 @@ fn all_effects_give_the_bytes_of_those_that_are_needed() {
         let auto = Traced::new(scene, &[]);
         let all = Traced::new(scene, &["--effects", "all", "-v"]);
         assert_eq!(auto.bytes("color/000000.exr"), all.bytes("color/000000.exr"), "{scene}");
-        assert_eq!(all.report()["effects"].as_array().unwrap().len(), 18);
+        assert_eq!(all.report()["effects"].as_array().unwrap().len(), Effect::ALL.len());
         assert!(all.stdout.contains("nothing in the scene needs it"), "{}", all.stdout);
         let none = Traced::new(scene, &["--effects", "none", "-v"]);
         assert_ne!(auto.bytes("color/000000.exr"), none.bytes("color/000000.exr"), "{scene}");
