@@ -1,8 +1,8 @@
-//! `afterimage trace` as other programs use afterimage::trace::effects::Effect;
-use it: what it writes, and how it refuses.
+//! `afterimage trace` as other programs use it: what it writes, and how it refuses.
 #![cfg(feature = "cli")]
 
 use afterimage::source::{FrameSource, ReadLimits, StillSource};
+use afterimage::trace::effects::Effect;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
