@@ -6,8 +6,8 @@
 use afterimage::pipeline::Headless;
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::Triangles;
-use afterimage::trace::gpu_heap::{GpuHeap, Storage};
-use afterimage::trace::gpu_rays::{GpuRays, Question};
+use afterimage::trace::gpu::device_heap::{GpuHeap, Storage};
+use afterimage::trace::gpu::ray_lists::{GpuRays, Question};
 use afterimage::trace::heap::{Heap, HeapBuilder};
 use afterimage::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
 use afterimage::trace::{Bvh, Geometry, Ray};

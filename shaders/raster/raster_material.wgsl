@@ -8,7 +8,7 @@ const FLAG_BLEND: u32 = 2u;
 const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
-// Twin of MaterialRecord in src/trace/records.rs.
+// Twin of MaterialRecord in src/trace/shading_records.rs.
 struct RasterMaterial {
     base_color: vec3<f32>,
     opacity: f32,

@@ -1,7 +1,7 @@
 //#use octahedral
 //#use texel
 //#use hit
-// What is stored of a triangle: twin of src/trace/record.rs and geometry.rs. A triangle's index is that of its hit.
+// What is stored of a triangle: twin of src/trace/triangle_records.rs and geometry.rs. A triangle's index is that of its hit.
 
 override ATTRIBUTES: u32 = 0u;
 override MOVING_ATTRIBUTES: u32 = 0u;

@@ -4,7 +4,7 @@ use super::mipmaps::levels;
 use super::pipelines::{Layouts, SLOTS, slot_binding};
 use crate::image::Image;
 use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
-use crate::trace::records::MaterialRecord;
+use crate::trace::shading_records::MaterialRecord;
 use std::collections::HashMap;
 use wgpu::{
     AddressMode, BindGroup, BindGroupEntry, BindingResource, Device, FilterMode, Queue, Sampler, TextureFormat,

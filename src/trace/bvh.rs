@@ -2,7 +2,7 @@
 
 use super::bvh2;
 use super::node::NodeRay;
-use super::record::{AttributeRecord, PreviousRecord, TriangleFlags, TriangleRecord};
+use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleFlags, TriangleRecord};
 use crate::kernel::triangle::{Shear, intersect, shear};
 use crate::scene::{Material, Triangles};
 use glam::{Vec3, Vec3A};

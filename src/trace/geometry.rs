@@ -1,7 +1,7 @@
 //! All triangles of a scene, at rest and in motion.
 
 use super::bvh::{Bvh, Hit, Prepared, Ray};
-use super::record::{AttributeRecord, PreviousRecord, TriangleRecord};
+use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleRecord};
 
 /// The triangles that never move and those that do. Indices of the moving ones come after those at rest.
 #[derive(Clone, Debug, Default)]

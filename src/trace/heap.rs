@@ -19,13 +19,13 @@ pub enum Section {
     Triangles,
     /// [`AttributeRecord`](super::AttributeRecord)s, four elements each.
     Attributes,
-    /// [`MaterialRecord`](super::records::MaterialRecord)s.
+    /// [`MaterialRecord`](super::shading_records::MaterialRecord)s.
     Materials,
-    /// [`TextureRecord`](super::records::TextureRecord)s.
+    /// [`TextureRecord`](super::shading_records::TextureRecord)s.
     Textures,
     /// Texels of all textures, four an element.
     Texels,
-    /// [`MapRecord`](super::records::MapRecord)s of the environment.
+    /// [`MapRecord`](super::shading_records::MapRecord)s of the environment.
     Map,
     /// Directional albedos of lobes.
     Albedos,
@@ -37,9 +37,9 @@ pub enum Section {
     MovingAttributes,
     /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
     MovingPrevious,
-    /// [`PickRecord`](super::records::PickRecord)s: the lights, which may move.
+    /// [`PickRecord`](super::shading_records::PickRecord)s: the lights, which may move.
     Picks,
-    /// [`PunctualRecord`](super::records::PunctualRecord)s.
+    /// [`PunctualRecord`](super::shading_records::PunctualRecord)s.
     Punctual,
 }
 

@@ -1,7 +1,11 @@
-//! Path tracing. So far what rays meet: acceleration structures and packed geometry, on the CPU and in WGSL.
+//! Path tracing of scenes, on the CPU and on a GPU, foveated or not. `docs/path-tracing.md` has the formulas.
 //!
-//! - [`Geometry`]: the triangles that never move and those that do, each under a hierarchy of its own; a ray visits both.
-//! - [`heap`]: everything that a GPU tracer reads, as one array of `vec4<u32>`.
+//! - [`world::World`]: a scene made ready; in it [`Geometry`], the triangles that never move and those that do, each under a hierarchy
+//!   of its own.
+//! - [`Tracer`]: [`cpu`] or [`gpu`], the same paths; specialised to [`effects::Effects`] that the scene calls for. It adds the samples
+//!   of a [`work::Work`] to a [`film::Film`].
+//! - [`sampling`]: where a frame is sampled for a gaze. [`surfaces`]: exact depth and motion.
+//! - [`heap`]: everything that the tracer on a GPU reads, as one array of `vec4<u32>`.
 
 mod alias;
 mod bvh;
@@ -11,22 +15,20 @@ pub mod effects;
 pub mod film;
 mod geometry;
 pub mod gpu;
-pub mod gpu_heap;
-pub mod gpu_rays;
 pub mod heap;
 pub mod measure;
 mod node;
-mod record;
-pub mod records;
 pub mod sampling;
 pub mod settings;
+pub mod shading_records;
 pub mod surfaces;
 mod tracer;
+mod triangle_records;
 pub mod view;
 pub mod work;
 pub mod world;
 
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
-pub use record::{AttributeRecord, Attributes, AttributesAt, PreviousRecord, TriangleFlags, TriangleRecord};
 pub use tracer::Tracer;
+pub use triangle_records::{AttributeRecord, Attributes, AttributesAt, PreviousRecord, TriangleFlags, TriangleRecord};

@@ -2,7 +2,7 @@
 
 use super::alias::alias_table;
 use super::effects::{Effect, Effects};
-use super::records::{
+use super::shading_records::{
     LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE, MapRecord, MaterialRecord, PickRecord,
     PunctualRecord, TextureRecord,
 };

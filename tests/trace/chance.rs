@@ -4,7 +4,7 @@ use crate::common::{accept, reject};
 use crate::rig::{Rig, device};
 use crate::scenes::{SMALL, builtin, shared};
 use crate::statistics::{p_of_means, p_of_pixels};
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::TraceSettings;
 
 fn settings(seed: u64, max_depth: u32) -> TraceSettings {

@@ -3,7 +3,7 @@
 use crate::rig::{Rig, device, differing};
 use crate::scenes::{SMALL, builtin, shared, under_a_map, under_a_screen, under_lamps};
 use afterimage::scene::builtin::courtyard_of;
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 
 const INTEGRATORS: [Integrator; 3] = [Integrator::Mis, Integrator::Nee, Integrator::Naive];

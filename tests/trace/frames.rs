@@ -8,7 +8,7 @@ use afterimage::scene::{Pose, Scene};
 use afterimage::trace::Tracer;
 use afterimage::trace::cpu::CpuTracer;
 use afterimage::trace::film::{Film, Moments};
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::TraceSettings;
 use afterimage::trace::work::{WorkItem, uniform};
 use glam::Vec3;

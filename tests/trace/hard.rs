@@ -4,7 +4,7 @@ use crate::rig::{Rig, device, differing};
 use crate::scenes::{DARK, builtin, stage};
 use afterimage::image::Image;
 use afterimage::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::surfaces::Surfaces;
 use glam::{DVec3, Vec3, Vec4};

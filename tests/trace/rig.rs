@@ -6,7 +6,7 @@ use afterimage::scene::{Camera, Scene};
 use afterimage::trace::cpu::CpuTracer;
 use afterimage::trace::film::Film;
 use afterimage::trace::gpu::GpuTracer;
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::TraceSettings;
 use afterimage::trace::view::View;
 use afterimage::trace::work::{WorkItem, uniform};

@@ -5,7 +5,7 @@ use crate::gpu;
 use crate::scenes::{direction, soup};
 use afterimage::gpu::shader::compose_with;
 use afterimage::scene::{Alpha, Material, Triangles};
-use afterimage::trace::gpu_heap::{GpuHeap, Storage, geometry_constants, traversal_constants};
+use afterimage::trace::gpu::device_heap::{GpuHeap, Storage, geometry_constants, traversal_constants};
 use afterimage::trace::heap::HeapBuilder;
 use afterimage::trace::{Bvh, Geometry, TriangleRecord};
 use glam::{Vec2, Vec3, Vec4};

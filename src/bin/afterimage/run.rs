@@ -1,5 +1,7 @@
 //! `afterimage run`: foveate a frame stream, enhance it, score it.
 
+mod input;
+
 use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
 use crate::clip::{Clip, ClipReport, MethodReport};
 use crate::failure::Failure;
@@ -9,8 +11,7 @@ use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
 use afterimage::settings::Method;
-use afterimage::source::{self, FrameSource, ReadLimits, SourceInfo};
-use afterimage::trace::settings::TraceSettings;
+use afterimage::source::{ReadLimits, SourceInfo};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -175,7 +176,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     check(args)?;
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
-    let mut source = open(args, &limits)?;
+    let mut source = input::open(args, &limits)?;
     let plan = plan(args, source.info())?;
     // Proof that the input can be read, before anything is written.
     source.frame(0)?;
@@ -209,60 +210,6 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
     out.text("report.json", &(text + "\n"))?;
     Ok(report)
-}
-
-fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    let options = source::SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
-    if source::is_scene(&args.input) {
-        return match args.source.unwrap_or(SourceName::Raster) {
-            SourceName::Raster => rasterised(args, limits, &options),
-            SourceName::Trace => traced(args, limits, &options),
-        };
-    }
-    if args.source.is_some() || args.camera.is_some() {
-        let option = if args.source.is_some() { "--source" } else { "--camera" };
-        return Err(Failure::Input(format!(
-            "{option}: {} brings its own frames; expected a scene (.gltf, .glb, builtin:NAME), or leave it out",
-            args.input
-        )));
-    }
-    Ok(source::open(&args.input, limits, &options)?)
-}
-
-/// A scene by render passes. They need a device even where the methods run on the CPU.
-fn traced(
-    args: &RunArgs,
-    limits: &ReadLimits,
-    options: &source::SceneOptions,
-) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    if args.spp == 0 || args.spp > 1 << 20 {
-        return Err(Failure::Input(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20)));
-    }
-    let backend = match backend(args.backend)? {
-        // Scenes take larger textures and buffers than frames.
-        Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
-        Backend::Cpu => Backend::Cpu,
-    };
-    let settings = TraceSettings { seed: args.seed, ..TraceSettings::default() };
-    let camera = args.camera.as_deref();
-    let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, args.spp)?;
-    for warning in source.warnings() {
-        eprintln!("afterimage: warning: {warning}");
-    }
-    Ok(Box::new(source))
-}
-
-fn rasterised(
-    args: &RunArgs,
-    limits: &ReadLimits,
-    options: &source::SceneOptions,
-) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    let device = Headless::find_roomy(true).ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
-    let source = source::RasterSource::open(&args.input, limits, options, args.camera.as_deref(), device)?;
-    for warning in source.warnings() {
-        eprintln!("afterimage: warning: {warning}");
-    }
-    Ok(Box::new(source))
 }
 
 /// What can be wrong before anything is opened.
@@ -372,6 +319,14 @@ pub fn backend(name: BackendName) -> Result<Backend, Failure> {
         ),
     };
     Ok(found.map_or(Backend::Cpu, Backend::Gpu))
+}
+
+/// The same with textures and buffers as large as the adapter offers: scenes take larger ones than frames.
+pub fn backend_for_scenes(name: BackendName) -> Result<Backend, Failure> {
+    Ok(match backend(name)? {
+        Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
+        Backend::Cpu => Backend::Cpu,
+    })
 }
 
 pub fn backend_report(backend: &Backend) -> BackendReport {

@@ -7,7 +7,9 @@ use crate::kernel::sampling::{area_pdf, barycentrics, cosine_hemisphere, cosine_
 use crate::kernel::texel::{WRAP_CLAMP, WRAP_REPEAT, wrap_texel};
 use crate::kernel::triangle::{magnitude, offset_ray, point_at};
 use crate::trace::effects::{Effect, Effects};
-use crate::trace::records::{FLAG_DOUBLE_SIDED, LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE};
+use crate::trace::shading_records::{
+    FLAG_DOUBLE_SIDED, LIGHT_ENVIRONMENT, LIGHT_INDEX, LIGHT_PUNCTUAL, LIGHT_TRIANGLE,
+};
 use crate::trace::world::World;
 use glam::{Vec2, Vec3};
 

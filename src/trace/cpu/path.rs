@@ -101,11 +101,23 @@ impl Paths<'_> {
 
     /// The nearest surface; `number` tells a path's rays apart.
     fn closest(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> Option<Hit> {
-        self.world.geometry.closest(ray, |t, u, v| self.meets(t, u, v, pixel, sample, number))
+        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let geometry = &self.world.geometry;
+        if self.effects.has(Effect::MovingObjects) {
+            geometry.closest(ray, accept)
+        } else {
+            geometry.still.closest(ray, accept)
+        }
     }
 
     fn occluded(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> bool {
-        self.world.geometry.occluded(ray, |t, u, v| self.meets(t, u, v, pixel, sample, number))
+        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let geometry = &self.world.geometry;
+        if self.effects.has(Effect::MovingObjects) {
+            geometry.occluded(ray, accept)
+        } else {
+            geometry.still.occluded(ray, accept)
+        }
     }
 
     fn meets(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {

@@ -7,7 +7,9 @@ use crate::kernel::phong::PhongSurface;
 use crate::kernel::shading::{mapped_normal, tint, visible_normal};
 use crate::kernel::triangle::{magnitude, point_at};
 use crate::trace::effects::{Effect, Effects};
-use crate::trace::records::{FLAG_BLEND, FLAG_DOUBLE_SIDED, FLAG_MASK, FLAG_VOLUME, MaterialRecord, NO_TEXTURE};
+use crate::trace::shading_records::{
+    FLAG_BLEND, FLAG_DOUBLE_SIDED, FLAG_MASK, FLAG_VOLUME, MaterialRecord, NO_TEXTURE,
+};
 use crate::trace::world::World;
 use crate::trace::{AttributesAt, Hit};
 use glam::{Vec2, Vec3, Vec4};

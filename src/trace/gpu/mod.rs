@@ -3,13 +3,14 @@
 //! known on the device only.
 
 mod clock;
+pub mod device_heap;
 mod expand;
 mod passes;
 mod paths;
+pub mod ray_lists;
 
 use super::effects::{Effect, Effects};
 use super::film::{Film, Moments};
-use super::gpu_heap::{GpuHeap, Storage, traversal_constants};
 use super::heap::{Heap, HeapBuilder, HeapError, Section};
 use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
@@ -18,6 +19,7 @@ use super::world::World;
 use crate::image::Image;
 use crate::pipeline::Headless;
 use clock::Clock;
+use device_heap::{GpuHeap, Storage, traversal_constants};
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;

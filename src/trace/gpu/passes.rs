@@ -1,7 +1,7 @@
 //! Kernels and the layouts of what they are bound to.
 
 use crate::gpu::shader::compose_with;
-use crate::trace::gpu_heap::{GpuHeap, Storage};
+use crate::trace::gpu::device_heap::{GpuHeap, Storage};
 use std::borrow::Cow;
 
 /// Invocations of a workgroup.

@@ -2,7 +2,7 @@
 
 use super::passes::{Passes, WORKGROUP};
 use crate::pipeline::Headless;
-use crate::trace::gpu_heap::GpuHeap;
+use crate::trace::gpu::device_heap::GpuHeap;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 use wgpu::util::DeviceExt;

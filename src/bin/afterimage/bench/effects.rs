@@ -15,7 +15,7 @@ use afterimage::report::clock::{Quartiles, Stopwatch};
 use afterimage::trace::Tracer;
 use afterimage::trace::effects::{Effect, Effects};
 use afterimage::trace::gpu::GpuTracer;
-use afterimage::trace::gpu_heap::Storage;
+use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::TraceSettings;
 use removed::REMOVALS;
 use serde::Serialize;

@@ -2,8 +2,8 @@
 
 use super::{TraceArgs, settings};
 use crate::failure::Failure;
-use crate::run::backend;
-use afterimage::pipeline::{Backend, Headless};
+use crate::run::backend_for_scenes;
+use afterimage::pipeline::Backend;
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Environment, Scene, SceneLimits};
 use afterimage::source::raster::DEFAULT_FPS;
@@ -44,11 +44,7 @@ impl Setup {
         let load_ms = clock.wall_ms();
         let name = args.camera.as_deref().unwrap_or("still");
         let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
-        let backend = match backend(args.backend)? {
-            // Scenes take larger textures and buffers than frames.
-            Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
-            Backend::Cpu => Backend::Cpu,
-        };
+        let backend = backend_for_scenes(args.backend)?;
         let clock = Stopwatch::start();
         let world = World::new(&scene);
         let build_ms = clock.wall_ms();

@@ -1,9 +1,9 @@
 //! Hits of a list of rays on a device: for tests and measurements.
 
-use super::gpu_heap::{GpuHeap, Storage, traversal_constants};
-use super::heap::Heap;
-use super::{Geometry, Hit, Ray};
+use super::device_heap::{GpuHeap, Storage, traversal_constants};
 use crate::gpu::shader::compose_with;
+use crate::trace::heap::Heap;
+use crate::trace::{Geometry, Hit, Ray};
 use std::borrow::Cow;
 use wgpu::BufferUsages;
 

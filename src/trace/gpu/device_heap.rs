@@ -1,7 +1,7 @@
 //! The heap on a device.
 
-use super::Geometry;
-use super::heap::{ELEMENT_BYTES, Heap, HeapLimits, Section};
+use crate::trace::Geometry;
+use crate::trace::heap::{ELEMENT_BYTES, Heap, HeapLimits, Section};
 
 /// Where a device keeps the heap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

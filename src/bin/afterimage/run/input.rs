@@ -1,0 +1,57 @@
+//! What a run gets its frames from.
+
+use super::{NO_ADAPTER, RunArgs, SourceName, backend_for_scenes};
+use crate::failure::Failure;
+use afterimage::pipeline::Headless;
+use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions};
+use afterimage::trace::settings::TraceSettings;
+
+/// Opens files as they are, scenes with a renderer.
+pub fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    let options = SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
+    if source::is_scene(&args.input) {
+        return match args.source.unwrap_or(SourceName::Raster) {
+            SourceName::Raster => rasterised(args, limits, &options),
+            SourceName::Trace => traced(args, limits, &options),
+        };
+    }
+    if args.source.is_some() || args.camera.is_some() {
+        let option = if args.source.is_some() { "--source" } else { "--camera" };
+        return Err(Failure::Input(format!(
+            "{option}: {} brings its own frames; expected a scene (.gltf, .glb, builtin:NAME), or leave it out",
+            args.input
+        )));
+    }
+    Ok(source::open(&args.input, limits, &options)?)
+}
+
+/// By render passes. They need a device even where the methods run on the CPU.
+fn rasterised(
+    args: &RunArgs,
+    limits: &ReadLimits,
+    options: &SceneOptions,
+) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    let device = Headless::find_roomy(true).ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
+    let source = source::RasterSource::open(&args.input, limits, options, args.camera.as_deref(), device)?;
+    warn(source.warnings());
+    Ok(Box::new(source))
+}
+
+/// By path tracing.
+fn traced(args: &RunArgs, limits: &ReadLimits, options: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    if args.spp == 0 || args.spp > 1 << 20 {
+        return Err(Failure::Input(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20)));
+    }
+    let backend = backend_for_scenes(args.backend)?;
+    let settings = TraceSettings { seed: args.seed, ..TraceSettings::default() };
+    let camera = args.camera.as_deref();
+    let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, args.spp)?;
+    warn(source.warnings());
+    Ok(Box::new(source))
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("afterimage: warning: {warning}");
+    }
+}
