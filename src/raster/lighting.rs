@@ -5,6 +5,7 @@ use crate::image::Image;
 use crate::kernel::color::luma;
 use crate::scene::{Environment, Material, PunctualKind, PunctualLight, Scene, Triangles};
 use crate::trace::effects::{Effect, Effects};
+use crate::trace::shading_records::PunctualRecord;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
@@ -163,22 +164,11 @@ fn strength(light: &PunctualLight) -> f32 {
     luma(Vec3::from(light.intensity))
 }
 
+/// As the tracer has it.
 fn punctual(l: &PunctualLight) -> LightWords {
-    let (kind, cos_inner, cos_outer) = match l.kind {
-        PunctualKind::Directional => (0, 0.0, 0.0),
-        PunctualKind::Point => (1, 0.0, 0.0),
-        PunctualKind::Spot { cos_inner, cos_outer } => (2, cos_inner, cos_outer),
-    };
-    LightWords {
-        position: l.position.to_array(),
-        kind,
-        direction: l.direction.to_array(),
-        range: l.range,
-        intensity: l.intensity,
-        cos_inner,
-        cos_outer,
-        ..LightWords::default()
-    }
+    let PunctualRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, .. } =
+        PunctualRecord::new(l);
+    LightWords { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightWords::default() }
 }
 
 /// Triangles that emit, those of one material and about one direction as one disk of their area at their middle. Where they are

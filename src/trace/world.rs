@@ -41,6 +41,9 @@ pub struct World {
     pub tables: AlbedoTables,
     /// What the scene calls for.
     pub needs: Effects,
+    /// Most triangles that can move, and most lights that there can be, at any time: some may be without area now.
+    pub(super) most_moving: usize,
+    pub(super) most_lights: usize,
     /// Luminance that each material emits, both sides together.
     glow: Vec<f64>,
     /// Mean luminance of the environment.
@@ -76,6 +79,11 @@ impl World {
                 sides * f64::from(luma(Vec3::from(m.emissive))) * texture.map_or(1.0, mean_luma)
             })
             .collect();
+        let rest = scene.pose(0.0);
+        let shining = |m: &&u32| scene.materials.get(**m as usize).is_some_and(|m| m.emissive.iter().any(|&e| e > 0.0));
+        let most_lights = scene.still().materials.iter().chain(&rest.moving.materials).filter(shining).count()
+            + rest.lights.len()
+            + 1;
         let mut world = Self {
             geometry: Geometry { still: Bvh::build(scene.still(), None, &scene.materials), moving: Bvh::default() },
             materials: if materials.is_empty() { vec![MaterialRecord::new(&Default::default())] } else { materials },
@@ -91,6 +99,8 @@ impl World {
             needs: Effects::needed(scene),
             glow,
             sky_luma,
+            most_moving: rest.moving.len(),
+            most_lights,
             still_bounds: [Vec3::INFINITY, Vec3::NEG_INFINITY],
         };
         world.still_bounds = bounds(world.geometry.still.triangles());

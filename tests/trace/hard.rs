@@ -4,9 +4,13 @@ use crate::rig::{Rig, device, differing};
 use crate::scenes::{DARK, builtin, stage};
 use afterimage::image::Image;
 use afterimage::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
+use afterimage::trace::Bvh;
+use afterimage::trace::film::Film;
+use afterimage::trace::gpu::GpuTracer;
 use afterimage::trace::gpu::device_heap::Storage;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::surfaces::Surfaces;
+use afterimage::trace::work::uniform;
 use glam::{DVec3, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [16, 12];
@@ -216,4 +220,27 @@ fn the_image_is_the_same_far_from_the_origin_h82() {
         // A position at 16 km has steps of 2 mm, the rays' offset there is 6 cm of a stage of 6 m.
         assert!((got / expected - 1.0).abs() < 0.02, "{scale}, {offset}");
     }
+}
+
+#[test]
+fn what_had_no_area_at_first_may_grow_on_the_device() {
+    let Some(device) = device() else { return };
+    let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
+    let mut grown = Triangles::default();
+    for z in [0.0, -0.5, -1.0] {
+        grown.push_flat(corners.map(|p| p + Vec3::Z * z), 0);
+    }
+    let mut shrunk = grown.clone();
+    shrunk.positions.fill([Vec3::ZERO; 3]);
+    let pose = Pose { moving: shrunk, ..pose_of(DVec3::Z * 3.0, DVec3::ZERO) };
+    let materials = vec![Material { base_color: [0.5; 3], ..Material::default() }];
+    let mut rig = Rig::new(scene("growing", materials.clone(), Triangles::default(), pose, sky()), SIZE);
+    let settings = TraceSettings::default();
+    let mut tracer = GpuTracer::new(device, &rig.world, settings).unwrap();
+    rig.world.geometry.moving = Bvh::build(&grown, Some(&grown.positions), &materials);
+    tracer.update(&rig.world).unwrap();
+    let mut film = Film::new(SIZE);
+    tracer.trace(&rig.world, &rig.view, 0, &uniform(SIZE[0], 0..SIZE[1], 0..2), &mut film);
+    assert_eq!(differing(&film, &rig.cpu(settings, 2)), 0);
+    assert!(film.color().pixels().iter().any(|c| c[0] < 0.9), "the triangle is seen");
 }

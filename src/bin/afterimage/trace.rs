@@ -169,7 +169,7 @@ const STEP_ITEMS: u64 = 1 << 20;
 pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut setup = Setup::new(args)?;
     let out = Output::create(&args.out, &folders(args), "trace.json")?;
-    let mut report = Report::new(args, &setup);
+    let mut report = Report::new();
     if args.verbose {
         report.print_effects(&setup);
     }

@@ -205,8 +205,7 @@ fn moments_of(rows: &[[f32; 4]; 2]) -> Moments {
 fn heap(world: &World, effects: Effects, limits: super::heap::HeapLimits) -> Result<Heap, HeapError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
     // Room for one where nothing moves: a node of zeros has no children.
-    let most_moving =
-        if effects.has(Effect::MovingObjects) { world.geometry.moving.triangles().len().max(1) } else { 0 };
+    let most_moving = if effects.has(Effect::MovingObjects) { world.most_moving.max(1) } else { 0 };
     let mut builder = HeapBuilder::default();
     builder
         .geometry(&world.geometry, most_moving)
@@ -215,7 +214,7 @@ fn heap(world: &World, effects: Effects, limits: super::heap::HeapLimits) -> Res
         .fill(Section::Texels, &world.texels)
         .fill(Section::Map, &world.map)
         .fill(Section::Albedos, &tables)
-        .fill(Section::Picks, &world.picks)
+        .reserve(Section::Picks, &world.picks, world.most_lights)
         .fill(Section::Punctual, &world.punctual);
     builder.finish(limits)
 }

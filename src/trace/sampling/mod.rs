@@ -83,7 +83,7 @@ impl Sampling {
         let gaze_px = if sound { gaze_px.map(|g| g.clamp(-1e6, 1e6)) } else { middle };
         let kind = match self {
             Self::Uniform => Kind::Rings(vec![Ring::everywhere(size_px, samples)]),
-            Self::Regions(regions) => Kind::Rings(regions.rings(geometry, samples)),
+            Self::Regions(regions) => Kind::Rings(regions.rings(geometry)),
             Self::Layers(layers) => Kind::Rings(layers.rings(geometry, gaze_px, samples)),
             Self::Acuity(acuity) => {
                 let (targets, lod) = acuity.targets(geometry, gaze_px, frame);

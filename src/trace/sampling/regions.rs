@@ -42,7 +42,7 @@ impl Regions {
         fovea * a + (disc - fovea) / m * b + (w * h - disc).max(0.0) / n * c
     }
 
-    pub(super) fn rings(&self, geometry: &ViewGeometry, _samples: u32) -> Vec<Ring> {
+    pub(super) fn rings(&self, geometry: &ViewGeometry) -> Vec<Ring> {
         let size_px = geometry.size_px();
         let [fovea, middle] = self.radii_px(geometry);
         let ring = |step: u32, samples: u32, radius_px: f32, blend_px: f32| Ring {

@@ -73,7 +73,10 @@ impl PatternArgs {
             SamplingName::Layers => Sampling::Layers(Layers {
                 radii_deg: exactly("--layer-deg", &self.layer_deg, |v| v > 0.0 && v < 85.0)?,
                 steps: exactly("--layer-step", &self.layer_step, |v| (1..=256).contains(&v))?,
-                lens_deg: self.lens_deg.filter(|d| *d > 0.0 && *d < 89.0),
+                lens_deg: match self.lens_deg {
+                    Some(deg) => Some(exactly::<_, 1>("--lens-deg", &[deg], |v| v > 0.0 && v < 89.0)?[0]),
+                    None => None,
+                },
             }),
             SamplingName::Acuity => Sampling::Acuity(Acuity::default()),
         })
@@ -123,9 +126,8 @@ fn exactly<T: Copy + std::fmt::Display, const N: usize>(
     values: &[T],
     is_allowed: impl Fn(T) -> bool,
 ) -> Result<[T; N], Failure> {
-    let refuse = |what: String| {
-        Failure::Input(format!("{option}: {what}; expected {N} numbers separated by commas, see --help"))
-    };
+    let refuse =
+        |what: String| Failure::Input(format!("{option}: {what}; expected {N}, separated by commas, see --help"));
     if let Some(bad) = values.iter().find(|v| !is_allowed(**v)) {
         return Err(refuse(format!("{bad} is out of range")));
     }

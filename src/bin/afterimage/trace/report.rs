@@ -81,7 +81,8 @@ struct CameraJson {
 }
 
 impl Report {
-    pub fn new(_args: &TraceArgs, _setup: &Setup) -> Self {
+    /// Of no frame.
+    pub fn new() -> Self {
         Self { cpu_seconds: Some(0.0), ideal_samples: Some(0.0), ..Self::default() }
     }
 
