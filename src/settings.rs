@@ -1,7 +1,8 @@
 //! Tunables of the post-process, with units, ranges and what more and less does.
 
-use crate::error::SettingsError;
+use crate::error::{FrameError, SettingsError};
 use crate::foveation::{Filter, Foveation};
+use crate::kernel::noise::NOISY_LEVELS;
 use crate::kernel::{acuity, matched, reservoir, wrs};
 
 /// What the post-process does with history.
@@ -125,6 +126,10 @@ pub struct Settings {
     pub gate: Option<Gate>,
     /// Depth test; `None` never looks at depth.
     pub depth_test: Option<DepthTest>,
+    /// Frames are noisy, path-traced with few samples, and say how noisy ([`Frame::noise`](crate::gpu::Frame::noise)): noise is no
+    /// change then. wrs weighs a candidate by its samples; smr averages equally fine history where the eye looks, too, and compares
+    /// means of 8x8 samples. smr keeps 8 more bytes a pixel for it, and a chain of the candidates. Default false.
+    pub noisy: bool,
     /// Seed of the random numbers. Same seed, same frames: same bytes.
     pub seed: u64,
 }
@@ -139,6 +144,7 @@ impl Default for Settings {
             bias: Bias::default(),
             gate: Some(Gate::default()),
             depth_test: Some(DepthTest::default()),
+            noisy: false,
             seed: 0,
         }
     }
@@ -184,6 +190,17 @@ impl Settings {
         Ok(())
     }
 
+    /// Refuses a view that brings noise where none is expected, and the other way round.
+    pub(crate) fn check_noise(&self, view: usize, given: bool) -> Result<(), FrameError> {
+        let expected = match (self.noisy, given) {
+            (true, false) => "a texture, as Settings::noisy is set",
+            (false, true) => "none, or Settings::noisy set",
+            _ => return Ok(()),
+        };
+        let found = if given { "a texture" } else { "None" };
+        Err(FrameError::Value { what: "noise", view, found: found.into(), expected })
+    }
+
     /// Whether reservoirs need a key besides their weight sum.
     pub(crate) fn uses_keys(&self) -> bool {
         self.sampler == Sampler::AEs
@@ -194,18 +211,20 @@ impl Settings {
         match self.method {
             Method::None => HistoryLayout::Nothing,
             Method::Wrs => HistoryLayout::Reservoirs { keys: self.uses_keys() },
-            Method::Taa => HistoryLayout::Surfaces { levels: 0 },
+            Method::Taa => HistoryLayout::Surfaces { levels: 0, noisy: false },
             // Two beyond the candidate's: one for its contrast, one to blend with; blocks are compared one level coarser.
             Method::Smr => {
                 let shift = if self.foveation.filter == Filter::Block { 3 } else { 2 };
-                HistoryLayout::Surfaces { levels: self.foveation.max_level() + shift }
+                let shift = if self.noisy { 2 + NOISY_LEVELS as u32 } else { shift };
+                HistoryLayout::Surfaces { levels: self.foveation.max_level() + shift, noisy: self.noisy }
             }
         }
     }
 
     /// The kernel's form of smr's tunables.
     pub(crate) fn smr_params(&self) -> matched::SmrParams {
-        let blocks = self.foveation.filter == Filter::Block;
+        // Noise is more than what point samples alias.
+        let blocks = self.foveation.filter == Filter::Block && !self.noisy;
         matched::SmrParams {
             accumulate: self.smr.accumulate,
             // Coarse history is only a mean, so a stricter fit costs little, but the noise of point samples needs the mean.
@@ -213,6 +232,7 @@ impl Settings {
             tolerance: self.smr.tolerance,
             blocks,
             relight: self.smr.relight,
+            noisy: self.noisy,
         }
     }
 
@@ -227,7 +247,14 @@ impl Settings {
             Method::Smr => 2 * 8 + 8,
         };
         let inputs: u32 = given.iter().zip([4, 4, 1]).map(|(&given, bytes)| if given { bytes } else { 0 }).sum();
-        color + inputs + history + output
+        let noise = match (self.noisy, self.method) {
+            (true, Method::Wrs) => 4,
+            // The candidates' chain reads colour and noise, and is written, read for its own levels and read by the pass like the other
+            // one; noise itself, and 4 bytes of it remembered.
+            (true, Method::Smr) => (8 + 4 + 8) + 4 + 2 * 4,
+            _ => 0,
+        };
+        color + inputs + noise + history + output
     }
 
     /// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
@@ -275,6 +302,8 @@ pub(crate) enum HistoryLayout {
     Surfaces {
         /// Levels beyond the full-rate one.
         levels: u32,
+        /// Whether there is noise ([`noise`](crate::kernel::noise)), and a chain of the candidates.
+        noisy: bool,
     },
 }
 

@@ -18,6 +18,7 @@ struct SmrParams {
     tolerance: f32,
     blocks: bool,
     relight: bool,
+    noisy: bool,
 }
 
 // matched::smooth_step
@@ -55,11 +56,12 @@ struct Wanted {
 }
 
 // matched::wanted
-fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
+fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool) -> Wanted {
     let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0);
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0);
     let alike = (1.0 - finer) * (1.0 - coarser);
-    return Wanted(finer, finer + (alike * min(lod, 1.0)) * accumulate);
+    let calm = select(min(lod, 1.0), 1.0, noisy);
+    return Wanted(finer, finer + (alike * calm) * accumulate);
 }
 
 // matched::gain
@@ -70,9 +72,9 @@ fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
 }
 
 // matched::relight_from
-fn relight_from(contrast: f32, blocks: bool) -> f32 {
+fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
-    return relight.x + relight.y * contrast;
+    return (relight.x + relight.y * contrast) + noise;
 }
 
 // matched::is_changed
@@ -83,7 +85,7 @@ fn is_changed(
     next_level: vec3<f32>,
     blocks: bool,
 ) -> bool {
-    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks);
+    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks, 0.0);
 }
 
 struct Evidence {
@@ -97,6 +99,7 @@ struct Evidence {
     level: vec3<f32>,
     next_level: vec3<f32>,
     trust: f32,
+    noise: f32,
 }
 
 struct Matched {
@@ -108,12 +111,12 @@ struct Matched {
 
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
-    let want = wanted(e.lod, e.history_lod, p.accumulate);
+    let want = wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
     var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
     if p.relight {
-        let low = relight_from(contrast, p.blocks);
+        let low = relight_from(contrast, p.blocks, e.noise);
         let changed = smooth_step(low, low, d);
         let gains = vec3<f32>(
             gain(e.compared_coarser.x, e.next_level.x, changed),
@@ -129,7 +132,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     }
     let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * want.finer);
     let scale = select(1.0, 4.0, p.blocks);
-    let fit = 1.0 - smooth_step(tolerance * (GATE_FROM * scale + contrast), tolerance * (GATE_WIDTH * scale), d);
+    let fit = 1.0 - smooth_step(tolerance * (GATE_FROM * scale + contrast) + e.noise, tolerance * (GATE_WIDTH * scale), d);
     let believed = fit * e.trust;
     let share = believed * want.share;
     let history = k * e.history;

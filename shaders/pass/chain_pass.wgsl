@@ -1,9 +1,13 @@
 //#use matched
+//#use noise
 //#use surface
-// The next level of the chain of remembered surfaces: means of 2x2 texels, at odd borders of those that exist. Its twin on the CPU is
-// Chain::build in src/cpu/chain.rs. One invocation a texel of the coarser level; z is the view.
+// The next level of the chain of remembered surfaces, or of noisy candidates: means of 2x2 texels, at odd borders of those that exist.
+// Its twin on the CPU is Chain::fill in src/cpu/chain.rs. One invocation a texel of the coarser level; z is the view.
 //
 // 4 reads and 1 write of 8 bytes a texel; all levels from the second on together read 2.7 bytes a pixel and write 0.7.
+
+// 1: texels are those of candidates.
+override CANDIDATES: u32 = 0u;
 
 // Of the finer level; its texture may be larger.
 @group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
@@ -20,11 +24,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     if any(first >= fine_size) {
         return;
     }
-    let mean = chain_mean(
-        texel(first, group.z),
-        texel(first + vec2<u32>(1u, 0u), group.z),
-        texel(first + vec2<u32>(0u, 1u), group.z),
-        texel(first + vec2<u32>(1u, 1u), group.z),
-    );
+    let a = texel(first, group.z);
+    let b = texel(first + vec2<u32>(1u, 0u), group.z);
+    let c = texel(first + vec2<u32>(0u, 1u), group.z);
+    let d = texel(first + vec2<u32>(1u, 1u), group.z);
+    var mean = chain_mean(a, b, c, d);
+    if CANDIDATES != 0u {
+        mean = candidate_mean(a, b, c, d);
+    }
     textureStore(coarse, id.xy, group.z, round_chain(mean));
 }

@@ -1,6 +1,7 @@
 //#use acuity
 //#use debug_view
 //#use depth
+//#use noise
 //#use reproject
 //#use scrub
 // What a frame brings to a pixel, in the internal form; what is counted of it and shown. The part that all methods share; its twin on
@@ -12,6 +13,7 @@ override HAS_MOTION: u32 = 1u;
 override HAS_TRUST: u32 = 1u;
 override HAS_EXPOSURE: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
+override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;
 // 0, or a VIEW_* code: show what would be decided, and decide nothing.
 override VIEW: u32 = 0u;
@@ -62,6 +64,7 @@ struct FrameConstants {
 @group(0) @binding(4) var trust_in: texture_2d_array<f32>;
 @group(0) @binding(5) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
+@group(0) @binding(7) var noise_in: texture_2d_array<f32>;
 
 // Words of the counters; src/stats.rs reads them.
 const COUNT_NONFINITE: u32 = 0u;
@@ -84,6 +87,11 @@ fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
         return vec2<f32>(0.0);
     }
     return textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
+}
+
+// Noise of the candidate. Only where it is noisy.
+fn noise_at(px: vec2<u32>, view: u32) -> Noise {
+    return candidate_noise(textureLoad(noise_in, px, view, 0).xy);
 }
 
 fn disparity_at(px: vec2<u32>, view: u32) -> f32 {

@@ -4,11 +4,14 @@
 // What is remembered of a pixel's surface, where it was: shared by the methods that store surfaces. Its twin on the CPU is
 // src/cpu/remembered.rs.
 
-@group(0) @binding(7) var lod_in: texture_2d_array<f32>;
-@group(0) @binding(8) var past_surfaces: texture_2d_array<u32>;
-@group(0) @binding(9) var past_chain: texture_2d_array<f32>;
-@group(0) @binding(10) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(11) var next_chain: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(8) var lod_in: texture_2d_array<f32>;
+@group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
+@group(0) @binding(10) var past_chain: texture_2d_array<f32>;
+@group(0) @binding(11) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(12) var next_chain: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(13) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(14) var candidate_chain: texture_2d_array<f32>;
+@group(0) @binding(15) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 // Where a pixel's surface was. All but the verdict only means something if that is VERDICT_VALID.
 struct Source {
@@ -17,13 +20,14 @@ struct Source {
     fraction: vec2<f32>,
     at: vec2<f32>,
     nearest: Surface,
+    nearest_at: vec2<u32>,
     expected: f32,
     trust: f32,
 }
 
 fn no_source(verdict: u32) -> Source {
     let nothing = Surface(vec3<f32>(0.0), -1.0, -1.0);
-    return Source(verdict, vec2<i32>(0), vec2<f32>(0.0), vec2<f32>(0.0), nothing, INVALID_DISPARITY, 0.0);
+    return Source(verdict, vec2<i32>(0), vec2<f32>(0.0), vec2<f32>(0.0), nothing, vec2<u32>(0u), INVALID_DISPARITY, 0.0);
 }
 
 fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
@@ -56,7 +60,7 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
     }
     let at = vec2<f32>(px) + motion;
     let whole = floor(at);
-    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, expected, believed);
+    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, reprojected.at, expected, believed);
 }
 
 fn component(v: vec4<f32>, i: u32) -> f32 {
@@ -94,4 +98,13 @@ fn exposed(stored: vec3<f32>) -> vec3<f32> {
         return stored;
     }
     return expose(stored, frame.exposure);
+}
+
+// Noise of the nearest texel under this frame's exposure.
+fn past_noise_of(source: Source, view: u32) -> Noise {
+    let stored = unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x);
+    if HAS_EXPOSURE == 0u {
+        return stored;
+    }
+    return expose_noise(stored, frame.exposure);
 }

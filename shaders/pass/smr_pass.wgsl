@@ -85,6 +85,39 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
     return Matching(first + (second - first) * fraction, first, second);
 }
 
+fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
+    let size = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
+    let x = split(level_coordinate(at.x, level), size.x);
+    let y = split(level_coordinate(at.y, level), size.y);
+    let low = vec2<u32>(x.whole, y.whole);
+    let high = min(low + 1u, size - 1u);
+    return candidate_bilinear(
+        textureLoad(candidate_chain, low, view, level - 1u),
+        textureLoad(candidate_chain, vec2<u32>(high.x, low.y), view, level - 1u),
+        textureLoad(candidate_chain, vec2<u32>(low.x, high.y), view, level - 1u),
+        textureLoad(candidate_chain, high, view, level - 1u),
+        vec2<f32>(x.fraction, y.fraction),
+    );
+}
+
+struct Around {
+    // Colour and variance at a level of detail.
+    compared: vec4<f32>,
+    // At the next whole level.
+    coarser: vec4<f32>,
+}
+
+// Noisy candidates at a level of detail from 1 on around a position.
+fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
+    let last = textureNumLevels(candidate_chain);
+    let limited = min(lod, f32(last));
+    let whole = floor(limited);
+    let level = u32(whole);
+    let first = candidate_level(at, level, view);
+    let second = candidate_level(at, min(level + 1u, last), view);
+    return Around(first + (second - first) * (limited - whole), second);
+}
+
 // Of a broken pixel nothing is known, least of all that it is black: `own` stands in.
 fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
     let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
@@ -134,15 +167,63 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         whole_level,
         next_level,
         source.trust,
+        0.0,
     );
-    let params = SmrParams(
-        frame.smr_accumulate,
+    return decide(evidence, params_with(frame.smr_accumulate));
+}
+
+fn params_with(accumulate: f32) -> SmrParams {
+    return SmrParams(
+        accumulate,
         frame.smr_accumulate_tolerance,
         frame.smr_tolerance,
         FILTER == FILTER_BLOCK,
         RELIGHT_ON != 0u,
+        NOISY != 0u,
     );
-    return decide(evidence, params);
+}
+
+struct Averaged {
+    made: Matched,
+    noise: Noise,
+}
+
+// The same for a noisy candidate, and the noise of what is made.
+fn averaged_pixel(
+    px: vec2<u32>,
+    view: u32,
+    candidate: vec3<f32>,
+    noise: Noise,
+    lod: f32,
+    source: Source,
+    history: Resampled,
+) -> Averaged {
+    let past_noise = past_noise_of(source, view);
+    let params = params_with(history_share(past_noise, noise, frame.smr_accumulate));
+    let want = wanted(lod, history.lod, params.accumulate, true);
+    if want.share == 0.0 {
+        return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
+    }
+    let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
+    let past = chain_read(source.at, lod + NOISY_LEVELS, history.smooth_color, view);
+    let matched = exposed(past.matched);
+    let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
+    let evidence = Evidence(
+        candidate,
+        around.compared.xyz,
+        around.coarser.xyz,
+        lod,
+        exposed(history.sharp),
+        history.lod,
+        matched,
+        exposed(past.level),
+        exposed(past.next_level),
+        source.trust,
+        noise_difference(past_noise, noise_around, luma(matched)),
+    );
+    let made = decide(evidence, params);
+    let believed = made.fit * source.trust;
+    return Averaged(made, noise_after(past_noise, noise_around, made.share, want.finer * believed));
 }
 
 // Shows a pixel, stores it and gives what was stored.
@@ -161,11 +242,22 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
 
     var made = Matched(candidate.color, select(-1.0, lod, candidate.usable), 0.0, 1.0);
+    var noise = Noise(1.0, 0.0);
+    if NOISY != 0u {
+        noise = noise_at(px, view);
+    }
     if valid {
-        let history = resample(source, view, lod > 0.0 || !candidate.usable);
+        let history = resample(source, view, NOISY != 0u || lod > 0.0 || !candidate.usable);
         if !candidate.usable {
             made = Matched(exposed(history.sharp), history.lod, 1.0, 1.0);
-        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate).share > 0.0 {
+            if NOISY != 0u {
+                noise = past_noise_of(source, view);
+            }
+        } else if NOISY != 0u {
+            let averaged = averaged_pixel(px, view, candidate.color, noise, lod, source, history);
+            made = averaged.made;
+            noise = averaged.noise;
+        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate, false).share > 0.0 {
             made = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
@@ -184,6 +276,9 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let words = pack_surface(Surface(made.color, stored_lod, disparity_now));
     if VIEW == 0u {
         textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+        if NOISY != 0u {
+            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
+        }
     }
     return words;
 }

@@ -12,12 +12,12 @@ override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
 
-@group(0) @binding(7) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(8) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(9) var past_keys: texture_2d_array<f32>;
-@group(0) @binding(10) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(11) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(12) var next_keys: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(8) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(9) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(10) var past_keys: texture_2d_array<f32>;
+@group(0) @binding(11) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(12) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(13) var next_keys: texture_storage_2d_array<r32float, write>;
 
 // The history side of a pixel.
 struct History {
@@ -98,10 +98,16 @@ fn pixel(px: vec2<u32>, view: u32) {
         let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
         candidate_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
     }
+    var gate_offset = frame.gate_offset;
+    if NOISY != 0u {
+        let noise = noise_at(px, view);
+        candidate_w *= noise.samples;
+        gate_offset += sample_difference(noise, luma(candidate.color));
+    }
     let disparity_now = disparity_at(px, view);
     let history = history_of(px, view, ray, motion, disparity_now);
     let valid = history.verdict == VERDICT_VALID;
-    let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, frame.gate_offset, frame.inv_gate_divisor);
+    let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
     let decision = step(candidate.color, candidate_w, history.past, params, draw);
     count_pixel(px, view, candidate.usable, disparity_now, history.verdict);

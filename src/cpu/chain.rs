@@ -1,14 +1,16 @@
-//! Coarser levels of remembered surfaces, made of what was stored, by the means of 2x2 texels that the foveation's mip levels are
-//! made of too.
+//! Coarser levels of remembered surfaces, made of what was stored, and of noisy candidates, by the means of 2x2 texels that the
+//! foveation's mip levels are made of too.
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
 use crate::kernel::matched::{chain_bilinear, chain_mean};
+use crate::kernel::noise::{candidate_bilinear, candidate_mean};
 use crate::kernel::surface::{chain_texel, round_chain};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Levels 1 to n of one view; level l at index l - 1. Texels are colours times coverage, and coverage, as halves.
+/// Levels 1 to n of one view; level l at index l - 1. Texels are halves: of surfaces colours times coverage, and coverage; of candidates
+/// colours, and the variance of a pixel's luma.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chain {
     size: [u32; 2],
@@ -29,8 +31,18 @@ impl Chain {
 
     /// Fills all levels from the packed surfaces of the view.
     pub fn build(&mut self, words: &[[u32; 2]]) {
+        let width = self.size[0];
+        self.fill(|x, y| chain_texel(words[(y * width + x) as usize]), chain_mean);
+    }
+
+    /// Fills all levels from the texels of the view's candidates.
+    pub fn build_candidates(&mut self, candidate: impl Fn(u32, u32) -> Vec4 + Sync) {
+        self.fill(candidate, candidate_mean);
+    }
+
+    fn fill(&mut self, texel: impl Fn(u32, u32) -> Vec4 + Sync, mean: fn(Vec4, Vec4, Vec4, Vec4) -> Vec4) {
         let [width, height] = self.size;
-        let base = |x: u32, y: u32| chain_texel(words[(y.min(height - 1) * width + x.min(width - 1)) as usize]);
+        let base = |x: u32, y: u32| texel(x.min(width - 1), y.min(height - 1));
         for l in 0..self.levels.len() {
             let (finer, level) = self.levels.split_at_mut(l);
             let (finer, level) = (finer.last(), &mut level[0]);
@@ -45,21 +57,42 @@ impl Chain {
                             Vec4::from(f.at(x.min(w - 1) as usize, y.min(h - 1) as usize))
                         }
                     };
-                    let mean = chain_mean(at(x0, y0), at(x0 + 1, y0), at(x0, y0 + 1), at(x0 + 1, y0 + 1));
+                    let mean = mean(at(x0, y0), at(x0 + 1, y0), at(x0, y0 + 1), at(x0 + 1, y0 + 1));
                     *out = round_chain(mean).to_array();
                 }
             });
         }
     }
 
-    fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
+    /// Four texels of a level around a position, and where between them it lies.
+    fn around(&self, at: [f32; 2], level: u32) -> ([Vec4; 4], [f32; 2]) {
         let image = &self.levels[level as usize - 1];
         let (w, h) = (image.width() as u32, image.height() as u32);
         let (x0, fx) = split(level_coordinate(at[0], level), w);
         let (y0, fy) = split(level_coordinate(at[1], level), h);
         let (x1, y1) = ((x0 + 1).min(w - 1), (y0 + 1).min(h - 1));
         let texel = |x: u32, y: u32| Vec4::from(image.at(x as usize, y as usize));
-        chain_bilinear([texel(x0, y0), texel(x1, y0)], [texel(x0, y1), texel(x1, y1)], [fx, fy])
+        ([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], [fx, fy])
+    }
+
+    fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
+        let ([a, b, c, d], fraction) = self.around(at, level);
+        chain_bilinear([a, b], [c, d], fraction)
+    }
+
+    fn bilinear_candidate(&self, at: [f32; 2], level: u32) -> Vec4 {
+        let ([a, b, c, d], fraction) = self.around(at, level);
+        candidate_bilinear([a, b], [c, d], fraction)
+    }
+
+    /// Colour and variance of candidates at a level of detail from 1 on around a position in pixels, and at the next whole level.
+    pub fn read_candidates(&self, at: [f32; 2], lod: f32) -> [Vec4; 2] {
+        let last = self.levels.len() as u32;
+        let lod = lod.min(last as f32);
+        let whole = lod.floor();
+        let first = self.bilinear_candidate(at, whole as u32);
+        let second = self.bilinear_candidate(at, (whole as u32 + 1).min(last));
+        [first + (second - first) * (lod - whole), second]
     }
 
     /// The view at a level of detail around a position in pixels, and at the whole levels around that. `smooth` is its level 0

@@ -2,6 +2,7 @@
 
 use super::chain::Chain;
 use crate::settings::HistoryLayout;
+use glam::Vec4;
 
 /// What is remembered of all views, this frame's and the last one's. What a method does not use is empty.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +11,8 @@ pub struct History {
     view_len: usize,
     previous: Plane,
     current: Plane,
+    /// Of this frame's candidates, view by view, where they are noisy.
+    candidates: Vec<Chain>,
     filled: bool,
     held_gaze: Vec<Option<[f32; 2]>>,
 }
@@ -20,6 +23,7 @@ struct Plane {
     reservoirs: Vec<[u32; 3]>,
     log_keys: Vec<f32>,
     surfaces: Vec<[u32; 2]>,
+    noise: Vec<u32>,
     chains: Vec<Chain>,
 }
 
@@ -28,15 +32,13 @@ impl Plane {
         let len = size_px[0] as usize * size_px[1] as usize * view_count as usize;
         let when = |used: bool| if used { len } else { 0 };
         let keyed = layout == HistoryLayout::Reservoirs { keys: true };
-        let levels = match layout {
-            HistoryLayout::Surfaces { levels } => levels,
-            _ => 0,
-        };
+        let noisy = matches!(layout, HistoryLayout::Surfaces { noisy: true, .. });
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
             log_keys: vec![0.0; when(keyed)],
             surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. }))],
-            chains: vec![Chain::new(size_px, levels); if levels > 0 { view_count as usize } else { 0 }],
+            noise: vec![0; when(noisy)],
+            chains: chains(size_px, view_count, layout),
         }
     }
 
@@ -44,7 +46,18 @@ impl Plane {
         size_of_val(&self.reservoirs[..])
             + size_of_val(&self.log_keys[..])
             + size_of_val(&self.surfaces[..])
+            + size_of_val(&self.noise[..])
             + self.chains.iter().map(Chain::memory_bytes).sum::<usize>()
+    }
+}
+
+/// One for each view, of as many levels as the layout has.
+fn chains(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Vec<Chain> {
+    match layout {
+        HistoryLayout::Surfaces { levels: levels @ 1.., .. } => {
+            vec![Chain::new(size_px, levels); view_count as usize]
+        }
+        _ => vec![],
     }
 }
 
@@ -55,6 +68,10 @@ impl History {
             view_len: size_px[0] as usize * size_px[1] as usize,
             previous: Plane::new(size_px, view_count, layout),
             current: Plane::new(size_px, view_count, layout),
+            candidates: match layout {
+                HistoryLayout::Surfaces { noisy: true, .. } => chains(size_px, view_count, layout),
+                _ => vec![],
+            },
             filled: false,
             held_gaze: vec![None; view_count as usize],
         }
@@ -95,12 +112,24 @@ impl History {
         (past, &mut self.current.reservoirs[range], &mut self.current.log_keys[keys])
     }
 
-    /// The past surfaces of `view` to read, and the rows to write.
-    pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, &mut [[u32; 2]]) {
+    /// The past surfaces of `view` to read, and the rows to write: surfaces, and their noise where there is any.
+    pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, &mut [[u32; 2]], &mut [u32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;
-        let past =
-            PastSurfaces { words: &self.previous.surfaces[range.clone()], chain: self.previous.chains.get(view) };
-        (past, &mut self.current.surfaces[range])
+        let noise = if self.previous.noise.is_empty() { 0..0 } else { range.clone() };
+        let past = PastSurfaces {
+            words: &self.previous.surfaces[range.clone()],
+            noise: &self.previous.noise[noise.clone()],
+            chain: self.previous.chains.get(view),
+            candidates: self.candidates.get(view),
+        };
+        (past, &mut self.current.surfaces[range], &mut self.current.noise[noise])
+    }
+
+    /// Builds the chain of the candidates of `view`, if there is one.
+    pub(super) fn build_candidates(&mut self, view: usize, texel: impl Fn(u32, u32) -> Vec4 + Sync) {
+        if let Some(chain) = self.candidates.get_mut(view) {
+            chain.build_candidates(texel);
+        }
     }
 
     /// Builds the coarser levels of what was written of `view`.
@@ -122,6 +151,12 @@ impl History {
         &self.previous.surfaces
     }
 
+    /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty but for smr with
+    /// [`Settings::noisy`](crate::Settings::noisy).
+    pub fn noise(&self) -> &[u32] {
+        &self.previous.noise
+    }
+
     pub(super) fn restore(&mut self, words: &[[u32; 3]]) {
         self.previous.reservoirs.copy_from_slice(words);
         self.previous.log_keys.fill(f32::MIN);
@@ -130,7 +165,8 @@ impl History {
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
-        self.previous.memory_bytes() + self.current.memory_bytes()
+        let candidates: usize = self.candidates.iter().map(Chain::memory_bytes).sum();
+        self.previous.memory_bytes() + self.current.memory_bytes() + candidates
     }
 }
 
@@ -141,9 +177,11 @@ pub(super) struct PastView<'a> {
     pub log_keys: &'a [f32],
 }
 
-/// Last frame's surfaces of one view.
+/// Last frame's surfaces of one view, and what of this frame's candidates they are held against.
 #[derive(Clone, Copy)]
 pub(super) struct PastSurfaces<'a> {
     pub words: &'a [[u32; 2]],
+    pub noise: &'a [u32],
     pub chain: Option<&'a Chain>,
+    pub candidates: Option<&'a Chain>,
 }

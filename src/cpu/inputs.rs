@@ -3,6 +3,7 @@
 use super::{CpuFrame, CpuView};
 use crate::frame::{ContextDesc, Reset, ViewConstants};
 use crate::kernel::depth::{self, DisparityMap};
+use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::{acuity, scrub};
 use crate::settings::{DepthTest, Settings};
@@ -79,6 +80,12 @@ impl<'a> Inputs<'a> {
             let v = m.at(x as usize, y as usize);
             [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
         })
+    }
+
+    /// The candidate's noise, if it has any.
+    #[inline(always)]
+    pub fn noise(&self, x: u32, y: u32) -> Option<Noise> {
+        self.view.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
     }
 
     /// As given, if it is.

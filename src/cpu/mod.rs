@@ -41,12 +41,15 @@ pub struct CpuView<'a> {
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it,
     /// whose `rate_far` must be the coarsest in either case: history is not matched at coarser levels.
     pub lod: Option<&'a Image<f32>>,
+    /// Noise of the colour: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
+    /// detail. Where, and only where, [`Settings::noisy`] says so.
+    pub noise: Option<&'a Image<[f32; 2]>>,
 }
 
 impl<'a> CpuView<'a> {
     /// A view without optional inputs.
     pub fn new(facts: ViewFrame, color: &'a Image<[f32; 3]>) -> Self {
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None }
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
     }
 }
 
@@ -206,6 +209,7 @@ impl CpuAfterimage {
                 ("motion", view.motion.map(Image::size)),
                 ("trust", view.trust.map(Image::size)),
                 ("lod", view.lod.map(Image::size)),
+                ("noise", view.noise.map(Image::size)),
                 ("output", Some(output[i].size())),
                 ("trace", trace.map(|t| t[i].size())),
             ];
@@ -215,6 +219,7 @@ impl CpuAfterimage {
                 }
             }
             view.facts.check(i, &self.desc)?;
+            self.settings.check_noise(i, view.noise.is_some())?;
         }
         frame.exposure.check()
     }

@@ -3,6 +3,7 @@
 use super::history::PastSurfaces;
 use super::inputs::Inputs;
 use crate::kernel::depth;
+use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::{self, Verdict};
 use crate::kernel::resample::{self, Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
 use crate::kernel::scrub;
@@ -26,6 +27,8 @@ pub(super) struct Source {
     pub at: [f32; 2],
     /// The nearest texel.
     pub nearest: Surface,
+    /// Where that is stored.
+    pub index: usize,
     /// Disparity that the surface had.
     pub expected: f32,
     /// How far it may be believed, above 0 and at most 1.
@@ -47,7 +50,8 @@ impl Remembered<'_> {
             return Err(Verdict::Reset);
         }
         let [qx, qy] = reproject::nearest(x, y, motion, inputs.size)?;
-        let nearest = self.texel(qx as i32, qy as i32);
+        let index = qy as usize * inputs.size[0] as usize + qx as usize;
+        let nearest = unpack_surface(self.past.words[index]);
         if nearest.lod < 0.0 {
             return Err(Verdict::Empty);
         }
@@ -66,6 +70,7 @@ impl Remembered<'_> {
             fraction: [at[0] - whole[0], at[1] - whole[1]],
             at,
             nearest,
+            index,
             expected,
             trust,
         })
@@ -90,6 +95,13 @@ impl Remembered<'_> {
             gathered = resample::gather(gathered, s, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
         }
         resample::resolve(gathered, source.nearest)
+    }
+
+    /// Noise of the nearest texel under this frame's exposure.
+    #[inline(always)]
+    pub fn noise(&self, source: &Source) -> Noise {
+        let stored = unpack_noise(self.past.noise[source.index]);
+        self.inputs.exposure.map_or(stored, |ratio| expose_noise(stored, ratio))
     }
 
     /// A stored colour under this frame's exposure.

@@ -3,13 +3,17 @@
 //!
 //! Each pixel reads its colour, depth, three motions, twelve remembered surfaces, eight texels of their coarser levels and, where
 //! something changed, four more colours (neighbours share most of them), and writes one surface, a third of a texel of the coarser
-//! levels and one colour: 48 bytes with half-float colour and motion.
+//! levels and one colour: 48 bytes with half-float colour and motion. Where candidates are noisy it reads their noise, the noise of
+//! one surface and eight texels of the candidates' coarser levels, and writes one word of noise: 80 bytes with the making of those.
 
 use super::remembered::{Remembered, Source};
+use super::surface_pass::Pixel;
 use crate::kernel::approx;
+use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
 use crate::kernel::matched::{self, Evidence, Matched, SmrParams};
+use crate::kernel::noise::{self, NOISY_LEVELS, Noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
@@ -28,10 +32,11 @@ impl Smr {
         Self { params: settings.smr_params(), settings: *settings }
     }
 
-    /// One pixel: what is shown, what is stored, what was decided.
+    /// One pixel: what is shown, what is stored and how noisy, what was decided.
     #[inline(always)]
-    pub fn pixel(&self, at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> (Vec3, [u32; 2], PixelTrace) {
+    pub fn pixel(&self, at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
         let inputs = &at.inputs;
+        let noise = inputs.noise(x, y);
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
@@ -45,10 +50,15 @@ impl Smr {
         inputs.count(x, y, usable, disparity, verdict, stats);
 
         let mut made = Matched { color: candidate, lod: if usable { lod } else { -1.0 }, share: 0.0, fit: 1.0 };
+        let mut known = noise;
         if let Ok(source) = source {
             if !usable {
                 let history = at.resample(&source);
                 made = Matched { color: at.expose(history.sharp), lod: history.lod, share: 1.0, fit: 1.0 };
+                known = noise.map(|_| at.noise(&source));
+            } else if let Some(noise) = noise {
+                let (averaged, after) = self.averaged(at, [x, y], candidate, noise, lod, &source);
+                (made, known) = (averaged, Some(after));
             } else if lod > 0.0 {
                 made = self.matched(at, x, y, candidate, lod, &source);
             }
@@ -68,7 +78,12 @@ impl Smr {
             take: made.share == 0.0,
             motion,
         };
-        (made.color, pack_surface(Surface { color: made.color, lod: stored_lod, disparity }), trace)
+        Pixel {
+            shown: made.color,
+            surface: pack_surface(Surface { color: made.color, lod: stored_lod, disparity }),
+            noise: known.map_or(0, pack_noise),
+            trace,
+        }
     }
 
     /// Level of detail of the candidate.
@@ -97,7 +112,7 @@ impl Smr {
     #[inline(always)]
     fn matched(&self, at: &Remembered<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
         let history = at.resample(source);
-        if matched::wanted(lod, history.lod, self.params.accumulate).share == 0.0 {
+        if matched::wanted(lod, history.lod, self.params.accumulate, false).share == 0.0 {
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
         }
         // A point sample is noise at its own scale: compare one level coarser.
@@ -124,8 +139,51 @@ impl Smr {
             level,
             next_level,
             trust: source.trust,
+            noise: 0.0,
         };
         matched::decide(&evidence, &self.params)
+    }
+
+    /// The same for a noisy candidate, and the noise of what is made.
+    #[inline(always)]
+    fn averaged(
+        &self,
+        at: &Remembered<'_>,
+        [x, y]: [u32; 2],
+        candidate: Vec3,
+        noise: Noise,
+        lod: f32,
+        source: &Source,
+    ) -> (Matched, Noise) {
+        let history = at.resample(source);
+        let past = at.noise(source);
+        let params = SmrParams { accumulate: noise::history_share(past, noise, self.params.accumulate), ..self.params };
+        let wanted = matched::wanted(lod, history.lod, params.accumulate, true);
+        if wanted.share == 0.0 {
+            return (Matched { color: candidate, lod, share: 0.0, fit: 1.0 }, noise);
+        }
+        let compared_lod = lod + NOISY_LEVELS;
+        let candidates = at.past.candidates.expect("smr makes coarser levels of noisy candidates");
+        let [compared, coarser] = candidates.read_candidates([x as f32, y as f32], compared_lod);
+        let chain = at.past.chain.expect("smr remembers coarser levels");
+        let [matched, level, next_level] = chain.read(source.at, compared_lod, history.smooth).map(|c| at.expose(c));
+        let around = Noise { samples: noise.samples, variance: compared.w * noise.samples };
+        let evidence = Evidence {
+            candidate,
+            compared: compared.truncate(),
+            compared_coarser: coarser.truncate(),
+            lod,
+            history: at.expose(history.sharp),
+            history_lod: history.lod,
+            matched,
+            level,
+            next_level,
+            trust: source.trust,
+            noise: noise::noise_difference(past, around, color::luma(matched)),
+        };
+        let made = matched::decide(&evidence, &params);
+        let believed = made.fit * source.trust;
+        (made, noise::noise_after(past, around, made.share, wanted.finer * believed))
     }
 
     /// Mean of four candidates on the diagonals of one that is usable.

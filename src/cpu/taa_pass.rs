@@ -4,6 +4,7 @@
 //! surface and one colour: 40 bytes with half-float colour and motion.
 
 use super::remembered::Remembered;
+use super::surface_pass::Pixel;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub::MAX_HALF;
@@ -14,7 +15,7 @@ use glam::Vec3;
 
 /// One pixel: what is shown, what is stored, what was decided.
 #[inline(always)]
-pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> (Vec3, [u32; 2], PixelTrace) {
+pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
     let inputs = &at.inputs;
     let (candidate, usable) = inputs.candidate(x, y);
     let disparity = inputs.disparity(x, y);
@@ -48,7 +49,8 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
         take: verdict != Verdict::Valid,
         motion,
     };
-    (shown, pack_surface(Surface { color: shown, lod: stored_lod, disparity }), trace)
+    let surface = pack_surface(Surface { color: shown, lod: stored_lod, disparity });
+    Pixel { shown, surface, noise: 0, trace }
 }
 
 /// Sums of colours and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose colour is `own`.

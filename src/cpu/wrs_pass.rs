@@ -9,7 +9,9 @@ use super::inputs::Inputs;
 use crate::frame::ContextDesc;
 use crate::image::Image;
 use crate::kernel::acuity;
+use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::noise::sample_difference;
 use crate::kernel::pack::{self, Stored};
 use crate::kernel::reproject::{self, Verdict};
 use crate::kernel::rng;
@@ -110,7 +112,12 @@ impl ViewPass<'_> {
         let inputs = &self.inputs;
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
-        let weight = if usable { self.weight(ray) } else { 0.0 };
+        let mut weight = if usable { self.weight(ray) } else { 0.0 };
+        let mut params = self.params;
+        if let Some(noise) = inputs.noise(x, y) {
+            weight *= noise.samples;
+            params.gate_offset += sample_difference(noise, color::luma(candidate));
+        }
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
         let (verdict, past, past_age) = match self.history(x, y, ray, motion, disparity) {
@@ -118,7 +125,7 @@ impl ViewPass<'_> {
             Err(verdict) => (verdict, Past::EMPTY, 0),
         };
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.key));
-        let decision = wrs::step(candidate, weight, past, &self.params, draw);
+        let decision = wrs::step(candidate, weight, past, &params, draw);
 
         let (color, age) = if decision.take { (candidate, 0) } else { (past.color, (past_age + 1).min(pack::MAX_AGE)) };
         row.out[i] = color.to_array();

@@ -63,15 +63,23 @@ impl Bindings {
             optional(frame.trust),
             array_view(frame.output),
         ];
-        let lod = optional(frame.lod);
+        let (lod, noise) = (optional(frame.lod), optional(frame.noise));
         let (past, next) = history.split();
         let (past, next) = (&past.views, &next.targets);
+        let candidates = history.candidates().map_or(&self.no_float, |c| &c.view);
         let past_or = |i: usize, absent| past.get(i).unwrap_or(absent);
         let next_or = |i: usize| next.get(i).unwrap_or(&self.no_out[i]);
         let remembered = match self.history {
-            HistoryLayout::Surfaces { .. } => {
-                vec![&lod, past_or(0, &self.no_word), past_or(1, &self.no_float), next_or(0), next_or(1)]
-            }
+            HistoryLayout::Surfaces { .. } => vec![
+                &lod,
+                past_or(0, &self.no_word),
+                past_or(1, &self.no_float),
+                next_or(0),
+                next_or(1),
+                past_or(2, &self.no_word),
+                candidates,
+                next_or(2),
+            ],
             _ => vec![
                 past_or(0, &self.no_word),
                 past_or(1, &self.no_word),
@@ -88,7 +96,7 @@ impl Bindings {
         });
         let resources = std::iter::once(constants.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
-            .chain([counters])
+            .chain([counters, BindingResource::TextureView(&noise)])
             .chain(remembered.into_iter().map(BindingResource::TextureView));
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
@@ -103,9 +111,7 @@ impl Bindings {
 /// Formats of what a pass writes for the next frame.
 fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
-        HistoryLayout::Surfaces { .. } => {
-            [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Float]
-        }
+        HistoryLayout::Surfaces { .. } => [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint],
         _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
     }
 }
@@ -179,9 +185,12 @@ fn layout_entries(output: TextureFormat, history: HistoryLayout) -> Vec<BindGrou
         sampled(float),
         storage(output),
         buffer(BufferBindingType::Storage { read_only: false }),
+        sampled(float),
     ];
     types.extend(match history {
-        HistoryLayout::Surfaces { .. } => vec![sampled(float), words, sampled(float), first, second],
+        HistoryLayout::Surfaces { .. } => {
+            vec![sampled(float), words, sampled(float), first, second, words, sampled(float), third]
+        }
         _ => vec![words, words, sampled(float), first, second, third],
     });
     (0..)

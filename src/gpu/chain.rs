@@ -1,4 +1,4 @@
-//! The coarser levels of remembered surfaces, each from the next finer one.
+//! The coarser levels of remembered surfaces or of noisy candidates, each from the next finer one.
 
 use super::WORKGROUP_WIDTH;
 use super::bindings::uniform;
@@ -6,6 +6,15 @@ use super::history::levels_view;
 use super::shader;
 use crate::kernel::foveate::level_len;
 use wgpu::{BindGroup, ComputePass, ComputePipeline, Device, Texture};
+
+/// What the levels are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ChainKind {
+    /// Remembered surfaces.
+    Surfaces,
+    /// Noisy candidates.
+    Candidates,
+}
 
 /// The pass that makes a level.
 #[derive(Debug)]
@@ -21,7 +30,7 @@ pub(super) struct ChainLevel {
 }
 
 impl ChainPass {
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, kind: ChainKind) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("afterimage chain"),
             source: wgpu::ShaderSource::Wgsl(shader::compose("chain_pass").source.into()),
@@ -31,7 +40,10 @@ impl ChainPass {
             layout: None,
             module: &module,
             entry_point: Some("main"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("CANDIDATES", f64::from(u8::from(kind == ChainKind::Candidates)))],
+                ..wgpu::PipelineCompilationOptions::default()
+            },
             cache: None,
         });
         Self { pipeline }

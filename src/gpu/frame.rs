@@ -22,6 +22,9 @@ pub struct Frame<'a> {
     /// [`Settings::foveation`](crate::Settings::foveation) has it, whose `rate_far` must be the coarsest in either case: history is not
     /// matched at coarser levels.
     pub lod: Option<&'a Texture>,
+    /// Noise of the colour: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
+    /// detail; `Rg16Float`, `Rg32Float` or wider. Where, and only where, [`Settings::noisy`](crate::Settings::noisy) says so.
+    pub noise: Option<&'a Texture>,
     /// What the user will see: the context's output format, usage `STORAGE_BINDING`.
     pub output: &'a Texture,
     /// One entry a view.
@@ -50,6 +53,7 @@ impl<'a> Frame<'a> {
             motion: None,
             trust: None,
             lod: None,
+            noise: None,
             output,
             views,
             index,

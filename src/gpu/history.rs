@@ -1,5 +1,6 @@
 //! The state between frames: two sets of textures, one the past, one to be written.
 
+use super::candidates::{CandidatePass, Candidates};
 use super::chain::{ChainLevel, ChainPass};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
@@ -26,14 +27,21 @@ pub(super) struct Planes {
 pub(super) struct History {
     layout: HistoryLayout,
     sets: [Planes; 2],
+    candidates: Option<Candidates>,
     past: usize,
     filled: bool,
     pub held_gaze: Vec<Option<[f32; 2]>>,
 }
 
 impl History {
-    /// `chain` fills coarser levels, where the layout has them.
-    pub fn new(device: &Device, desc: &ContextDesc, layout: HistoryLayout, chain: Option<&ChainPass>) -> Self {
+    /// `chain` fills coarser levels of surfaces and `candidates` of candidates, where the layout has them.
+    pub fn new(
+        device: &Device,
+        desc: &ContextDesc,
+        layout: HistoryLayout,
+        chain: Option<&ChainPass>,
+        candidates: Option<&CandidatePass>,
+    ) -> Self {
         let planes = || {
             let full = |format| texture(device, desc, format, desc.size_px, 1);
             let mut textures = match layout {
@@ -45,20 +53,27 @@ impl History {
                 HistoryLayout::Surfaces { .. } => vec![full(TextureFormat::Rg32Uint)],
             };
             let mut levels = vec![];
-            if let (HistoryLayout::Surfaces { levels: count @ 1.. }, Some(chain)) = (layout, chain) {
-                // A texture's levels halve and round down, the chain's round up: padded, they agree.
-                let multiple = 1 << (count - 1);
-                let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
-                let texture = texture(device, desc, TextureFormat::Rgba16Float, size, count);
+            if let (HistoryLayout::Surfaces { levels: count @ 1.., noisy }, Some(chain)) = (layout, chain) {
+                let texture = chain_texture(device, desc, count);
                 levels = chain.levels(device, &texture, desc.size_px);
                 textures.push(texture);
+                textures.extend(noisy.then(|| full(TextureFormat::R32Uint)));
             }
             let views = textures.iter().map(|t| levels_view(t, 0, None)).collect();
             let targets = textures.iter().map(|t| levels_view(t, 0, Some(1))).collect();
             Planes { textures, views, targets, chain: levels }
         };
+        let candidates = match layout {
+            HistoryLayout::Surfaces { levels, noisy: true } => candidates.map(|c| c.levels(device, desc, levels)),
+            _ => None,
+        };
         let held_gaze = vec![None; desc.view_count as usize];
-        Self { layout, sets: [planes(), planes()], past: 0, filled: false, held_gaze }
+        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, held_gaze }
+    }
+
+    /// Where the coarser levels of noisy candidates are.
+    pub fn candidates(&self) -> Option<&Candidates> {
+        self.candidates.as_ref()
     }
 
     pub fn layout(&self) -> HistoryLayout {
@@ -89,7 +104,7 @@ impl History {
     /// Bytes of all textures.
     pub fn memory_bytes(&self) -> u64 {
         let textures = self.sets.iter().flat_map(|s| &s.textures);
-        textures.map(bytes).sum()
+        textures.chain(self.candidates.iter().map(|c| &c.texture)).map(bytes).sum()
     }
 }
 
@@ -98,6 +113,14 @@ fn bytes(texture: &Texture) -> u64 {
     let texels = |level: u32| u64::from(texture.width() >> level) * u64::from(texture.height() >> level);
     let all_levels: u64 = (0..texture.mip_level_count()).map(texels).sum();
     texel * all_levels * u64::from(texture.depth_or_array_layers())
+}
+
+/// Room for levels 1 to `count` of a chain.
+pub(super) fn chain_texture(device: &Device, desc: &ContextDesc, count: u32) -> Texture {
+    // A texture's levels halve and round down, the chain's round up: padded, they agree.
+    let multiple = 1 << (count - 1);
+    let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
+    texture(device, desc, TextureFormat::Rgba16Float, size, count)
 }
 
 fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u32; 2], levels: u32) -> Texture {

@@ -31,6 +31,11 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
             check_readable(input, texture, 1)?;
         }
     }
+    desc.settings.check_noise(0, frame.noise.is_some())?;
+    if let Some(noise) = frame.noise {
+        check_texture(desc, "noise", noise, read)?;
+        check_readable("noise", noise, 2)?;
+    }
     frame.exposure.check()?;
     if let Some(counters) = frame.counters {
         check_counters(counters)?;

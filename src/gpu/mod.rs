@@ -4,6 +4,7 @@
 //! history and constants. [`Afterimage::record`] never submits, polls, maps or waits.
 
 mod bindings;
+mod candidates;
 mod chain;
 mod desc;
 mod frame;
@@ -28,10 +29,11 @@ pub(crate) use input::{check_readable, check_texture};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{Reset, check_size};
 use crate::kernel::debug_view::DebugView;
-use crate::settings::{Method, Settings};
+use crate::settings::{HistoryLayout, Method, Settings};
 use crate::stats::COUNTERS_BYTES;
 use bindings::Bindings;
-use chain::ChainPass;
+use candidates::CandidatePass;
+use chain::{ChainKind, ChainPass};
 use history::History;
 use pipeline::{Pipelines, Variant, pass_name};
 use types::{FrameConstants, ViewConstants};
@@ -55,6 +57,7 @@ struct Passes {
     bindings: Bindings,
     pipelines: Pipelines,
     chain: Option<ChainPass>,
+    candidates: Option<CandidatePass>,
 }
 
 impl Passes {
@@ -64,12 +67,17 @@ impl Passes {
             method: desc.settings.method,
             pipelines: Pipelines::new(device, desc, &bindings, source)?,
             bindings,
-            chain: (desc.settings.method == Method::Smr).then(|| ChainPass::new(device)),
+            chain: (desc.settings.method == Method::Smr).then(|| ChainPass::new(device, ChainKind::Surfaces)),
+            candidates: None,
         })
     }
 
-    fn history(&self, device: &Device, desc: &GpuDesc) -> History {
-        History::new(device, &desc.context, desc.settings.history_layout(), self.chain.as_ref())
+    fn history(&mut self, device: &Device, desc: &GpuDesc) -> History {
+        let layout = desc.settings.history_layout();
+        if matches!(layout, HistoryLayout::Surfaces { noisy: true, .. }) {
+            self.candidates.get_or_insert_with(|| CandidatePass::new(device));
+        }
+        History::new(device, &desc.context, layout, self.chain.as_ref(), self.candidates.as_ref())
     }
 }
 
@@ -94,7 +102,7 @@ impl Afterimage {
     #[doc(hidden)]
     pub fn from_shader(device: &Device, desc: &GpuDesc, source: &str) -> Result<Self, CreateError> {
         desc.validate(&device.limits())?;
-        let passes = Passes::new(device, desc, source)?;
+        let mut passes = Passes::new(device, desc, source)?;
         Ok(Self { desc: *desc, history: passes.history(device, desc), passes })
     }
 
@@ -144,7 +152,7 @@ impl Afterimage {
     /// What was remembered of the last recorded frame, for tests and tools; usages `COPY_SRC`, `COPY_DST`. Of wrs the packed
     /// reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys
     /// (`R32Float`). Of taa and smr the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`), and of smr their coarser
-    /// levels (`Rgba16Float`).
+    /// levels (`Rgba16Float`), and where candidates are noisy the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
     pub fn history_textures(&self) -> &[Texture] {
         &self.history.split().0.textures
     }
@@ -251,6 +259,9 @@ impl Afterimage {
                 end_of_pass_write_index: Some(t.end),
             }),
         });
+        if let (Some(passes), Some(candidates)) = (&self.passes.candidates, self.history.candidates()) {
+            passes.record(device, &mut pass, frame, candidates);
+        }
         pass.set_pipeline(self.passes.pipelines.get(device, variant));
         pass.set_bind_group(0, &group, &[]);
         let [width, height] = self.desc.context.size_px.map(|s| s.div_ceil(side));

@@ -30,6 +30,7 @@ pub(super) struct Variant {
     has_lod: bool,
     filter: Filter,
     relight: bool,
+    noisy: bool,
     count: bool,
     view: Option<DebugView>,
 }
@@ -50,8 +51,13 @@ impl Variant {
             bias: params.bias as u32,
             gate: if settings.gate.is_some() { params.gate as u32 } else { GateCode::Off as u32 },
             has_lod: frame.lod.is_some(),
-            filter: settings.foveation.filter,
+            // Noise is more than what point samples alias.
+            filter: match settings.foveation.filter {
+                Filter::Block if settings.noisy => Filter::Mip,
+                filter => filter,
+            },
             relight: settings.smr.relight,
+            noisy: settings.noisy,
             count: frame.counters.is_some(),
             view: None,
         }
@@ -86,6 +92,7 @@ impl Variant {
             ("HAS_TRUST", flag(self.has_trust)),
             ("HAS_EXPOSURE", flag(self.has_exposure)),
             ("DEPTH_TEST", flag(self.depth_test)),
+            ("NOISY", flag(self.noisy)),
             ("COUNT", flag(self.count)),
             ("VIEW", self.view.map_or(0.0, |v| f64::from(v as u32))),
         ];

@@ -49,6 +49,7 @@ const MODULES: &[Module] = &[
     module!("lib", "matched"),
     #[cfg(feature = "lab")]
     module!("lib", "microfacet"),
+    module!("lib", "noise"),
     #[cfg(feature = "lab")]
     module!("lib", "octahedral"),
     module!("lib", "pack"),
@@ -70,6 +71,7 @@ const MODULES: &[Module] = &[
     #[cfg(feature = "lab")]
     module!("lib", "triangle"),
     module!("lib", "wrs"),
+    module!("pass", "candidate_pass"),
     module!("pass", "chain_pass"),
     module!("pass", "inputs"),
     module!("pass", "remembered"),

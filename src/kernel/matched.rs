@@ -17,7 +17,7 @@ const RELIGHT_BLOCKS: [f32; 2] = [12.0, 2.0];
 /// Gains of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
 /// Keeps ratios of dark colours finite.
-const DARK: f32 = 0.002;
+pub(super) const DARK: f32 = 0.002;
 /// Motion of neighbours that counts as the same: this many pixels, and this share of their length.
 const COHERENT: [f32; 2] = [0.5, 0.1];
 
@@ -34,6 +34,8 @@ pub struct SmrParams {
     pub blocks: bool,
     /// Follow changes of light.
     pub relight: bool,
+    /// Candidates are noisy: equally fine history is accumulated where the eye looks, too.
+    pub noisy: bool,
 }
 
 /// 0 up to `from`, 1 from `width` above it on, smooth between.
@@ -76,17 +78,19 @@ pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
 pub struct Wanted {
     /// 1 if history is finer than the candidate, 0 if not, in \[0, 1\].
     pub finer: f32,
-    /// Its share in what is shown, if it fits: 1 where finer, `accumulate` where alike, 0 where coarser or in the fovea.
+    /// Its share in what is shown, if it fits: 1 where finer, `accumulate` where alike, 0 where coarser, and in the fovea unless it is
+    /// noisy.
     pub share: f32,
 }
 
 /// See [`Wanted`]. Levels of detail.
 #[inline]
-pub fn wanted(lod: f32, history_lod: f32, accumulate: f32) -> Wanted {
+pub fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool) -> Wanted {
     let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0);
     let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0);
     let alike = (1.0 - finer) * (1.0 - coarser);
-    Wanted { finer, share: finer + (alike * lod.min(1.0)) * accumulate }
+    let calm = if noisy { 1.0 } else { lod.min(1.0) };
+    Wanted { finer, share: finer + (alike * calm) * accumulate }
 }
 
 /// A colour channel's gain under changed light: the ratio of candidate and history at a coarse level, as far as light `changed`
@@ -99,17 +103,17 @@ pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     (1.0 - share) + ratio * share
 }
 
-/// Difference at which relighting sets in.
+/// Difference at which relighting sets in, `noise` being what noise alone makes.
 #[inline]
-pub fn relight_from(contrast: f32, blocks: bool) -> f32 {
+pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
-    relight[0] + relight[1] * contrast
+    (relight[0] + relight[1] * contrast) + noise
 }
 
 /// Whether candidate and history differ by more than detail explains: only then is it of interest what surrounds the candidate.
 #[inline]
 pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, blocks: bool) -> bool {
-    root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks)
+    root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks, 0.0)
 }
 
 /// What is known of a pixel before the decision.
@@ -135,6 +139,8 @@ pub struct Evidence {
     pub next_level: Vec3,
     /// How far history may be believed, in \[0, 1\].
     pub trust: f32,
+    /// Difference of `compared` and `matched` that noise alone makes; 0 for candidates without noise.
+    pub noise: f32,
 }
 
 /// What was decided.
@@ -153,13 +159,13 @@ pub struct Matched {
 /// Shows history as far as it is wanted and explains the candidate, relit if only the light changed.
 #[inline]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
-    let wanted = wanted(e.lod, e.history_lod, p.accumulate);
+    let wanted = wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
     if p.relight {
-        let from = relight_from(contrast, p.blocks);
+        let from = relight_from(contrast, p.blocks, e.noise);
         let changed = smooth_step(from, from, d);
         let (c, h) = (e.compared_coarser, e.next_level);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
@@ -172,7 +178,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     }
     let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * wanted.finer);
     let scale = if p.blocks { 4.0 } else { 1.0 };
-    let fit = 1.0 - smooth_step(tolerance * (GATE[0] * scale + contrast), tolerance * (GATE[1] * scale), d);
+    let fit = 1.0 - smooth_step(tolerance * (GATE[0] * scale + contrast) + e.noise, tolerance * (GATE[1] * scale), d);
     let believed = fit * e.trust;
     let share = believed * wanted.share;
     let history = k * e.history;

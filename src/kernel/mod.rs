@@ -25,6 +25,7 @@ pub mod light;
 pub mod matched;
 #[cfg(feature = "lab")]
 pub mod microfacet;
+pub mod noise;
 #[cfg(feature = "lab")]
 pub mod octahedral;
 pub mod pack;

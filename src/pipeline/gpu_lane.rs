@@ -40,6 +40,7 @@ pub(super) struct GpuLane {
     motion: Texture,
     trust: Texture,
     lod: Texture,
+    noise: Texture,
     output: Texture,
     counters: Buffer,
 }
@@ -57,6 +58,7 @@ impl GpuLane {
             motion: texture(TextureFormat::Rg32Float, read),
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read),
+            noise: texture(TextureFormat::Rg32Float, read),
             output: texture(TextureFormat::Rgba32Float, output),
             counters: gpu.counters(),
             gpu: gpu.clone(),
@@ -76,14 +78,17 @@ impl GpuLane {
                 self.gpu.write(texture, 0, image);
             }
         }
-        if let Some(motion) = view.motion {
-            self.gpu.write(&self.motion, 0, motion);
+        for (image, texture) in [(view.motion, &self.motion), (view.noise, &self.noise)] {
+            if let Some(image) = image {
+                self.gpu.write(texture, 0, image);
+            }
         }
         let frame = Frame {
             depth: view.depth.map(|_| &self.depth),
             motion: view.motion.map(|_| &self.motion),
             trust: view.trust.map(|_| &self.trust),
             lod: view.lod.map(|_| &self.lod),
+            noise: view.noise.map(|_| &self.noise),
             reset: input.reset,
             ..Frame::new(&self.color, &self.output, std::slice::from_ref(&view.facts), input.index)
         };

@@ -15,7 +15,7 @@ use crate::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
 use crate::settings::Settings;
-use crate::source::SourceFrame;
+use crate::source::{FoveatedFrame, SourceFrame};
 use crate::stats::FrameStats;
 use gpu_lane::{GpuLane, LaneInput};
 use std::sync::Arc;
@@ -71,6 +71,17 @@ pub enum Backend {
     Cpu,
     /// The wgpu executor on this device. Frames are uploaded and read back; times are of the pass alone.
     Gpu(Arc<Headless>),
+}
+
+/// A foveated frame.
+struct Candidate<'a> {
+    color: &'a Image<[f32; 3]>,
+    lods: &'a Image<f32>,
+    /// Whether the methods are told its levels of detail.
+    told: bool,
+    noise: Option<&'a Image<[f32; 2]>>,
+    /// What it was made of, if by a simulator.
+    pyramid: Option<&'a Pyramid>,
 }
 
 enum Executor {
@@ -149,10 +160,7 @@ impl Pipeline {
         if frame.color.size() != size {
             return Err(FrameError::Size { input: "colour", view: 0, found: frame.color.size(), expected: size });
         }
-        let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
-        let gaze_px = gaze.resolve(self.held_gaze, size);
-        self.held_gaze = Some(gaze_px);
-
+        let gaze_px = self.look(gaze);
         let watch = Stopwatch::start();
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
         let lods = self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg);
@@ -160,10 +168,55 @@ impl Pipeline {
             Some(pyramid) => pyramid,
             None => Pyramid::new(frame.color.clone(), self.foveation.max_level()),
         };
-        let candidate = self.foveation.render(&pyramid, &lods);
+        let color = self.foveation.render(&pyramid, &lods);
         let foveation_ms = watch.wall_ms();
+        // Blocks are decided by their centres, which the post-process does not know.
+        let told = self.foveation.filter == Filter::Block;
+        let candidate = Candidate { color: &color, lods: &lods, told, noise: None, pyramid: Some(&pyramid) };
+        let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
+        if self.is_still {
+            self.still = Some(pyramid);
+        }
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, shown, foveation_ms })
+    }
 
-        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+    /// The same of a frame that its source foveated for the gaze that [`look`](Self::look) gave. Lanes' settings are taken to be
+    /// [`noisy`](Settings::noisy); there is no oracle of such frames.
+    ///
+    /// # Errors
+    /// If a frame's size is not the pipeline's.
+    pub fn step_foveated(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze_px: [f32; 2],
+        foveated: FoveatedFrame,
+    ) -> Result<Step, FrameError> {
+        let FoveatedFrame { color, lod, noise } = foveated;
+        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
+        let candidate = Candidate { color: &color, lods: &lod, told: true, noise: Some(&noise), pyramid: None };
+        let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
+        Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, shown, foveation_ms: 0.0 })
+    }
+
+    /// Where the eye is taken to look: a lost gaze holds the last position; before the first, the middle of the view.
+    pub fn look(&mut self, gaze: Option<[f32; 2]>) -> [f32; 2] {
+        let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
+        let gaze_px = gaze.resolve(self.held_gaze, self.geometry.size_px());
+        self.held_gaze = Some(gaze_px);
+        gaze_px
+    }
+
+    /// Gives a candidate to all lanes.
+    fn show(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze_px: [f32; 2],
+        ecc_deg: &Image<f32>,
+        candidate: &Candidate<'_>,
+    ) -> Result<(Tracked, Vec<Shown>), FrameError> {
+        let tracked = self.tracker.advance(frame, &self.geometry, ecc_deg, candidate.lods);
         let facts = ViewFrame {
             geometry: self.geometry,
             gaze: Gaze::At { px: gaze_px },
@@ -173,9 +226,9 @@ impl Pipeline {
             depth: frame.depth.as_ref(),
             motion: frame.motion.as_ref(),
             trust: frame.trust.as_ref().filter(|_| self.use_trust),
-            // Blocks are decided by their centres, which the post-process does not know.
-            lod: (self.foveation.filter == Filter::Block).then_some(&lods),
-            ..CpuView::new(facts, &candidate)
+            lod: candidate.told.then_some(candidate.lods),
+            noise: candidate.noise,
+            ..CpuView::new(facts, candidate.color)
         };
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let cpu_frame = CpuFrame { reset, ..CpuFrame::new(std::slice::from_ref(&view), index) };
@@ -184,13 +237,18 @@ impl Pipeline {
             shown.push(match lane {
                 Executor::PostProcess(post) => post_process(post, &cpu_frame, &self.debug)?,
                 Executor::Gpu(lane) => post_process_on_gpu(lane, &LaneInput { view, index, reset }, &self.debug)?,
-                Executor::Oracle { best } => oracle(best, &lods, &self.foveation, &pyramid),
+                Executor::Oracle { best } => {
+                    let pyramid = candidate.pyramid.ok_or_else(|| FrameError::Value {
+                        what: "oracle",
+                        view: 0,
+                        found: "a frame that its source foveated".into(),
+                        expected: "a simulator's",
+                    })?;
+                    oracle(best, candidate.lods, &self.foveation, pyramid)
+                }
             });
         }
-        if self.is_still {
-            self.still = Some(pyramid);
-        }
-        Ok(Step { gaze_px, ecc_deg, lods, tracked, shown, foveation_ms })
+        Ok((tracked, shown))
     }
 
     /// Bytes that lane `index` keeps between frames.

@@ -17,7 +17,7 @@ pub use raster::RasterSource;
 pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
-pub use traced::TracedSource;
+pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 use crate::image::Image;
@@ -41,6 +41,17 @@ pub struct SourceFrame {
     pub cut: bool,
     /// Colour pixels of the input that were NaN or infinite.
     pub nonfinite: u64,
+}
+
+/// A frame that a source foveated itself, for a gaze.
+#[derive(Clone, Debug)]
+pub struct FoveatedFrame {
+    /// Linear colour.
+    pub color: Image<[f32; 3]>,
+    /// Level of detail: log2 of the distance of samples in pixels.
+    pub lod: Image<f32>,
+    /// Standard error of the colour's luma, linear, and the samples that it is a mean of.
+    pub noise: Image<[f32; 2]>,
 }
 
 /// What is known about a source before its first frame is read.
@@ -74,6 +85,14 @@ pub trait FrameSource {
     /// # Errors
     /// If the file behind it cannot be read or is not what its header promised.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
+
+    /// The same frame as the source foveates it for a gaze in pixels; `None` if it does not, and a simulator has to.
+    ///
+    /// # Errors
+    /// As for [`frame`](Self::frame).
+    fn foveated(&mut self, _index: u64, _gaze_px: [f32; 2]) -> Result<Option<FoveatedFrame>, InputError> {
+        Ok(None)
+    }
 }
 
 /// What a scene needs to be told; files know it themselves.

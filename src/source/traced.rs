@@ -2,21 +2,36 @@
 
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
-use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
+use super::{FoveatedFrame, FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
 use crate::error::InputError;
 use crate::pipeline::Backend;
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
+use crate::trace::sampling::Sampling;
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
+use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
 
 /// Samples that are traced at once: their paths' film stays small.
 const STEP: u32 = 1 << 20;
+/// Where the frame numbers of full-rate frames begin, so that their noise is not that of the foveated ones.
+const FULL_RATE_FRAMES: u64 = 1 << 31;
 
-/// A scene seen by a camera, path-traced frame by frame with the same number of samples everywhere.
+/// How many samples frames have, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TracedSamples {
+    /// How the foveated frame is sampled; `None` leaves foveation to a simulator.
+    pub foveated: Option<Sampling>,
+    /// Samples of a pixel of the foveated frame where it has most, unless the pattern states its own.
+    pub samples: u32,
+    /// Samples of every pixel of the full-rate frame.
+    pub full_rate_samples: u32,
+}
+
+/// A scene seen by a camera, path-traced frame by frame: at full rate with the same number of samples everywhere, and foveated.
 ///
 /// As of [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and motion are
 /// those at the pixels' centres, without noise.
@@ -27,12 +42,14 @@ pub struct TracedSource {
     tracer: Tracer,
     camera: SceneCamera,
     fps: f64,
-    samples: u32,
+    samples: TracedSamples,
+    /// The full-rate frame of a scene where nothing moves.
+    still: Option<SourceFrame>,
 }
 
 impl TracedSource {
     /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that [`SceneCamera::choose`] finds by
-    /// `camera`, to be traced with `samples` samples a pixel. A scene without light stands under a soft white sky.
+    /// `camera`. A scene without light stands under a soft white sky.
     ///
     /// # Errors
     /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
@@ -43,7 +60,7 @@ impl TracedSource {
         camera: Option<&str>,
         backend: &Backend,
         settings: TraceSettings,
-        samples: u32,
+        samples: TracedSamples,
     ) -> Result<Self, InputError> {
         let size = options.size.unwrap_or(DEFAULT_SIZE);
         check_size(input, size, limits)?;
@@ -66,7 +83,7 @@ impl TracedSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples: samples.max(1) })
+        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, still: None })
     }
 
     /// What the file asks for and is not done.
@@ -75,12 +92,9 @@ impl TracedSource {
     }
 }
 
-impl FrameSource for TracedSource {
-    fn info(&self) -> &SourceInfo {
-        &self.info
-    }
-
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+impl TracedSource {
+    /// Poses the scene for a frame. Gives its view and the one before.
+    fn pose(&mut self, index: u64) -> Result<[View; 2], InputError> {
         let before = index.saturating_sub(1);
         let times = [index, before].map(|i| i as f64 / self.fps);
         if self.scene.duration_s() > 0.0 {
@@ -89,14 +103,18 @@ impl FrameSource for TracedSource {
                 .update(&self.world)
                 .map_err(|e| InputError::new(&self.info.name, e.to_string(), "trace it on the CPU"))?;
         }
-        let view = self.camera.view(&self.scene, index, times[0]);
-        let previous = self.camera.view(&self.scene, before, times[1]);
+        Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
+    }
+
+    fn full_rate(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        let [view, previous] = self.pose(index)?;
         let [width, height] = self.info.size;
         let mut film = Film::new(self.info.size);
-        let rows = (STEP / width.saturating_mul(self.samples).max(1)).max(1);
+        let samples = self.samples.full_rate_samples.max(1);
+        let rows = (STEP / width.saturating_mul(samples).max(1)).max(1);
         for first in (0..height).step_by(rows as usize) {
-            let spans = Spans::uniform(width, first..(first + rows).min(height), 0..self.samples);
-            self.tracer.trace(&self.world, &view, index, &spans, &mut film);
+            let spans = Spans::uniform(width, first..(first + rows).min(height), 0..samples);
+            self.tracer.trace(&self.world, &view, FULL_RATE_FRAMES + index, &spans, &mut film);
         }
         let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
         Ok(SourceFrame {
@@ -108,5 +126,31 @@ impl FrameSource for TracedSource {
             cut: index == 0,
             nonfinite: film.nonfinite,
         })
+    }
+}
+
+impl FrameSource for TracedSource {
+    fn info(&self) -> &SourceInfo {
+        &self.info
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        if !self.info.still {
+            return self.full_rate(index);
+        }
+        let frame = match self.still.take() {
+            Some(frame) => frame,
+            None => self.full_rate(0)?,
+        };
+        self.still = Some(frame.clone());
+        Ok(SourceFrame { cut: index == 0, ..frame })
+    }
+
+    fn foveated(&mut self, index: u64, gaze_px: [f32; 2]) -> Result<Option<FoveatedFrame>, InputError> {
+        let Some(sampling) = self.samples.foveated else { return Ok(None) };
+        let [view, _] = self.pose(index)?;
+        let plan = sampling.plan(view.geometry(), gaze_px, self.samples.samples.max(1), index);
+        let traced = plan.trace(&self.tracer, &self.world, &view, index);
+        Ok(Some(FoveatedFrame { color: traced.color, lod: traced.lod, noise: traced.noise }))
     }
 }

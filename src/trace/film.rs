@@ -1,6 +1,7 @@
 //! Where samples are averaged, and how far their mean can be trusted.
 
 use crate::image::Image;
+use crate::kernel::color::luma;
 use glam::Vec3;
 
 /// Running mean and squared deviations of one pixel's samples (Welford 1962): no cancellation, whatever the number of samples.
@@ -58,5 +59,36 @@ impl Film {
     /// Variance of each mean; infinite below two samples.
     pub fn variance(&self) -> Image<[f32; 3]> {
         self.moments.map(|m| m.variance_of_mean().to_array())
+    }
+
+    /// Noise of each mean: the standard error of its luma, and its number of samples (0 where there is none). Of a single sample the
+    /// error is how far its neighbours scatter, which counts their detail as noise, too.
+    pub fn noise(&self) -> Image<[f32; 2]> {
+        Image::from_fn_parallel(self.moments.size(), |[x, y]| {
+            let own = self.moments.at(x as usize, y as usize);
+            let error = match own.count {
+                0 => return [0.0; 2],
+                1 => self.scatter(x, y),
+                // As if the channels' noise were one and the same: never too small.
+                _ => luma(own.variance_of_mean().map(f32::sqrt)),
+            };
+            [error, own.count as f32]
+        })
+    }
+
+    /// Standard deviation of the lumas of 3x3 pixels.
+    fn scatter(&self, x: u32, y: u32) -> f32 {
+        let [width, height] = self.moments.size();
+        let mut lumas = Moments::default();
+        for y in y.saturating_sub(1)..(y + 2).min(height) {
+            for x in x.saturating_sub(1)..(x + 2).min(width) {
+                let near = self.moments.at(x as usize, y as usize);
+                if near.count > 0 {
+                    lumas.add(Vec3::splat(luma(near.mean)));
+                }
+            }
+        }
+        // A pixel alone is as uncertain as it is bright.
+        if lumas.count < 2 { lumas.mean.x } else { (lumas.squares.x / (lumas.count - 1) as f32).sqrt() }
     }
 }

@@ -40,6 +40,7 @@ pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
         })),
         trust: None,
         lod: None,
+        noise: None,
     }
 }
 

@@ -23,6 +23,8 @@ pub struct View {
     pub trust: Option<Image<f32>>,
     /// Levels of detail, where the renderer tells them.
     pub lod: Option<Image<f32>>,
+    /// Standard errors and numbers of samples of noisy frames.
+    pub noise: Option<Image<[f32; 2]>>,
 }
 
 impl View {
@@ -33,7 +35,7 @@ impl View {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: None,
         };
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None }
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
     }
 }
 
@@ -57,6 +59,7 @@ struct Textures {
     motion: Texture,
     trust: Texture,
     lod: Texture,
+    noise: Texture,
     output: Texture,
 }
 
@@ -70,6 +73,7 @@ impl Textures {
             motion: texture(TextureFormat::Rg32Float, read),
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read),
+            noise: texture(TextureFormat::Rg32Float, read),
             output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
         }
     }
@@ -165,6 +169,7 @@ impl Rig {
                 motion: v.motion.as_ref(),
                 trust: v.trust.as_ref(),
                 lod: v.lod.as_ref(),
+                noise: v.noise.as_ref(),
                 ..CpuView::new(v.facts, &v.color)
             })
             .collect();
@@ -177,6 +182,22 @@ impl Rig {
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
         self.record(index, reset, views, true, None);
         self.read()
+    }
+
+    /// What both say of a frame that they must refuse.
+    pub fn refusal(&mut self, view: &View) -> String {
+        self.upload(std::slice::from_ref(view));
+        let frame = Frame {
+            noise: view.noise.is_some().then_some(&self.textures.noise),
+            ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(&view.facts), 0)
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let gpu = self.gpu.record(&self.device, &mut encoder, &frame).unwrap_err().to_string();
+        let cpu_view = [CpuView { noise: view.noise.as_ref(), ..CpuView::new(view.facts, &view.color) }];
+        let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
+        let cpu = self.cpu.process(&CpuFrame::new(&cpu_view, 0), &mut output, None).unwrap_err().to_string();
+        assert_eq!(gpu, cpu);
+        cpu
     }
 
     /// As `on_gpu`, without counting.
@@ -199,6 +220,7 @@ impl Rig {
             motion: views[0].motion.is_some().then_some(&self.textures.motion),
             trust: views[0].trust.is_some().then_some(&self.textures.trust),
             lod: views[0].lod.is_some().then_some(&self.textures.lod),
+            noise: views[0].noise.is_some().then_some(&self.textures.noise),
             exposure: self.exposure,
             counters: count.then_some(&self.counters),
             reset,
@@ -261,7 +283,11 @@ impl Rig {
                 [(_, colors), (TextureFormat::R32Uint, weights)] => {
                     colors.chunks_exact(2).zip(weights).map(|(c, &w)| [c[0], c[1], w]).collect()
                 }
-                [(_, surfaces), ..] => surfaces.chunks_exact(2).map(|s| [s[0], s[1], 0]).collect(),
+                [(_, surfaces), ..] => {
+                    let noise = self.gpu.history_textures().get(2).map(|t| self.read_texture(t)).unwrap_or_default();
+                    let noise = noise.into_iter().chain(std::iter::repeat(0));
+                    surfaces.chunks_exact(2).zip(noise).map(|(s, n)| [s[0], s[1], n]).collect()
+                }
                 [] => vec![],
             },
             stats: self.read_counters(),
@@ -311,6 +337,9 @@ impl Rig {
             if let Some(lod) = &view.lod {
                 self.write(&self.textures.lod, layer, bytemuck::cast_slice(lod.pixels()));
             }
+            if let Some(noise) = &view.noise {
+                self.write(&self.textures.noise, layer, bytemuck::cast_slice(noise.pixels()));
+            }
         }
     }
 
@@ -343,10 +372,11 @@ pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }
 
-/// Packed reservoirs, or packed surfaces and a zero.
+/// Packed reservoirs, or packed surfaces and their noise, 0 where there is none.
 fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
     let history = cpu.history();
-    let surfaces = history.surfaces().iter().map(|s| [s[0], s[1], 0]);
+    let noise = history.noise().iter().copied().chain(std::iter::repeat(0));
+    let surfaces = history.surfaces().iter().zip(noise).map(|(s, n)| [s[0], s[1], n]);
     history.words().iter().copied().chain(surfaces).collect()
 }
 

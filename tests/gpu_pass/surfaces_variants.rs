@@ -1,5 +1,6 @@
 //! Variants of taa and smr: what a frame may lack or bring, conventions, filters, sizes, views, poison. Bit equality throughout.
 
+use super::common::Draws;
 use super::gpu;
 use super::lifecycle::noise_view;
 use super::rig::{Rig, View};
@@ -39,6 +40,21 @@ fn agree(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64
     }
     println!("{:?}, {scene}: {kept} kept and {flushed} flushed pixels agree", settings.method);
     assert!(kept > 1000, "history must play a part");
+}
+
+/// The same, but for methods that keep nothing.
+#[track_caller]
+fn agree_or_pass(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
+    if settings.method != Method::None {
+        return agree(scene, desc, settings, change);
+    }
+    let Some(mut rig) = Rig::new(desc, settings) else { return };
+    let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
+    for index in 0..3 {
+        let view = foveated(&mut source, index, &settings.foveation);
+        let view = change(index, view, &mut rig);
+        rig.both(index, reset(index), &[view]);
+    }
 }
 
 #[test]
@@ -146,6 +162,91 @@ fn in_conventions(view: View, desc: &ContextDesc) -> View {
         motion: view.motion.map(|m| m.map(|[x, y]| [x / scale[0], y / scale[1]])),
         depth: view.depth.map(|d| d.map(stored)),
         ..view
+    }
+}
+
+/// What a path tracer might tell of its noise, and what it must not.
+fn noise(index: u64, size: [u32; 2]) -> Image<[f32; 2]> {
+    let mut draws = Draws::new(&format!("noise {index}"));
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, 0.0];
+    Image::from_fn(size, |[x, y]| {
+        let told = [draws.range(0.0, 0.3), [1.0, 2.0, 8.0, 32.0][(x / 31 + y / 17) as usize % 4]];
+        match (x + 3 * y) % 89 {
+            0 => [broken[draws.bits() as usize % broken.len()], told[1]],
+            1 => [told[0], broken[draws.bits() as usize % broken.len()]],
+            _ => told,
+        }
+    })
+}
+
+/// A view whose colours scatter by what it tells.
+fn noisy(index: u64, view: View) -> View {
+    let size = view.color.size();
+    let noise = noise(index, size);
+    let mut draws = Draws::new(&format!("scatter {index}"));
+    let color = Image::from_fn(size, |[x, y]| {
+        let [error, _] = noise.at(x as usize, y as usize);
+        let by = if error.is_finite() { error.clamp(0.0, 1.0) * draws.range(-1.7, 1.7) } else { 0.0 };
+        view.color.at(x as usize, y as usize).map(|c| c + by)
+    });
+    View { color, noise: Some(noise), ..view }
+}
+
+#[test]
+fn noisy_frames_agree_bit_for_bit() {
+    for method in [Method::Smr, Method::Wrs, Method::Taa, Method::None] {
+        let base = Settings { noisy: true, ..settings(method) };
+        let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+        let desc = ContextDesc::new(SIZE);
+        let scenes =
+            if method == Method::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
+        for scene in scenes {
+            agree_or_pass(scene, desc, base, |index, v, _| noisy(index, v));
+        }
+        if method != Method::Smr {
+            continue;
+        }
+        agree("lateral", desc, with(Filter::Off), |index, v, _| noisy(index, v));
+        agree("still", desc, with(Filter::Block), |index, v, _| View {
+            lod: Some(told(index, SIZE)),
+            trust: Some(trust(index)),
+            ..noisy(index, v)
+        });
+        agree("still", desc, base, |index, v, rig| {
+            rig.exposure = exposure(index);
+            View { depth: None, ..noisy(index, v) }
+        });
+        let plain = Smr { relight: false, accumulate: 0.98, tolerance: 0.3 };
+        agree("light-step", desc, Settings { smr: plain, ..base }, |index, v, _| noisy(index, v));
+        for size in [[65, 33], [3, 2], [1, 7]] {
+            let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
+            let Some(mut rig) = Rig::new(desc, base) else { return };
+            for index in 0..6 {
+                let still = noise_view(&format!("odd {}", index / 3), &desc);
+                let eye = |eye: u64| noisy(2 * index + eye, still.clone());
+                rig.both(index, Reset::None, &[eye(0), eye(1)]);
+                if index == 3 {
+                    rig.poison();
+                    rig.both(index, Reset::All, &[eye(0), eye(1)]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_is_asked_for_and_refused_by_the_setting() {
+    let desc = ContextDesc::new(SIZE);
+    for noisy_setting in [false, true] {
+        let settings = Settings { noisy: noisy_setting, ..settings(Method::Smr) };
+        let Some(mut rig) = Rig::new(desc, settings) else { return };
+        let view = noise_view("refused", &desc);
+        let wrong = if noisy_setting { view.clone() } else { noisy(0, view.clone()) };
+        let message = rig.refusal(&wrong);
+        println!("{message}");
+        assert!(message.contains("noise") && message.contains("Settings::noisy"), "{message}");
+        let right = if noisy_setting { noisy(0, view) } else { view };
+        rig.both(0, Reset::None, &[right]);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::probe::check_module;
 use crate::{
-    decisions, facets, foveation, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces,
-    triangles,
+    decisions, facets, foveation, lighting, matching, mathematics, noise, scattering, scattering_lobes, state,
+    surfaces, triangles,
 };
 
 #[test]
@@ -35,6 +35,11 @@ fn depth_is_bit_equal_h41_h42_h44_h45_h46_h47() {
 #[test]
 fn foveate_is_bit_equal_h69_h71() {
     check_module(foveation::PROBES, "foveate");
+}
+
+#[test]
+fn noise_is_bit_equal() {
+    check_module(noise::PROBES, "noise");
 }
 
 #[test]

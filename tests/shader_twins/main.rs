@@ -16,6 +16,7 @@ mod lighting;
 mod matching;
 mod mathematics;
 mod modules;
+mod noise;
 mod probe;
 mod scattering;
 mod scattering_lobes;

@@ -76,7 +76,7 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
 }
 
 const EVIDENCE: usize = 24;
-const DECIDE_IN: usize = EVIDENCE + 5;
+const DECIDE_IN: usize = EVIDENCE + 7;
 
 fn decide(r: &Row<'_>, o: &mut Out) {
     let e = Evidence {
@@ -90,6 +90,7 @@ fn decide(r: &Row<'_>, o: &mut Out) {
         level: r.v(17),
         next_level: r.v(20),
         trust: r.f(23),
+        noise: r.f(29),
     };
     let p = SmrParams {
         accumulate: r.f(24),
@@ -97,6 +98,7 @@ fn decide(r: &Row<'_>, o: &mut Out) {
         tolerance: r.f(26),
         blocks: r.u(27) != 0,
         relight: r.u(28) != 0,
+        noisy: r.u(30) != 0,
     };
     let m = matched::decide(&e, &p);
     o.v(m.color);
@@ -104,19 +106,20 @@ fn decide(r: &Row<'_>, o: &mut Out) {
 }
 
 /// With these flags, or any.
-fn decide_rows(flags: Option<[u32; 2]>) -> Rows {
+fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
     let (c, l) = (channels(), floats(&[0.0, 1.0 / 7.0, 1.0, 2.0, 3.0, 8.0, 62.0 / 7.0]));
     let h = floats(&[0.0, 6e-8, 0.002, 0.18, 0.5, 1.0, 65504.0]);
     let trust = floats(&[0.25, 1.0, 1e-30]);
     let (share, tolerance) = (floats(&[0.0, 0.5, 0.9, 0.99]), floats(&[0.25, 1.0, 2.0]));
     let flag = |i: usize| flags.map_or(vec![0, 1], |f| vec![f[i]]);
-    let (blocks, relight) = (flag(0), flag(1));
+    let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
+    let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
     let mut lists: Vec<&[u32]> = vec![&c; 9];
     lists.push(&l);
     lists.extend([&h[..]; 3]);
     lists.push(&l);
     lists.extend([&h[..]; 9]);
-    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight]);
+    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight, &noise, &noisy]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
         let candidate = remembered(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
@@ -133,21 +136,26 @@ fn decide_rows(flags: Option<[u32; 2]>) -> Rows {
         push(row, &[trust, d.range(0.0, 0.99), d.range(0.1, 1.0), d.range(0.2, 3.0)]);
         row.push(blocks[d.bits() as usize % blocks.len()]);
         row.push(relight[d.bits() as usize % relight.len()]);
+        let noise = if d.bits() & 1 == 0 { 0.0 } else { d.range(0.0, 20.0) };
+        push(row, &[noise]);
+        row.push(noisy[d.bits() as usize % noisy.len()]);
     })
 }
 
 macro_rules! decide_probe {
-    ($blocks:literal, $relight:literal, $flags:expr) => {
+    ($blocks:literal, $relight:literal, $noisy:literal, $flags:expr) => {
         Probe {
             name: "decide",
             module: "matched",
             words: [DECIDE_IN, 6],
             wgsl: concat!(
-                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u));
+                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u), in_f(29u));
     let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
                 $blocks,
                 ", ",
                 $relight,
+                ", ",
+                $noisy,
                 "));
     out_v(m.color); out_f(m.lod); out_f(m.share); out_f(m.fit);"
             ),
@@ -213,21 +221,23 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "wanted",
         module: "matched",
-        words: [3, 2],
-        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u)); out_f(w.finer); out_f(w.share);",
+        words: [4, 2],
+        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u); out_f(w.finer); out_f(w.share);",
         rust: |r, o| {
-            let w = matched::wanted(r.f(0), r.f(1), r.f(2));
+            let w = matched::wanted(r.f(0), r.f(1), r.f(2), r.u(3) != 0);
             o.f(w.finer);
             o.f(w.share);
         },
         rows: || {
             let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
-            Rows::new(3).cross(&[&l, &[l.clone(), floats(&[-1.0])].concat(), &floats(&[0.0, 0.5, 0.9, 0.99])]).random(
+            let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
+            Rows::new(4).cross(&[&l, &[l.clone(), floats(&[-1.0])].concat(), &shares, &[0, 1]]).random(
                 "wanted",
                 |d, row| {
                     let (now, then) = (lod(d), lod(d));
                     let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
                     push(row, &[now, near, d.range(0.0, 0.99)]);
+                    row.push(d.bits() & 1);
                 },
             )
         },
@@ -250,13 +260,14 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "relight_from",
         module: "matched",
-        words: [2, 1],
-        wgsl: "out_f(relight_from(in_f(0u), in_u(1u) != 0u));",
-        rust: |r, o| o.f(matched::relight_from(r.f(0), r.u(1) != 0)),
+        words: [3, 1],
+        wgsl: "out_f(relight_from(in_f(0u), in_u(1u) != 0u, in_f(2u)));",
+        rust: |r, o| o.f(matched::relight_from(r.f(0), r.u(1) != 0, r.f(2))),
         rows: || {
-            Rows::new(2).cross(&[&positive(), &[0, 1]]).random("relight_from", |d, row| {
+            Rows::new(3).cross(&[&positive(), &[0, 1], &positive()]).random("relight_from", |d, row| {
                 push(row, &[d.range(0.0, 150.0)]);
                 row.push(d.bits() & 1);
+                push(row, &[d.range(0.0, 150.0)]);
             })
         },
     },
@@ -275,11 +286,12 @@ pub const PROBES: &[Probe] = &[
             })
         },
     },
-    decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", None),
+    decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", "in_u(30u) != 0u", None),
     // As the passes have them: constants of a pipeline, which the compiler folds.
-    decide_probe!("false", "true", Some([0, 1])),
-    decide_probe!("true", "true", Some([1, 1])),
-    decide_probe!("false", "false", Some([0, 0])),
+    decide_probe!("false", "true", "false", Some([0, 1, 0])),
+    decide_probe!("true", "true", "false", Some([1, 1, 0])),
+    decide_probe!("false", "false", "false", Some([0, 0, 0])),
+    decide_probe!("false", "true", "true", Some([0, 1, 1])),
     Probe {
         name: "chain_mean",
         module: "matched",

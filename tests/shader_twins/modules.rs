@@ -1,8 +1,8 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
 
 use crate::{
-    decisions, facets, foveation, lighting, matching, mathematics, scattering, scattering_lobes, state, surfaces,
-    triangles,
+    decisions, facets, foveation, lighting, matching, mathematics, noise, scattering, scattering_lobes, state,
+    surfaces, triangles,
 };
 use afterimage::gpu::shader::{Composed, compose, compose_with, module_names};
 use std::collections::BTreeSet;
@@ -137,6 +137,7 @@ fn twins_have_the_same_functions_and_every_one_is_probed() {
         foveation::PROBES,
         lighting::PROBES,
         matching::PROBES,
+        noise::PROBES,
         mathematics::PROBES,
         state::PROBES,
         surfaces::PROBES,

@@ -4,8 +4,14 @@ use super::*;
 use afterimage::kernel::matched::{Evidence, Matched, SmrParams, decide, root_difference};
 use glam::Vec3;
 
-const PARAMS: SmrParams =
-    SmrParams { accumulate: 0.9, accumulate_tolerance: 0.5, tolerance: 1.0, blocks: false, relight: true };
+const PARAMS: SmrParams = SmrParams {
+    accumulate: 0.9,
+    accumulate_tolerance: 0.5,
+    tolerance: 1.0,
+    blocks: false,
+    relight: true,
+    noisy: false,
+};
 
 fn color(draws: &mut Draws) -> Vec3 {
     Vec3::new(draws.uniform(), draws.uniform(), draws.uniform())
@@ -32,6 +38,7 @@ fn evidence(draws: &mut Draws) -> Evidence {
         level: matched,
         next_level: near(draws, matched),
         trust: if draws.uniform() < 0.5 { 1.0 } else { draws.range(0.01, 1.0) },
+        noise: if draws.uniform() < 0.5 { 0.0 } else { draws.range(0.0, 20.0) },
     }
 }
 
@@ -41,6 +48,7 @@ fn params(draws: &mut Draws) -> SmrParams {
         tolerance: draws.range(0.1, 10.0),
         blocks: draws.uniform() < 0.3,
         relight: draws.uniform() < 0.7,
+        noisy: draws.uniform() < 0.3,
         ..PARAMS
     }
 }
@@ -80,7 +88,7 @@ fn s4_the_share_is_trust_times_fit_times_what_is_wanted() {
     over("s4 share", |draws| {
         let (e, p) = (evidence(draws), params(draws));
         let m = decide(&e, &p);
-        let wanted = afterimage::kernel::matched::wanted(e.lod, e.history_lod, p.accumulate);
+        let wanted = afterimage::kernel::matched::wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
         assert!((m.share - m.fit * e.trust * wanted.share).abs() < 1e-6);
         m.share > 0.0
     });
@@ -125,6 +133,7 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
         level: matched,
         next_level: coarser,
         trust: 1.0,
+        noise: 0.0,
     }
 }
 
@@ -173,7 +182,8 @@ fn s7_far_from_the_candidate_is_the_candidate() {
         let scale = if p.blocks { 4.0 } else { 1.0 };
         let d = root_difference(e.compared, e.matched);
         let contrast = root_difference(e.level, e.next_level);
-        let (keep, drop) = (tolerance * (3.0 * scale + contrast), tolerance * (9.0 * scale + contrast));
+        let keep = tolerance * (3.0 * scale + contrast) + e.noise;
+        let drop = keep + tolerance * (6.0 * scale);
         if d > drop * 1.0001 {
             assert!(shows_the_candidate(&e, &m), "{d} beyond {drop}");
         } else if d < keep * 0.9999 {
@@ -201,6 +211,7 @@ fn s7_relighting_explains_no_change_of_structure() {
             level: ground,
             next_level: ground,
             trust: 1.0,
+            noise: 0.0,
         };
         assert!(shows_the_candidate(&e, &decide(&e, &PARAMS)));
         true

@@ -9,6 +9,7 @@ mod decision;
 mod formulas;
 mod hostile;
 mod lifecycle;
+mod noisy;
 mod properties;
 #[cfg(feature = "lab")]
 mod scenes;
@@ -54,6 +55,7 @@ struct Input {
     depth: Option<Image<f32>>,
     motion: Option<Image<[f32; 2]>>,
     trust: Option<Image<f32>>,
+    noise: Option<Image<[f32; 2]>>,
     gaze: Gaze,
     camera: Option<[[f32; 4]; 4]>,
     reset: Reset,
@@ -70,6 +72,7 @@ impl Input {
             depth: None,
             motion: None,
             trust: None,
+            noise: None,
             gaze: Gaze::Lost,
             camera: None,
             reset: Reset::None,
@@ -92,6 +95,7 @@ impl Input {
             motion: self.motion.as_ref(),
             trust: self.trust.as_ref(),
             lod: self.lod.as_ref(),
+            noise: self.noise.as_ref(),
         }
     }
 }

@@ -114,7 +114,11 @@ impl Clip {
         let mut table = out.table("frames.csv", "frame,method,psnr_db,retained_psnr_db,ms")?;
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
-            let step = pipeline.step(index as u64, &frame, gaze)?;
+            let at = pipeline.look(gaze);
+            let step = match source.foveated(index as u64, at)? {
+                Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
+                None => pipeline.step(index as u64, &frame, gaze)?,
+            };
             let reference = metric::encode(&frame.color, self.exposure_ev);
             let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
             for ((name, _), lane) in self.lanes.iter().zip(&lanes) {

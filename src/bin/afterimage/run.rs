@@ -7,10 +7,11 @@ use crate::clip::{Clip, ClipReport, MethodReport};
 use crate::failure::Failure;
 use crate::gaze::GazeArgs;
 use crate::output::Output;
+use crate::trace::pattern::{SamplingArgs, SamplingName};
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
-use afterimage::settings::Method;
+use afterimage::settings::{Method, Settings};
 use afterimage::source::{ReadLimits, SourceInfo};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -43,9 +44,14 @@ pub struct RunArgs {
     /// Size of scenes, pixels; default 640x360
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
-    /// Samples a pixel of --source trace
+    /// Samples a pixel of --source trace: of full-rate frames, or of the fovea with --sampling
     #[arg(long, default_value_t = 32, value_name = "N")]
     pub spp: u32,
+    /// Samples a pixel of the full-rate frames that frames traced with --sampling are held against
+    #[arg(long, default_value_t = 64, value_name = "N")]
+    pub reference_spp: u32,
+    #[command(flatten)]
+    pub sampling: SamplingArgs,
     /// What renders a scene; default: raster
     #[arg(long, value_enum, value_name = "NAME")]
     pub source: Option<SourceName>,
@@ -182,6 +188,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     source.frame(0)?;
     let out = Output::create(&args.out, &folders(args), "report.json")?;
     let report = plan.clip.run(source.as_mut(), &out)?;
+    let foveation = plan.clip.foveation;
     let json = Report {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
@@ -194,12 +201,12 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         exposure_ev: args.exposure,
         backend: backend_report(&plan.clip.backend),
         foveation: FoveationReport {
-            simulator: args.foveation.filter.name(),
-            fovea_deg: args.foveation.fovea,
-            mid_deg: args.foveation.mid,
-            blend_deg: args.foveation.blend,
-            rate_mid: args.foveation.rate_mid,
-            rate_far: args.foveation.rate_far,
+            simulator: simulator(args),
+            fovea_deg: foveation.fovea_deg,
+            mid_deg: foveation.mid_deg,
+            blend_deg: foveation.blend_deg,
+            rate_mid: foveation.rate_mid,
+            rate_far: foveation.rate_far,
             ms: report.foveation_ms,
         },
         gaze: &args.gaze.gaze,
@@ -234,7 +241,8 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     let fps = args.fps.or(info.fps).unwrap_or(60.0);
     let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
-    let foveation = args.foveation.foveation();
+    let sampling = input::sampling(args)?;
+    let foveation = sampling.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
     foveation.validate()?;
     let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
@@ -246,6 +254,9 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             MethodName::Taa => LaneKind::PostProcess(args.wrs.settings(Method::Taa, args.seed)),
             MethodName::Smr => LaneKind::PostProcess(args.wrs.settings(Method::Smr, args.seed)),
             MethodName::Wrs => LaneKind::PostProcess(args.wrs.settings(Method::Wrs, args.seed)),
+            MethodName::Oracle if sampling.is_some() => {
+                return refuse("--method oracle: is defined for simulated foveation only; leave out --sampling".into());
+            }
             MethodName::Oracle if info.still => LaneKind::Oracle,
             MethodName::Oracle => {
                 return refuse(format!(
@@ -253,6 +264,12 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
                     args.input
                 ));
             }
+        };
+        let kind = match kind {
+            LaneKind::PostProcess(settings) => {
+                LaneKind::PostProcess(Settings { noisy: sampling.is_some(), ..settings })
+            }
+            LaneKind::Oracle => kind,
         };
         if let LaneKind::PostProcess(settings) = kind {
             settings.validate()?;
@@ -276,7 +293,7 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
                 foveation.fovea_deg,
                 foveation.rate_mid,
                 foveation.rate_far,
-                args.foveation.filter.name()
+                simulator(args)
             ),
             geometry,
             foveation,
@@ -294,6 +311,14 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             backend,
         },
     })
+}
+
+/// What foveates the frames: a simulator, or the pattern that they are traced with.
+fn simulator(args: &RunArgs) -> &'static str {
+    match args.sampling.sampling {
+        SamplingName::Uniform => args.foveation.filter.name(),
+        pattern => pattern.name(),
+    }
 }
 
 /// Folders that the run writes frames to.

@@ -1,6 +1,6 @@
 //! `afterimage trace`: render a scene.
 
-mod pattern;
+pub mod pattern;
 mod report;
 pub mod setup;
 
@@ -173,7 +173,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     if args.verbose {
         report.print_effects(&setup);
     }
-    let sampling = args.pattern.sampling()?;
+    let sampling = args.pattern.of.sampling()?;
     let bar = progress(args.frames * u64::from(args.size[1]));
     let mut previous: Option<View> = None;
     let mut gaze: Option<Vec<[f32; 2]>> = None;
@@ -200,7 +200,11 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
             let plan = sampling.plan(view.geometry(), at, args.spp, frame);
             let done = plan.trace(&setup.tracer, &setup.world, &view, frame);
             bar.inc(u64::from(args.size[1]));
-            report.count_foveated(&done, args.pattern.ideal_samples(&sampling, view.geometry(), at, args.spp), &clock);
+            report.count_foveated(
+                &done,
+                args.pattern.of.ideal_samples(&sampling, view.geometry(), at, args.spp),
+                &clock,
+            );
             Picture { color: done.color, variance: None, lod: done.lod }
         };
         write(args, &out, &setup, frame as usize, &picture, &view, previous.as_ref().unwrap_or(&view))?;

@@ -3,7 +3,7 @@
 use super::lattice::Lattice;
 use crate::image::Image;
 use crate::kernel::resample::catmull_rom;
-use crate::trace::film::Film;
+use crate::trace::film::{Film, Moments};
 use glam::Vec3;
 
 /// Between the points of a lattice.
@@ -96,6 +96,20 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
         });
     }
     coarse.map(|c| c.to_array())
+}
+
+/// Noise of scattered samples: of a pixel without any, the mean of those around it.
+pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
+    let noise = film.noise();
+    let as_means = Film {
+        moments: Image::from_fn_parallel(noise.size(), |[x, y]| {
+            let [error, samples] = noise.at(x as usize, y as usize);
+            Moments { mean: Vec3::new(error, samples, 0.0), squares: Vec3::ZERO, count: u32::from(samples > 0.0) }
+        }),
+        nonfinite: 0,
+        rays: 0,
+    };
+    pull_push(&as_means).map(|[error, samples, _]| [error, samples])
 }
 
 /// The coarser level at a pixel of the finer one, between its nearest four.

@@ -21,6 +21,7 @@ use super::view::View;
 use super::work::Spans;
 use super::world::World;
 use crate::display::ViewGeometry;
+use crate::foveation::{Filter, Foveation};
 use crate::image::Image;
 use rings::Ring;
 
@@ -64,6 +65,8 @@ pub struct FoveatedFrame {
     pub color: Image<[f32; 3]>,
     /// Level of detail, log2 of the distance of samples in pixels.
     pub lod: Image<f32>,
+    /// Standard error of the colour's luma, linear, and the samples that it is a mean of, at its level of detail.
+    pub noise: Image<[f32; 2]>,
     /// Samples of each ring.
     pub samples: Vec<u64>,
     /// Rays of all kinds.
@@ -73,6 +76,33 @@ pub struct FoveatedFrame {
 }
 
 impl Sampling {
+    /// The pattern as the post-process needs to know it: where full rate ends, and the coarsest it gets.
+    pub fn foveation(&self) -> Foveation {
+        let rate = |pixels: f32| (pixels.ceil() as u32).next_power_of_two();
+        let of = |fovea_deg: f32, mid_deg: f32, [mid, far]: [f32; 2]| Foveation {
+            fovea_deg,
+            mid_deg: mid_deg.max(fovea_deg),
+            rate_mid: rate(mid),
+            rate_far: rate(far.max(mid)),
+            ..Foveation::default()
+        };
+        match self {
+            Self::Uniform => Foveation { filter: Filter::Off, rate_mid: 1, rate_far: 1, ..Foveation::default() },
+            Self::Regions(r) => {
+                let [fovea, mid] = r.diameters_deg.map(|d| d * r.radius_scale);
+                of(fovea, mid, r.blocks.map(|b| b as f32))
+            }
+            Self::Layers(l) => {
+                let [_, middle, coarse, coarsest] = l.steps.map(|s| s as f32);
+                of(2.0 * l.radii_deg[0], 2.0 * l.radii_deg[2], [middle.max(coarse), coarsest])
+            }
+            Self::Acuity(a) => {
+                let step = a.least.clamp(1.0 / 65536.0, 1.0).sqrt().recip();
+                of(2.0 * a.fovea_deg, 4.0 * a.fovea_deg, [step, step])
+            }
+        }
+    }
+
     /// The plan of frame number `frame` for a gaze; `samples` are those of a pixel where it is sampled most, unless the pattern
     /// states its own.
     pub fn plan(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32, frame: u64) -> Plan {
@@ -121,6 +151,7 @@ impl Plan {
         let mut done = FoveatedFrame {
             color: Image::filled(self.size_px, [0.0; 3]),
             lod: Image::filled(self.size_px, 0.0),
+            noise: Image::filled(self.size_px, [0.0; 2]),
             samples: vec![],
             rays: 0,
             nonfinite: 0,
@@ -146,10 +177,12 @@ impl Plan {
                     })
                     .collect();
                 (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
+                done.noise = rings::noise(rings, &films, self.size_px, self.gaze_px);
             }
             Kind::Scattered { targets, samples, lod } => {
                 let film = add(view, self.size_px, &mut targets.iter().copied(), *samples);
                 done.color = fill::pull_push(&film);
+                done.noise = fill::noise_between(&film);
                 done.lod = lod.clone();
             }
         }

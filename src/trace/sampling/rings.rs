@@ -74,3 +74,18 @@ pub(super) fn blend(
     });
     (pixels.map(|(color, _)| color.to_array()), pixels.map(|(_, lod)| lod))
 }
+
+/// Noise of the blended frame: of the ring that shows most, that of the nearest point with samples.
+pub(super) fn noise(rings: &[Ring], films: &[Film], size_px: [u32; 2], gaze_px: [f32; 2]) -> Image<[f32; 2]> {
+    let of_rings: Vec<Image<[f32; 2]>> = films.iter().map(Film::noise).collect();
+    Image::from_fn_parallel(size_px, |[x, y]| {
+        let px = [x as f32, y as f32];
+        let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
+        let Some(i) = rings.iter().position(|r| distance < r.radius_px + 0.5 * r.blend_px) else {
+            return [0.0; 2];
+        };
+        let at = rings[i].lattice.coordinate(px);
+        let nearest = [0, 1].map(|k| (at[k].round().max(0.0) as usize).min(rings[i].lattice.points[k] as usize - 1));
+        of_rings[i].at(nearest[0], nearest[1])
+    })
+}

@@ -2,8 +2,10 @@
 
 use super::{NO_ADAPTER, RunArgs, SourceName, backend_for_scenes};
 use crate::failure::Failure;
+use crate::trace::pattern::SamplingName;
 use afterimage::pipeline::Headless;
-use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions};
+use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions, TracedSamples};
+use afterimage::trace::sampling::Sampling;
 use afterimage::trace::settings::TraceSettings;
 
 /// Opens files as they are, scenes with a renderer.
@@ -37,15 +39,34 @@ fn rasterised(
     Ok(Box::new(source))
 }
 
+/// The pattern that frames are traced with, if they are not to be foveated by a simulator.
+pub fn sampling(args: &RunArgs) -> Result<Option<Sampling>, Failure> {
+    if args.sampling.sampling == SamplingName::Uniform {
+        return Ok(None);
+    }
+    if args.source != Some(SourceName::Trace) {
+        return Err(Failure::Input(format!(
+            "--sampling {}: only traced frames are sampled; add --source trace, or use --foveation",
+            args.sampling.sampling.name()
+        )));
+    }
+    args.sampling.sampling().map(Some)
+}
+
 /// By path tracing.
 fn traced(args: &RunArgs, limits: &ReadLimits, options: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, Failure> {
-    if args.spp == 0 || args.spp > 1 << 20 {
-        return Err(Failure::Input(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20)));
+    for (option, value) in [("--spp", args.spp), ("--reference-spp", args.reference_spp)] {
+        if value == 0 || value > 1 << 20 {
+            return Err(Failure::Input(format!("{option} {value}: expected 1 to {}", 1 << 20)));
+        }
     }
+    let foveated = sampling(args)?;
+    let full_rate_samples = if foveated.is_some() { args.reference_spp } else { args.spp };
+    let samples = TracedSamples { foveated, samples: args.spp, full_rate_samples };
     let backend = backend_for_scenes(args.backend)?;
     let settings = TraceSettings { seed: args.seed, ..TraceSettings::default() };
     let camera = args.camera.as_deref();
-    let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, args.spp)?;
+    let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, samples)?;
     warn(source.warnings());
     Ok(Box::new(source))
 }

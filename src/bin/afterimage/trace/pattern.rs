@@ -6,9 +6,18 @@ use afterimage::display::ViewGeometry;
 use afterimage::trace::sampling::{Acuity, Layers, Regions, Sampling};
 use clap::{Args, ValueEnum};
 
-/// How samples are spread over the frame.
+/// How samples are spread over the frame, and where the eye looks.
 #[derive(Args, Clone, Debug)]
 pub struct PatternArgs {
+    #[command(flatten)]
+    pub of: SamplingArgs,
+    #[command(flatten)]
+    gaze: GazeArgs,
+}
+
+/// How samples are spread over the frame.
+#[derive(Args, Clone, Debug)]
+pub struct SamplingArgs {
     /// How samples are spread over the frame
     #[arg(long, value_enum, default_value = "uniform")]
     pub sampling: SamplingName,
@@ -30,8 +39,6 @@ pub struct PatternArgs {
     /// Radius of what a headset's lens shows, degrees: layers trace nothing outside; default: all of the screen is seen
     #[arg(long, value_name = "DEG")]
     pub lens_deg: Option<f32>,
-    #[command(flatten)]
-    gaze: GazeArgs,
 }
 
 /// Names of sampling patterns.
@@ -60,6 +67,22 @@ impl SamplingName {
 }
 
 impl PatternArgs {
+    /// Gaze of every frame in pixels; what is lost holds the last one.
+    pub fn gaze(&self, view: &ViewGeometry, fps: f32, frames: u64) -> Result<Vec<[f32; 2]>, Failure> {
+        let track = self.gaze.resolve(view, fps, Some(frames))?;
+        let mut last = view.size_px().map(|s| 0.5 * (s as f32 - 1.0));
+        Ok(track
+            .px
+            .iter()
+            .map(|px| {
+                last = px.unwrap_or(last);
+                last
+            })
+            .collect())
+    }
+}
+
+impl SamplingArgs {
     /// The library's form.
     pub fn sampling(&self) -> Result<Sampling, Failure> {
         Ok(match self.sampling {
@@ -80,20 +103,6 @@ impl PatternArgs {
             }),
             SamplingName::Acuity => Sampling::Acuity(Acuity::default()),
         })
-    }
-
-    /// Gaze of every frame in pixels; what is lost holds the last one.
-    pub fn gaze(&self, view: &ViewGeometry, fps: f32, frames: u64) -> Result<Vec<[f32; 2]>, Failure> {
-        let track = self.gaze.resolve(view, fps, Some(frames))?;
-        let mut last = view.size_px().map(|s| 0.5 * (s as f32 - 1.0));
-        Ok(track
-            .px
-            .iter()
-            .map(|px| {
-                last = px.unwrap_or(last);
-                last
-            })
-            .collect())
     }
 
     /// Samples of a pixel where it is sampled most.

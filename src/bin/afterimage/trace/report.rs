@@ -134,7 +134,7 @@ impl Report {
         let uniform = args.frames
             * u64::from(args.size[0])
             * u64::from(args.size[1])
-            * u64::from(args.pattern.most_samples(args.spp));
+            * u64::from(args.pattern.of.most_samples(args.spp));
         let traced = self.regions.iter().sum::<u64>();
         let report = TraceJson {
             tool: "afterimage",
@@ -145,7 +145,7 @@ impl Report {
             fps: setup.fps,
             hfov_deg: self.hfov_deg(),
             spp: args.spp,
-            sampling: args.pattern.sampling.name(),
+            sampling: args.pattern.of.sampling.name(),
             max_depth: args.max_depth,
             integrator: format!("{:?}", args.integrator).to_lowercase(),
             bsdf: format!("{:?}", args.bsdf).to_lowercase(),

@@ -99,7 +99,8 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     if !(-64.0..=64.0).contains(&args.exposure) {
         return refuse(format!("--exposure {}: expected -64 to 64 stops", args.exposure));
     }
-    if args.aov.contains(&super::AovName::Variance) && args.pattern.sampling != super::pattern::SamplingName::Uniform {
+    if args.aov.contains(&super::AovName::Variance) && args.pattern.of.sampling != super::pattern::SamplingName::Uniform
+    {
         return refuse("--aov variance: filled pixels have none; expected --sampling uniform with it".into());
     }
     Ok(())

@@ -1,0 +1,105 @@
+//#use matched
+//#use pack
+//#use scrub
+// Twin of src/kernel/noise.rs; constants are explained there.
+
+const NOISY_LEVELS: f32 = 3.0;
+const COMPARED: f32 = 64.0;
+const SIGMAS: f32 = 3.0;
+const MAX_ERROR: f32 = 255.0;
+const MAX_SAMPLES: f32 = 32768.0;
+const UNKNOWN: f32 = -1.0;
+
+struct Noise {
+    samples: f32,
+    variance: f32,
+}
+
+// noise::candidate_noise
+fn candidate_noise(told: vec2<f32>) -> Noise {
+    let error = min(positive(told.x), MAX_ERROR);
+    let samples = clamp(positive(told.y), 1.0, MAX_SAMPLES);
+    return Noise(samples, min((error * error) * samples, MAX_HALF));
+}
+
+// noise::positive
+fn positive(x: f32) -> f32 {
+    return select(0.0, x, bitcast<u32>(x) <= 0x7f800000u);
+}
+
+// noise::pack_noise
+fn pack_noise(n: Noise) -> u32 {
+    return half_bits(n.samples) | (half_bits(n.variance) << 16u);
+}
+
+// noise::unpack_noise
+fn unpack_noise(word: u32) -> Noise {
+    return Noise(half_value(word & 0x7fffu), half_value((word >> 16u) & 0x7fffu));
+}
+
+// noise::candidate_texel
+fn candidate_texel(c: vec3<f32>, usable: bool, n: Noise) -> vec4<f32> {
+    return select(vec4<f32>(0.0, 0.0, 0.0, UNKNOWN), vec4<f32>(c, n.variance / n.samples), usable);
+}
+
+// noise::candidate_mean
+fn candidate_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
+    let w = select(vec4<f32>(0.0), vec4<f32>(1.0), vec4<f32>(a.w, b.w, c.w, d.w) >= vec4<f32>(0.0));
+    let weight = ((w.x + w.y) + w.z) + w.w;
+    let sum = ((a * w.x + b * w.y) + c * w.z) + d * w.w;
+    return select(sum * (1.0 / max(weight, 1.0)), vec4<f32>(0.0, 0.0, 0.0, UNKNOWN), weight == 0.0);
+}
+
+// noise::candidate_bilinear
+fn candidate_bilinear(
+    top_left: vec4<f32>,
+    top_right: vec4<f32>,
+    bottom_left: vec4<f32>,
+    bottom_right: vec4<f32>,
+    fraction: vec2<f32>,
+) -> vec4<f32> {
+    let f = vec2<f32>(1.0) - fraction;
+    let all = vec4<f32>(f.x * f.y, fraction.x * f.y, f.x * fraction.y, fraction.x * fraction.y);
+    let is_known = vec4<f32>(top_left.w, top_right.w, bottom_left.w, bottom_right.w) >= vec4<f32>(0.0);
+    let w = select(vec4<f32>(0.0), all, is_known);
+    let sum = ((top_left * w.x + top_right * w.y) + bottom_left * w.z) + bottom_right * w.w;
+    return sum * (1.0 / max(((w.x + w.y) + w.z) + w.w, 1e-3));
+}
+
+// noise::history_share
+fn history_share(history: Noise, candidate: Noise, most: f32) -> f32 {
+    return min(history.samples / (history.samples + candidate.samples), most);
+}
+
+// noise::pooled_variance
+fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
+    let all_samples = history.samples + candidate.samples;
+    return (history.samples * history.variance + candidate.samples * candidate.variance) / all_samples;
+}
+
+// noise::noise_difference
+fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
+    let of_one = pooled_variance(history, candidate);
+    let numbers = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
+    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
+    return (SIGMAS * slope) * sqrt(of_one * numbers * (1.0 / COMPARED));
+}
+
+// noise::sample_difference
+fn sample_difference(candidate: Noise, around: f32) -> f32 {
+    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
+    return (SIGMAS * slope) * sqrt(candidate.variance * (2.0 / candidate.samples));
+}
+
+// noise::noise_after
+fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Noise {
+    let together = candidate.samples / max(1.0 - share, 1.0 / MAX_SAMPLES);
+    let samples = clamp(together + (history.samples - together) * finer, 1.0, MAX_SAMPLES);
+    let variance = candidate.variance + (history.variance - candidate.variance) * share;
+    return Noise(samples, clamp(variance, 0.0, MAX_HALF));
+}
+
+// noise::expose_noise
+fn expose_noise(stored: Noise, ratio: f32) -> Noise {
+    return Noise(stored.samples, min(stored.variance * ratio * ratio, MAX_HALF));
+}

@@ -1,0 +1,34 @@
+//#use noise
+//#use surface
+// The first level of the chain of noisy candidates: means of 2x2 pixels, at odd borders of those that exist, without broken ones. Its
+// twin on the CPU is Chain::build_candidates in src/cpu/chain.rs; chain_pass makes the other levels. One invocation a texel of the
+// level; z is the view.
+//
+// 4 reads of 12 bytes and 1 write of 8 a texel: 12 bytes a pixel read, 2 written.
+
+@group(0) @binding(0) var<uniform> size: vec2<u32>;
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var noise_in: texture_2d_array<f32>;
+@group(0) @binding(3) var coarse: texture_storage_2d_array<rgba16float, write>;
+
+fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
+    let px = min(at, size - 1u);
+    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let told = candidate_noise(textureLoad(noise_in, px, view, 0).xy);
+    return candidate_texel(candidate.color, candidate.usable, told);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let first = 2u * id.xy;
+    if any(first >= size) {
+        return;
+    }
+    let mean = candidate_mean(
+        texel(first, group.z),
+        texel(first + vec2<u32>(1u, 0u), group.z),
+        texel(first + vec2<u32>(0u, 1u), group.z),
+        texel(first + vec2<u32>(1u, 1u), group.z),
+    );
+    textureStore(coarse, id.xy, group.z, round_chain(mean));
+}
