@@ -336,13 +336,13 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     }
     assert!(t.stdout.contains("2 frames for each of two eyes of 24x16"), "{}", t.stdout);
 
-    // Eyes are where they should be: in the file's axes x is x.
+    // Eyes are where they should be. In the file's axes x is the scene's, and this camera's right is -x.
     let eye_x = |name: &str| {
         let cameras: Value = serde_json::from_slice(&t.bytes(name)).unwrap();
         cameras["frames"][1]["camera_to_world"][0][3].as_f64().unwrap()
     };
     let [head, left, right] = ["cameras.json", "left/cameras.json", "right/color/cameras.json"].map(eye_x);
-    assert!((right - left - 0.064).abs() < 1e-9 && (left + right - 2.0 * head).abs() < 1e-9, "{left} {head} {right}");
+    assert!((left - right - 0.064).abs() < 1e-9 && (left + right - 2.0 * head).abs() < 1e-9, "{left} {head} {right}");
 
     // Gazes: apart by ipd f / z, f being half the width over the tangent of half the field of view.
     let report = t.report();
@@ -381,14 +381,31 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
 }
 
 #[test]
-fn two_eyes_without_a_gaze_see_alike_but_not_the_same() {
-    let t = Traced::new("builtin:cornell", &["--stereo", "0.2", "--spp", "16"]);
+fn each_eye_is_sampled_around_its_own_gaze() {
+    let at = |gaze: &str, more: &[&str]| {
+        let pattern = ["--sampling", "regions", "--region-spp", "9,4,1", "--region-deg", "8,17", "--gaze", gaze];
+        Traced::new("builtin:cornell", &[&pattern[..], more].concat())
+    };
+    let t = at("3,8", &["--stereo", "0.2"]);
+    let report = t.report();
+    let of = |eye: usize| report["stereo"]["eyes"][eye]["samples"]["regions"].clone();
+    // Near the edge, where fewer samples lie around the gaze.
+    assert_ne!(of(0), of(1));
+    for (eye, name) in ["left", "right"].iter().enumerate() {
+        let [x, y] = gaze(&t.path(&format!("{name}/gaze.csv")))[0];
+        assert_eq!(at(&format!("{x},{y}"), &[]).report()["samples"]["regions"], of(eye), "{name}: {x}, {y}");
+    }
+}
+
+#[test]
+fn two_eyes_need_no_gaze_but_a_distance() {
+    let t = Traced::new("builtin:cornell", &["--stereo", "0.2"]);
+    assert_eq!(t.files(""), ["cameras.json", "left", "right", "trace.json"]);
     assert_eq!(t.files("left"), ["cameras.json", "color"]);
     let [l, r] = ["left", "right"].map(|eye| picture(&t.path(&format!("{eye}/color/000000.exr"))));
-    assert_ne!(l, r);
-    let mean = |i: &afterimage::image::Image<[f32; 3]>| i.pixels().iter().map(|c| c[1]).sum::<f32>() / 384.0;
-    assert!((mean(&l) / mean(&r) - 1.0).abs() < 0.2, "{} {}", mean(&l), mean(&r));
+    assert!(l != r && [&l, &r].iter().all(|i| i.pixels().iter().any(|c| c[0] > 0.01)));
+    assert!(t.report()["stereo"]["eyes"][0]["gaze"].is_null());
     for ipd in ["0", "-0.06", "63", "nan", "wide"] {
-        refuses("builtin:cornell", &["--stereo", ipd], &["--stereo", ipd]);
+        refuses("builtin:cornell", &["--stereo", ipd], &["--stereo"]);
     }
 }
