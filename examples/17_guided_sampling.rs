@@ -19,7 +19,9 @@ use glam::{DMat4, DVec3};
 const SIZE: [u32; 2] = [64, 36];
 const FRAMES: u64 = 16;
 const SAMPLES: u32 = 4;
-const REFERENCE_SAMPLES: u32 = 256;
+const REFERENCE_SAMPLES: u32 = 512;
+/// Independent runs, over which errors are averaged.
+const RUNS: u64 = 4;
 
 struct Stage {
     world: World,
@@ -39,13 +41,14 @@ impl Stage {
         Ok(Self { world, tracer, views: (0..FRAMES).map(view).collect() })
     }
 
-    /// All frames added up; and where the last one sees what the one before did not.
-    fn accumulate(&self, guided: bool) -> Result<(Film, Image<bool>), Box<dyn std::error::Error>> {
+    /// All frames of a run added up; and where the last one sees what the one before did not.
+    fn accumulate(&self, guided: bool, run: u64) -> Result<(Film, Image<bool>), Box<dyn std::error::Error>> {
         let mut film = Film::new(SIZE);
         let mut uncovered = Image::filled(SIZE, true);
         let mut depth: Option<Image<f32>> = None;
-        for (view, frame) in self.views.iter().zip(0..) {
-            let previous = &self.views[(frame as usize).saturating_sub(1)];
+        for (i, view) in self.views.iter().enumerate() {
+            let frame = run * FRAMES + i as u64;
+            let previous = &self.views[i.saturating_sub(1)];
             let seen = Surfaces::trace(&self.world, view, previous, self.world.needs);
             if let Some(before) = &depth {
                 film.moments = reprojected(&film.moments, before, &seen);
@@ -100,19 +103,24 @@ fn error(film: &Film, reference: &Film, of: impl Fn(usize) -> bool) -> f64 {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
-        "{FRAMES} frames of {SAMPLES} samples a pixel added up: squared error of the last x 1e6, plain and guided; times the rays"
+        "{FRAMES} frames of {SAMPLES} samples a pixel added up, {RUNS} runs. Squared error x 1e6, plain and guided;"
     );
-    println!("of plain; times less error x rays");
+    println!("rays, guided over plain; error times rays, plain over guided");
     println!("{:<18} {:<9} {:>9} {:>9} {:>6} {:>15}", "scene", "camera", "plain", "guided", "rays", "error x rays");
     for (name, step_m) in [("builtin:cornell", 0.015), ("builtin:courtyard", 0.05)] {
         for (camera, step_m) in [("still", 0.0), ("glides", step_m)] {
             let stage = Stage::new(name, step_m)?;
             let reference = stage.reference();
-            let [(plain, uncovered), (guided, _)] = [stage.accumulate(false)?, stage.accumulate(true)?];
+            let runs = |guided| (0..RUNS).map(|run| stage.accumulate(guided, run)).collect::<Result<Vec<_>, _>>();
+            let (plain, guided) = (runs(false)?, runs(true)?);
+            let uncovered = &plain[0].1;
             let row = |what: &str, of: &dyn Fn(usize) -> bool| {
-                let [a, b] = [&plain, &guided].map(|film| error(film, &reference, of));
-                let gain = (a * plain.rays as f64) / (b * guided.rays as f64);
-                let rays = guided.rays as f64 / plain.rays as f64;
+                let mean = |films: &[(Film, Image<bool>)]| {
+                    let error = films.iter().map(|(film, _)| error(film, &reference, of)).sum::<f64>() / RUNS as f64;
+                    (error, films.iter().map(|(film, _)| film.rays as f64).sum::<f64>())
+                };
+                let ((a, a_rays), (b, b_rays)) = (mean(&plain), mean(&guided));
+                let (rays, gain) = (b_rays / a_rays, a * a_rays / (b * b_rays));
                 println!("{name:<18} {what:<9} {:>9.1} {:>9.1} {rays:>6.2} {gain:>15.2}", a * 1e6, b * 1e6);
             };
             row(camera, &|_| true);

@@ -386,7 +386,7 @@ fn each_eye_is_sampled_around_its_own_gaze() {
         let pattern = ["--sampling", "regions", "--region-spp", "9,4,1", "--region-deg", "8,17", "--gaze", gaze];
         Traced::new("builtin:cornell", &[&pattern[..], more].concat())
     };
-    let t = at("3,8", &["--stereo", "0.2"]);
+    let t = at("6,8", &["--stereo", "0.2"]);
     let report = t.report();
     let of = |eye: usize| report["stereo"]["eyes"][eye]["samples"]["regions"].clone();
     // Near the edge, where fewer samples lie around the gaze.

@@ -5,28 +5,26 @@ mod frames;
 mod pattern;
 mod report;
 pub mod setup;
+mod shot;
 
 use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::run::BackendName;
-use afterimage::image::Image;
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::effects::Effects;
-use afterimage::trace::film::Film;
 use afterimage::trace::sampling::Sampling;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::view::View;
-use afterimage::trace::work::Spans;
 use clap::{Args, ValueEnum};
 use eyes::{Eyes, below, scanpath_csv};
-use frames::{Picture, folders, write};
+use frames::{folders, write};
 use indicatif::{ProgressBar, ProgressStyle};
 use pattern::PatternArgs;
-use report::{Counts, Report};
+use report::Report;
 use setup::Setup;
+use shot::Shot;
 use std::io::IsTerminal;
-use std::ops::Range;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -167,9 +165,6 @@ pub enum TonemapName {
     None,
 }
 
-/// Work items that are traced between two looks at the progress bar.
-const STEP_ITEMS: u64 = 1 << 20;
-
 /// The subcommand.
 pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut eyes = Eyes::new(args.stereo, args.size)?;
@@ -205,7 +200,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
                 Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
             };
             report.count(eye, &counts, &clock);
-            write(args, &out, &setup, name, frame as usize, &picture, &views[eye], &before[eye])?;
+            write(args, &out, &setup, name, frame as usize, &picture, [&views[eye], &before[eye]])?;
         }
         report.heads.push(head);
         previous = Some(head);
@@ -219,49 +214,6 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
 struct GazeOfFrames {
     head: Vec<[f32; 2]>,
     eyes: Vec<Vec<[f32; 2]>>,
-}
-
-/// A frame as one eye sees it.
-struct Shot {
-    view: View,
-    frame: u64,
-    /// Which draws it is traced with.
-    draws: u64,
-}
-
-impl Shot {
-    fn uniform(&self, args: &TraceArgs, setup: &Setup, bar: &ProgressBar) -> (Picture, Counts) {
-        let mut film = Film::new(args.size);
-        for (rows, samples) in steps(args) {
-            if samples.start == 0 {
-                bar.inc(u64::from(rows.end - rows.start));
-            }
-            let spans = Spans::uniform(args.size[0], rows, samples);
-            setup.tracer.trace(&setup.world, &self.view, self.draws, &spans, &mut film);
-        }
-        let samples = film.moments.pixels().iter().map(|m| u64::from(m.count)).sum();
-        let (rays, nonfinite) = (film.rays, film.nonfinite);
-        let counts = Counts { samples: vec![samples], ideal_samples: Some(samples as f64), rays, nonfinite };
-        let lod = Image::filled(args.size, 0.0);
-        (Picture { color: film.color(), variance: Some(film.variance()), lod }, counts)
-    }
-
-    fn foveated(
-        &self,
-        args: &TraceArgs,
-        setup: &Setup,
-        sampling: &Sampling,
-        gaze_px: [f32; 2],
-        bar: &ProgressBar,
-    ) -> (Picture, Counts) {
-        let geometry = self.view.geometry();
-        let plan = sampling.plan(geometry, gaze_px, args.spp, self.frame);
-        let done = plan.trace(&setup.tracer, &setup.world, &self.view, self.draws);
-        bar.inc(u64::from(args.size[1]));
-        let ideal_samples = args.pattern.ideal_samples(sampling, geometry, gaze_px, args.spp);
-        let counts = Counts { samples: done.samples, ideal_samples, rays: done.rays, nonfinite: done.nonfinite };
-        (Picture { color: done.color, variance: None, lod: done.lod }, counts)
-    }
 }
 
 /// Writes what is known when all frames are done.
@@ -292,19 +244,6 @@ fn finish(
     out.text("trace.json", &report.json(args, setup, eyes))?;
     report.print_summary(args, setup, eyes);
     Ok(())
-}
-
-/// Rows and samples that are traced together.
-fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
-    let [w, h] = args.size;
-    let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
-    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(samples))).clamp(1, u64::from(h)) as u32;
-    ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
-}
-
-/// 0 to `end`, `step` at a time.
-fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
-    (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
 }
 
 /// What the library is told.

@@ -36,7 +36,7 @@ pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
     folders
 }
 
-/// Writes frame `index` of an eye.
+/// Writes frame `index` of an eye: what it sees now, and what it saw a frame ago.
 pub fn write(
     args: &TraceArgs,
     out: &Output,
@@ -44,8 +44,7 @@ pub fn write(
     eye: &str,
     index: usize,
     picture: &Picture,
-    view: &View,
-    previous: &View,
+    [view, previous]: [&View; 2],
 ) -> Result<(), Failure> {
     let color = &picture.color;
     let wants = |aov| args.aov.contains(&aov);
