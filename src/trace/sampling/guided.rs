@@ -6,7 +6,7 @@
 //!
 //! n = clamp(deviation t - known, least, most)
 //!
-//! with the one t that spends the budget, which is found by bisection. Each ring has its own, so the fovea stays the fovea. Whole
+//! with the one t that spends the budget. Each ring has its own, so the fovea stays the fovea. Whole
 //! numbers are made of n by chance: `floor(n + draw)` has the mean n.
 //!
 //! n hangs on frames gone by and on a draw that no path uses, never on this frame's samples; so every point's mean is unbiased,
@@ -114,7 +114,7 @@ impl Plan {
             let rounded = |([x, y], share): (&[u32; 2], f64)| {
                 (share + f64::from(path_draws(x | y << 16, ROUNDING, ring, key)[0])).floor() as u32
             };
-            let counts: Vec<u32> = part.targets.iter().zip(shares(&known, part.samples)).map(rounded).collect();
+            let counts: Vec<u32> = part.targets.par_iter().zip(shares(&known, part.samples)).map(rounded).collect();
             spans(&part, &counts)
         });
         Ok(Self { guided: Some(work.collect()), ..self.clone() })
@@ -136,24 +136,43 @@ fn shares(points: &[Known], samples: u32) -> Vec<f64> {
         0 => 1.0,
         count => deviations().sum::<f64>() / count as f64,
     };
-    let share = |p: &Known, t: f64| (p.deviation.unwrap_or(mean) * t - p.samples).clamp(least, most);
-    // Parts of a fixed size: the sum must not hang on the number of threads.
+    let known: Vec<[f64; 2]> = points.iter().map(|p| [p.deviation.unwrap_or(mean), p.samples]).collect();
+    let share = |[deviation, samples]: [f64; 2], t: f64| (deviation * t - samples).clamp(least, most);
+    // The sum of all shares, and its slope. In parts of a fixed size: it must not hang on the number of threads.
     let sum = |t: f64| {
-        let parts: Vec<f64> = points.par_chunks(1 << 14).map(|part| part.iter().map(|p| share(p, t)).sum()).collect();
-        parts.iter().sum::<f64>()
+        let of = |part: &[[f64; 2]]| {
+            part.iter().fold([0.0; 2], |[sum, slope], &p| {
+                let share = share(p, t);
+                [sum + share, if share > least && share < most { slope + p[0] } else { slope }]
+            })
+        };
+        let parts: Vec<[f64; 2]> = known.par_chunks(1 << 14).map(of).collect();
+        parts.iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
     };
     let budget = points.len() as f64 * f64::from(samples);
-    // Powers of two: the least and the largest quotient of f32s lie between, and 40 halvings leave a relative error of 4e-10.
-    let (mut low, mut high) = (-300.0_f64, 300.0_f64);
-    if sum(high.exp2()) > budget {
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if sum(middle.exp2()) > budget { high = middle } else { low = middle }
+    // Between these are all quotients of f32s.
+    let (mut low, mut high) = ((-300.0_f64).exp2(), 300.0_f64.exp2());
+    let mut t = high;
+    if sum(high)[0] > budget {
+        // What it would be without bounds.
+        let finite = || known.iter().filter(|p| p[1].is_finite());
+        let sums = finite().fold([budget, 0.0], |[samples, deviation], p| [samples + p[1], deviation + p[0]]);
+        t = (sums[0] / sums[1]).clamp(low, high);
+        let mut last = f64::INFINITY;
+        for _ in 0..100 {
+            let [sum, slope] = sum(t);
+            let off = (sum - budget).abs();
+            if off <= 1e-9 * budget {
+                break;
+            }
+            *(if sum > budget { &mut high } else { &mut low }) = t;
+            // The sum is straight between the points' bounds, where Newton's step is exact; where it gains little, halve what is left.
+            let newton = t + (budget - sum) / slope;
+            t = if off < 0.5 * last && newton > low && newton < high { newton } else { (low * high).sqrt() };
+            last = off;
         }
-    } else {
-        low = high;
     }
-    points.iter().map(|p| share(p, low.exp2())).collect()
+    known.iter().map(|&p| share(p, t)).collect()
 }
 
 /// Work with so many samples of each target. A number is the sum of powers of two: samples 2^b to 2^(b+1) - 1 are traced of the
@@ -164,7 +183,7 @@ fn spans(part: &Part, counts: &[u32]) -> Vec<Spans> {
         let chosen = part.targets.iter().zip(counts).filter(|(_, n)| **n >> bit & 1 != 0);
         Spans::new(chosen.map(|(target, _)| *target), 1 << bit..2 << bit)
     };
-    (0..bits).map(of_bit).collect()
+    (0..bits).into_par_iter().map(of_bit).collect()
 }
 
 #[cfg(test)]
