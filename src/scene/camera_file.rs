@@ -116,6 +116,16 @@ impl CameraFile {
         }
     }
 
+    /// Whether all its poses are the same.
+    pub fn is_still(&self) -> bool {
+        match &self.path {
+            CameraPath::Frames(poses) => poses.iter().all(|p| *p == poses[0]),
+            CameraPath::Keyframes(keys) => {
+                keys.iter().all(|k| (k.position, k.target) == (keys[0].position, keys[0].target))
+            }
+        }
+    }
+
     /// Camera-to-world (x right, y up, looking along -z) of frame `index` at `time_s`.
     pub fn world_from_camera(&self, index: u64, time_s: f64) -> DMat4 {
         match &self.path {
@@ -197,6 +207,17 @@ mod tests {
             assert!((x(t) - expected).abs() < 1e-12, "{t}");
         }
         assert!((0..300).all(|i| x(f64::from(i) * 0.01) <= x(f64::from(i + 1) * 0.01)));
+    }
+
+    #[test]
+    fn a_path_that_goes_nowhere_is_still() {
+        let key = |t: u32, x: u32| format!(r#"{{"time_s":{t},"position":[{x},1,5],"target":[0,1,0]}}"#);
+        let is_still = |keys: &[String]| {
+            let text = format!(r#"{{"keyframes":[{}]}}"#, keys.join(","));
+            CameraFile::parse("c.json", text.as_bytes()).unwrap().is_still()
+        };
+        assert!(is_still(&[key(0, 1)]) && is_still(&[key(0, 1), key(1, 1)]));
+        assert!(!is_still(&[key(0, 1), key(1, 2)]));
     }
 
     #[test]

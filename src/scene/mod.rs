@@ -60,6 +60,8 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// What rays see that hit nothing.
     pub environment: Environment,
+    /// Names of the file's animations, of which at most one plays; of those without a name, empty ones.
+    pub animations: Vec<String>,
     /// What the file asks for and is not done, each once.
     pub warnings: Vec<String>,
     pub(crate) still: Triangles,
@@ -103,8 +105,17 @@ impl Scene {
                 ));
             }
         }
-        let (textures, warnings) = (vec![], vec![]);
-        Ok(Self { name: name.into(), materials, textures, environment, warnings, still, rest: pose, animated: None })
+        Ok(Self {
+            name: name.into(),
+            materials,
+            textures: vec![],
+            environment,
+            animations: vec![],
+            warnings: vec![],
+            still,
+            rest: pose,
+            animated: None,
+        })
     }
 
     /// Reads what the user named: a `.gltf` or `.glb` file, or `builtin:NAME`. Of a file's animations the first one plays.

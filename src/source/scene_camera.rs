@@ -130,7 +130,8 @@ impl SceneCamera {
         match &self.path {
             CameraPath::Scene(_) => scene.duration_s() <= 0.0,
             CameraPath::Framing(_) => true,
-            _ => false,
+            CameraPath::File(file) => file.is_still(),
+            CameraPath::Lateral { .. } | CameraPath::Orbit { .. } => false,
         }
     }
 

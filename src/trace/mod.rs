@@ -4,7 +4,7 @@
 //!   of its own.
 //! - [`Tracer`]: [`cpu`] or [`gpu`], the same paths; specialised to [`effects::Effects`] that the scene calls for. It adds the samples
 //!   of a [`work::Work`] to a [`film::Film`].
-//! - [`sampling`]: where a frame is sampled for a gaze. [`surfaces`]: exact depth and motion.
+//! - [`sampling`]: where a frame is sampled for a gaze. [`surfaces`]: exact depth and motion. [`stereo`]: a gaze for each eye.
 //! - [`heap`]: everything that the tracer on a GPU reads, as one array of `vec4<u32>`.
 
 mod alias;
@@ -21,6 +21,7 @@ mod node;
 pub mod sampling;
 pub mod settings;
 pub mod shading_records;
+pub mod stereo;
 pub mod surfaces;
 mod tracer;
 mod triangle_records;

@@ -30,22 +30,32 @@ impl Surfaces {
         let pixels = Image::from_fn_parallel(size, |[x, y]| {
             let px = [x as f32, y as f32];
             let direction = unit(rays.corner + rays.right * px[0] + rays.down * px[1]);
-            let ray = Ray { origin: rays.origin, direction, t_max: f32::INFINITY };
-            let hit = world.geometry.closest(&ray, |triangle, u, v| {
-                !effects.has(Effect::Alpha) || cpu::is_mostly_there(world, triangle, u, v, effects)
-            });
-            let Some(hit) = hit else {
+            let Some(seen) = first_surface(world, rays.origin, direction, effects) else {
                 let before = previous.project_direction(direction.as_dvec3());
                 return (f32::INFINITY, motion(px, before));
             };
-            let corners = world.geometry.triangle(hit.triangle).positions();
-            let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
-            let now = at(corners, hit.u, hit.v);
-            let depth = view.project(now).map_or(f32::INFINITY, |(_, depth)| depth as f32);
-            (depth, motion(px, previous.project(at(was, hit.u, hit.v)).map(|(px, _)| px)))
+            let depth = view.project(seen.at).map_or(f32::INFINITY, |(_, depth)| depth as f32);
+            (depth, motion(px, previous.project(seen.was).map(|(px, _)| px)))
         });
         Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
     }
+}
+
+/// A place on a surface, in world space: now, and a frame ago.
+pub(super) struct Seen {
+    pub at: DVec3,
+    pub was: DVec3,
+}
+
+/// What a ray meets first.
+pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<Seen> {
+    let ray = Ray { origin, direction, t_max: f32::INFINITY };
+    let hit = world.geometry.closest(&ray, |triangle, u, v| {
+        !effects.has(Effect::Alpha) || cpu::is_mostly_there(world, triangle, u, v, effects)
+    })?;
+    let corners = world.geometry.triangle(hit.triangle).positions();
+    let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
+    Some(Seen { at: at(corners, hit.u, hit.v), was: at(was, hit.u, hit.v) })
 }
 
 fn at(corners: [Vec3; 3], u: f32, v: f32) -> DVec3 {

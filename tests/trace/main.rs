@@ -18,4 +18,5 @@ mod radiosity;
 mod rig;
 mod scenes;
 mod statistics;
+mod stereo;
 mod surfaces;

@@ -1,5 +1,7 @@
 //! `afterimage info`: what an input holds, or which adapters there are.
 
+mod scene;
+
 use crate::failure::Failure;
 use afterimage::error::InputError;
 use afterimage::pipeline::Headless;
@@ -12,10 +14,11 @@ use std::path::Path;
 /// Say what an input holds, or which adapters there are
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Examples:\n  afterimage info frames/\n  afterimage info viewing.csv\n  afterimage info adapters"
+    after_help = "Examples:\n  afterimage info frames/\n  afterimage info scene.glb\n  afterimage info viewing.csv\n  \
+                  afterimage info adapters"
 )]
 pub struct InfoArgs {
-    /// An input of `run`, a scanpath (.csv), or the word adapters
+    /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a scanpath (.csv), or the word adapters
     pub input: String,
     /// Largest image that is read, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
@@ -38,6 +41,9 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     }
     if Path::new(&args.input).extension().is_some_and(|e| e == "csv") {
         return Ok(scanpath_info(&args.input)?);
+    }
+    if source::is_scene(&args.input) {
+        return Ok(scene::scene_info(&args.input)?);
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;

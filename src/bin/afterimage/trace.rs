@@ -1,42 +1,44 @@
 //! `afterimage trace`: render a scene.
 
+mod eyes;
+mod frames;
 pub mod pattern;
 mod report;
 pub mod setup;
+mod shot;
 
 use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::run::BackendName;
-use afterimage::image::Image;
-use afterimage::kernel::color::srgb_encode;
 use afterimage::report::clock::Stopwatch;
-use afterimage::report::picture::to_rgb8;
-use afterimage::source::exr_file::{self, FrameToWrite};
 use afterimage::trace::effects::Effects;
-use afterimage::trace::film::Film;
 use afterimage::trace::sampling::Sampling;
 use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
-use afterimage::trace::surfaces::Surfaces;
 use afterimage::trace::view::View;
-use afterimage::trace::work::Spans;
 use clap::{Args, ValueEnum};
+use eyes::{Eyes, below, scanpath_csv};
+use frames::{folders, write};
 use indicatif::{ProgressBar, ProgressStyle};
 use pattern::PatternArgs;
 use report::Report;
 use setup::Setup;
+use shot::Shot;
 use std::io::IsTerminal;
-use std::ops::Range;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage trace builtin:cornell --size 512x512 --spp 64 --out out/cornell\n  \
     afterimage trace scene.glb --frames 60 --aov depth,motion --out out/scene\n  \
-    afterimage trace scene.glb --sampling regions --region-spp 32,8,4 --gaze viewing.csv --frames 60 --out out/foveated\n\n\
+    afterimage trace scene.glb --sampling regions --region-spp 32,8,4 --gaze viewing.csv --frames 60 --out out/foveated\n  \
+    afterimage trace scene.glb --sampling layers --lens-deg 45 --hfov 90 --stereo 0.063 --out out/stereo\n\n\
     Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... on request, OUT/gaze.csv of foveated frames, OUT/cameras.json\n\
     and OUT/trace.json.\n\
-    With --aov depth,motion the folder OUT/color is an input for `afterimage run`.")]
+    With --aov depth,motion the folder OUT/color is an input for `afterimage run`.\n\n\
+    With --stereo the frames of each eye, its cameras.json, gaze.csv and scanpath.csv (the same for `run --gaze`) are below OUT/left and\n\
+    OUT/right; OUT/cameras.json and OUT/gaze.csv are those of the head between them, which --camera and --gaze speak of. What is looked at\n\
+    is a point in space: the first surface behind the head's pixel, or what is far away where there is none.")]
 pub struct TraceArgs {
     /// A scene: .gltf, .glb, or builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes,
     /// mirror-room, courtyard
@@ -68,6 +70,10 @@ pub struct TraceArgs {
     pub spp: u32,
     #[command(flatten)]
     pub pattern: PatternArgs,
+    /// Two eyes whose pupils are so many metres apart (people: 0.063; up to 0.2), with parallel axes, half of that to either side of
+    /// the camera; default: one eye, the camera
+    #[arg(long, value_name = "IPD_M", allow_negative_numbers = true)]
+    pub stereo: Option<f64>,
     /// Most scattering events after the camera ray, 0 to 64
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub max_depth: u32,
@@ -159,154 +165,84 @@ pub enum TonemapName {
     None,
 }
 
-/// Depth of what is nothing, in files.
-const NOTHING_M: f32 = 1e10;
-
-/// Work items that are traced between two looks at the progress bar.
-const STEP_ITEMS: u64 = 1 << 20;
-
 /// The subcommand.
 pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
+    let mut eyes = Eyes::new(args.stereo, args.size)?;
     let mut setup = Setup::new(args)?;
-    let out = Output::create(&args.out, &folders(args), "trace.json")?;
-    let mut report = Report::new();
+    let parts: Vec<String> = eyes.names().iter().flat_map(|eye| folders(args, eye)).collect();
+    let out = Output::create(&args.out, &parts, "trace.json")?;
+    let mut report = Report::new(eyes.names().len());
     if args.verbose {
         report.print_effects(&setup);
     }
     let sampling = args.pattern.of.sampling()?;
-    let bar = progress(args.frames * u64::from(args.size[1]));
+    let bar = progress(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]));
     let mut previous: Option<View> = None;
-    let mut gaze: Option<Vec<[f32; 2]>> = None;
+    let mut gaze = GazeOfFrames::default();
     for frame in 0..args.frames {
         let time_s = frame as f64 / f64::from(setup.fps);
-        let view = setup.pose(frame, time_s)?;
-        let clock = Stopwatch::start();
-        let picture = if sampling == Sampling::Uniform {
-            let mut film = Film::new(args.size);
-            for (rows, samples) in steps(args) {
-                if samples.start == 0 {
-                    bar.inc(u64::from(rows.end - rows.start));
-                }
-                let spans = Spans::uniform(args.size[0], rows, samples);
-                setup.tracer.trace(&setup.world, &view, frame, &spans, &mut film);
+        let head = setup.pose(frame, time_s)?;
+        let views = eyes.views(&head);
+        let before = eyes.views(previous.as_ref().unwrap_or(&head));
+        if sampling != Sampling::Uniform {
+            if gaze.head.is_empty() {
+                gaze.head = args.pattern.gaze(head.geometry(), setup.fps, args.frames)?;
             }
-            report.count_film(&film, &clock);
-            Picture { color: film.color(), variance: Some(film.variance()), lod: Image::filled(args.size, 0.0) }
-        } else {
-            if gaze.is_none() {
-                gaze = Some(args.pattern.gaze(view.geometry(), setup.fps, args.frames)?);
-            }
-            let at = gaze.as_ref().map_or([0.0; 2], |g| g[frame as usize]);
-            let plan = sampling.plan(view.geometry(), at, args.spp, frame);
-            let done = plan.trace(&setup.tracer, &setup.world, &view, frame);
-            bar.inc(u64::from(args.size[1]));
-            report.count_foveated(
-                &done,
-                args.pattern.of.ideal_samples(&sampling, view.geometry(), at, args.spp),
-                &clock,
-            );
-            Picture { color: done.color, variance: None, lod: done.lod }
-        };
-        write(args, &out, &setup, frame as usize, &picture, &view, previous.as_ref().unwrap_or(&view))?;
-        report.cameras.push(view);
-        previous = Some(view);
-    }
-    if let Some(gaze) = &gaze {
-        out.gaze("gaze.csv", gaze)?;
+            let at = gaze.head[frame as usize];
+            gaze.eyes.push(eyes.gaze(&setup, &head, &views, at));
+        }
+        for (eye, name) in eyes.names().iter().enumerate() {
+            let clock = Stopwatch::start();
+            // Eyes have draws of their own: noise that both share would seem to hang in the air.
+            let shot = Shot { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
+            let (picture, counts) = match gaze.eyes.last() {
+                None => shot.uniform(args, &setup, &bar),
+                Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
+            };
+            report.count(eye, &counts, &clock);
+            write(args, &out, &setup, name, frame as usize, &picture, [&views[eye], &before[eye]])?;
+        }
+        report.heads.push(head);
+        previous = Some(head);
     }
     bar.finish_and_clear();
-    out.text("cameras.json", &report.cameras_json(args, &setup))?;
-    out.text("color/cameras.json", &report.cameras_json(args, &setup))?;
-    out.text("trace.json", &report.json(args, &setup))?;
-    report.print_summary(args, &setup);
-    Ok(())
+    finish(args, &out, &setup, &report, &eyes, &gaze)
 }
 
-/// A frame as it is written.
-struct Picture {
-    color: Image<[f32; 3]>,
-    variance: Option<Image<[f32; 3]>>,
-    lod: Image<f32>,
+/// Where the head looks in each frame, and where its eyes do; empty if that makes no difference.
+#[derive(Default)]
+struct GazeOfFrames {
+    head: Vec<[f32; 2]>,
+    eyes: Vec<Vec<[f32; 2]>>,
 }
 
-/// Rows and samples that are traced together.
-fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
-    let [w, h] = args.size;
-    let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
-    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(samples))).clamp(1, u64::from(h)) as u32;
-    ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
-}
-
-/// 0 to `end`, `step` at a time.
-fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
-    (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
-}
-
-fn folders(args: &TraceArgs) -> Vec<String> {
-    let mut folders = vec!["color".to_owned()];
-    for (aov, name) in
-        [(AovName::Depth, "depth"), (AovName::Motion, "motion"), (AovName::Variance, "variance"), (AovName::Lod, "lod")]
-    {
-        if args.aov.contains(&aov) {
-            folders.push(name.to_owned());
-        }
-    }
-    folders
-}
-
-fn write(
+/// Writes what is known when all frames are done.
+fn finish(
     args: &TraceArgs,
     out: &Output,
     setup: &Setup,
-    index: usize,
-    picture: &Picture,
-    view: &View,
-    previous: &View,
+    report: &Report,
+    eyes: &Eyes,
+    gaze: &GazeOfFrames,
 ) -> Result<(), Failure> {
-    let color = &picture.color;
-    let wants = |aov| args.aov.contains(&aov);
-    let mut depth = None;
-    let mut motion = None;
-    if wants(AovName::Depth) || wants(AovName::Motion) {
-        let seen = Surfaces::trace(&setup.world, view, previous, setup.tracer.effects(&setup.world));
-        depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { NOTHING_M }));
-        motion = wants(AovName::Motion).then_some(seen.motion);
+    if !gaze.head.is_empty() {
+        out.gaze("gaze.csv", &gaze.head)?;
     }
-    let scale = args.exposure.exp2();
-    let mapped = |name: Option<TonemapName>, default: TonemapName| {
-        let reinhard = name.unwrap_or(default) == TonemapName::Reinhard;
-        color.map(|c| c.map(|v| if reinhard { v * scale / (1.0 + v * scale) } else { v * scale }))
-    };
-    let wants_format = |format| args.format.is_none_or(|f| f == format);
-    if wants_format(crate::args::FormatName::Exr) {
-        let color = mapped(args.tonemap, TonemapName::None);
-        let frame = FrameToWrite { depth: depth.as_ref(), motion: motion.as_ref(), ..FrameToWrite::color(&color) };
-        let path = out.path("color", index, "exr");
-        exr_file::write(&path, &frame).map_err(|e| Failure::writing(&path, e))?;
+    out.text("cameras.json", &report.cameras_json(args, setup, |head| *head))?;
+    for (eye, name) in eyes.names().iter().enumerate() {
+        let cameras = report.cameras_json(args, setup, |head| eyes.views(head)[eye]);
+        out.text(&below(name, "color/cameras.json"), &cameras)?;
+        if eyes.ipd_m.is_some() {
+            out.text(&below(name, "cameras.json"), &cameras)?;
+            if !gaze.eyes.is_empty() {
+                let of_eye: Vec<_> = gaze.eyes.iter().map(|gaze| gaze[eye]).collect();
+                out.gaze(&below(name, "gaze.csv"), &of_eye)?;
+                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.fps, &of_eye)?)?;
+            }
+        }
     }
-    if wants_format(crate::args::FormatName::Png) {
-        let encoded = mapped(args.tonemap, TonemapName::Reinhard).map(|c| c.map(|v| srgb_encode(v.clamp(0.0, 1.0))));
-        out.picture("color", index, &to_rgb8(&encoded))?;
-    }
-    let channels = |folder: &str, channels: &[(&str, &Image<f32>)]| {
-        let path = out.path(folder, index, "exr");
-        exr_file::write_channels(&path, channels).map_err(|e| Failure::writing(&path, e))
-    };
-    if let Some(depth) = &depth {
-        channels("depth", &[("Z", depth)])?;
-    }
-    if let Some(motion) = &motion {
-        channels("motion", &[("motion.X", &motion.map(|m| m[0])), ("motion.Y", &motion.map(|m| m[1]))])?;
-    }
-    if wants(AovName::Lod) {
-        channels("lod", &[("lod", &picture.lod)])?;
-    }
-    if wants(AovName::Variance)
-        && let Some(variance) = &picture.variance
-    {
-        let [r, g, b] = [0, 1, 2].map(|i| variance.map(|v| v[i]));
-        channels("variance", &[("R", &r), ("G", &g), ("B", &b)])?;
-    }
+    out.text("trace.json", &report.json(args, setup, eyes))?;
+    report.print_summary(args, setup, eyes);
     Ok(())
 }
 

@@ -58,6 +58,7 @@ fn scene(name: &str, detail: &Detail) -> Scene {
         ],
         textures: Vec::new(),
         environment: Environment::Constant([0.35, 0.45, 0.6]),
+        animations: vec![],
         warnings: Vec::new(),
         still,
         rest: Pose {

@@ -11,6 +11,7 @@ pub(super) fn scene() -> Scene {
         materials: Vec::new(),
         textures: Vec::new(),
         environment: Environment::Constant([0.5, 0.7, 1.0]),
+        animations: vec![],
         warnings: Vec::new(),
         still: Triangles::default(),
         rest: Pose { cameras, ..Pose::default() },

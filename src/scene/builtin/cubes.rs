@@ -43,6 +43,7 @@ pub(super) fn scene() -> Scene {
         materials: COLORS.iter().enumerate().map(material).collect(),
         textures: Vec::new(),
         environment: Environment::Constant([0.4, 0.5, 0.65]),
+        animations: vec![],
         warnings: Vec::new(),
         still,
         rest: Pose {

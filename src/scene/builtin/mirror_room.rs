@@ -37,6 +37,7 @@ pub(super) fn scene() -> Scene {
         ],
         textures: Vec::new(),
         environment: Environment::Constant([0.0; 3]),
+        animations: vec![],
         warnings: Vec::new(),
         still,
         rest: Pose {

@@ -79,6 +79,7 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
         materials: surfaces.into_iter().chain([materials::default()]).map(|s| s.material).collect(),
         textures,
         environment: Environment::Constant([0.0; 3]),
+        animations: document.root.animations.iter().map(|a| a.name.clone().unwrap_or_default()).collect(),
         warnings: warnings.into_lines(),
         still,
         rest,

@@ -1,5 +1,7 @@
 //! Points on a frame at equal distances.
 
+use std::ops::Range;
+
 /// A lattice of points over a frame, and how far around each its samples lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
@@ -45,5 +47,14 @@ impl Lattice {
     /// Where a pixel lies between points.
     pub fn coordinate(&self, px: [f32; 2]) -> [f32; 2] {
         [0, 1].map(|i| (px[i] - self.first_px[i]) / self.step as f32)
+    }
+    /// Pixels that a point stands for: the square of its step around it, as far as it lies on a frame of `size_px`.
+    pub fn cell(&self, point: [u32; 2], size_px: [u32; 2]) -> [Range<u32>; 2] {
+        let half = (self.step - 1) as f32 * 0.5;
+        let px = self.px(point);
+        [0, 1].map(|i| {
+            let first = (px[i] - half).ceil();
+            first.max(0.0) as u32..((first + self.step as f32).max(0.0) as u32).min(size_px[i])
+        })
     }
 }

@@ -5,12 +5,14 @@
 
 mod acuity;
 mod fill;
+mod guided;
 mod lattice;
 mod layers;
 mod regions;
 mod rings;
 
 pub use acuity::Acuity;
+pub use guided::Guide;
 pub use lattice::Lattice;
 pub use layers::Layers;
 pub use regions::Regions;
@@ -24,6 +26,7 @@ use crate::display::ViewGeometry;
 use crate::foveation::{Filter, Foveation};
 use crate::image::Image;
 use rings::Ring;
+use std::borrow::Cow;
 
 /// How samples are spread over a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,6 +48,15 @@ pub struct Plan {
     size_px: [u32; 2],
     gaze_px: [f32; 2],
     kind: Kind,
+    /// Work of each ring, where it is not the same number of samples everywhere.
+    guided: Option<Vec<Vec<Spans>>>,
+}
+
+/// Points on a lattice that a pattern samples as often.
+struct Part {
+    lattice: Lattice,
+    targets: Vec<[u32; 2]>,
+    samples: u32,
 }
 
 #[derive(Clone, Debug)]
@@ -120,19 +132,39 @@ impl Sampling {
                 Kind::Scattered { targets, samples, lod }
             }
         };
-        Plan { size_px, gaze_px, kind }
+        Plan { size_px, gaze_px, kind, guided: None }
     }
 }
 
 impl Plan {
-    /// Number of samples it asks for.
+    /// Number of samples it asks for, of each ring.
     pub fn samples(&self) -> Vec<u64> {
+        self.work().iter().map(|ring| ring.iter().map(Spans::len).sum()).collect()
+    }
+
+    /// What is traced of each ring, on its own lattice.
+    pub fn work(&self) -> Cow<'_, [Vec<Spans>]> {
+        match &self.guided {
+            Some(work) => work.into(),
+            None => self.parts().into_iter().map(|p| vec![Spans::new(p.targets, 0..p.samples)]).collect(),
+        }
+    }
+
+    /// The pattern's rings.
+    fn parts(&self) -> Vec<Part> {
         match &self.kind {
             Kind::Rings(rings) => {
-                let count = |i: usize| rings[i].targets(rings, i, self.size_px, self.gaze_px).count() as u64;
-                (0..rings.len()).map(|i| count(i) * u64::from(rings[i].samples)).collect()
+                let part = |(i, ring): (usize, &Ring)| Part {
+                    lattice: ring.lattice,
+                    targets: ring.targets(rings, i, self.size_px, self.gaze_px).collect(),
+                    samples: ring.samples,
+                };
+                rings.iter().enumerate().map(part).collect()
             }
-            Kind::Scattered { targets, samples, .. } => vec![targets.len() as u64 * u64::from(*samples)],
+            Kind::Scattered { targets, samples, .. } => {
+                let lattice = Lattice::blocks(1, self.size_px);
+                vec![Part { lattice, targets: targets.clone(), samples: *samples }]
+            }
         }
     }
 
@@ -156,11 +188,13 @@ impl Plan {
             rays: 0,
             nonfinite: 0,
         };
-        let mut add = |view: &View, size, targets: &mut dyn Iterator<Item = [u32; 2]>, samples: u32| {
+        let work = self.work();
+        let mut add = |view: &View, size, work: &[Spans]| {
             let mut film = Film::new(size);
-            let spans = Spans::new(targets, 0..samples);
-            tracer.trace(world, view, frame, &spans, &mut film);
-            done.samples.push(spans.len());
+            for spans in work {
+                tracer.trace(world, view, frame, spans, &mut film);
+            }
+            done.samples.push(work.iter().map(Spans::len).sum());
             done.rays += film.rays;
             done.nonfinite += film.nonfinite;
             film
@@ -169,18 +203,14 @@ impl Plan {
             Kind::Rings(rings) => {
                 let films: Vec<Film> = rings
                     .iter()
-                    .enumerate()
-                    .map(|(i, ring)| {
-                        let view = view.on_lattice(&ring.lattice);
-                        let mut targets = ring.targets(rings, i, self.size_px, self.gaze_px);
-                        add(&view, ring.lattice.points, &mut targets, ring.samples)
-                    })
+                    .zip(work.iter())
+                    .map(|(ring, work)| add(&view.on_lattice(&ring.lattice), ring.lattice.points, work))
                     .collect();
                 (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
                 done.noise = rings::noise(rings, &films, self.size_px, self.gaze_px);
             }
-            Kind::Scattered { targets, samples, lod } => {
-                let film = add(view, self.size_px, &mut targets.iter().copied(), *samples);
+            Kind::Scattered { lod, .. } => {
+                let film = add(view, self.size_px, &work[0]);
                 done.color = fill::pull_push(&film);
                 done.noise = fill::noise_between(&film);
                 done.lod = lod.clone();

@@ -51,6 +51,7 @@ impl Regions {
             radius_px,
             blend_px,
             filter: Filter::Linear,
+            lens: None,
         };
         // The outer region takes over within two of its blocks: less shows the border, more costs samples.
         let [m, n] = self.blocks;

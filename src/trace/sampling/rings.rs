@@ -6,6 +6,20 @@ use crate::image::Image;
 use crate::trace::film::Film;
 use glam::Vec3;
 
+/// What of a frame can be seen: a disc around its axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lens {
+    pub center_px: [f32; 2],
+    pub radius_px: f32,
+}
+
+impl Lens {
+    /// Whether a place is seen, or no farther outside than `reach_px`.
+    fn shows(&self, px: [f32; 2], reach_px: f32) -> bool {
+        (px[0] - self.center_px[0]).hypot(px[1] - self.center_px[1]) <= self.radius_px + reach_px
+    }
+}
+
 /// What lies between two circles around the gaze.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ring {
@@ -17,13 +31,15 @@ pub(super) struct Ring {
     /// Over how many pixels it takes over.
     pub blend_px: f32,
     pub filter: Filter,
+    /// Nothing is traced outside. `None`: all of the frame is seen.
+    pub lens: Option<Lens>,
 }
 
 impl Ring {
     /// One sample set a pixel, everywhere.
     pub fn everywhere(size_px: [u32; 2], samples: u32) -> Self {
         let lattice = Lattice::blocks(1, size_px);
-        Self { lattice, samples, radius_px: f32::INFINITY, blend_px: 0.0, filter: Filter::Linear }
+        Self { lattice, samples, radius_px: f32::INFINITY, blend_px: 0.0, filter: Filter::Linear, lens: None }
     }
 
     /// Points that some pixel of the ring or of its blends looks at, row by row.
@@ -37,19 +53,20 @@ impl Ring {
         let reach = self.filter.reach() * self.lattice.step as f32;
         let inner = index.checked_sub(1).map_or(f32::NEG_INFINITY, |i| rings[i].radius_px - reach);
         let outer = self.radius_px + self.blend_px + reach;
-        let lattice = self.lattice;
+        let (lattice, lens) = (self.lattice, self.lens);
         let last = size_px.map(|s| s.saturating_sub(1) as f32 + lattice.step as f32);
         (0..lattice.points[1]).flat_map(move |y| {
             (0..lattice.points[0]).map(move |x| [x, y]).filter(move |&point| {
                 let px = lattice.px(point);
                 let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
-                distance >= inner && distance <= outer && px[0] <= last[0] && px[1] <= last[1]
+                let is_seen = lens.is_none_or(|lens| lens.shows(px, reach));
+                is_seen && distance >= inner && distance <= outer && px[0] <= last[0] && px[1] <= last[1]
             })
         })
     }
 }
 
-/// The rings as one frame, and the level of detail of its pixels. Black beyond the last ring.
+/// The rings as one frame, and the level of detail of its pixels. Black outside the lens.
 pub(super) fn blend(
     rings: &[Ring],
     films: &[Film],
@@ -59,7 +76,8 @@ pub(super) fn blend(
     let pixels = Image::from_fn_parallel(size_px, |[x, y]| {
         let px = [x as f32, y as f32];
         let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
-        let Some(i) = rings.iter().position(|r| distance < r.radius_px + r.blend_px) else {
+        let shown = rings.iter().position(|r| distance < r.radius_px + r.blend_px);
+        let Some(i) = shown.filter(|_| rings[0].lens.is_none_or(|lens| lens.shows(px, 0.0))) else {
             return (Vec3::ZERO, (rings[rings.len() - 1].lattice.step as f32).log2());
         };
         let of = |i: usize| value_at(&films[i], &rings[i].lattice, px, rings[i].filter);

@@ -1,25 +1,33 @@
 //! What a trace did: on the screen, in `trace.json` and in `cameras.json`.
 
 use super::TraceArgs;
+use super::eyes::{Eyes, below};
+use super::pattern::SamplingName;
 use super::setup::Setup;
 use crate::run::{BackendReport, backend_report};
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::effects::Effects;
-use afterimage::trace::film::Film;
-use afterimage::trace::sampling::FoveatedFrame;
 use afterimage::trace::view::View;
 use serde::Serialize;
 
 /// Figures that add up over the frames.
-#[derive(Default)]
 pub struct Report {
-    pub cameras: Vec<View>,
-    rays: u64,
-    regions: Vec<u64>,
-    ideal_samples: Option<f64>,
+    /// Where each frame is seen from.
+    pub heads: Vec<View>,
+    eyes: Vec<Counts>,
     seconds: f64,
     cpu_seconds: Option<f64>,
-    nonfinite: u64,
+}
+
+/// What was traced.
+#[derive(Clone, Default)]
+pub struct Counts {
+    /// Samples of each region.
+    pub samples: Vec<u64>,
+    /// Samples without blends and borders, if that is known.
+    pub ideal_samples: Option<f64>,
+    pub rays: u64,
+    pub nonfinite: u64,
 }
 
 #[derive(Serialize)]
@@ -49,7 +57,25 @@ struct TraceJson<'a> {
     million_rays_per_second: f64,
     nonfinite_samples: u64,
     effects: Vec<&'static str>,
+    stereo: Option<Stereo>,
     warnings: &'a [String],
+}
+
+/// Two eyes, each with the pattern around a gaze of its own.
+#[derive(Serialize)]
+struct Stereo {
+    ipd_m: f64,
+    eyes: Vec<Eye>,
+}
+
+#[derive(Serialize)]
+struct Eye {
+    name: &'static str,
+    sampling: &'static str,
+    /// File of where it looks; null where that makes no difference.
+    gaze: Option<String>,
+    samples: Samples,
+    rays: u64,
 }
 
 #[derive(Serialize)]
@@ -80,34 +106,55 @@ struct CameraJson {
     camera_to_world: [[f64; 4]; 4],
 }
 
-impl Report {
-    /// Of no frame.
-    pub fn new() -> Self {
-        Self { cpu_seconds: Some(0.0), ideal_samples: Some(0.0), ..Self::default() }
-    }
-
-    /// Adds a frame that was sampled alike everywhere.
-    pub fn count_film(&mut self, film: &Film, clock: &Stopwatch) {
-        let samples = film.moments.pixels().iter().map(|m| u64::from(m.count)).sum();
-        self.count(&[samples], film.rays, film.nonfinite, clock);
-        self.ideal_samples = self.ideal_samples.map(|s| s + samples as f64);
-    }
-
-    /// Adds a foveated frame.
-    pub fn count_foveated(&mut self, frame: &FoveatedFrame, ideal_samples: Option<f64>, clock: &Stopwatch) {
-        self.count(&frame.samples, frame.rays, frame.nonfinite, clock);
-        self.ideal_samples = self.ideal_samples.zip(ideal_samples).map(|(a, b)| a + b);
-    }
-
-    fn count(&mut self, samples: &[u64], rays: u64, nonfinite: u64, clock: &Stopwatch) {
-        self.regions.resize(samples.len().max(self.regions.len()), 0);
-        for (sum, n) in self.regions.iter_mut().zip(samples) {
+impl Counts {
+    fn add(&mut self, other: &Self) {
+        self.samples.resize(other.samples.len().max(self.samples.len()), 0);
+        for (sum, n) in self.samples.iter_mut().zip(&other.samples) {
             *sum += n;
         }
-        self.rays += rays;
-        self.nonfinite += nonfinite;
+        self.ideal_samples = self.ideal_samples.zip(other.ideal_samples).map(|(a, b)| a + b);
+        self.rays += other.rays;
+        self.nonfinite += other.nonfinite;
+    }
+
+    /// Of nothing.
+    fn none() -> Self {
+        Self { ideal_samples: Some(0.0), ..Self::default() }
+    }
+
+    /// Against `uniform` samples.
+    fn samples(&self, uniform: u64) -> Samples {
+        let traced = self.samples.iter().sum::<u64>();
+        Samples {
+            traced,
+            uniform,
+            regions: self.samples.clone(),
+            reduction: uniform as f64 / traced.max(1) as f64,
+            ideal_reduction: self.ideal_samples.map(|ideal| uniform as f64 / ideal.max(1.0)),
+            achieved_reduction: None,
+        }
+    }
+}
+
+impl Report {
+    /// Of no frame.
+    pub fn new(eyes: usize) -> Self {
+        Self { heads: vec![], eyes: vec![Counts::none(); eyes], seconds: 0.0, cpu_seconds: Some(0.0) }
+    }
+
+    /// Adds a frame of an eye.
+    pub fn count(&mut self, eye: usize, counts: &Counts, clock: &Stopwatch) {
+        self.eyes[eye].add(counts);
         self.seconds += clock.wall_ms() * 1e-3;
         self.cpu_seconds = self.cpu_seconds.zip(clock.cpu_ms()).map(|(s, ms)| s + ms * 1e-3);
+    }
+
+    /// Of all eyes together.
+    fn total(&self) -> Counts {
+        self.eyes.iter().fold(Counts::none(), |mut sum, eye| {
+            sum.add(eye);
+            sum
+        })
     }
 
     /// What is compiled in, what of it the scene needs, and what it needs and does not get.
@@ -130,12 +177,20 @@ impl Report {
         say!("left out, as nothing needs it: {}", unused.join(", "));
     }
 
-    pub fn json(&self, args: &TraceArgs, setup: &Setup) -> String {
-        let uniform = args.frames
+    pub fn json(&self, args: &TraceArgs, setup: &Setup, eyes: &Eyes) -> String {
+        let total = self.total();
+        let of_an_eye = args.frames
             * u64::from(args.size[0])
             * u64::from(args.size[1])
             * u64::from(args.pattern.of.most_samples(args.spp));
-        let traced = self.regions.iter().sum::<u64>();
+        let eye = |(counts, &name): (&Counts, &&'static str)| Eye {
+            name,
+            sampling: args.pattern.of.sampling.name(),
+            gaze: (args.pattern.of.sampling != SamplingName::Uniform).then(|| below(name, "gaze.csv")),
+            samples: counts.samples(of_an_eye),
+            rays: counts.rays,
+        };
+        let both = || self.eyes.iter().zip(eyes.names()).map(eye).collect();
         let report = TraceJson {
             tool: "afterimage",
             version: env!("CARGO_PKG_VERSION"),
@@ -155,29 +210,23 @@ impl Report {
             load_ms: setup.load_ms,
             build_ms: setup.build_ms,
             compile_ms: setup.tracer.compile_time().as_secs_f64() * 1e3,
-            samples: Samples {
-                traced,
-                uniform,
-                regions: self.regions.clone(),
-                reduction: uniform as f64 / traced.max(1) as f64,
-                ideal_reduction: self.ideal_samples.map(|ideal| uniform as f64 / ideal.max(1.0)),
-                achieved_reduction: None,
-            },
-            rays: self.rays,
+            samples: total.samples(of_an_eye * self.eyes.len() as u64),
+            rays: total.rays,
             seconds: self.seconds,
             cpu_seconds: self.cpu_seconds,
-            million_rays_per_second: self.rays as f64 / self.seconds * 1e-6,
-            nonfinite_samples: self.nonfinite,
+            million_rays_per_second: total.rays as f64 / self.seconds * 1e-6,
+            nonfinite_samples: total.nonfinite,
             effects: setup.tracer.effects(&setup.world).iter().map(|e| e.name()).collect(),
+            stereo: eyes.ipd_m.map(|ipd_m| Stereo { ipd_m, eyes: both() }),
             warnings: &setup.scene.warnings,
         };
         serde_json::to_string_pretty(&report).expect("the report has no map with keys other than strings") + "\n"
     }
 
-    /// Poses in the axes of such files (z up), so that the frames are an input of `run` and the file one of `--camera`.
-    pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup) -> String {
-        let frames = self.cameras.iter().enumerate().map(|(frame, view)| {
-            let m = view.world_from_camera().transpose().to_cols_array_2d();
+    /// Poses of what `view_of` makes of each head, in the axes of such files (z up), so that the frames are an input of `run` and the file one of `--camera`.
+    pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup, view_of: impl Fn(&View) -> View) -> String {
+        let frames = self.heads.iter().enumerate().map(|(frame, head)| {
+            let m = view_of(head).world_from_camera().transpose().to_cols_array_2d();
             // (x, y, z) of the scene is (x, -z, y) there.
             CameraJson { frame, camera_to_world: [m[0], m[2].map(|v| -v), m[1], m[3]] }
         });
@@ -191,23 +240,24 @@ impl Report {
         serde_json::to_string_pretty(&cameras).expect("numbers and lists only") + "\n"
     }
 
-    pub fn print_summary(&self, args: &TraceArgs, setup: &Setup) {
+    pub fn print_summary(&self, args: &TraceArgs, setup: &Setup, eyes: &Eyes) {
         say!(
-            "{}: {} triangles, {} frames of {}x{} at {} spp in {:.2} s, {:.2} million rays/s, on {}",
+            "{}: {} triangles, {} frames {}of {}x{} at {} spp in {:.2} s, {:.2} million rays/s, on {}",
             args.scene,
             setup.world.geometry.len(),
             args.frames,
+            if eyes.ipd_m.is_some() { "for each of two eyes " } else { "" },
             args.size[0],
             args.size[1],
             args.spp,
             self.seconds,
-            self.rays as f64 / self.seconds * 1e-6,
+            self.total().rays as f64 / self.seconds * 1e-6,
             backend_report(&setup.backend).name,
         );
         say!("wrote {}", args.out.display());
     }
 
     fn hfov_deg(&self) -> f32 {
-        self.cameras.first().map_or(0.0, |view| view.geometry().hfov_deg())
+        self.heads.first().map_or(0.0, |view| view.geometry().hfov_deg())
     }
 }
