@@ -36,6 +36,10 @@ pub struct BenchArgs {
     /// trace, effects: scenes, separated by commas; default: builtin:courtyard; of effects four built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
+    /// trace: where scenes are seen from, as of `afterimage trace`: a camera by name, still, framing, lateral, orbit, or a file;
+    /// default: still
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub camera: Option<String>,
     /// trace, effects: what traces
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Traces,

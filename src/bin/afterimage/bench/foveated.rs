@@ -43,7 +43,7 @@ fn patterns() -> Vec<(String, Sampling, u32)> {
 /// Times every pattern with `tracer`, and uniform frames of 4 samples, whose time is taken to grow in proportion.
 pub fn measure(subject: &Subject, tracer: &Tracer) -> Vec<PatternReport> {
     const UNIFORM: u32 = 4;
-    let geometry = *subject.view.geometry();
+    let geometry = *subject.geometry();
     let size = geometry.size_px();
     let gaze = size.map(|s| 0.5 * (s as f32 - 1.0));
     let mut uniform = vec![];

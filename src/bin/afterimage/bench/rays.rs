@@ -56,7 +56,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size)?;
+        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
         let mut took: Vec<Vec<Took>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {

@@ -3,9 +3,12 @@
 use super::{BenchArgs, Traces};
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
+use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Scene, SceneLimits};
+use afterimage::source::SceneCamera;
+use afterimage::source::raster::DEFAULT_FPS;
 use afterimage::trace::film::Film;
 use afterimage::trace::sampling::{FoveatedFrame, Sampling};
 use afterimage::trace::view::View;
@@ -13,11 +16,12 @@ use afterimage::trace::work::{WorkItem, uniform};
 use afterimage::trace::world::{World, light_if_dark};
 use afterimage::trace::{Tracer, settings::TraceSettings};
 
-/// A scene, seen by its first camera or, without any, as a whole. One sample a pixel.
+/// A scene at rest and where it is seen from. One sample a pixel.
 pub struct Subject {
     pub name: String,
     pub world: World,
-    pub view: View,
+    scene: Scene,
+    camera: SceneCamera,
     items: Vec<WorkItem>,
     size: [u32; 2],
 }
@@ -34,17 +38,25 @@ pub struct Took {
 }
 
 impl Subject {
-    pub fn open(name: &str, size: [u32; 2]) -> Result<Self, Failure> {
+    /// The scene `name`, seen by the camera that `trace --camera` finds by that name: without one by its first, else as a whole.
+    pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
         let mut scene = Scene::open(name, &SceneLimits::default())?;
         for warning in &scene.warnings {
             eprintln!("afterimage: warning: {warning}");
         }
         light_if_dark(&mut scene);
-        let aspect = size[0] as f32 / size[1] as f32;
-        let camera = scene.pose(0.0).cameras.into_iter().next().unwrap_or_else(|| scene.framing_camera(aspect));
-        let view = View::of_camera(&camera, size, None)?;
-        let world = World::new(&scene);
-        Ok(Self { name: name.to_owned(), world, view, items: uniform(size[0], 0..size[1], 0..1), size })
+        let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
+        let items = uniform(size[0], 0..size[1], 0..1);
+        Ok(Self { name: name.to_owned(), world: World::new(&scene), scene, camera, items, size })
+    }
+
+    /// Pixels and angles.
+    pub fn geometry(&self) -> &ViewGeometry {
+        self.camera.geometry()
+    }
+
+    fn view(&self, index: u64) -> View {
+        self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
     }
 
     /// A tracer of it.
@@ -71,19 +83,21 @@ impl Subject {
         samples: u32,
         index: u64,
     ) -> (FoveatedFrame, f64) {
+        let view = self.view(index);
         let watch = Stopwatch::start();
-        let plan = sampling.plan(self.view.geometry(), gaze_px, samples, index);
-        let frame = plan.trace(tracer, &self.world, &self.view, index);
+        let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
+        let frame = plan.trace(tracer, &self.world, &view, index);
         (frame, watch.cpu_ms().unwrap_or(watch.wall_ms()))
     }
 
     fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+        let view = self.view(index);
         let mut film = Film::new(self.size);
         let watch = Stopwatch::start();
         let device = match tracer {
-            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &self.view, index, items, &mut film),
+            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &view, index, items, &mut film),
             Tracer::Cpu(tracer) => {
-                tracer.trace(&self.world, &self.view, index, items, &mut film);
+                tracer.trace(&self.world, &view, index, items, &mut film);
                 None
             }
         };
