@@ -33,11 +33,12 @@ impl Moments {
     }
 }
 
-/// An image that is being sampled.
+/// An image that is being sampled, or a window of it.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// One entry a pixel.
+    /// One entry a pixel of the window.
     pub moments: Image<Moments>,
+    first: [u32; 2],
     /// Samples that were not finite and count as black.
     pub nonfinite: u64,
     /// Rays traced, of all kinds.
@@ -47,7 +48,26 @@ pub struct Film {
 impl Film {
     /// An empty film of `size` pixels.
     pub fn new(size: [u32; 2]) -> Self {
-        Self { moments: Image::filled(size, Moments::default()), nonfinite: 0, rays: 0 }
+        Self::window([0; 2], size)
+    }
+
+    /// An empty film of `size` pixels of an image, the top left of them pixel `first`: all that is sampled must lie in it.
+    pub fn window(first: [u32; 2], size: [u32; 2]) -> Self {
+        Self { moments: Image::filled(size, Moments::default()), first, nonfinite: 0, rays: 0 }
+    }
+
+    /// What is known of a pixel of the image: outside the window, nothing.
+    #[inline]
+    pub fn at(&self, [x, y]: [u32; 2]) -> Moments {
+        // Left of the window wraps to a number beyond it.
+        let [x, y] = [x.wrapping_sub(self.first[0]), y.wrapping_sub(self.first[1])];
+        let [width, height] = self.moments.size();
+        if x < width && y < height { self.moments.at(x as usize, y as usize) } else { Moments::default() }
+    }
+
+    /// What to take from y * width + x to find a pixel of the image in `moments`.
+    pub(super) fn base(&self) -> u32 {
+        self.first[1] * self.moments.size()[0] + self.first[0]
     }
 
     /// Mean radiance; black where there is no sample.

@@ -16,12 +16,16 @@ pub(super) enum Filter {
 }
 
 impl Filter {
-    /// How far it looks, in steps of the lattice.
-    pub fn reach(self) -> f32 {
-        match self {
-            Self::Linear => 1.5,
-            Self::Bicubic => 3.0,
-        }
+    /// How far from a pixel the points lie that it looks at, at most, in pixels.
+    pub fn reach_px(self, lattice: &Lattice) -> f32 {
+        // Pixels lie on points or off them by no less than this along an axis: by 1, by a half from the middles of even blocks. A
+        // tap a whole step away has the weight 0.
+        let least = 1.0 - lattice.first_px[0].fract();
+        let farther = match self {
+            Self::Linear => 0.0,
+            Self::Bicubic => lattice.step as f32,
+        };
+        std::f32::consts::SQRT_2 * (lattice.step as f32 - least + farther)
     }
 }
 
@@ -33,7 +37,7 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     let tap = |dx: i32, dy: i32| {
         let x = (base[0] as i32 + dx).clamp(0, lattice.points[0] as i32 - 1);
         let y = (base[1] as i32 + dy).clamp(0, lattice.points[1] as i32 - 1);
-        let moments = film.moments.at(x as usize, y as usize);
+        let moments = film.at([x as u32, y as u32]);
         (moments.count > 0).then_some(moments.mean)
     };
     // On a point: its own value, whoever its neighbours are.
@@ -47,7 +51,10 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
         let mut sum = Some(Vec3::ZERO);
         for (j, wy) in wy.iter().enumerate() {
             for (i, wx) in wx.iter().enumerate() {
-                sum = sum.zip(tap(i as i32 - 1, j as i32 - 1)).map(|(sum, value)| sum + value * (wx * wy));
+                // On a row or column of points the others have no weight, and may have no samples.
+                if wx * wy != 0.0 {
+                    sum = sum.zip(tap(i as i32 - 1, j as i32 - 1)).map(|(sum, value)| sum + value * (wx * wy));
+                }
             }
         }
         if let Some(sum) = sum {

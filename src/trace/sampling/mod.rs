@@ -4,6 +4,7 @@
 //! its own ([`View::on_lattice`]) and traces a list of its points; nothing is done for the others.
 
 mod acuity;
+mod circle;
 mod fill;
 mod lattice;
 mod layers;
@@ -99,7 +100,8 @@ impl Plan {
     pub fn samples(&self) -> Vec<u64> {
         match &self.kind {
             Kind::Rings(rings) => {
-                let count = |i: usize| rings[i].targets(rings, i, self.size_px, self.gaze_px).count() as u64;
+                let count =
+                    |i: usize| rings[i].targets(rings, i, self.gaze_px).map(|(run, _)| run.len() as u64).sum::<u64>();
                 (0..rings.len()).map(|i| count(i) * u64::from(rings[i].samples)).collect()
             }
             Kind::Scattered { targets, samples, .. } => vec![targets.len() as u64 * u64::from(*samples)],
@@ -112,7 +114,9 @@ impl Plan {
             Kind::Rings(rings) => (rings, &[]),
             Kind::Scattered { targets, .. } => (&[], targets),
         };
-        let of = move |(i, ring): (usize, &Ring)| ring.targets(rings, i, self.size_px, self.gaze_px);
+        let of = move |(i, ring): (usize, &Ring)| {
+            ring.targets(rings, i, self.gaze_px).flat_map(|(run, y)| run.map(move |x| [x, y]))
+        };
         rings.iter().enumerate().flat_map(of).chain(scattered.iter().copied())
     }
 
@@ -125,9 +129,7 @@ impl Plan {
             rays: 0,
             nonfinite: 0,
         };
-        let mut add = |view: &View, size, targets: &mut dyn Iterator<Item = [u32; 2]>, samples: u32| {
-            let mut film = Film::new(size);
-            let spans = Spans::new(targets, 0..samples);
+        let mut add = |view: &View, mut film: Film, spans: Spans| {
             tracer.trace(world, view, frame, &spans, &mut film);
             done.samples.push(spans.len());
             done.rays += film.rays;
@@ -141,14 +143,16 @@ impl Plan {
                     .enumerate()
                     .map(|(i, ring)| {
                         let view = view.on_lattice(&ring.lattice);
-                        let mut targets = ring.targets(rings, i, self.size_px, self.gaze_px);
-                        add(&view, ring.lattice.points, &mut targets, ring.samples)
+                        let spans = Spans::of_runs(ring.targets(rings, i, self.gaze_px), 0..ring.samples);
+                        let (first, size) = spans.window();
+                        add(&view, Film::window(first, size), spans)
                     })
                     .collect();
                 (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
             }
             Kind::Scattered { targets, samples, lod } => {
-                let film = add(view, self.size_px, &mut targets.iter().copied(), *samples);
+                let spans = Spans::new(targets.iter().copied(), 0..*samples);
+                let film = add(view, Film::new(self.size_px), spans);
                 done.color = fill::pull_push(&film);
                 done.lod = lod.clone();
             }

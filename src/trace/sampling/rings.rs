@@ -1,10 +1,12 @@
 //! Rings of lattices around the gaze, and the blend of neighbours.
 
+use super::circle::{Circle, runs};
 use super::fill::{Filter, value_at};
 use super::lattice::Lattice;
 use crate::image::Image;
 use crate::trace::film::Film;
 use glam::Vec3;
+use std::ops::Range;
 
 /// What lies between two circles around the gaze.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,39 +19,41 @@ pub(super) struct Ring {
     /// Over how many pixels it takes over.
     pub blend_px: f32,
     pub filter: Filter,
+    /// What is seen of the frame at all.
+    pub lens: Circle,
 }
 
 impl Ring {
     /// One sample set a pixel, everywhere.
     pub fn everywhere(size_px: [u32; 2], samples: u32) -> Self {
         let lattice = Lattice::blocks(1, size_px);
-        Self { lattice, samples, radius_px: f32::INFINITY, blend_px: 0.0, filter: Filter::Linear }
+        Self {
+            lattice,
+            samples,
+            radius_px: f32::INFINITY,
+            blend_px: 0.0,
+            filter: Filter::Linear,
+            lens: Circle::EVERYTHING,
+        }
     }
 
-    /// Points that some pixel of the ring or of its blends looks at, row by row.
+    /// Points that some pixel of the ring or of its blends looks at: columns and row of each run, row by row.
     pub fn targets(
         &self,
         rings: &[Self],
         index: usize,
-        size_px: [u32; 2],
         gaze_px: [f32; 2],
-    ) -> impl Iterator<Item = [u32; 2]> + use<> {
-        let reach = self.filter.reach() * self.lattice.step as f32;
-        let inner = index.checked_sub(1).map_or(f32::NEG_INFINITY, |i| rings[i].radius_px - reach);
-        let outer = self.radius_px + self.blend_px + reach;
-        let lattice = self.lattice;
-        let last = size_px.map(|s| s.saturating_sub(1) as f32 + lattice.step as f32);
-        (0..lattice.points[1]).flat_map(move |y| {
-            (0..lattice.points[0]).map(move |x| [x, y]).filter(move |&point| {
-                let px = lattice.px(point);
-                let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
-                distance >= inner && distance <= outer && px[0] <= last[0] && px[1] <= last[1]
-            })
-        })
+    ) -> impl Iterator<Item = (Range<u32>, u32)> + use<> {
+        let reach_px = self.filter.reach_px(&self.lattice);
+        let around = |radius_px| Circle { center_px: gaze_px, radius_px };
+        let outer = around(self.radius_px + self.blend_px).grown(reach_px);
+        let inner = around(index.checked_sub(1).map_or(f32::NEG_INFINITY, |i| rings[i].radius_px)).shrunk(reach_px);
+        let (lens, lattice) = (self.lens.grown(reach_px), self.lattice);
+        (0..lattice.points[1]).flat_map(move |y| runs([outer, lens], inner, &lattice, y).map(|run| (run, y)))
     }
 }
 
-/// The rings as one frame, and the level of detail of its pixels. Black beyond the last ring.
+/// The rings as one frame, and the level of detail of its pixels. Black outside the lens.
 pub(super) fn blend(
     rings: &[Ring],
     films: &[Film],
@@ -58,19 +62,17 @@ pub(super) fn blend(
 ) -> (Image<[f32; 3]>, Image<f32>) {
     let pixels = Image::from_fn_parallel(size_px, |[x, y]| {
         let px = [x as f32, y as f32];
-        let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
-        let Some(i) = rings.iter().position(|r| distance < r.radius_px + r.blend_px) else {
+        let lens = rings[0].lens;
+        if lens.distance_px(px) > lens.radius_px {
             return (Vec3::ZERO, (rings[rings.len() - 1].lattice.step as f32).log2());
-        };
+        }
+        let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
+        let i = rings.iter().position(|r| distance < r.radius_px + r.blend_px).unwrap_or(rings.len() - 1);
         let of = |i: usize| value_at(&films[i], &rings[i].lattice, px, rings[i].filter);
         let lod = |i: usize| (rings[i].lattice.step as f32).log2();
         let t = ((distance - rings[i].radius_px) / rings[i].blend_px.max(1e-6)).clamp(0.0, 1.0);
-        match (t > 0.0, i + 1 < rings.len()) {
-            (false, _) => (of(i), lod(i)),
-            // The last ring fades out.
-            (true, false) => (of(i) * (1.0 - t), lod(i)),
-            (true, true) => (of(i) * (1.0 - t) + of(i + 1) * t, lod(i) * (1.0 - t) + lod(i + 1) * t),
-        }
+        // The last ring has no end.
+        if t > 0.0 { (of(i) * (1.0 - t) + of(i + 1) * t, lod(i) * (1.0 - t) + lod(i + 1) * t) } else { (of(i), lod(i)) }
     });
     (pixels.map(|(color, _)| color.to_array()), pixels.map(|(_, lod)| lod))
 }

@@ -81,7 +81,11 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 device_ms,
                 mrays_per_core_second: rate(&|t| t.cpu_ms),
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
-                foveated: if args.foveated { foveated::measure(&subject, tracer) } else { vec![] },
+                foveated: if args.foveated {
+                    foveated::measure(&subject, tracer, &foveated::patterns(&subject), is_real_gpu(backend))
+                } else {
+                    vec![]
+                },
                 scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
             }
         });
@@ -126,8 +130,10 @@ fn print(report: &Report) {
             );
         }
         for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
-            say!("  foveated against uniform, CPU time, {} ({})", t.backend.name, t.backend.kind);
-            foveated::print(&t.foveated);
+            let by_wall = t.device_ms.is_some();
+            let time = if by_wall { "wall time" } else { "CPU time" };
+            say!("  foveated against uniform, {time}, {} ({})", t.backend.name, t.backend.kind);
+            foveated::print(&t.foveated, by_wall);
         }
     }
 }

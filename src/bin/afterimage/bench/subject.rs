@@ -15,6 +15,7 @@ use afterimage::trace::view::View;
 use afterimage::trace::work::{WorkItem, uniform};
 use afterimage::trace::world::{World, light_if_dark};
 use afterimage::trace::{Tracer, settings::TraceSettings};
+use std::time::Duration;
 
 /// A scene at rest and where it is seen from. One sample a pixel.
 pub struct Subject {
@@ -74,7 +75,12 @@ impl Subject {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
     }
 
-    /// Traces a foveated frame; with its CPU time in milliseconds, wall time where the system does not tell.
+    /// The middle of the picture.
+    pub fn middle_px(&self) -> [f32; 2] {
+        self.size.map(|s| 0.5 * (s as f32 - 1.0))
+    }
+
+    /// Traces a foveated frame; what it took includes planning and filling in.
     pub fn foveated(
         &self,
         tracer: &Tracer,
@@ -82,12 +88,13 @@ impl Subject {
         gaze_px: [f32; 2],
         samples: u32,
         index: u64,
-    ) -> (FoveatedFrame, f64) {
+    ) -> (FoveatedFrame, Took) {
         let view = self.view(index);
         let watch = Stopwatch::start();
         let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
         let frame = plan.trace(tracer, &self.world, &view, index);
-        (frame, watch.cpu_ms().unwrap_or(watch.wall_ms()))
+        let took = Took::by(&watch, None, frame.rays);
+        (frame, took)
     }
 
     fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
@@ -101,13 +108,14 @@ impl Subject {
                 None
             }
         };
+        Took::by(&watch, device, film.rays)
+    }
+}
+
+impl Took {
+    fn by(watch: &Stopwatch, device: Option<Duration>, rays: u64) -> Self {
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
-        Took {
-            cpu_ms: cpu_ms.unwrap_or(wall_ms),
-            wall_ms,
-            device_ms: device.map(|d| d.as_secs_f64() * 1e3),
-            rays: film.rays,
-        }
+        Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }
     }
 }
 
