@@ -7,10 +7,13 @@ use afterimage::trace::sampling::{Layers, Regions, Sampling};
 use serde::Serialize;
 
 /// Rounds over all patterns; each is timed once a round, so that drift meets all alike.
-const ROUNDS: u64 = 3;
+pub const ROUNDS: u64 = 3;
 
 /// Samples of a pixel of the uniform frame, whose time is taken to grow in proportion.
 pub const UNIFORM_SAMPLES: u32 = 4;
+
+/// Without a GPU the uniform frame is traced in every eighth band of rows only.
+pub const UNIFORM_EVERY: u32 = 8;
 
 /// Where a frame is to be sampled.
 #[derive(Clone, Debug)]
@@ -26,13 +29,15 @@ pub struct Pattern {
 #[derive(Clone, Debug, Serialize)]
 pub struct PatternReport {
     pub pattern: String,
+    /// What counts: `CPU` time, of a real GPU `wall` time.
+    pub clock: &'static str,
     /// Samples of a pixel where it is sampled most; the uniform frame has as many everywhere.
     pub samples_per_pixel: u32,
     /// Samples of the uniform frame over those that the pattern's regions have, without blends and borders.
     pub ideal_reduction: Option<f64>,
     /// Samples of the uniform frame over those traced.
     pub sample_reduction: f64,
-    /// Time of the uniform frame over that of the foveated one, plan and filling in included: CPU time, of a real GPU wall time.
+    /// Time of tracing the uniform frame over that of the foveated one, plan and filling in included.
     pub time_reduction: Option<f64>,
     /// Time reduction over ideal reduction.
     pub share_of_ideal: Option<f64>,
@@ -44,9 +49,8 @@ pub struct PatternReport {
 
 impl PatternReport {
     /// Times of a uniform and of a foveated frame by the clock that counts.
-    pub fn times(&self, by_wall: bool) -> Option<(Quartiles, Quartiles)> {
-        let wall = self.uniform_wall_ms.zip(self.wall_ms);
-        if by_wall { wall } else { self.uniform_cpu_ms.zip(self.cpu_ms) }
+    pub fn times(&self) -> Option<(Quartiles, Quartiles)> {
+        if self.clock == "wall" { self.uniform_wall_ms.zip(self.wall_ms) } else { self.uniform_cpu_ms.zip(self.cpu_ms) }
     }
 }
 
@@ -54,7 +58,11 @@ impl PatternReport {
 pub fn regions(of: [u32; 3], fewer: u32, radius_scale: f32, gaze_px: [f32; 2]) -> Pattern {
     let samples = of.map(|s| s / fewer);
     let [a, b, c] = of;
-    let share = if fewer == 1 { String::new() } else { format!(" at one {fewer}th") };
+    let share = match fewer {
+        1 => "",
+        4 => ", a quarter of the samples",
+        _ => ", an eighth of the samples",
+    };
     let radii = if radius_scale == 1.0 { "" } else { ", halved radii" };
     Pattern {
         name: format!("regions {a},{b},{c}{radii}{share}"),
@@ -80,26 +88,29 @@ pub fn patterns(subject: &Subject) -> Vec<Pattern> {
     ]
 }
 
-/// Times every pattern with `tracer`, and uniform frames.
-pub fn measure(subject: &Subject, tracer: &Tracer, patterns: &[Pattern], by_wall: bool) -> Vec<PatternReport> {
+/// Times every pattern `rounds` times with `tracer`, and uniform frames.
+pub fn measure(
+    subject: &Subject,
+    tracer: &Tracer,
+    patterns: &[Pattern],
+    rounds: u64,
+    by_wall: bool,
+) -> Vec<PatternReport> {
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
     let mut uniform: Vec<Took> = vec![];
     let mut took: Vec<Vec<Took>> = vec![vec![]; patterns.len()];
     let mut traced = vec![0; patterns.len()];
+    // Drivers compile at the first dispatch.
     subject.few(tracer);
-    for round in 0..=ROUNDS {
-        // The first round is for warming up.
-        if round > 0 {
-            uniform.push(subject.foveated(tracer, &Sampling::Uniform, [0.0; 2], UNIFORM_SAMPLES, round).1);
-        }
+    let every = if by_wall { 1 } else { UNIFORM_EVERY };
+    for round in 0..rounds {
+        uniform.push(subject.uniform(tracer, UNIFORM_SAMPLES, every, round));
         for (i, p) in patterns.iter().enumerate() {
             let (frame, time) = subject.foveated(tracer, &p.sampling, p.gaze_px, p.samples, round);
             traced[i] = frame.samples.iter().sum::<u64>();
-            if round > 0 {
-                took[i].push(time);
-            }
+            took[i].push(time);
         }
     }
     let report = |(i, p): (usize, &Pattern)| {
@@ -114,6 +125,7 @@ pub fn measure(subject: &Subject, tracer: &Tracer, patterns: &[Pattern], by_wall
         };
         let mut report = PatternReport {
             pattern: p.name.clone(),
+            clock: if by_wall { "wall" } else { "CPU" },
             samples_per_pixel: p.samples,
             ideal_reduction,
             sample_reduction: all / traced[i] as f64,
@@ -124,7 +136,7 @@ pub fn measure(subject: &Subject, tracer: &Tracer, patterns: &[Pattern], by_wall
             wall_ms: of(&took[i], |t| t.wall_ms, 1.0),
             uniform_wall_ms: of(&uniform, |t| t.wall_ms, more),
         };
-        report.time_reduction = report.times(by_wall).map(|(uniform, foveated)| uniform.median / foveated.median);
+        report.time_reduction = report.times().map(|(uniform, foveated)| uniform.median / foveated.median);
         report.share_of_ideal = report.time_reduction.zip(ideal_reduction).map(|(time, ideal)| time / ideal);
         report
     };
@@ -132,10 +144,10 @@ pub fn measure(subject: &Subject, tracer: &Tracer, patterns: &[Pattern], by_wall
 }
 
 /// A table.
-pub fn print(patterns: &[PatternReport], by_wall: bool) {
+pub fn print(patterns: &[PatternReport]) {
     say!("    foveated ms  uniform ms  ideal  samples  time  share of ideal  pattern");
     for p in patterns {
-        let (Some((uniform, ms)), Some(time)) = (p.times(by_wall), p.time_reduction) else { continue };
+        let (Some((uniform, ms)), Some(time)) = (p.times(), p.time_reduction) else { continue };
         let or_dash =
             |v: Option<f64>, factor: f64, unit: &str| v.map_or("-".into(), |v| format!("{:.1}{unit}", v * factor));
         say!(

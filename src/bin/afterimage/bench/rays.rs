@@ -82,7 +82,8 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 mrays_per_core_second: rate(&|t| t.cpu_ms),
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
                 foveated: if args.foveated {
-                    foveated::measure(&subject, tracer, &foveated::patterns(&subject), is_real_gpu(backend))
+                    let patterns = foveated::patterns(&subject);
+                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))
                 } else {
                     vec![]
                 },
@@ -130,10 +131,9 @@ fn print(report: &Report) {
             );
         }
         for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
-            let by_wall = t.device_ms.is_some();
-            let time = if by_wall { "wall time" } else { "CPU time" };
-            say!("  foveated against uniform, {time}, {} ({})", t.backend.name, t.backend.kind);
-            foveated::print(&t.foveated, by_wall);
+            let clock = t.foveated.first().map_or("", |p| p.clock);
+            say!("  foveated against uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
+            foveated::print(&t.foveated);
         }
     }
 }

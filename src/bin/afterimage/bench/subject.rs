@@ -12,7 +12,7 @@ use afterimage::source::raster::DEFAULT_FPS;
 use afterimage::trace::film::Film;
 use afterimage::trace::sampling::{FoveatedFrame, Sampling};
 use afterimage::trace::view::View;
-use afterimage::trace::work::{WorkItem, uniform};
+use afterimage::trace::work::{Spans, WorkItem, uniform};
 use afterimage::trace::world::{World, light_if_dark};
 use afterimage::trace::{Tracer, settings::TraceSettings};
 use std::time::Duration;
@@ -95,6 +95,27 @@ impl Subject {
         let frame = plan.trace(tracer, &self.world, &view, index);
         let took = Took::by(&watch, None, frame.rays);
         (frame, took)
+    }
+
+    /// Traces `samples` of every pixel, without anything around it; with `every` above 1 only of each so manieth band of rows, for
+    /// which the whole frame's time is taken to be so much longer.
+    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> Took {
+        const BAND: u32 = 4;
+        let [width, height] = self.size;
+        let band = if every > 1 { BAND } else { height };
+        let view = self.view(index);
+        let (mut rows, mut rays) = (0, 0);
+        let watch = Stopwatch::start();
+        for first in (band * (every / 2)..height).step_by((band * every) as usize) {
+            let band = first..(first + band).min(height);
+            let mut film = Film::window([0, first], [width, band.len() as u32]);
+            rows += band.len();
+            tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
+            rays += film.rays;
+        }
+        let took = Took::by(&watch, None, rays);
+        let more = f64::from(height) / rows.max(1) as f64;
+        Took { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
     }
 
     fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
