@@ -76,3 +76,61 @@ pub(super) fn blend(
     });
     (pixels.map(|(color, _)| color.to_array()), pixels.map(|(_, lod)| lod))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::display::ViewGeometry;
+    use crate::trace::film::Moments;
+    use crate::trace::sampling::{Layers, Regions};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    /// A film with one sample at each point, another at each.
+    fn film_of(ring: &Ring, points: impl Iterator<Item = [u32; 2]>) -> Film {
+        let mut film = Film::new(ring.lattice.points);
+        let width = film.moments.width();
+        for [x, y] in points {
+            let mean = Vec3::new(1.0 + x as f32, 1.0 + y as f32, ((x * 7 + y * 13) % 31) as f32);
+            film.moments.pixels_mut()[y as usize * width + x as usize] =
+                Moments { mean, count: 1, ..Moments::default() };
+        }
+        film
+    }
+
+    #[test]
+    fn what_is_no_target_is_not_looked_at() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let (mut targets, mut points) = (0, 0);
+        for case in 0..120 {
+            let size_px = [rng.random_range(20..150), rng.random_range(20..110)];
+            let geometry = ViewGeometry::flat(size_px, rng.random_range(15.0..70.0)).unwrap();
+            let gaze_px = size_px.map(|s| rng.random_range(-30.0..s as f32 + 30.0));
+            let rings = if case % 2 == 0 {
+                let blocks = [rng.random_range(1..5), rng.random_range(1..8)];
+                Regions { blocks, radius_scale: rng.random_range(0.2..1.5), ..Regions::default() }.rings(&geometry)
+            } else {
+                let steps = [1, 2, 3, 4].map(|step| rng.random_range(1..=step));
+                let lens_deg = (case % 4 == 1).then(|| rng.random_range(5.0..40.0));
+                Layers { radii_deg: [2.0, 5.0, 9.0], steps, lens_deg }.rings(&geometry, gaze_px, 1)
+            };
+            let all = |ring: &Ring| film_of(ring, (0..ring.lattice.points[1]).flat_map(|y| row(ring, y)));
+            let some = |(i, ring): (usize, &Ring)| {
+                film_of(ring, ring.targets(&rings, i, gaze_px).flat_map(|(run, y)| run.map(move |x| [x, y])))
+            };
+            let films: [Vec<Film>; 2] = [rings.iter().map(all).collect(), rings.iter().enumerate().map(some).collect()];
+            let [expected, found] = films.each_ref().map(|films| blend(&rings, films, size_px, gaze_px).0);
+            assert!(expected == found, "case {case}: {rings:?}, gaze {gaze_px:?}");
+            let [of_all, of_some] =
+                films.map(|films| films.iter().flat_map(|f| f.moments.pixels()).filter(|m| m.count > 0).count());
+            points += of_all;
+            targets += of_some;
+        }
+        println!("{targets} targets of {points} points");
+        assert!(targets * 3 < points * 2);
+    }
+
+    fn row(ring: &Ring, y: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
+        (0..ring.lattice.points[0]).map(move |x| [x, y])
+    }
+}
