@@ -225,7 +225,7 @@ fn print(report: &Report) {
     print_regions(&report.regions);
     print_layers(&report.layers);
     let clock = report.regions.patterns.first().map_or("", |p| p.ours.clock);
-    say!("\n{}, {clock} time, medians of {} frames each.", report.backend.name, report.frames);
+    say!("\n{}, {clock} time, the median where frames are several; frames: {}.", report.backend.name, report.frames);
     if clock == "CPU" {
         say!("Uniform frames: {UNIFORM_SAMPLES} samples a pixel of every {UNIFORM_EVERY}th band of rows.");
     }
