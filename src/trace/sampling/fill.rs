@@ -34,15 +34,19 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     let at = lattice.coordinate(px);
     let base = at.map(|v| v.floor());
     let part = [at[0] - base[0], at[1] - base[1]];
-    let tap = |dx: i32, dy: i32| {
-        let x = (base[0] as i32 + dx).clamp(0, lattice.points[0] as i32 - 1);
-        let y = (base[1] as i32 + dy).clamp(0, lattice.points[1] as i32 - 1);
-        let moments = film.at([x as u32, y as u32]);
+    // Columns and rows of points around it; those at 1 and 2 are its neighbours.
+    let around = |axis: usize| {
+        let last = lattice.points[axis] as i32 - 1;
+        [-1, 0, 1, 2].map(|d| (base[axis] as i32 + d).clamp(0, last) as u32)
+    };
+    let (xs, ys) = (around(0), around(1));
+    let tap = |i: usize, j: usize| {
+        let moments = film.at([xs[i], ys[j]]);
         (moments.count > 0).then_some(moments.mean)
     };
     // On a point: its own value, whoever its neighbours are.
     if part == [0.0; 2]
-        && let Some(value) = tap(0, 0)
+        && let Some(value) = tap(1, 1)
     {
         return value;
     }
@@ -53,7 +57,7 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
             for (i, wx) in wx.iter().enumerate() {
                 // On a row or column of points the others have no weight, and may have no samples.
                 if wx * wy != 0.0 {
-                    sum = sum.zip(tap(i as i32 - 1, j as i32 - 1)).map(|(sum, value)| sum + value * (wx * wy));
+                    sum = sum.zip(tap(i, j)).map(|(sum, value)| sum + value * (wx * wy));
                 }
             }
         }
@@ -65,7 +69,7 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
         let weight = (if dx == 0 { 1.0 - part[0] } else { part[0] }) * (if dy == 0 { 1.0 - part[1] } else { part[1] });
-        if let Some(value) = tap(dx, dy) {
+        if let Some(value) = tap(1 + dx, 1 + dy) {
             sum += value * weight;
             weights += weight;
         }

@@ -63,7 +63,7 @@ pub(super) fn blend(
     let pixels = Image::from_fn_parallel(size_px, |[x, y]| {
         let px = [x as f32, y as f32];
         let lens = rings[0].lens;
-        if lens.distance_px(px) > lens.radius_px {
+        if lens.radius_px.is_finite() && lens.distance_px(px) > lens.radius_px {
             return (Vec3::ZERO, (rings[rings.len() - 1].lattice.step as f32).log2());
         }
         let distance = (px[0] - gaze_px[0]).hypot(px[1] - gaze_px[1]);
