@@ -425,6 +425,28 @@ fn bench_counts_the_rays_of_the_tracer() {
 }
 
 #[test]
+fn bench_puts_the_papers_figures_beside_ours() {
+    let folder = Folder::new();
+    let json = folder.text("papers.json");
+    let small = ["bench", "papers", "--backend", "cpu", "--size", "64x36", "--frames", "1", "--json", &json];
+    let text = succeeds(&small);
+    assert!(text.contains("| 32,16,8 | 8.60 | 30.9x | 8.6 |"), "{text}");
+    let report = read_json(Path::new(&json));
+    let regions = report["regions"]["patterns"].as_array().unwrap();
+    assert_eq!(regions.len(), 4);
+    assert!((report["regions"]["hfov_deg"].as_f64().unwrap() - 61.1).abs() < 0.1);
+    assert_eq!(regions[0]["paper_time_reduction"], 23.93);
+    // Of a few pixels: what is measured is anything.
+    assert!(regions.iter().all(|p| p["time_reduction"].as_f64().unwrap() > 0.0 && p["clock"] == "CPU"));
+    let layers = report["layers"].as_array().unwrap();
+    assert_eq!(layers.len(), 5);
+    assert!(layers.iter().all(|scene| scene["size"] == serde_json::json!([36, 40]) && scene["max_depth"] == 8));
+    assert!(layers.iter().all(|scene| scene["patterns"].as_array().unwrap().len() == 2));
+    refuses(&["bench", "papers", "--frames", "0"], &["1 to"]);
+    refuses(&["bench", "papers", "--camera", "no/such.json"], &["no/such.json"]);
+}
+
+#[test]
 fn bench_prices_effects_between_the_markers() {
     let folder = Folder::new();
     let (page, json) = (folder.text("effects.md"), folder.text("effects.json"));

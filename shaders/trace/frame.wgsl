@@ -15,6 +15,8 @@ struct TraceFrame {
     items: u32,
     capacity: u32,
     jitter: f32,
+    // The film's entry of pixel (x, y) is y * width + x - film_base.
+    film_base: u32,
 }
 
 // Words of `counters`.

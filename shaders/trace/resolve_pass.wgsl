@@ -14,7 +14,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x > 0u && work[frame.first_item + id.x - 1u].x == pixel {
         return;
     }
-    let at = 2u * ((pixel >> 16u) * frame.width + (pixel & 0xffffu));
+    let at = 2u * ((pixel >> 16u) * frame.width + (pixel & 0xffffu) - frame.film_base);
     let before = film[at];
     var mean = before.xyz;
     var count = before.w;

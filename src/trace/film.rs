@@ -34,11 +34,12 @@ impl Moments {
     }
 }
 
-/// An image that is being sampled.
+/// An image that is being sampled, or a window of it.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// One entry a pixel.
+    /// One entry a pixel of the window.
     pub moments: Image<Moments>,
+    first: [u32; 2],
     /// Samples that were not finite and count as black.
     pub nonfinite: u64,
     /// Rays traced, of all kinds.
@@ -48,7 +49,26 @@ pub struct Film {
 impl Film {
     /// An empty film of `size` pixels.
     pub fn new(size: [u32; 2]) -> Self {
-        Self { moments: Image::filled(size, Moments::default()), nonfinite: 0, rays: 0 }
+        Self::window([0; 2], size)
+    }
+
+    /// An empty film of `size` pixels of an image, the top left of them pixel `first`: all that is sampled must lie in it.
+    pub fn window(first: [u32; 2], size: [u32; 2]) -> Self {
+        Self { moments: Image::filled(size, Moments::default()), first, nonfinite: 0, rays: 0 }
+    }
+
+    /// What is known of a pixel of the image: outside the window, nothing.
+    #[inline]
+    pub fn at(&self, [x, y]: [u32; 2]) -> Moments {
+        // Left of the window wraps to a number beyond it.
+        let [x, y] = [x.wrapping_sub(self.first[0]), y.wrapping_sub(self.first[1])];
+        let [width, height] = self.moments.size();
+        if x < width && y < height { self.moments.at(x as usize, y as usize) } else { Moments::default() }
+    }
+
+    /// What to take from y * width + x to find a pixel of the image in `moments`.
+    pub(super) fn base(&self) -> u32 {
+        self.first[1] * self.moments.size()[0] + self.first[0]
     }
 
     /// Mean radiance; black where there is no sample.
@@ -61,31 +81,27 @@ impl Film {
         self.moments.map(|m| m.variance_of_mean().to_array())
     }
 
-    /// Noise of each mean: the standard error of its luma, and its number of samples (0 where there is none). Of a single sample the
-    /// error is how far its neighbours scatter, which counts their detail as noise, too.
-    pub fn noise(&self) -> Image<[f32; 2]> {
-        Image::from_fn_parallel(self.moments.size(), |[x, y]| {
-            let own = self.moments.at(x as usize, y as usize);
-            let error = match own.count {
-                0 => return [0.0; 2],
-                1 => self.scatter(x, y),
-                // As if the channels' noise were one and the same: never too small.
-                _ => luma(own.variance_of_mean().map(f32::sqrt)),
-            };
-            [error, own.count as f32]
-        })
+    /// Noise of a pixel's mean: the standard error of its luma, and its number of samples (0 where there is none). Of a single sample
+    /// the error is how far its neighbours scatter, which counts their detail as noise, too.
+    pub fn noise_at(&self, pixel: [u32; 2]) -> [f32; 2] {
+        let own = self.at(pixel);
+        let error = match own.count {
+            0 => return [0.0; 2],
+            1 => self.scatter(pixel),
+            // As if the channels' noise were one and the same: never too small.
+            _ => luma(own.variance_of_mean().map(f32::sqrt)),
+        };
+        [error, own.count as f32]
     }
 
     /// Standard deviation of the lumas of 3x3 pixels.
-    fn scatter(&self, x: u32, y: u32) -> f32 {
-        let [width, height] = self.moments.size();
+    fn scatter(&self, [x, y]: [u32; 2]) -> f32 {
         let mut lumas = Moments::default();
-        for y in y.saturating_sub(1)..(y + 2).min(height) {
-            for x in x.saturating_sub(1)..(x + 2).min(width) {
-                let near = self.moments.at(x as usize, y as usize);
-                if near.count > 0 {
-                    lumas.add(Vec3::splat(luma(near.mean)));
-                }
+        for (dx, dy) in (0..9).map(|i| (i % 3, i / 3)) {
+            // Left of the image wraps to a pixel that no film has.
+            let near = self.at([x.wrapping_add(dx).wrapping_sub(1), y.wrapping_add(dy).wrapping_sub(1)]);
+            if near.count > 0 {
+                lumas.add(Vec3::splat(luma(near.mean)));
             }
         }
         // A pixel alone is as uncertain as it is bright.

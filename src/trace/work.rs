@@ -66,11 +66,34 @@ impl Spans {
         Self { spans, samples }
     }
 
+    /// Samples `samples` of runs of pixels, each columns and a row, that come row by row, left to right.
+    pub fn of_runs(runs: impl IntoIterator<Item = (Range<u32>, u32)>, samples: Range<u32>) -> Self {
+        let mut before = 0;
+        let span = |(columns, y): (Range<u32>, u32)| {
+            let span = Span { pixel: columns.start | y << 16, count: columns.len() as u32, before };
+            before += span.count;
+            span
+        };
+        let spans = runs.into_iter().filter(|(columns, _)| !columns.is_empty()).map(span).collect();
+        Self { spans, samples }
+    }
+
     /// Samples `samples` of every pixel in the rows `rows` of an image `width` pixels wide.
     pub fn uniform(width: u32, rows: Range<u32>, samples: Range<u32>) -> Self {
         let first = rows.start;
         let span = |y: u32| Span { pixel: y << 16, count: width, before: (y - first) * width };
         Self { spans: if width == 0 { vec![] } else { rows.map(span).collect() }, samples }
+    }
+
+    /// The corner and the size of the smallest window that holds all the pixels of all `work`.
+    pub fn window(work: &[Self]) -> ([u32; 2], [u32; 2]) {
+        let spans = || work.iter().flat_map(|w| &w.spans);
+        let columns = |s: &Span| (s.pixel & 0xffff, (s.pixel & 0xffff) + s.count);
+        let left = spans().map(|s| columns(s).0).min().unwrap_or(0);
+        let right = spans().map(|s| columns(s).1).max().unwrap_or(0);
+        let top = spans().map(|s| s.pixel >> 16).min().unwrap_or(0);
+        let bottom = spans().map(|s| (s.pixel >> 16) + 1).max().unwrap_or(0);
+        ([left, top], [right - left, bottom - top])
     }
 
     /// The pixels, span by span.
@@ -177,6 +200,10 @@ mod tests {
         assert_eq!(got, expected);
         assert_eq!(spans.spans().iter().map(|s| s.before).collect::<Vec<_>>(), [0, 2, 3, 5, 6]);
         assert_eq!((spans.pixels(), spans.len()), (7, 21));
+        assert_eq!(Spans::window(&[spans]), ([0, 0], [65536, 4]));
+        let runs = [(3..5, 0), (6..7, 0), (9..9, 0), (0..2, 1), (65535..65536, 2), (0..1, 3)];
+        assert_eq!(Spans::of_runs(runs, 2..5), spans);
+        assert_eq!(Spans::window(&[Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1)]), ([5, 4], [4, 3]));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod clock;
 mod effects;
 mod foveated;
+mod papers;
 mod post;
 mod rays;
 mod subject;
@@ -15,28 +16,36 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Time the passes, the path tracer, or its effects
+/// Time the passes, the path tracer, foveated sampling as the papers did, or what effects cost
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json\n  \
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
+    afterimage bench papers --scene sponza.gltf --camera inside.json --json papers.json\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
 pub struct BenchArgs {
     /// What is timed
     #[arg(value_enum, default_value = "post")]
     pub what: What,
-    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 192x108 for effects
+    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second has an
+    /// eye as wide as that is high), 192x108 for
+    /// effects
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
-    /// Frames after warm-up, at least 30; default: 60 for post, 30 for the others
+    /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; papers: of each pattern, at least 1,
+    /// default: 3
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, effects: scenes, separated by commas; default: builtin:courtyard; of effects four built-in ones
+    /// trace, papers (the first), effects: scenes, separated by commas; default: builtin:courtyard; of effects four built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, effects: what traces
+    /// trace, papers (the first): where scenes are seen from, as of `afterimage trace`: a camera by name, still, framing, lateral, orbit, or a file;
+    /// default: still
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub camera: Option<String>,
+    /// trace, papers, effects: what traces; papers take the adapter, if there is one
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Traces,
     /// effects: write the tables between the markers of this Markdown file, or to a new file
@@ -60,6 +69,8 @@ pub enum What {
     Post,
     /// The path tracer: rays a second, depth 3, both ways of finding light
     Trace,
+    /// Foveated against uniform path tracing, as two papers measured it: Markdown tables with their figures beside ours
+    Papers,
     /// The path tracer with and without each effect that a scene does not need
     Effects,
 }
@@ -80,15 +91,18 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     let (size, frames) = match args.what {
         What::Post => ([1920, 1080], 60),
         What::Trace => ([640, 360], 30),
+        What::Papers => ([1920, 1080], foveated::ROUNDS),
         What::Effects => ([192, 108], 30),
     };
     let (size, frames) = (args.size.unwrap_or(size), args.frames.unwrap_or(frames));
-    if !(30..=100_000).contains(&frames) {
-        return Err(Failure::Input(format!("--frames {frames}: expected 30 to 100000")));
+    let least = if args.what == What::Papers { 1 } else { 30 };
+    if !(least..=100_000).contains(&frames) {
+        return Err(Failure::Input(format!("--frames {frames}: expected {least} to 100000")));
     }
     match args.what {
         What::Post => post::bench(args, size, frames),
         What::Trace => rays::bench(args, size, frames),
+        What::Papers => papers::bench(args, size, frames),
         What::Effects => effects::bench(args, size, frames),
     }
 }

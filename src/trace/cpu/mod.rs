@@ -45,7 +45,7 @@ impl CpuTracer {
             key: path_key(self.settings.seed, frame),
         };
         let rays = view.rays();
-        let width = film.moments.width();
+        let (width, base) = (film.moments.size()[0], film.base());
         let moments = &film.moments;
         let pixels = work.into().by_pixel();
         let done: Vec<Done> = pixels
@@ -53,7 +53,7 @@ impl CpuTracer {
             .with_min_len(32)
             .map(|(id, samples)| {
                 let [x, y] = [id & 0xffff, id >> 16];
-                let index = y as usize * width + x as usize;
+                let index = (y * width + x - base) as usize;
                 let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
                 for sample in samples.numbers() {
                     let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);

@@ -167,7 +167,8 @@ impl GpuTracer {
             items: 0,
             capacity: BATCH,
             jitter: rays.jitter,
-            unused: [0; 3],
+            film_base: film.base(),
+            unused: [0; 2],
         };
         let device = &self.device.device;
         let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();

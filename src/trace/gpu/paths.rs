@@ -25,7 +25,8 @@ pub(super) struct FrameWords {
     pub items: u32,
     pub capacity: u32,
     pub jitter: f32,
-    pub unused: [u32; 3],
+    pub film_base: u32,
+    pub unused: [u32; 2],
 }
 
 /// Bytes of a path: `PATH_ROWS`.

@@ -16,12 +16,16 @@ pub(super) enum Filter {
 }
 
 impl Filter {
-    /// How far it looks, in steps of the lattice.
-    pub fn reach(self) -> f32 {
-        match self {
-            Self::Linear => 1.5,
-            Self::Bicubic => 3.0,
-        }
+    /// How far from a pixel the points lie that it looks at, at most, in pixels.
+    pub fn reach_px(self, lattice: &Lattice) -> f32 {
+        // Pixels lie on points or off them by no less than this along an axis: by 1, by a half from the middles of even blocks. A
+        // tap a whole step away has the weight 0.
+        let least = 1.0 - lattice.first_px[0].fract();
+        let farther = match self {
+            Self::Linear => 0.0,
+            Self::Bicubic => lattice.step as f32,
+        };
+        std::f32::consts::SQRT_2 * (lattice.step as f32 - least + farther)
     }
 }
 
@@ -30,15 +34,19 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     let at = lattice.coordinate(px);
     let base = at.map(|v| v.floor());
     let part = [at[0] - base[0], at[1] - base[1]];
-    let tap = |dx: i32, dy: i32| {
-        let x = (base[0] as i32 + dx).clamp(0, lattice.points[0] as i32 - 1);
-        let y = (base[1] as i32 + dy).clamp(0, lattice.points[1] as i32 - 1);
-        let moments = film.moments.at(x as usize, y as usize);
+    // Columns and rows of points around it; those at 1 and 2 are its neighbours.
+    let around = |axis: usize| {
+        let last = lattice.points[axis] as i32 - 1;
+        [-1, 0, 1, 2].map(|d| (base[axis] as i32 + d).clamp(0, last) as u32)
+    };
+    let (xs, ys) = (around(0), around(1));
+    let tap = |i: usize, j: usize| {
+        let moments = film.at([xs[i], ys[j]]);
         (moments.count > 0).then_some(moments.mean)
     };
     // On a point: its own value, whoever its neighbours are.
     if part == [0.0; 2]
-        && let Some(value) = tap(0, 0)
+        && let Some(value) = tap(1, 1)
     {
         return value;
     }
@@ -47,7 +55,10 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
         let mut sum = Some(Vec3::ZERO);
         for (j, wy) in wy.iter().enumerate() {
             for (i, wx) in wx.iter().enumerate() {
-                sum = sum.zip(tap(i as i32 - 1, j as i32 - 1)).map(|(sum, value)| sum + value * (wx * wy));
+                // On a row or column of points the others have no weight, and may have no samples.
+                if wx * wy != 0.0 {
+                    sum = sum.zip(tap(i, j)).map(|(sum, value)| sum + value * (wx * wy));
+                }
             }
         }
         if let Some(sum) = sum {
@@ -58,7 +69,7 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
     for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
         let weight = (if dx == 0 { 1.0 - part[0] } else { part[0] }) * (if dy == 0 { 1.0 - part[1] } else { part[1] });
-        if let Some(value) = tap(dx, dy) {
+        if let Some(value) = tap(1 + dx, 1 + dy) {
             sum += value * weight;
             weights += weight;
         }
@@ -100,15 +111,11 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
 
 /// Noise of scattered samples: of a pixel without any, the mean of those around it.
 pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
-    let noise = film.noise();
-    let as_means = Film {
-        moments: Image::from_fn_parallel(noise.size(), |[x, y]| {
-            let [error, samples] = noise.at(x as usize, y as usize);
-            Moments { mean: Vec3::new(error, samples, 0.0), squares: Vec3::ZERO, count: u32::from(samples > 0.0) }
-        }),
-        nonfinite: 0,
-        rays: 0,
-    };
+    let mut as_means = Film::new(film.moments.size());
+    as_means.moments = Image::from_fn_parallel(film.moments.size(), |pixel| {
+        let [error, samples] = film.noise_at(pixel);
+        Moments { mean: Vec3::new(error, samples, 0.0), squares: Vec3::ZERO, count: u32::from(samples > 0.0) }
+    });
     pull_push(&as_means).map(|[error, samples, _]| [error, samples])
 }
 

@@ -1,10 +1,12 @@
 //! Nested lattices offset by the gaze (thesis: foveated path tracing for VR, KTH 2020).
 
+use super::circle::Circle;
 use super::fill::Filter;
 use super::lattice::Lattice;
 use super::regions::tangent_px;
-use super::rings::{Lens, Ring};
+use super::rings::Ring;
 use crate::display::ViewGeometry;
+use glam::Vec3;
 
 /// The pattern. Defaults are the thesis'.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +15,8 @@ pub struct Layers {
     pub radii_deg: [f32; 3],
     /// Pixels between the target pixels of the four layers.
     pub steps: [u32; 4],
-    /// Radius in degrees, from the view's axis, of what a headset's lens shows; nothing is traced outside. `None`: a screen, all of it
-    /// is seen.
+    /// Radius in degrees of what a headset's lens shows around the view's axis; nothing is traced outside. `None`: a screen, all of
+    /// it is seen.
     pub lens_deg: Option<f32>,
 }
 
@@ -27,10 +29,9 @@ impl Default for Layers {
 impl Layers {
     pub(super) fn rings(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32) -> Vec<Ring> {
         let size_px = geometry.size_px();
-        let (scale, offset) = geometry.scale_offset();
-        let lens = self.lens_deg.map(|deg| Lens {
-            center_px: [-offset[0] / scale[0], -offset[1] / scale[1]],
-            radius_px: tangent_px(geometry, deg),
+        let lens = self.lens_deg.and_then(|deg| {
+            let center_px = geometry.project(Vec3::Z)?;
+            Some(Circle { center_px, radius_px: tangent_px(geometry, deg) })
         });
         let mut radius = 0.0_f32;
         (0..4)
@@ -42,7 +43,7 @@ impl Layers {
                     radius_px: radius,
                     blend_px: if i < 3 { 2.0 * self.steps[i + 1] as f32 } else { 0.0 },
                     filter: if self.steps[i] > 1 { Filter::Bicubic } else { Filter::Linear },
-                    lens,
+                    lens: lens.unwrap_or(Circle::EVERYTHING),
                 }
             })
             .collect()

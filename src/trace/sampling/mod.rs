@@ -4,6 +4,7 @@
 //! its own ([`View::on_lattice`]) and traces a list of its points; nothing is done for the others.
 
 mod acuity;
+mod circle;
 mod fill;
 mod guided;
 mod lattice;
@@ -27,6 +28,7 @@ use crate::foveation::{Filter, Foveation};
 use crate::image::Image;
 use rings::Ring;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// How samples are spread over a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -146,7 +148,17 @@ impl Plan {
     pub fn work(&self) -> Cow<'_, [Vec<Spans>]> {
         match &self.guided {
             Some(work) => work.into(),
-            None => self.parts().into_iter().map(|p| vec![Spans::new(p.targets, 0..p.samples)]).collect(),
+            None => match &self.kind {
+                Kind::Rings(rings) => {
+                    let spans = |(i, ring): (usize, &Ring)| {
+                        vec![Spans::of_runs(ring.targets(rings, i, self.gaze_px), 0..ring.samples)]
+                    };
+                    rings.iter().enumerate().map(spans).collect()
+                }
+                Kind::Scattered { targets, samples, .. } => {
+                    vec![vec![Spans::new(targets.iter().copied(), 0..*samples)]].into()
+                }
+            },
         }
     }
 
@@ -156,7 +168,7 @@ impl Plan {
             Kind::Rings(rings) => {
                 let part = |(i, ring): (usize, &Ring)| Part {
                     lattice: ring.lattice,
-                    targets: ring.targets(rings, i, self.size_px, self.gaze_px).collect(),
+                    targets: points(ring.targets(rings, i, self.gaze_px)).collect(),
                     samples: ring.samples,
                 };
                 rings.iter().enumerate().map(part).collect()
@@ -174,7 +186,7 @@ impl Plan {
             Kind::Rings(rings) => (rings, &[]),
             Kind::Scattered { targets, .. } => (&[], targets),
         };
-        let of = move |(i, ring): (usize, &Ring)| ring.targets(rings, i, self.size_px, self.gaze_px);
+        let of = move |(i, ring): (usize, &Ring)| points(ring.targets(rings, i, self.gaze_px));
         rings.iter().enumerate().flat_map(of).chain(scattered.iter().copied())
     }
 
@@ -189,8 +201,7 @@ impl Plan {
             nonfinite: 0,
         };
         let work = self.work();
-        let mut add = |view: &View, size, work: &[Spans]| {
-            let mut film = Film::new(size);
+        let mut add = |view: &View, mut film: Film, work: &[Spans]| {
             for spans in work {
                 tracer.trace(world, view, frame, spans, &mut film);
             }
@@ -204,13 +215,16 @@ impl Plan {
                 let films: Vec<Film> = rings
                     .iter()
                     .zip(work.iter())
-                    .map(|(ring, work)| add(&view.on_lattice(&ring.lattice), ring.lattice.points, work))
+                    .map(|(ring, work)| {
+                        let (first, size) = Spans::window(work);
+                        add(&view.on_lattice(&ring.lattice), Film::window(first, size), work)
+                    })
                     .collect();
                 (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
                 done.noise = rings::noise(rings, &films, self.size_px, self.gaze_px);
             }
             Kind::Scattered { lod, .. } => {
-                let film = add(view, self.size_px, &work[0]);
+                let film = add(view, Film::new(self.size_px), &work[0]);
                 done.color = fill::pull_push(&film);
                 done.noise = fill::noise_between(&film);
                 done.lod = lod.clone();
@@ -218,4 +232,9 @@ impl Plan {
         }
         done
     }
+}
+
+/// The points of runs.
+fn points(runs: impl Iterator<Item = (Range<u32>, u32)>) -> impl Iterator<Item = [u32; 2]> {
+    runs.flat_map(|(columns, y)| columns.map(move |x| [x, y]))
 }

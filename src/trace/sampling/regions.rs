@@ -1,6 +1,7 @@
 //! Three regions: pixels, blocks of 2x2, blocks of 4x4 (Mohanto et al., "A Foveated Framework to Accelerate Real-Time Path
 //! Tracing", 2023).
 
+use super::circle::Circle;
 use super::fill::Filter;
 use super::lattice::Lattice;
 use super::rings::Ring;
@@ -51,7 +52,7 @@ impl Regions {
             radius_px,
             blend_px,
             filter: Filter::Linear,
-            lens: None,
+            lens: Circle::EVERYTHING,
         };
         // The outer region takes over within two of its blocks: less shows the border, more costs samples.
         let [m, n] = self.blocks;

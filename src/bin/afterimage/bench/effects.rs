@@ -83,10 +83,10 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     let default = SCENES.map(str::to_owned);
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     // What kernels compile to does not depend on the scene but for its effects.
-    let small = Subject::open("builtin:cornell", [8, 8])?;
+    let small = Subject::open("builtin:cornell", [8, 8], None, None)?;
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size)?;
+        let subject = Subject::open(name, size, None, None)?;
         let needs = subject.world.needs;
         let mut prices = vec![];
         let mut removals = vec![];

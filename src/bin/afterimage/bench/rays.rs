@@ -56,7 +56,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size)?;
+        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
         let mut took: Vec<Vec<Took>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {
@@ -81,7 +81,12 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 device_ms,
                 mrays_per_core_second: rate(&|t| t.cpu_ms),
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
-                foveated: if args.foveated { foveated::measure(&subject, tracer) } else { vec![] },
+                foveated: if args.foveated {
+                    let patterns = foveated::patterns(&subject);
+                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))
+                } else {
+                    vec![]
+                },
                 scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
             }
         });
@@ -126,7 +131,8 @@ fn print(report: &Report) {
             );
         }
         for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
-            say!("  foveated against uniform, CPU time, {} ({})", t.backend.name, t.backend.kind);
+            let clock = t.foveated.first().map_or("", |p| p.clock);
+            say!("  foveated against uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
             foveated::print(&t.foveated);
         }
     }

@@ -3,21 +3,26 @@
 use super::{BenchArgs, Traces};
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
+use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Scene, SceneLimits};
+use afterimage::source::SceneCamera;
+use afterimage::source::raster::DEFAULT_FPS;
 use afterimage::trace::film::Film;
 use afterimage::trace::sampling::{FoveatedFrame, Sampling};
 use afterimage::trace::view::View;
-use afterimage::trace::work::{WorkItem, uniform};
+use afterimage::trace::work::{Spans, WorkItem, uniform};
 use afterimage::trace::world::{World, light_if_dark};
 use afterimage::trace::{Tracer, settings::TraceSettings};
+use std::time::Duration;
 
-/// A scene, seen by its first camera or, without any, as a whole. One sample a pixel.
+/// A scene at rest and where it is seen from. One sample a pixel.
 pub struct Subject {
     pub name: String,
     pub world: World,
-    pub view: View,
+    scene: Scene,
+    camera: SceneCamera,
     items: Vec<WorkItem>,
     size: [u32; 2],
 }
@@ -34,17 +39,25 @@ pub struct Took {
 }
 
 impl Subject {
-    pub fn open(name: &str, size: [u32; 2]) -> Result<Self, Failure> {
+    /// The scene `name`, seen by the camera that `trace --camera` finds by that name: without one by its first, else as a whole.
+    pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
         let mut scene = Scene::open(name, &SceneLimits::default())?;
         for warning in &scene.warnings {
             eprintln!("afterimage: warning: {warning}");
         }
         light_if_dark(&mut scene);
-        let aspect = size[0] as f32 / size[1] as f32;
-        let camera = scene.pose(0.0).cameras.into_iter().next().unwrap_or_else(|| scene.framing_camera(aspect));
-        let view = View::of_camera(&camera, size, None)?;
-        let world = World::new(&scene);
-        Ok(Self { name: name.to_owned(), world, view, items: uniform(size[0], 0..size[1], 0..1), size })
+        let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
+        let items = uniform(size[0], 0..size[1], 0..1);
+        Ok(Self { name: name.to_owned(), world: World::new(&scene), scene, camera, items, size })
+    }
+
+    /// Pixels and angles.
+    pub fn geometry(&self) -> &ViewGeometry {
+        self.camera.geometry()
+    }
+
+    fn view(&self, index: u64) -> View {
+        self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
     }
 
     /// A tracer of it.
@@ -62,7 +75,12 @@ impl Subject {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
     }
 
-    /// Traces a foveated frame; with its CPU time in milliseconds, wall time where the system does not tell.
+    /// The middle of the picture.
+    pub fn middle_px(&self) -> [f32; 2] {
+        self.size.map(|s| 0.5 * (s as f32 - 1.0))
+    }
+
+    /// Traces a foveated frame; what it took includes planning and filling in.
     pub fn foveated(
         &self,
         tracer: &Tracer,
@@ -70,30 +88,55 @@ impl Subject {
         gaze_px: [f32; 2],
         samples: u32,
         index: u64,
-    ) -> (FoveatedFrame, f64) {
+    ) -> (FoveatedFrame, Took) {
+        let view = self.view(index);
         let watch = Stopwatch::start();
-        let plan = sampling.plan(self.view.geometry(), gaze_px, samples, index);
-        let frame = plan.trace(tracer, &self.world, &self.view, index);
-        (frame, watch.cpu_ms().unwrap_or(watch.wall_ms()))
+        let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
+        let frame = plan.trace(tracer, &self.world, &view, index);
+        let took = Took::by(&watch, None, frame.rays);
+        (frame, took)
+    }
+
+    /// Traces `samples` of every pixel, without anything around it; with `every` above 1 only of each so manieth band of rows, for
+    /// which the whole frame's time is taken to be so much longer.
+    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> Took {
+        const BAND: u32 = 4;
+        let [width, height] = self.size;
+        let band = if every > 1 { BAND } else { height };
+        let view = self.view(index);
+        let (mut rows, mut rays) = (0, 0);
+        let watch = Stopwatch::start();
+        for first in (band * (every / 2)..height).step_by((band * every) as usize) {
+            let band = first..(first + band).min(height);
+            let mut film = Film::window([0, first], [width, band.len() as u32]);
+            rows += band.len();
+            tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
+            rays += film.rays;
+        }
+        let took = Took::by(&watch, None, rays);
+        let more = f64::from(height) / rows.max(1) as f64;
+        Took { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
     }
 
     fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+        let view = self.view(index);
         let mut film = Film::new(self.size);
         let watch = Stopwatch::start();
         let device = match tracer {
-            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &self.view, index, items, &mut film),
+            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &view, index, items, &mut film),
             Tracer::Cpu(tracer) => {
-                tracer.trace(&self.world, &self.view, index, items, &mut film);
+                tracer.trace(&self.world, &view, index, items, &mut film);
                 None
             }
         };
+        Took::by(&watch, device, film.rays)
+    }
+}
+
+impl Took {
+    fn by(watch: &Stopwatch, device: Option<Duration>, rays: u64) -> Self {
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
-        Took {
-            cpu_ms: cpu_ms.unwrap_or(wall_ms),
-            wall_ms,
-            device_ms: device.map(|d| d.as_secs_f64() * 1e3),
-            rays: film.rays,
-        }
+        Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }
     }
 }
 

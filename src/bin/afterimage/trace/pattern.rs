@@ -36,7 +36,8 @@ pub struct SamplingArgs {
     /// Distances of target pixels in the four layers, pixels
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4", value_name = "A,B,C,D")]
     pub layer_step: Vec<u32>,
-    /// Radius of what a headset's lens shows, degrees: layers trace nothing outside; default: all of the screen is seen
+    /// Radius of what a headset's lens shows around the view's axis, degrees: layers trace nothing outside; default: all of the screen
+    /// is seen
     #[arg(long, value_name = "DEG")]
     pub lens_deg: Option<f32>,
 }

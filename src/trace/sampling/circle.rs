@@ -1,0 +1,129 @@
+//! Circles on a frame, and the points of lattices in them, row by row.
+
+use super::lattice::Lattice;
+use std::ops::Range;
+
+/// A circle on the frame; one of infinite radius holds everything, one of a negative radius nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Circle {
+    pub center_px: [f32; 2],
+    pub radius_px: f32,
+}
+
+impl Circle {
+    /// Holds everything.
+    pub const EVERYTHING: Self = Self { center_px: [0.0; 2], radius_px: f32::INFINITY };
+
+    /// The same, larger by `by_px`, and by what single precision can be off at its edge.
+    pub fn grown(self, by_px: f32) -> Self {
+        Self { radius_px: self.radius_px + by_px + 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
+    }
+
+    /// The same, smaller by `by_px`, and by what single precision can be off at its edge.
+    pub fn shrunk(self, by_px: f32) -> Self {
+        Self { radius_px: self.radius_px - by_px - 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
+    }
+
+    /// How far a pixel lies from the middle.
+    pub fn distance_px(&self, px: [f32; 2]) -> f32 {
+        (px[0] - self.center_px[0]).hypot(px[1] - self.center_px[1])
+    }
+
+    /// The points of a lattice's row that it holds: a chord.
+    pub fn chord(&self, lattice: &Lattice, row: u32) -> Range<u32> {
+        let [cx, cy] = self.center_px.map(f64::from);
+        let [x0, y0] = lattice.first_px.map(f64::from);
+        let (radius, step) = (f64::from(self.radius_px), f64::from(lattice.step));
+        let down = y0 + f64::from(row) * step - cy;
+        if radius < down.abs() {
+            return 0..0;
+        }
+        let half = ((radius - down) * (radius + down)).sqrt();
+        // Conversions of floats to integers saturate: 0 is the first point, whatever lies left of it.
+        let first = ((cx - half - x0) / step).ceil() as u32;
+        let beyond = ((cx + half - x0) / step + 1.0).floor() as u32;
+        first..beyond.min(lattice.points[0]).max(first)
+    }
+}
+
+/// Points of a lattice's row that lie in both `outer`, but not in `inner`: up to two runs.
+pub(super) fn runs(outer: [Circle; 2], inner: Circle, lattice: &Lattice, row: u32) -> [Range<u32>; 2] {
+    let [a, b] = outer.map(|circle| circle.chord(lattice, row));
+    let (start, end) = (a.start.max(b.start), a.end.min(b.end));
+    let hole = inner.chord(lattice, row);
+    if hole.is_empty() {
+        return [start..end, 0..0];
+    }
+    [start..end.min(hole.start), start.max(hole.end)..end]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    /// Point by point; `None` where a point lies so near a circle that rounding decides.
+    fn is_wanted(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
+        let inside = |circle: Circle| {
+            let [cx, cy] = circle.center_px.map(f64::from);
+            let (distance, radius) = ((px[0] - cx).hypot(px[1] - cy), f64::from(circle.radius_px));
+            ((distance - radius).abs() > 1e-9 * radius.abs().clamp(1.0, 1e9)).then_some(distance < radius)
+        };
+        Some(inside(outer[0])? && inside(outer[1])? && !inside(inner)?)
+    }
+
+    #[test]
+    fn runs_are_what_a_look_at_every_point_finds() {
+        let mut rng = Pcg64::seed_from_u64(7);
+        let (mut points, mut wanted, mut undecided) = (0, 0, 0);
+        for case in 0..4000 {
+            let size_px = [rng.random_range(1..90), rng.random_range(1..60)];
+            // Off the frame on all sides, and far off.
+            let reach = if case % 10 == 0 { 1e6 } else { 60.0 };
+            let gaze: [f32; 2] = size_px.map(|s| rng.random_range(-reach..s as f32 + reach));
+            let step = rng.random_range(1..6);
+            let lattice =
+                if case % 2 == 0 { Lattice::blocks(step, size_px) } else { Lattice::through(step, gaze, size_px) };
+            let mut radius = |around: f32| match rng.random_range(0..8) {
+                0 => f32::INFINITY,
+                1 => f32::NEG_INFINITY,
+                2 => 0.0,
+                _ => around + rng.random_range(-5.0..80.0_f32),
+            };
+            let far = if case % 10 == 0 { gaze[0].hypot(gaze[1]) } else { 0.0 };
+            let circle = |center_px, radius_px| Circle { center_px, radius_px };
+            let outer = [circle(gaze, radius(far)), circle(size_px.map(|s| 0.5 * s as f32), radius(0.0))];
+            let inner = circle(gaze, radius(far));
+            for row in 0..lattice.points[1] {
+                let runs = runs(outer, inner, &lattice, row);
+                assert!(runs.iter().all(|r| r.is_empty() || r.end <= lattice.points[0]), "{runs:?} of {lattice:?}");
+                assert!(runs[1].is_empty() || runs[0].is_empty() || runs[0].end <= runs[1].start, "{runs:?}");
+                for x in 0..lattice.points[0] {
+                    points += 1;
+                    let Some(is_wanted) = is_wanted(outer, inner, lattice.px([x, row]).map(f64::from)) else {
+                        undecided += 1;
+                        continue;
+                    };
+                    wanted += u32::from(is_wanted);
+                    let found = runs.iter().any(|r| r.contains(&x));
+                    assert_eq!(
+                        found, is_wanted,
+                        "case {case}: point {x}, {row} of {lattice:?}, {outer:?} less {inner:?}"
+                    );
+                }
+            }
+        }
+        println!("{points} points, {wanted} in, {undecided} on an edge");
+        assert!(wanted * 20 > points && wanted * 2 < points && undecided * 1000 < points);
+    }
+
+    #[test]
+    fn growing_and_shrinking_keep_what_everything_and_nothing_are() {
+        assert_eq!(Circle::EVERYTHING.grown(3.0), Circle::EVERYTHING);
+        let nothing = Circle { radius_px: f32::NEG_INFINITY, ..Circle::EVERYTHING };
+        assert_eq!(nothing.shrunk(3.0), nothing);
+        let lattice = Lattice::blocks(2, [7, 5]);
+        assert_eq!((Circle::EVERYTHING.chord(&lattice, 2), nothing.chord(&lattice, 0)), (0..4, 0..0));
+    }
+}
