@@ -7,7 +7,7 @@ use afterimage::DebugView;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
-use afterimage::metric::{self, FrameErrors, Scorer, Scores, psnr_db};
+use afterimage::metric::{self, Flip, FrameErrors, Reference, References, Scorer, Scores, psnr_db};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline, Shown, Step};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::picture::to_rgb8;
@@ -34,6 +34,8 @@ pub struct Clip {
     pub debug: Vec<DebugName>,
     /// Whether the methods get the source's trust mask.
     pub trust: bool,
+    /// Whether FLIP is measured.
+    pub flip: bool,
     pub backend: Backend,
     /// Why the CPU, if that was not asked for.
     pub backend_note: &'static str,
@@ -107,6 +109,7 @@ impl Clip {
         if self.trust {
             pipeline = pipeline.with_trust();
         }
+        let mut references = self.flip().map_or_else(References::default, References::with_flip);
         let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
         let mut foveation_ms = vec![];
         let mut gaze_px = vec![];
@@ -115,7 +118,8 @@ impl Clip {
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
             let step = pipeline.step(index as u64, &frame, gaze)?;
-            let reference = metric::encode(&frame.color, self.exposure_ev);
+            let full = metric::encode(&frame.color, self.exposure_ev);
+            let reference = references.next(&full, &step.tracked);
             let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
             for ((name, _), lane) in self.lanes.iter().zip(&lanes) {
                 table.row(&lane.row(index, name))?;
@@ -123,7 +127,7 @@ impl Clip {
             foveation_ms.push(step.foveation_ms);
             gaze_px.push(step.gaze_px);
             if index + 1 == self.gaze.len() {
-                self.write_sheet(&reference, &encoded, &lanes, &gaze_px, out)?;
+                self.write_sheet(&full, &encoded, &lanes, &gaze_px, out)?;
             }
             bar.inc(1);
         }
@@ -144,18 +148,23 @@ impl Clip {
         Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
     }
 
+    /// The metric for an eye that sees the view's angles.
+    pub fn flip(&self) -> Option<Flip> {
+        self.flip.then(|| Flip::for_view(&self.geometry))
+    }
+
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.
     fn score_and_write(
         &self,
         index: usize,
         frame: &SourceFrame,
-        reference: &Image<[f32; 3]>,
+        reference: &Reference<'_>,
         step: &Step,
         lanes: &mut [Lane],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
         if self.write_reference {
-            out.frame("reference", index, &frame.color, reference, self.format)?;
+            out.frame("reference", index, &frame.color, reference.encoded(), self.format)?;
         }
         lanes
             .par_iter_mut()
@@ -202,7 +211,7 @@ impl Lane {
     fn push(
         &mut self,
         frame: &SourceFrame,
-        reference: &Image<[f32; 3]>,
+        reference: &Reference<'_>,
         encoded: &Image<[f32; 3]>,
         shown: &Shown,
         step: &Step,
