@@ -28,6 +28,14 @@ pub struct Tracked {
     pub retained: Image<bool>,
 }
 
+impl Tracked {
+    /// Of a frame that stands alone.
+    pub fn unknown(size: [u32; 2]) -> Self {
+        let past = Image::filled(size, NO_PAST);
+        Self { fetched: past.clone(), past, retained: Image::filled(size, false) }
+    }
+}
+
 /// Follows surface points from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Tracker {

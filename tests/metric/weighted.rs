@@ -80,7 +80,8 @@ fn the_99th_percentile_is_that_of_sorting() {
         *p = [0, 1, 2].map(|i| q[i] + share * (p[i] - q[i]));
     }
     let lab_of = |c: [f32; 3]| lab(Vec3::from(c.map(srgb_decode)));
-    let mut sorted: Vec<f32> = a.pixels().iter().zip(b.pixels()).map(|(p, q)| delta_e94(lab_of(*p), lab_of(*q))).collect();
+    let mut sorted: Vec<f32> =
+        a.pixels().iter().zip(b.pixels()).map(|(p, q)| delta_e94(lab_of(*p), lab_of(*q))).collect();
     sorted.sort_by(f32::total_cmp);
     let mean = sorted.iter().map(|&v| f64::from(v)).sum::<f64>() / sorted.len() as f64;
     let frame = source_frame(a.clone());
