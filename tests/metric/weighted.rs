@@ -129,25 +129,36 @@ fn ghosts_fade_as_the_method_forgets() {
 
 #[test]
 fn ghosts_are_followed_along_motion_and_end_at_cuts() {
-    // A bright panel appears at frame 1 on a picture that moves right by 2 px a frame; the method shows the old one throughout.
-    let dark = Image::filled(SIZE, [0.2; 3]);
-    let with_panel = |left: u32| {
-        let inside = |x: u32, y: u32| (left..left + 20).contains(&x) && (40..50).contains(&y);
-        Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [0.8; 3] } else { [0.2; 3] })
+    // Stripes move right by 2 px a frame, and from frame 1 on a bright panel with them; the method never shows the panel.
+    let stripes = |x: u32, frame: u32| 0.35 + 0.15 * (0.4 * (x as f32 - 2.0 * frame as f32)).sin();
+    let inside = |x: u32, y: u32, left: u32| (left..left + 20).contains(&x) && (40..50).contains(&y);
+    let with_panel = |[x, y]: [u32; 2], i| if i > 0 && inside(x, y, 20 + 2 * i) { 0.9 } else { stripes(x, i) };
+    let clip = |cut_at: u32| {
+        let frame = |i: u32| {
+            let without = Image::from_fn(SIZE, |[x, _]| [stripes(x, i); 3]);
+            let with = Image::from_fn(SIZE, |px| [with_panel(px, i); 3]);
+            let motion = Some(Image::filled(SIZE, [-2.0, 0.0]));
+            let frame = SourceFrame { motion, cut: i == 0 || i == cut_at, ..source_frame(with.clone()) };
+            (with, without, frame)
+        };
+        (0..6).map(frame).collect::<Vec<_>>()
     };
-    let clip = |cut_at: usize| -> Vec<_> {
-        (0..6)
-            .map(|i| {
-                let reference = if i == 0 { dark.clone() } else { with_panel(20 + 2 * i as u32) };
-                let motion = Some(Image::filled(SIZE, [-2.0, 0.0]));
-                let frame = SourceFrame { motion, cut: i == 0 || i == cut_at, ..source_frame(reference.clone()) };
-                (reference, dark.clone(), frame)
-            })
-            .collect()
-    };
-    // Without motion, the panel's edge would count as new in every frame, and its past as old.
     let scores = score(&clip(9), [150.0, 10.0]);
     assert_abs_diff_eq!(scores.ghost_energy.unwrap(), 5.0, epsilon = 1e-3);
     let scores = score(&clip(3), [150.0, 10.0]);
     assert_abs_diff_eq!(scores.ghost_energy.unwrap(), 2.0, epsilon = 1e-3);
+}
+
+#[test]
+fn what_moves_by_parts_of_pixels_has_not_changed() {
+    let clip: Vec<_> = (0..4)
+        .map(|i| {
+            let wave = |x: u32| 0.5 + 0.35 * (0.4 * (x as f32 - 2.5 * i as f32)).sin();
+            let reference = Image::from_fn(SIZE, |[x, _]| [wave(x); 3]);
+            let motion = Some(Image::filled(SIZE, [-2.5, 0.0]));
+            let frame = SourceFrame { motion, cut: i == 0, ..source_frame(reference.clone()) };
+            (reference, Image::filled(SIZE, [0.5; 3]), frame)
+        })
+        .collect();
+    assert_eq!(score(&clip, [150.0, 10.0]).ghost_energy, None);
 }
