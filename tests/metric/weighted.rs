@@ -18,8 +18,11 @@ fn weight64(e: f64) -> f64 {
     density(e) / density(0.0)
 }
 
-/// Scores of frames: reference and shown, both encoded, and the frame's facts; the eye looks at `gaze`.
-fn score(frames: &[(Image<[f32; 3]>, Image<[f32; 3]>, SourceFrame)], gaze: [f32; 2]) -> Scores {
+/// A reference, what is shown, both encoded, and what is known of the frame.
+type Frame = (Image<[f32; 3]>, Image<[f32; 3]>, SourceFrame);
+
+/// Scores of frames for an eye that looks at `gaze`.
+fn score(frames: &[Frame], gaze: [f32; 2]) -> Scores {
     let view = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let ecc = view.eccentricity_map(gaze);
     let (mut tracker, mut references, mut scorer) = (Tracker::default(), References::default(), Scorer::default());
