@@ -5,7 +5,7 @@
 use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
-use afterimage::metric::{Scorer, encode};
+use afterimage::metric::{References, Scorer, encode};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::Method;
@@ -28,10 +28,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
     let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Cpu)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
+    let mut references = References::default();
     for index in 0..60 {
         let frame = source.frame(index)?;
         let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let reference = encode(&frame.color, 0.0);
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }

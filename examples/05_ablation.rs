@@ -7,7 +7,7 @@
 use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
-use afterimage::metric::{Scorer, encode};
+use afterimage::metric::{References, Scorer, encode};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler};
@@ -57,11 +57,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let kinds: Vec<_> = lanes.iter().map(|l| l.1).collect();
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let mut scorers = vec![Scorer::without_ssim(); lanes.len()];
+    let mut references = References::default();
     println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
     for index in 0..frames {
         let frame = source.frame(index)?;
         let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let reference = encode(&frame.color, 0.0);
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
         let mut last = vec![];
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
             let errors = scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);

@@ -6,7 +6,7 @@
 use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::{Filter, Foveation};
-use afterimage::metric::{Scorer, encode};
+use afterimage::metric::{References, Scorer, encode};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::Method;
@@ -43,12 +43,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let scene = input.strip_prefix("analytic:").map(|n| AnalyticSource::new(n, info.size, hfov, fps)).transpose()?;
     let mut scorers = lanes.map(|_| Scorer::default());
+    let mut references = References::default();
     let mut worst = [f64::INFINITY; 5];
     let mut panel = [(0.0, 0.0); 5];
     for index in 0..number(2, 90)? {
         let frame = source.frame(index)?;
         let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let reference = encode(&frame.color, 0.0);
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
         let mask = scene.as_ref().and_then(|s| s.panel_mask(index));
         let mut foveated = None;
         for (i, shown) in step.shown.iter().enumerate() {
@@ -60,7 +62,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 worst[i] = gain.min(worst[i]);
             }
             for (k, _) in mask.iter().flat_map(|m| m.pixels()).enumerate().filter(|(_, on)| **on) {
-                let (a, b) = (shown.pixels()[k], reference.pixels()[k]);
+                let (a, b) = (shown.pixels()[k], full.pixels()[k]);
                 let squared: f32 = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum();
                 panel[i] = (panel[i].0 + f64::from(squared) / 3.0, panel[i].1 + 1.0);
             }

@@ -8,7 +8,7 @@ use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
 use afterimage::kernel::color::srgb_encode;
-use afterimage::metric::{Scorer, encode};
+use afterimage::metric::{References, Scorer, encode};
 use afterimage::pipeline::{Backend, Headless, LaneKind, Pipeline};
 use afterimage::report::picture::{to_rgb8, write_png};
 use afterimage::settings::Method;
@@ -34,6 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let backend = Backend::Gpu(device);
     let mut pipeline = Pipeline::new(geometry, Foveation::default(), &kinds, info.still, &[], &backend)?;
     let mut scorers = lanes.map(|_| Scorer::default());
+    let mut references = References::default();
     let mut sheet = vec![];
     for index in 0..frames {
         let frame = source.frame(index)?;
@@ -41,7 +42,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let t = 0.5 - 0.5 * (index as f32 * 0.15).cos();
         let gaze = [(0.2 + 0.6 * t) * info.size[0] as f32, 0.5 * info.size[1] as f32];
         let step = pipeline.step(index, &frame, Some(gaze))?;
-        let reference = encode(&frame.color, 0.0);
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }

@@ -6,7 +6,7 @@ use afterimage::Settings;
 use afterimage::display::ViewGeometry;
 use afterimage::error::InputError;
 use afterimage::foveation::Foveation;
-use afterimage::metric::{Scorer, Scores, encode};
+use afterimage::metric::{References, Scorer, Scores, encode};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline};
 use afterimage::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage::settings::Method;
@@ -67,13 +67,15 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcom
     let gaze = FrameGaze::new(&scanpath, &view, clip.map, clip.start_s, 60.0).unwrap();
     let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, &[], &Backend::Cpu).unwrap();
     let mut scorers = vec![Scorer::default(); lanes.len()];
+    let mut references = References::default();
     let mut last = vec![];
     let (mut flushed, mut pixels) = (0, 0);
     for index in 0..clip.frames {
         let frame = source.frame(index).unwrap();
         assert_eq!(frame.nonfinite, 0);
         let step = pipeline.step(index, &frame, gaze.px(index)).unwrap();
-        let reference = encode(&frame.color, 0.0);
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
         last.clear();
         for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
             assert!(shown.image.pixels().as_flattened().iter().all(|v| v.is_finite()));

@@ -113,11 +113,29 @@ fn run_writes_what_the_contract_says() {
             assert!(m["bands"][band].get("psnr_db").is_some() && m["bands"][band].get("flip").is_some());
         }
         assert_eq!(m["nonfinite_out"], 0);
-        assert!(m["flip"].is_null() && m.get("retained_psnr_db").is_some() && m.get("replaced").is_some());
+        for key in ["flip", "weighted_psnr_db", "delta_e94_mean", "delta_e94_p99"] {
+            assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
+        }
+        for key in ["retained_psnr_db", "replaced", "ghost_energy", "ghost_half_frames"] {
+            assert!(m.get(key).is_some(), "{method}.{key}");
+        }
     }
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 48);
+    // 160 pixels over 70 degrees.
+    assert!((report["flip_pixels_per_degree"].as_f64().unwrap() - 1.994).abs() < 1e-3);
     let gaze = fs::read_to_string(out.join("gaze.csv")).unwrap();
     assert_eq!((gaze.lines().next(), gaze.lines().count()), (Some("frame,x_px,y_px"), 5));
+}
+
+#[test]
+fn run_leaves_flip_out_when_told() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "none", "--no-flip"]].concat()));
+    let report = read_json(&folder.path("out").join("report.json"));
+    let none = &report["methods"]["none"];
+    assert!(none["flip"].is_null() && none["bands"]["mid"]["flip"].is_null() && none["psnr_db"].is_number());
+    assert!(report["flip_pixels_per_degree"].is_null());
 }
 
 #[test]
@@ -471,6 +489,51 @@ fn bench_prices_effects_between_the_markers() {
     assert_eq!(prices[0]["ratio"]["median"].as_f64(), Some(1.0));
     std::fs::write(&page, "no markers").unwrap();
     refuses(&command, &["markers"]);
+}
+
+#[test]
+fn bench_compares_patterns_at_equal_numbers_of_samples() {
+    let folder = Folder::new();
+    let (out, json) = (folder.text("out"), folder.text("patterns.json"));
+    let base = ["bench", "patterns", "builtin:courtyard", "--out", &out, "--backend", "cpu", "--json", &json];
+    succeeds(&[&base[..], &["--size", "320x180", "--frames", "2", "--reference-spp", "3"]].concat());
+    let report = read_json(Path::new(&json));
+    let patterns = report["patterns"].as_array().unwrap();
+    let names: Vec<_> = patterns.iter().map(|p| p["pattern"].as_str().unwrap()).collect();
+    assert_eq!(names, ["regions", "uniform", "layers", "acuity"]);
+    for p in patterns {
+        let share = p["samples_of_regions"].as_f64().unwrap();
+        assert!((share - 1.0).abs() <= 0.02, "{}: {share}", p["pattern"]);
+        assert!(p["rays"].as_f64() > p["samples"].as_f64());
+        for key in ["psnr_db", "weighted_psnr_db", "ssim", "flip"] {
+            assert!(p[key].is_number(), "{key}");
+        }
+    }
+    let table = fs::read_to_string(Path::new(&out).join("patterns.md")).unwrap();
+    assert_eq!(table.lines().count(), 2 + patterns.len());
+    for file in ["reference.exr", "reference.png", "acuity.png", "acuity_flip.png", "layers_flip.png"] {
+        assert!(Path::new(&out).join(file).exists(), "{file}");
+    }
+    // The reference that was written is one; of another size it is none.
+    let exr = folder.text("out/reference.exr");
+    let again = [&base[..], &["--frames", "2", "--reference", &exr, "--size"]].concat();
+    succeeds(&[&again[..], &["320x180"]].concat());
+    let second = read_json(Path::new(&json));
+    let db = |report: &Value, i: usize| report["patterns"][i]["psnr_db"].as_f64().unwrap();
+    for i in 0..patterns.len() {
+        assert!((db(&report, i) - db(&second, i)).abs() < 0.01, "half floats are exact enough");
+    }
+    refuses(&[&again[..], &["160x90"]].concat(), &["320x180", "160x90"]);
+    for more in [
+        ["--region-spp", "8,4"],
+        ["--gaze", "12"],
+        ["--frames", "0"],
+        ["--reference-spp", "0"],
+        ["--size", "4x4"],
+        ["--camera", "nowhere"],
+    ] {
+        refuses(&[&base[..], &more].concat(), &[more[0].trim_start_matches("--camera")]);
+    }
 }
 
 #[test]

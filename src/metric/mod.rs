@@ -1,18 +1,26 @@
-//! How good a shown frame is, frame by frame, without keeping frames: PSNR and SSIM, whole and by eccentricity, what was
-//! retained of earlier foveas, and flicker.
+//! How good a shown frame is, frame by frame, without keeping frames: PSNR, SSIM and FLIP, whole and by eccentricity, errors weighted
+//! by what the eye resolves, what was retained of earlier foveas, flicker and ghosts.
 //!
-//! All figures are of sRGB-encoded RGB in \[0, 1\] against the full-rate frame of the same moment.
+//! All figures are of sRGB-encoded RGB in \[0, 1\] against the full-rate frame of the same moment. `docs/metrics.md` has the formulas.
 
+pub mod flip;
+mod ghost;
+mod mean;
+mod reference;
 mod score;
 mod ssim;
 mod track;
 
+pub use flip::Flip;
+pub use ghost::{GHOST_FRAMES, Ghost};
+pub use reference::{Reference, References};
 pub use score::{BandScores, FrameErrors, Scorer, Scores};
 pub use ssim::ssim_map;
 pub use track::{NO_PAST, Tracked, Tracker};
 
 use crate::image::Image;
-use crate::kernel::color;
+use crate::kernel::{acuity, color};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Eccentricity bands of reports.
@@ -54,6 +62,21 @@ pub fn encode(linear: &Image<[f32; 3]>, exposure_ev: f32) -> Image<[f32; 3]> {
         });
     });
     encoded
+}
+
+/// L\*a\*b\* of sRGB-encoded colours.
+fn lab_map(encoded: &Image<[f32; 3]>) -> Image<Vec3> {
+    let mut lab = Image::filled(encoded.size(), Vec3::ZERO);
+    lab.pixels_mut().par_iter_mut().zip(encoded.pixels()).with_min_len(4096).for_each(|(lab, c)| {
+        *lab = color::lab(Vec3::from(c.map(color::srgb_decode)));
+    });
+    lab
+}
+
+/// Weight of an error at an eccentricity in degrees: the density of retinal ganglion cells (Watson 2014, [`acuity::cell_density`])
+/// over that in the middle of the fovea, so that every cell counts alike and not every pixel.
+pub fn error_weight(e_deg: f32) -> f32 {
+    acuity::cell_density(e_deg) / acuity::cell_density(0.0)
 }
 
 /// PSNR in dB of a mean squared error on a scale of 1; `None` for an error of 0, which has none.

@@ -12,7 +12,7 @@ use crate::source::SourceFrame;
 const SHARP_LOD: f32 = 0.25;
 
 /// Eccentricity in degrees beyond which retention is judged: outside every fovea of the common settings and their blends.
-const RETAINED_FROM_DEG: f32 = 3.5;
+pub(super) const RETAINED_FROM_DEG: f32 = 3.5;
 
 /// Stands in [`Tracked::past`] for a pixel without a visible past.
 pub const NO_PAST: u32 = u32::MAX;
@@ -22,8 +22,18 @@ pub const NO_PAST: u32 = u32::MAX;
 pub struct Tracked {
     /// For each pixel the index of its pixel in the previous frame, or [`NO_PAST`].
     pub past: Image<u32>,
+    /// The same whichever surface stands there: where a method that trusts motion alone fetches from.
+    pub fetched: Image<u32>,
     /// Pixels beyond 3.5 degrees whose surface point was shown at full rate earlier and has stayed visible.
     pub retained: Image<bool>,
+}
+
+impl Tracked {
+    /// Of a frame that stands alone.
+    pub fn unknown(size: [u32; 2]) -> Self {
+        let past = Image::filled(size, NO_PAST);
+        Self { fetched: past.clone(), past, retained: Image::filled(size, false) }
+    }
 }
 
 /// Follows surface points from frame to frame.
@@ -47,10 +57,11 @@ impl Tracker {
         if frame.cut {
             self.previous = None;
         }
-        let past = match &self.previous {
-            None => Image::filled(size, NO_PAST),
+        let both = match &self.previous {
+            None => Image::filled(size, [NO_PAST; 2]),
             Some((_, before)) => correspond(frame, geometry, disparity.as_ref(), before.as_ref()),
         };
+        let (past, fetched) = (both.map(|b| b[0]), both.map(|b| b[1]));
         let mut seen = Image::filled(size, false);
         let mut retained = Image::filled(size, false);
         for i in 0..past.pixels().len() {
@@ -63,22 +74,23 @@ impl Tracker {
             seen.pixels_mut()[i] = seen_before || lods.pixels()[i] < SHARP_LOD;
         }
         self.previous = Some((seen, disparity));
-        Tracked { past, retained }
+        Tracked { past, fetched, retained }
     }
 }
 
+/// For each pixel that of its surface, and the fetched one.
 fn correspond(
     frame: &SourceFrame,
     geometry: &ViewGeometry,
     now: Option<&Image<f32>>,
     before: Option<&Image<f32>>,
-) -> Image<u32> {
+) -> Image<[u32; 2]> {
     let size = frame.color.size();
     if frame.motion.is_none() && frame.previous_from_current.is_none() {
         let mut index = 0;
         return Image::from_fn(size, |_| {
             index += 1;
-            index - 1
+            [index - 1; 2]
         });
     }
     let row = frame.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]);
@@ -87,11 +99,11 @@ fn correspond(
         let (xi, yi) = (x as usize, y as usize);
         let motion = frame.motion.as_ref().map_or([0.0; 2], |m| m.at(xi, yi));
         let Ok([qx, qy]) = reproject::nearest(x, y, motion, size) else {
-            return NO_PAST;
+            return [NO_PAST; 2];
         };
         let index = qy * size[0] + qx;
         let (Some(now), Some(before)) = (now, before) else {
-            return index;
+            return [index; 2];
         };
         let ray = geometry.ray([x as f32, y as f32]);
         let stretch = row[0] * ray.x + row[1] * ray.y + row[2];
@@ -99,6 +111,7 @@ fn correspond(
         let slope = depth::slope(x, y, size, |x, y| now.at(x as usize, y as usize));
         let slope = test.slope_px * slope;
         let stored = before.at(qx as usize, qy as usize);
-        if depth::same_surface(expected, stored, test.relative, slope) { index } else { NO_PAST }
+        let same = depth::same_surface(expected, stored, test.relative, slope);
+        [if same { index } else { NO_PAST }, index]
     })
 }

@@ -8,7 +8,7 @@ use crate::gpu::{Afterimage, Frame, GpuDesc};
 use crate::image::Image;
 use crate::kernel::debug_view::DebugView;
 use crate::report::clock::Stopwatch;
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::stats::FrameStats;
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture, TextureFormat, TextureUsages};
@@ -68,6 +68,14 @@ impl GpuLane {
     /// Bytes kept between frames.
     pub fn memory_bytes(&self) -> usize {
         self.post.memory_bytes() as usize
+    }
+
+    /// Packed noise of what is remembered, where that is noisy.
+    pub fn noise(&self) -> Option<Image<u32>> {
+        let settings = &self.post.desc().settings;
+        let remembered =
+            self.post.history_textures().get(2).filter(|_| settings.method == Method::Smr && settings.noisy);
+        remembered.map(|texture| self.gpu.read(texture, 0))
     }
 
     pub fn process(&mut self, input: &LaneInput<'_>, debug: &[DebugView]) -> Result<LaneOutput, FrameError> {

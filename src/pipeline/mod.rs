@@ -1,6 +1,7 @@
 //! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
 
 mod gpu_lane;
+mod guide;
 mod headless;
 
 pub use headless::Headless;
@@ -12,12 +13,15 @@ use crate::foveation::{Filter, Foveation, Pyramid};
 use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use crate::image::Image;
 use crate::kernel::debug_view::{DebugView, PixelTrace, view_color};
+use crate::kernel::noise::{Noise, unpack_noise};
 use crate::metric::{Tracked, Tracker};
 use crate::report::clock::Stopwatch;
 use crate::settings::Settings;
 use crate::source::{FoveatedFrame, SourceFrame};
 use crate::stats::FrameStats;
+use crate::trace::sampling::Guide;
 use gpu_lane::{GpuLane, LaneInput};
+use guide::Knowledge;
 use std::sync::Arc;
 
 /// What a lane of the pipeline does with the foveated frame.
@@ -90,6 +94,21 @@ enum Executor {
     Oracle { best: Option<Image<f32>> },
 }
 
+impl Executor {
+    /// Noise of what its history holds, if that is noisy.
+    fn noise(&self) -> Option<Image<Noise>> {
+        let words = match self {
+            Self::PostProcess(post) => {
+                let words = post.history().noise().to_vec();
+                (!words.is_empty()).then(|| Image::from_pixels(post.desc().size_px, words).expect("a word a pixel"))
+            }
+            Self::Gpu(lane) => lane.noise(),
+            Self::Oracle { .. } => None,
+        };
+        words.map(|words| words.map(unpack_noise))
+    }
+}
+
 /// The pipeline of a clip: state of all lanes, and of the foveation.
 pub struct Pipeline {
     geometry: ViewGeometry,
@@ -101,6 +120,9 @@ pub struct Pipeline {
     is_still: bool,
     debug: Vec<DebugView>,
     use_trust: bool,
+    /// For guided sampling, if that is done.
+    knowledge: Option<Knowledge>,
+    is_guided: bool,
 }
 
 impl Pipeline {
@@ -142,6 +164,8 @@ impl Pipeline {
             is_still,
             debug: debug.to_vec(),
             use_trust: false,
+            knowledge: None,
+            is_guided: false,
         })
     }
 
@@ -149,6 +173,18 @@ impl Pipeline {
     #[must_use]
     pub fn with_trust(self) -> Self {
         Self { use_trust: true, ..self }
+    }
+
+    /// Remembers after each frame what the history of the first noisy lane of smr knows.
+    #[must_use]
+    pub fn with_guidance(self) -> Self {
+        Self { is_guided: true, ..self }
+    }
+
+    /// What is known of a frame that is about to be foveated, for sampling that is guided by it. `None` before the first frame, after a
+    /// cut, and without [`with_guidance`](Self::with_guidance) or a lane that knows.
+    pub fn guide(&self, frame: &SourceFrame) -> Option<Guide> {
+        self.knowledge.as_ref().filter(|_| !frame.cut).map(|k| k.guide(frame, &self.geometry))
     }
 
     /// Takes frame `index`. A lost gaze holds the last position; before the first, the middle of the view.
@@ -192,10 +228,14 @@ impl Pipeline {
         gaze_px: [f32; 2],
         foveated: FoveatedFrame,
     ) -> Result<Step, FrameError> {
-        let FoveatedFrame { color, lod, noise } = foveated;
+        let FoveatedFrame { color, lod, noise, .. } = foveated;
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
         let candidate = Candidate { color: &color, lods: &lod, told: true, noise: Some(&noise), pyramid: None };
         let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
+        if self.is_guided {
+            let noise = self.lanes.iter().zip(&shown).find_map(|(lane, shown)| Some((lane.noise()?, &shown.image)));
+            self.knowledge = noise.map(|(noise, image)| Knowledge::new(noise, image.clone(), frame));
+        }
         Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, shown, foveation_ms: 0.0 })
     }
 

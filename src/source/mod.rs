@@ -21,6 +21,7 @@ pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 use crate::image::Image;
+use crate::trace::sampling::Guide;
 use std::path::Path;
 
 /// One full-rate frame with what a temporal method needs to know about it.
@@ -52,6 +53,8 @@ pub struct FoveatedFrame {
     pub lod: Image<f32>,
     /// Standard error of the colour's luma, linear, and the samples that it is a mean of.
     pub noise: Image<[f32; 2]>,
+    /// Camera samples that were traced.
+    pub samples: u64,
 }
 
 /// What is known about a source before its first frame is read.
@@ -86,11 +89,17 @@ pub trait FrameSource {
     /// If the file behind it cannot be read or is not what its header promised.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
 
-    /// The same frame as the source foveates it for a gaze in pixels; `None` if it does not, and a simulator has to.
+    /// The same frame as the source foveates it for a gaze in pixels, with samples where `guide` misses them; `None` if it does not, and
+    /// a simulator has to.
     ///
     /// # Errors
     /// As for [`frame`](Self::frame).
-    fn foveated(&mut self, _index: u64, _gaze_px: [f32; 2]) -> Result<Option<FoveatedFrame>, InputError> {
+    fn foveated(
+        &mut self,
+        _index: u64,
+        _gaze_px: [f32; 2],
+        _guide: Option<&Guide>,
+    ) -> Result<Option<FoveatedFrame>, InputError> {
         Ok(None)
     }
 }

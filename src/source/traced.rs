@@ -8,7 +8,7 @@ use crate::pipeline::Backend;
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Guide, Sampling};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
@@ -43,6 +43,7 @@ pub struct TracedSource {
     camera: SceneCamera,
     fps: f64,
     samples: TracedSamples,
+    seed: u64,
     /// The full-rate frame of a scene where nothing moves.
     still: Option<SourceFrame>,
 }
@@ -83,7 +84,7 @@ impl TracedSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, still: None })
+        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, seed: settings.seed, still: None })
     }
 
     /// What the file asks for and is not done.
@@ -146,11 +147,23 @@ impl FrameSource for TracedSource {
         Ok(SourceFrame { cut: index == 0, ..frame })
     }
 
-    fn foveated(&mut self, index: u64, gaze_px: [f32; 2]) -> Result<Option<FoveatedFrame>, InputError> {
+    fn foveated(
+        &mut self,
+        index: u64,
+        gaze_px: [f32; 2],
+        guide: Option<&Guide>,
+    ) -> Result<Option<FoveatedFrame>, InputError> {
         let Some(sampling) = self.samples.foveated else { return Ok(None) };
         let [view, _] = self.pose(index)?;
         let plan = sampling.plan(view.geometry(), gaze_px, self.samples.samples.max(1), index);
+        let plan = match guide {
+            None => plan,
+            Some(guide) => plan
+                .guided(guide, index, self.seed)
+                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
+        };
         let traced = plan.trace(&self.tracer, &self.world, &view, index);
-        Ok(Some(FoveatedFrame { color: traced.color, lod: traced.lod, noise: traced.noise }))
+        let samples = traced.samples.iter().sum();
+        Ok(Some(FoveatedFrame { color: traced.color, lod: traced.lod, noise: traced.noise, samples }))
     }
 }

@@ -1,7 +1,7 @@
 //! The continuous density: how many pixels, which ones, when.
 
 use afterimage::display::ViewGeometry;
-use afterimage::trace::sampling::{Acuity, Sampling};
+use afterimage::trace::sampling::{Acuity, Regions, Sampling};
 
 fn view() -> ViewGeometry {
     ViewGeometry::flat([640, 360], 90.0).unwrap()
@@ -72,9 +72,21 @@ fn targets_keep_their_distance() {
 fn the_fovea_is_sampled_in_full() {
     let plan = Sampling::Acuity(Acuity::default()).plan(&view(), [320.0, 180.0], 1, 3);
     let targets: std::collections::HashSet<[u32; 2]> = plan.targets().collect();
-    for y in 176..=184 {
-        for x in 316..=324 {
+    let mut pixels = 0;
+    for (y, x) in (170..190).flat_map(|y| (310..330).map(move |x| (y, x))) {
+        if view().eccentricity_deg([x as f32, y as f32], [320.0, 180.0]) <= Acuity::default().fovea_deg {
             assert!(targets.contains(&[x, y]), "{x}, {y}");
+            pixels += 1;
         }
     }
+    assert!(pixels > 60, "{pixels}");
+}
+
+#[test]
+fn it_takes_as_many_samples_as_the_papers_regions() {
+    let view = ViewGeometry::flat([640, 360], 70.0).unwrap();
+    let count = |sampling: Sampling| sampling.plan(&view, [319.5, 179.5], 32, 0).samples().iter().sum::<u64>() as f64;
+    let (regions, acuity) = (count(Sampling::Regions(Regions::default())), count(Sampling::Acuity(Acuity::default())));
+    println!("regions {regions}, acuity {acuity}");
+    assert!((acuity / regions - 1.0).abs() < 0.05);
 }

@@ -48,7 +48,8 @@ fn the_fovea_is_what_uniform_sampling_gives() {
     let uniform = Sampling::Uniform.plan(view.geometry(), [0.0; 2], 4, 0).trace(&tracer, &world, &view, 0).color;
     for sampling in &patterns()[1..] {
         let done = sampling.plan(view.geometry(), [80.0, 45.0], 4, 0).trace(&tracer, &world, &view, 0);
-        for (x, y) in [(80, 45), (79, 44), (81, 46), (80, 43)] {
+        // Within a degree of the gaze, which every pattern samples in full.
+        for (x, y) in [(80, 45), (79, 44), (81, 46), (80, 44)] {
             assert_eq!(done.color.at(x, y), uniform.at(x, y), "{sampling:?} at {x}, {y}");
         }
         assert!(done.color.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0));

@@ -2,7 +2,7 @@
 
 use afterimage::DebugView;
 use afterimage::foveation::{Filter, Foveation};
-use afterimage::settings::{Bias, DepthTest, Gate, Method, Sampler, Settings};
+use afterimage::settings::{Bias, DepthTest, Gate, Method, Sampler, Settings, Smr};
 use clap::{Args, ValueEnum};
 
 /// Where a frame is how coarse.
@@ -118,6 +118,15 @@ pub struct WrsArgs {
     /// Never look at colour
     #[arg(long)]
     pub no_gate: bool,
+    /// smr: largest share of equally coarse history in what is shown, 0 to 0.98
+    #[arg(long, default_value_t = Smr::default().accumulate, value_name = "X")]
+    pub smr_accumulate: f32,
+    /// smr: factor on the differences from history that are tolerated, 0.1 to 10
+    #[arg(long, default_value_t = Smr::default().tolerance, value_name = "X")]
+    pub smr_tolerance: f32,
+    /// smr: do not follow changes of light
+    #[arg(long)]
+    pub no_relight: bool,
     /// Never look at depth
     #[arg(long)]
     pub no_flush: bool,
@@ -139,6 +148,7 @@ impl WrsArgs {
                 ..Gate::default()
             }),
             depth_test: (!self.no_flush).then(DepthTest::default),
+            smr: Smr { accumulate: self.smr_accumulate, tolerance: self.smr_tolerance, relight: !self.no_relight },
             seed,
             ..Settings::default()
         }

@@ -4,6 +4,7 @@ mod clock;
 mod effects;
 mod foveated;
 mod papers;
+mod patterns;
 mod post;
 mod rays;
 mod subject;
@@ -11,10 +12,10 @@ mod subject;
 use crate::args::parse_size;
 use crate::failure::Failure;
 use afterimage::whole_file::write_whole;
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Time the passes, the path tracer, foveated sampling as the papers did, or what effects cost
 #[derive(Args, Clone, Debug)]
@@ -22,7 +23,10 @@ use std::path::PathBuf;
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
     afterimage bench papers --scene sponza.gltf --camera inside.json --json papers.json\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct BenchArgs {
+    #[command(subcommand)]
+    pub compare: Option<Compare>,
     /// What is timed
     #[arg(value_enum, default_value = "post")]
     pub what: What,
@@ -62,6 +66,12 @@ pub struct BenchArgs {
     pub json: Option<PathBuf>,
 }
 
+/// What is compared by its errors and not by its time.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Compare {
+    Patterns(Box<patterns::PatternsArgs>),
+}
+
 /// What can be timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
@@ -88,6 +98,9 @@ pub enum Traces {
 
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
+    if let Some(Compare::Patterns(args)) = &args.compare {
+        return patterns::bench(args);
+    }
     let (size, frames) = match args.what {
         What::Post => ([1920, 1080], 60),
         What::Trace => ([640, 360], 30),
@@ -108,7 +121,11 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
 }
 
 fn write_json(args: &BenchArgs, report: &impl Serialize) -> Result<(), Failure> {
-    let Some(path) = &args.json else { return Ok(()) };
+    write_json_to(args.json.as_deref(), report)
+}
+
+fn write_json_to(path: Option<&Path>, report: &impl Serialize) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
     let text = serde_json::to_string_pretty(report).map_err(|e| Failure::Work(e.to_string()))?;
     write_whole(path, |file| writeln!(file, "{text}")).map_err(|e| Failure::writing(path, e))
 }

@@ -7,7 +7,7 @@ use afterimage::DebugView;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
-use afterimage::metric::{self, FrameErrors, Scorer, Scores, psnr_db};
+use afterimage::metric::{self, Flip, FrameErrors, Reference, References, Scorer, Scores, psnr_db};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline, Shown, Step};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::picture::to_rgb8;
@@ -34,6 +34,10 @@ pub struct Clip {
     pub debug: Vec<DebugName>,
     /// Whether the methods get the source's trust mask.
     pub trust: bool,
+    /// Whether the source is told what the history knows, to sample what it does not.
+    pub guided: bool,
+    /// Whether FLIP is measured.
+    pub flip: bool,
     pub backend: Backend,
     /// Why the CPU, if that was not asked for.
     pub backend_note: &'static str,
@@ -76,6 +80,8 @@ pub struct Share {
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
     pub foveation_ms: Option<Quartiles>,
+    /// Camera samples of all frames that their source foveated.
+    pub samples: u64,
     /// What computed the methods, in words.
     pub backend: String,
     /// Where the eye was taken to look.
@@ -107,19 +113,32 @@ impl Clip {
         if self.trust {
             pipeline = pipeline.with_trust();
         }
+        if self.guided {
+            pipeline = pipeline.with_guidance();
+        }
+        let mut references = self.flip().map_or_else(References::default, References::with_flip);
         let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
         let mut foveation_ms = vec![];
+        let mut samples = 0;
         let mut gaze_px = vec![];
         let bar = progress(self.gaze.len() as u64);
-        let mut table = out.table("frames.csv", "frame,method,psnr_db,retained_psnr_db,ms")?;
+        let mut table = out.table(
+            "frames.csv",
+            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
+        )?;
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
             let at = pipeline.look(gaze);
-            let step = match source.foveated(index as u64, at)? {
-                Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
+            let guide = pipeline.guide(&frame);
+            let step = match source.foveated(index as u64, at, guide.as_ref())? {
+                Some(foveated) => {
+                    samples += foveated.samples;
+                    pipeline.step_foveated(index as u64, &frame, at, foveated)?
+                }
                 None => pipeline.step(index as u64, &frame, gaze)?,
             };
-            let reference = metric::encode(&frame.color, self.exposure_ev);
+            let full = metric::encode(&frame.color, self.exposure_ev);
+            let reference = references.next(&full, &step.tracked);
             let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
             for ((name, _), lane) in self.lanes.iter().zip(&lanes) {
                 table.row(&lane.row(index, name))?;
@@ -127,7 +146,7 @@ impl Clip {
             foveation_ms.push(step.foveation_ms);
             gaze_px.push(step.gaze_px);
             if index + 1 == self.gaze.len() {
-                self.write_sheet(&reference, &encoded, &lanes, &gaze_px, out)?;
+                self.write_sheet(&full, &encoded, &lanes, &gaze_px, out)?;
             }
             bar.inc(1);
         }
@@ -145,7 +164,12 @@ impl Clip {
             Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
             Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
         };
-        Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), gaze_px })
+        Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), samples, gaze_px })
+    }
+
+    /// The metric for an eye that sees the view's angles.
+    pub fn flip(&self) -> Option<Flip> {
+        self.flip.then(|| Flip::for_view(&self.geometry))
     }
 
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.
@@ -153,13 +177,13 @@ impl Clip {
         &self,
         index: usize,
         frame: &SourceFrame,
-        reference: &Image<[f32; 3]>,
+        reference: &Reference<'_>,
         step: &Step,
         lanes: &mut [Lane],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
         if self.write_reference {
-            out.frame("reference", index, &frame.color, reference, self.format)?;
+            out.frame("reference", index, &frame.color, reference.encoded(), self.format)?;
         }
         lanes
             .par_iter_mut()
@@ -206,7 +230,7 @@ impl Lane {
     fn push(
         &mut self,
         frame: &SourceFrame,
-        reference: &Image<[f32; 3]>,
+        reference: &Reference<'_>,
         encoded: &Image<[f32; 3]>,
         shown: &Shown,
         step: &Step,
@@ -231,8 +255,9 @@ impl Lane {
     fn row(&self, index: usize, name: &str) -> String {
         let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
         let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
+        let [fovea, mid, periphery] = self.last.map_or_else(Default::default, |e| e.band_mse.map(db));
         let ms = self.wall_ms.last().copied().unwrap_or_default();
-        format!("{index},{name},{psnr},{retained},{ms:.3}")
+        format!("{index},{name},{psnr},{retained},{ms:.3},{fovea},{mid},{periphery}")
     }
 
     fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {

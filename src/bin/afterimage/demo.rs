@@ -32,6 +32,7 @@ const DEMO: &[&str] = &[
     "--method",
     "none,wrs,smr,oracle",
     "--reference",
+    "--no-flip",
     "--backend",
     "cpu",
 ];

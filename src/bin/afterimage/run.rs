@@ -52,6 +52,10 @@ pub struct RunArgs {
     pub reference_spp: u32,
     #[command(flatten)]
     pub sampling: SamplingArgs,
+    /// With --sampling and the method smr: trace more samples where its history knows little or nothing and fewer where it is sure, as
+    /// many in all
+    #[arg(long)]
+    pub guided: bool,
     /// What renders a scene; default: raster
     #[arg(long, value_enum, value_name = "NAME")]
     pub source: Option<SourceName>,
@@ -84,6 +88,9 @@ pub struct RunArgs {
     /// Also write the full-rate frames
     #[arg(long)]
     pub reference: bool,
+    /// Leave FLIP out, which takes a third of a second a megapixel of one core
+    #[arg(long)]
+    pub no_flip: bool,
     /// Pixel decisions to write as images, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugName>,
@@ -131,9 +138,13 @@ struct Report<'a> {
     exposure_ev: f32,
     backend: BackendReport,
     foveation: FoveationReport,
+    /// Camera samples of all foveated frames; null where a simulator foveates.
+    samples: Option<u64>,
     gaze: &'a str,
     gaze_map: &'a str,
     start_s: f64,
+    /// What FLIP takes the eye's distance from; null without FLIP.
+    flip_pixels_per_degree: Option<f32>,
     methods: Methods<'a>,
 }
 
@@ -209,9 +220,11 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
             rate_far: foveation.rate_far,
             ms: report.foveation_ms,
         },
+        samples: (report.samples > 0).then_some(report.samples),
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,
+        flip_pixels_per_degree: plan.clip.flip().map(|flip| flip.pixels_per_degree()),
         methods: Methods(&report.methods),
     };
     let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
@@ -239,6 +252,9 @@ fn check(args: &RunArgs) -> Result<(), Failure> {
 
 fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
+    if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
+        return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
+    }
     let fps = args.fps.or(info.fps).unwrap_or(60.0);
     let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
     let sampling = input::sampling(args)?;
@@ -304,6 +320,8 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             write_reference: args.reference,
             debug: args.debug.clone(),
             trust: args.trust,
+            guided: args.guided,
+            flip: !args.no_flip,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
@@ -372,23 +390,26 @@ pub fn backend_report(backend: &Backend) -> BackendReport {
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
     say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
-    say!("method    PSNR dB    SSIM   fovea     mid  periph  retained  flicker  of oracle  ms/frame");
+    say!("method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  ms/frame");
     for (name, m) in &report.methods {
         let s = &m.scores;
         let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
         say!(
-            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>9} {:>8} {:>10} {:>9}",
+            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>9}",
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
+            s.whole.flip.map_or("-".into(), |v| format!("{v:.4}")),
             bands[0],
             bands[1],
             bands[2],
+            db(s.weighted_psnr_db),
             db(s.retained_psnr_db),
             db(s.flicker),
             m.share_of_oracle.and_then(|s| s.psnr).map_or("-".into(), |v| format!("{:.0} %", 100.0 * v)),
             m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
         );
     }
+    say!("weighted: PSNR with errors weighted by the density of the eye's cells, docs/metrics.md");
     say!("retained: PSNR where the eye has already seen sharp; of oracle: share of the PSNR that reuse could gain");
     say!("sheet: {}", args.out.join("sheet.png").display());
 }

@@ -18,7 +18,8 @@ pub struct Acuity {
 
 impl Default for Acuity {
     fn default() -> Self {
-        Self { fovea_deg: 2.6, least: 1.0 / 32.0, falloff: 1.0 }
+        // With these it takes as many samples as regions of 32, 16 and 8, at a smaller error (docs/path-tracing.md).
+        Self { fovea_deg: 1.0, least: 0.02, falloff: 1.0 }
     }
 }
 

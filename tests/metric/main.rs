@@ -1,12 +1,15 @@
 //! Metrics against hand-calculated cases and an oracle in f64, and what latency of the gaze costs (H68).
 #![cfg(feature = "lab")]
 
+#[path = "../common/mod.rs"]
 mod common;
+mod flip;
+mod weighted;
 
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::{Foveation, Pyramid};
 use afterimage::image::Image;
-use afterimage::metric::{self, Band, NO_PAST, Scorer, Tracker};
+use afterimage::metric::{self, Band, Flip, NO_PAST, References, Scorer, Tracker};
 use afterimage::source::SourceFrame;
 use approx::assert_abs_diff_eq;
 use common::Draws;
@@ -40,7 +43,7 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
             let ecc = geometry.eccentricity_map([320.0, 180.0]);
             let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
             let mut scorer = Scorer::default();
-            scorer.push(&reference, &shown, &tracked, &ecc);
+            scorer.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
             scorer.scores().bands[0].mse.unwrap()
         })
         .collect();
@@ -61,10 +64,12 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     let reference = Image::filled(size, [0.5; 3]);
     let mut tracker = Tracker::default();
     let mut scorer = Scorer::default();
+    let mut references = References::default();
     for (i, offset) in [0.1_f32, -0.1, 0.1].into_iter().enumerate() {
         let frame = SourceFrame { cut: i == 0, ..source_frame(reference.clone()) };
         let tracked = tracker.advance(&frame, &geometry, &ecc, &ecc);
-        scorer.push(&reference, &reference.map(|c| c.map(|v| v + offset)), &tracked, &ecc);
+        let full = references.next(&reference, &tracked);
+        scorer.push(&full, &reference.map(|c| c.map(|v| v + offset)), &tracked, &ecc);
     }
     let scores = scorer.scores();
     assert_abs_diff_eq!(scores.whole.psnr_db.unwrap(), 20.0, epsilon = 1e-4);
@@ -77,7 +82,7 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     // An exact picture has no PSNR.
     let mut exact = Scorer::default();
     let tracked = tracker.advance(&source_frame(reference.clone()), &geometry, &ecc, &ecc);
-    exact.push(&reference, &reference, &tracked, &ecc);
+    exact.push(&references.next(&reference, &tracked), &reference, &tracked, &ecc);
     let scores = exact.scores();
     assert_eq!((scores.whole.psnr_db, scores.whole.mse), (None, Some(0.0)));
     assert_abs_diff_eq!(scores.whole.ssim.unwrap(), 1.0, epsilon = 1e-6);
@@ -156,4 +161,38 @@ fn bands_and_retention_follow_the_eye() {
     frame.depth = Some(depth);
     let hidden = look(&frame, [220.0, 90.0]);
     assert!(!hidden.retained.at(105, 90));
+}
+
+#[test]
+fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
+    let size = [320, 180];
+    let view = ViewGeometry::flat(size, 70.0).unwrap();
+    let ecc = view.eccentricity_map([90.0, 100.0]);
+    let reference = noise(size, "flip bands");
+    let shown = foveate(&Foveation::default(), &reference, [90.0, 100.0]);
+    let tracked = Tracker::default().advance(&source_frame(reference.clone()), &view, &ecc, &ecc);
+    let flip = Flip::for_view(&view);
+    let mut scorer = Scorer::default();
+    let mut references = References::with_flip(flip.clone());
+    for _ in 0..2 {
+        scorer.push(&references.next(&reference, &tracked), &shown, &tracked, &ecc);
+    }
+    let scores = scorer.scores();
+    let map = flip.map(&reference, &shown);
+    let mean_of = |band: Option<Band>| {
+        let pixels = map.pixels().iter().zip(ecc.pixels());
+        let values: Vec<f64> =
+            pixels.filter(|(_, e)| band.is_none_or(|b| Band::of(**e) == b)).map(|(v, _)| f64::from(*v)).collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    for band in Band::ALL {
+        assert_abs_diff_eq!(scores.bands[band as usize].flip.unwrap(), mean_of(Some(band)), epsilon = 1e-9);
+    }
+    assert_abs_diff_eq!(scores.whole.flip.unwrap(), mean_of(None), epsilon = 1e-9);
+    // The fovea is shown at full rate, but the eye's filters reach in from around it.
+    assert!(scores.bands[0].flip.unwrap() < 0.1 * scores.bands[2].flip.unwrap());
+    let mut without = Scorer::default();
+    without.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+    let scores = without.scores();
+    assert!(scores.whole.flip.is_none() && scores.bands.iter().all(|b| b.flip.is_none()));
 }
