@@ -168,6 +168,12 @@ impl Settings {
         Self { method: Method::Smr, smr: Smr { accumulate: 0.7, tolerance: 0.6, ..Smr::default() }, ..Self::default() }
     }
 
+    /// smr for frames that are path-traced with few samples: noise is averaged away, over twice as many frames as coarse blocks are by
+    /// [`steady`](Self::steady). Every frame brings its noise.
+    pub fn traced() -> Self {
+        Self { noisy: true, smr: Smr { accumulate: 0.95, ..Smr::default() }, ..Self::steady() }
+    }
+
     /// Checks every range.
     ///
     /// # Errors

@@ -56,9 +56,9 @@ struct Wanted {
 }
 
 // matched::wanted
-fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool) -> Wanted {
-    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0);
-    let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0);
+fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, sure: vec2<f32>) -> Wanted {
+    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0) * sure.x;
+    let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * sure.y;
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = select(min(lod, 1.0), 1.0, noisy);
     return Wanted(finer, finer + (alike * calm) * accumulate);
@@ -100,6 +100,7 @@ struct Evidence {
     next_level: vec3<f32>,
     trust: f32,
     noise: f32,
+    sure: vec2<f32>,
 }
 
 struct Matched {
@@ -111,7 +112,7 @@ struct Matched {
 
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
-    let want = wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
+    let want = wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
     var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
@@ -140,6 +141,8 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     var lod = e.lod;
     if want.finer > 0.0 {
         lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - want.finer * believed), e.lod);
+    } else if p.noisy {
+        lod = e.lod + max(e.history_lod - e.lod, 0.0) * share;
     }
     return Matched(shown, lod, share, fit);
 }

@@ -6,6 +6,8 @@
 const NOISY_LEVELS: f32 = 3.0;
 const COMPARED: f32 = 64.0;
 const SIGMAS: f32 = 3.0;
+const SURE: vec2<f32> = vec2<f32>(0.5, 1.0);
+const COARSER_FRAMES: f32 = 4.0;
 const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
 const UNKNOWN: f32 = -1.0;
@@ -83,6 +85,20 @@ fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     let numbers = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
     let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
     return (SIGMAS * slope) * sqrt(of_one * numbers * (1.0 / COMPARED));
+}
+
+// noise::sureness
+fn sureness(history: Noise, around: f32) -> f32 {
+    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
+    let off = slope * sqrt(history.variance / max(history.samples, 1.0));
+    return 1.0 - smooth_step(SURE.x, SURE.y, off);
+}
+
+// noise::coarser_worth
+fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
+    let limited = min(history.samples, COARSER_FRAMES * candidate.samples);
+    let t = clamp(levels / COARSER_WIDTH, 0.0, 1.0);
+    return Noise(history.samples + (limited - history.samples) * t, history.variance);
 }
 
 // noise::sample_difference

@@ -168,6 +168,7 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         next_level,
         source.trust,
         0.0,
+        vec2<f32>(1.0),
     );
     return decide(evidence, params_with(frame.smr_accumulate));
 }
@@ -199,8 +200,12 @@ fn averaged_pixel(
     history: Resampled,
 ) -> Averaged {
     let past_noise = past_noise_of(source, view);
-    let params = params_with(history_share(past_noise, noise, frame.smr_accumulate));
-    let want = wanted(lod, history.lod, params.accumulate, true);
+    let shown = exposed(history.sharp);
+    let own = Noise(noise.samples, past_noise.variance);
+    let sure = vec2<f32>(sureness(past_noise, luma(shown)), sureness(own, luma(shown)));
+    let worth = coarser_worth(past_noise, noise, history.lod - lod);
+    let params = params_with(history_share(worth, noise, frame.smr_accumulate));
+    let want = wanted(lod, history.lod, params.accumulate, true, sure);
     if want.share == 0.0 {
         return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
     }
@@ -213,13 +218,14 @@ fn averaged_pixel(
         around.compared.xyz,
         around.coarser.xyz,
         lod,
-        exposed(history.sharp),
+        shown,
         history.lod,
         matched,
         exposed(past.level),
         exposed(past.next_level),
         source.trust,
         noise_difference(past_noise, noise_around, luma(matched)),
+        sure,
     );
     let made = decide(evidence, params);
     let believed = made.fit * source.trust;
@@ -257,7 +263,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             let averaged = averaged_pixel(px, view, candidate.color, noise, lod, source, history);
             made = averaged.made;
             noise = averaged.noise;
-        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate, false).share > 0.0 {
+        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0)).share > 0.0 {
             made = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }

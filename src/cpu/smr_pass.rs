@@ -112,7 +112,7 @@ impl Smr {
     #[inline(always)]
     fn matched(&self, at: &Remembered<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
         let history = at.resample(source);
-        if matched::wanted(lod, history.lod, self.params.accumulate, false).share == 0.0 {
+        if matched::wanted(lod, history.lod, self.params.accumulate, false, [1.0; 2]).share == 0.0 {
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
         }
         // A point sample is noise at its own scale: compare one level coarser.
@@ -140,6 +140,7 @@ impl Smr {
             next_level,
             trust: source.trust,
             noise: 0.0,
+            sure: [1.0; 2],
         };
         matched::decide(&evidence, &self.params)
     }
@@ -157,8 +158,13 @@ impl Smr {
     ) -> (Matched, Noise) {
         let history = at.resample(source);
         let past = at.noise(source);
-        let params = SmrParams { accumulate: noise::history_share(past, noise, self.params.accumulate), ..self.params };
-        let wanted = matched::wanted(lod, history.lod, params.accumulate, true);
+        let shown = at.expose(history.sharp);
+        let luma = color::luma(shown);
+        let sure = [past, Noise { samples: noise.samples, variance: past.variance }].map(|n| noise::sureness(n, luma));
+        let worth = noise::coarser_worth(past, noise, history.lod - lod);
+        let params =
+            SmrParams { accumulate: noise::history_share(worth, noise, self.params.accumulate), ..self.params };
+        let wanted = matched::wanted(lod, history.lod, params.accumulate, true, sure);
         if wanted.share == 0.0 {
             return (Matched { color: candidate, lod, share: 0.0, fit: 1.0 }, noise);
         }
@@ -173,12 +179,13 @@ impl Smr {
             compared: compared.truncate(),
             compared_coarser: coarser.truncate(),
             lod,
-            history: at.expose(history.sharp),
+            history: shown,
             history_lod: history.lod,
             matched,
             level,
             next_level,
             trust: source.trust,
+            sure,
             noise: noise::noise_difference(past, around, color::luma(matched)),
         };
         let made = matched::decide(&evidence, &params);

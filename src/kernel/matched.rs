@@ -6,7 +6,7 @@ use glam::{Vec3, Vec4};
 /// Levels of detail by which history must be finer to count wholly as the better sample.
 pub const QUALITY_WIDTH: f32 = 0.1;
 /// Levels of detail by which history may be coarser and still be accumulated.
-const COARSER_WIDTH: f32 = 0.25;
+pub(super) const COARSER_WIDTH: f32 = 0.25;
 /// Difference up to which history is believed, which grows with contrast, and over how much more it ceases to be, in
 /// [`root_difference`]'s units.
 const GATE: [f32; 2] = [3.0, 6.0];
@@ -83,11 +83,12 @@ pub struct Wanted {
     pub share: f32,
 }
 
-/// See [`Wanted`]. Levels of detail.
+/// See [`Wanted`]. Levels of detail; `sure` is how far history and the candidate are free of
+/// noise, in \[0, 1\]: a noisy finer history is worth no more than an equally coarse one, and a coarser history is better than noise.
 #[inline]
-pub fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool) -> Wanted {
-    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0);
-    let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0);
+pub fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, sure: [f32; 2]) -> Wanted {
+    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0) * sure[0];
+    let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0) * sure[1];
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = if noisy { 1.0 } else { lod.min(1.0) };
     Wanted { finer, share: finer + (alike * calm) * accumulate }
@@ -141,6 +142,8 @@ pub struct Evidence {
     pub trust: f32,
     /// Difference of `compared` and `matched` that noise alone makes; 0 for candidates without noise.
     pub noise: f32,
+    /// How far history and the candidate are free of noise, in \[0, 1\].
+    pub sure: [f32; 2],
 }
 
 /// What was decided.
@@ -159,7 +162,7 @@ pub struct Matched {
 /// Shows history as far as it is wanted and explains the candidate, relit if only the light changed.
 #[inline]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
-    let wanted = wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
+    let wanted = wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
@@ -186,6 +189,8 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
     let lod = if wanted.finer > 0.0 {
         (e.history_lod + (e.lod - e.history_lod) * (1.0 - wanted.finer * believed)).min(e.lod)
+    } else if p.noisy {
+        e.lod + (e.history_lod - e.lod).max(0.0) * share
     } else {
         e.lod
     };

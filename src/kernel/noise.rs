@@ -4,7 +4,7 @@
 //! History is weighted by numbers of samples alone. Weights that followed the samples' own scatter would favour pixels that
 //! happened to miss a lamp, whose samples are dark and alike, and the mean would come out too dark.
 
-use super::matched::DARK;
+use super::matched::{COARSER_WIDTH, DARK, smooth_step};
 use super::pack::{half_bits, half_value};
 use super::scrub::MAX_HALF;
 use glam::{Vec3, Vec4};
@@ -16,6 +16,11 @@ pub const NOISY_LEVELS: f32 = 3.0;
 const COMPARED: f32 = 64.0;
 /// Standard deviations of noise that are no change.
 const SIGMAS: f32 = 3.0;
+/// Noise up to which history is as sure as if it had none, and over how much more it ceases to be, as differences: below what the
+/// eye just sees.
+const SURE: [f32; 2] = [0.5, 1.0];
+/// Frames that a coarser history counts for at the most.
+const COARSER_FRAMES: f32 = 4.0;
 /// Largest standard error that is told apart, linear: its square is still a half.
 const MAX_ERROR: f32 = 255.0;
 /// Largest number of samples, a half that is still exact to a thousandth.
@@ -115,7 +120,23 @@ pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * slope) * (of_one * numbers * (1.0 / COMPARED)).sqrt()
 }
 
-/// The same between a single candidate and a sample as noisy.
+/// How far what history holds around a luma is free of noise, in \[0, 1\]: only then is a finer sample the better one.
+#[inline]
+pub fn sureness(history: Noise, luma: f32) -> f32 {
+    let slope = 50.0 / (luma.max(0.0) + DARK).sqrt();
+    let off = slope * (history.variance / history.samples.max(1.0)).sqrt();
+    1.0 - smooth_step(SURE[0], SURE[1], off)
+}
+
+/// What a history is worth whose samples are coarser by `levels` of detail: it is blurred, so soon outweighed.
+#[inline]
+pub fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
+    let limited = history.samples.min(COARSER_FRAMES * candidate.samples);
+    let t = (levels / COARSER_WIDTH).clamp(0.0, 1.0);
+    Noise { samples: history.samples + (limited - history.samples) * t, variance: history.variance }
+}
+
+/// Difference of a single candidate and a sample as noisy that noise alone makes.
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     let slope = 50.0 / (luma.max(0.0) + DARK).sqrt();

@@ -76,7 +76,7 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
 }
 
 const EVIDENCE: usize = 24;
-const DECIDE_IN: usize = EVIDENCE + 7;
+const DECIDE_IN: usize = EVIDENCE + 9;
 
 fn decide(r: &Row<'_>, o: &mut Out) {
     let e = Evidence {
@@ -91,6 +91,7 @@ fn decide(r: &Row<'_>, o: &mut Out) {
         next_level: r.v(20),
         trust: r.f(23),
         noise: r.f(29),
+        sure: [r.f(31), r.f(32)],
     };
     let p = SmrParams {
         accumulate: r.f(24),
@@ -114,12 +115,13 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
     let flag = |i: usize| flags.map_or(vec![0, 1], |f| vec![f[i]]);
     let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
     let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
+    let sure = floats(&[0.0, 0.25, 1.0]);
     let mut lists: Vec<&[u32]> = vec![&c; 9];
     lists.push(&l);
     lists.extend([&h[..]; 3]);
     lists.push(&l);
     lists.extend([&h[..]; 9]);
-    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight, &noise, &noisy]);
+    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight, &noise, &noisy, &sure, &sure]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
         let candidate = remembered(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
@@ -139,6 +141,8 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
         let noise = if d.bits() & 1 == 0 { 0.0 } else { d.range(0.0, 20.0) };
         push(row, &[noise]);
         row.push(noisy[d.bits() as usize % noisy.len()]);
+        let sure = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
+        push(row, &sure);
     })
 }
 
@@ -149,7 +153,7 @@ macro_rules! decide_probe {
             module: "matched",
             words: [DECIDE_IN, 6],
             wgsl: concat!(
-                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u), in_f(29u));
+                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
     let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
                 $blocks,
                 ", ",
@@ -221,25 +225,27 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "wanted",
         module: "matched",
-        words: [4, 2],
-        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u); out_f(w.finer); out_f(w.share);",
+        words: [6, 2],
+        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u, vec2<f32>(in_f(4u), in_f(5u))); out_f(w.finer); out_f(w.share);",
         rust: |r, o| {
-            let w = matched::wanted(r.f(0), r.f(1), r.f(2), r.u(3) != 0);
+            let w = matched::wanted(r.f(0), r.f(1), r.f(2), r.u(3) != 0, [r.f(4), r.f(5)]);
             o.f(w.finer);
             o.f(w.share);
         },
         rows: || {
             let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
             let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
-            Rows::new(4).cross(&[&l, &[l.clone(), floats(&[-1.0])].concat(), &shares, &[0, 1]]).random(
-                "wanted",
-                |d, row| {
+            let (then, one, sure) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
+            Rows::new(6)
+                .cross(&[&l, &then, &shares, &[0, 1], &one, &one])
+                .mixed("wanted", &[&l, &then, &shares, &[0, 1], &sure, &sure])
+                .random("wanted", |d, row| {
                     let (now, then) = (lod(d), lod(d));
                     let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
                     push(row, &[now, near, d.range(0.0, 0.99)]);
                     row.push(d.bits() & 1);
-                },
-            )
+                    push(row, &[d.uniform(), d.uniform()]);
+                })
         },
     },
     Probe {

@@ -182,6 +182,26 @@ pub const PROBES: &[Probe] = &[
         rows: || pair_rows("noise_difference", &[&channels()]),
     },
     Probe {
+        name: "sureness",
+        module: "noise",
+        words: [3, 1],
+        wgsl: "out_f(sureness(Noise(in_f(0u), in_f(1u)), in_f(2u)));",
+        rust: |r, o| o.f(noise::sureness(known(r, 0), r.f(2))),
+        rows: || {
+            Rows::new(3).cross(&[&counts(), &variances(), &channels()]).random("sureness", |d, row| {
+                push(row, &[1.0 + (d.bits() % 99) as f32, d.range(0.0, 0.02), d.range(0.0, 2.0)]);
+            })
+        },
+    },
+    Probe {
+        name: "coarser_worth",
+        module: "noise",
+        words: [5, 2],
+        wgsl: "let n = coarser_worth(Noise(in_f(0u), in_f(1u)), Noise(in_f(2u), in_f(3u)), in_f(4u)); out_f(n.samples); out_f(n.variance);",
+        rust: |r, o| put(o, noise::coarser_worth(known(r, 0), known(r, 2), r.f(4))),
+        rows: || pair_rows("coarser_worth", &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])]),
+    },
+    Probe {
         name: "sample_difference",
         module: "noise",
         words: [3, 1],

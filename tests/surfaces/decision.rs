@@ -39,6 +39,7 @@ fn evidence(draws: &mut Draws) -> Evidence {
         next_level: near(draws, matched),
         trust: if draws.uniform() < 0.5 { 1.0 } else { draws.range(0.01, 1.0) },
         noise: if draws.uniform() < 0.5 { 0.0 } else { draws.range(0.0, 20.0) },
+        sure: [1.0; 2],
     }
 }
 
@@ -88,7 +89,7 @@ fn s4_the_share_is_trust_times_fit_times_what_is_wanted() {
     over("s4 share", |draws| {
         let (e, p) = (evidence(draws), params(draws));
         let m = decide(&e, &p);
-        let wanted = afterimage::kernel::matched::wanted(e.lod, e.history_lod, p.accumulate, p.noisy);
+        let wanted = afterimage::kernel::matched::wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
         assert!((m.share - m.fit * e.trust * wanted.share).abs() < 1e-6);
         m.share > 0.0
     });
@@ -134,6 +135,7 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
         next_level: coarser,
         trust: 1.0,
         noise: 0.0,
+        sure: [1.0; 2],
     }
 }
 
@@ -212,6 +214,7 @@ fn s7_relighting_explains_no_change_of_structure() {
             next_level: ground,
             trust: 1.0,
             noise: 0.0,
+            sure: [1.0; 2],
         };
         assert!(shows_the_candidate(&e, &decide(&e, &PARAMS)));
         true

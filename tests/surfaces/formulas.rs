@@ -148,7 +148,7 @@ fn smooth_step_gain_and_wanted_agree_with_f64() {
         let finer = ((f64::from(lod) - f64::from(history)) / 0.1).clamp(0.0, 1.0);
         let coarser = ((f64::from(history) - f64::from(lod)) / 0.25).clamp(0.0, 1.0);
         let share = finer + (1.0 - finer) * (1.0 - coarser) * f64::from(lod).min(1.0) * f64::from(accumulate);
-        let w = wanted(lod, history, accumulate, false);
+        let w = wanted(lod, history, accumulate, false, [1.0; 2]);
         assert!((f64::from(w.finer) - finer).abs() < 1e-5 && (f64::from(w.share) - share).abs() < 1e-5);
         assert!((0.0..=1.0).contains(&w.share));
     }
@@ -157,10 +157,10 @@ fn smooth_step_gain_and_wanted_agree_with_f64() {
         assert_eq!(gain(1.03, 1.0, changed), 1.0, "nor are a few percent");
     }
     assert_eq!((smooth_step(3.0, 6.0, 3.0), smooth_step(3.0, 6.0, 9.0)), (0.0, 1.0));
-    assert_eq!(wanted(2.0, 1.0, 0.9, false).share, 1.0, "finer history is wanted wholly");
-    assert_eq!(wanted(1.0, 1.5, 0.9, false).share, 0.0, "coarser history never");
+    assert_eq!(wanted(2.0, 1.0, 0.9, false, [1.0; 2]).share, 1.0, "finer history is wanted wholly");
+    assert_eq!(wanted(1.0, 1.5, 0.9, false, [1.0; 2]).share, 0.0, "coarser history never");
     for history in [0.0, 0.1, 3.0] {
-        assert_eq!(wanted(0.0, history, 0.98, false).share, 0.0, "nor any in the fovea");
+        assert_eq!(wanted(0.0, history, 0.98, false, [1.0; 2]).share, 0.0, "nor any in the fovea");
     }
 }
 

@@ -118,9 +118,9 @@ pub struct WrsArgs {
     /// Never look at colour
     #[arg(long)]
     pub no_gate: bool,
-    /// smr: largest share of equally coarse history in what is shown, 0 to 0.98
-    #[arg(long, default_value_t = Smr::default().accumulate, value_name = "X")]
-    pub smr_accumulate: f32,
+    /// smr: largest share of equally coarse history in what is shown, 0 to 0.98; default: 0.9, of frames traced with --sampling 0.95
+    #[arg(long, value_name = "X")]
+    pub smr_accumulate: Option<f32>,
     /// smr: factor on the differences from history that are tolerated, 0.1 to 10
     #[arg(long, default_value_t = Smr::default().tolerance, value_name = "X")]
     pub smr_tolerance: f32,
@@ -134,7 +134,8 @@ pub struct WrsArgs {
 
 impl WrsArgs {
     /// The library's form of a method.
-    pub fn settings(&self, method: Method, seed: u64) -> Settings {
+    pub fn settings(&self, method: Method, seed: u64, noisy: bool) -> Settings {
+        let preset = if noisy { Settings::traced() } else { Settings::default() };
         Settings {
             method,
             sampler: match self.wrs_sampler {
@@ -148,9 +149,13 @@ impl WrsArgs {
                 ..Gate::default()
             }),
             depth_test: (!self.no_flush).then(DepthTest::default),
-            smr: Smr { accumulate: self.smr_accumulate, tolerance: self.smr_tolerance, relight: !self.no_relight },
+            smr: Smr {
+                accumulate: self.smr_accumulate.unwrap_or(preset.smr.accumulate),
+                tolerance: self.smr_tolerance,
+                relight: !self.no_relight,
+            },
             seed,
-            ..Settings::default()
+            ..preset
         }
     }
 }

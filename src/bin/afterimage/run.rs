@@ -11,7 +11,7 @@ use crate::trace::pattern::{SamplingArgs, SamplingName};
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
-use afterimage::settings::{Method, Settings};
+use afterimage::settings::Method;
 use afterimage::source::{ReadLimits, SourceInfo};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -260,16 +260,17 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let sampling = input::sampling(args)?;
     let foveation = sampling.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
     foveation.validate()?;
+    let settings = |method| args.wrs.settings(method, args.seed, sampling.is_some());
     let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
         if lanes.iter().any(|l| l.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
         let kind = match method {
-            MethodName::None => LaneKind::PostProcess(args.wrs.settings(Method::None, args.seed)),
-            MethodName::Taa => LaneKind::PostProcess(args.wrs.settings(Method::Taa, args.seed)),
-            MethodName::Smr => LaneKind::PostProcess(args.wrs.settings(Method::Smr, args.seed)),
-            MethodName::Wrs => LaneKind::PostProcess(args.wrs.settings(Method::Wrs, args.seed)),
+            MethodName::None => LaneKind::PostProcess(settings(Method::None)),
+            MethodName::Taa => LaneKind::PostProcess(settings(Method::Taa)),
+            MethodName::Smr => LaneKind::PostProcess(settings(Method::Smr)),
+            MethodName::Wrs => LaneKind::PostProcess(settings(Method::Wrs)),
             MethodName::Oracle if sampling.is_some() => {
                 return refuse("--method oracle: is defined for simulated foveation only; leave out --sampling".into());
             }
@@ -280,12 +281,6 @@ fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
                     args.input
                 ));
             }
-        };
-        let kind = match kind {
-            LaneKind::PostProcess(settings) => {
-                LaneKind::PostProcess(Settings { noisy: sampling.is_some(), ..settings })
-            }
-            LaneKind::Oracle => kind,
         };
         if let LaneKind::PostProcess(settings) = kind {
             settings.validate()?;
