@@ -200,7 +200,7 @@ mod tests {
         assert_eq!(got, expected);
         assert_eq!(spans.spans().iter().map(|s| s.before).collect::<Vec<_>>(), [0, 2, 3, 5, 6]);
         assert_eq!((spans.pixels(), spans.len()), (7, 21));
-        assert_eq!(Spans::window(&[spans.clone()]), ([0, 0], [65536, 4]));
+        assert_eq!(Spans::window(std::slice::from_ref(&spans)), ([0, 0], [65536, 4]));
         let runs = [(3..5, 0), (6..7, 0), (9..9, 0), (0..2, 1), (65535..65536, 2), (0..1, 3)];
         assert_eq!(Spans::of_runs(runs, 2..5), spans);
         assert_eq!(Spans::window(&[Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1)]), ([5, 4], [4, 3]));

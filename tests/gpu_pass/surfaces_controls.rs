@@ -2,6 +2,7 @@
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
+use super::surfaces_variants::noisy;
 use afterimage::foveation::{Filter, Foveation};
 use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset};
 use afterimage::gpu::shader;
@@ -42,6 +43,9 @@ fn first_difference(settings: Settings, source: &str, tells_lod: bool) -> Option
                 view.facts.gaze = Gaze::At { px: [30.0 + 60.0 * eye as f32, 50.0] };
                 view.motion = view.motion.map(|m| m.map(|[x, y]| [x, y + shake]));
                 view.trust = Some(trust(index));
+                if settings.noisy {
+                    view = noisy(2 * index + eye as u64, view);
+                }
                 view.lod = tells_lod.then(|| Image::from_fn(SIZE, |[x, _]| (x / 16) as f32 / 3.0));
                 view
             })
@@ -138,7 +142,7 @@ fn every_planted_error_in_smr_is_caught() {
             ("select(-1.0, lod, candidate.usable)", "lod"),
             ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
             // Quality of what is stored.
-            ("return relight.x + relight.y * contrast;", "return relight.x;"),
+            ("return (relight.x + relight.y * contrast) + noise;", "return relight.x + noise;"),
             ("1.0 - want.finer * believed", "1.0 - believed"),
             ("count_if(valid && made.share == 0.0, COUNT_REPLACED);", ""),
         ],
@@ -165,4 +169,38 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
     all_caught("smr_pass", settings(Method::Smr, Filter::Gauss), false, &gauss);
     let told = [("if HAS_LOD != 0u {", "if false {"), ("clamp(given, 0.0, MAX_LOD)", "clamp(given, 0.0, 1.0)")];
     all_caught("smr_pass", settings(Method::Smr, Filter::Mip), true, &told);
+}
+
+#[test]
+fn every_planted_error_in_noisy_smr_is_caught() {
+    let settings = Settings { noisy: true, ..settings(Method::Smr, Filter::Mip) };
+    all_caught(
+        "smr_pass",
+        settings,
+        false,
+        &[
+            // The other eye's noise and candidates.
+            (
+                "textureLoad(past_noise, source.nearest_at, view, 0)",
+                "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
+            ),
+            (
+                "textureLoad(candidate_chain, low, view, level - 1u)",
+                "textureLoad(candidate_chain, low, 1u - view, level - 1u)",
+            ),
+            ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
+            // Noise that exposure forgets, a mean of broken candidates, three sigmas that are two.
+            ("return expose_noise(stored, frame.exposure);", "return stored;"),
+            ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
+            // Weights, and what a finer or a coarser history is worth.
+            ("history.samples / (history.samples + candidate.samples)", "0.5"),
+            (
+                "let together = candidate.samples / max(1.0 - share",
+                "let together = candidate.samples / max(1.01 - share",
+            ),
+            ("/ QUALITY_WIDTH, 0.0, 1.0) * sure.x", "/ QUALITY_WIDTH, 0.0, 1.0)"),
+            ("/ COARSER_WIDTH, 0.0, 1.0) * sure.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
+            ("const COARSER_FRAMES: f32 = 4.0;", "const COARSER_FRAMES: f32 = 5.0;"),
+        ],
+    );
 }

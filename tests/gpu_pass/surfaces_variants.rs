@@ -180,7 +180,7 @@ fn noise(index: u64, size: [u32; 2]) -> Image<[f32; 2]> {
 }
 
 /// A view whose colours scatter by what it tells.
-fn noisy(index: u64, view: View) -> View {
+pub fn noisy(index: u64, view: View) -> View {
     let size = view.color.size();
     let noise = noise(index, size);
     let mut draws = Draws::new(&format!("scatter {index}"));
