@@ -70,6 +70,11 @@ impl GpuLane {
         self.post.memory_bytes() as usize
     }
 
+    /// The tunables.
+    pub fn settings(&self) -> &Settings {
+        &self.post.desc().settings
+    }
+
     /// Packed noise of what is remembered, where that is noisy.
     pub fn noise(&self) -> Option<Image<u32>> {
         let settings = &self.post.desc().settings;

@@ -19,14 +19,16 @@ const DARK: f32 = 0.002;
 #[derive(Clone, Debug)]
 pub(super) struct Knowledge {
     noise: Image<Noise>,
+    /// Share of a new frame in the mean at the least: the mean forgets, so that no more than this share of what it holds is counted.
+    new_share: f32,
     shown: Image<[f32; 3]>,
     depth: Option<Image<f32>>,
 }
 
 impl Knowledge {
-    /// Of a frame: what the history holds, what was shown, and how far it was.
-    pub fn new(noise: Image<Noise>, shown: Image<[f32; 3]>, frame: &SourceFrame) -> Self {
-        Self { noise, shown, depth: frame.depth.clone() }
+    /// Of a frame: what the history holds and the least share of a new frame in it, what was shown, and how far it was.
+    pub fn new(noise: Image<Noise>, new_share: f32, shown: Image<[f32; 3]>, frame: &SourceFrame) -> Self {
+        Self { noise, new_share, shown, depth: frame.depth.clone() }
     }
 
     /// For the frame that follows: where its surfaces were, samples that are held of them and their scatter in square roots of luma, which
@@ -36,7 +38,7 @@ impl Knowledge {
             None => [0.0, f32::NAN],
             Some([x, y]) => {
                 let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.shown.at(x, y))));
-                [noise.samples, noise.variance.sqrt() * 0.5 / (luma.max(0.0) + DARK).sqrt()]
+                [noise.samples * self.new_share, noise.variance.sqrt() * 0.5 / (luma.max(0.0) + DARK).sqrt()]
             }
         });
         Guide { known: known.map(|[samples, _]| samples), deviation: known.map(|[_, deviation]| deviation) }
@@ -81,14 +83,14 @@ mod tests {
     fn guided(before: &SourceFrame, now: &SourceFrame) -> Guide {
         let noise = Image::from_fn(SIZE, |[x, y]| Noise { samples: (1 + x + 8 * y) as f32, variance: 0.01 });
         let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-        Knowledge::new(noise, before.color.clone(), before).guide(now, &geometry)
+        Knowledge::new(noise, 0.5, before.color.clone(), before).guide(now, &geometry)
     }
 
     #[test]
     fn knowledge_follows_the_motion() {
         let guide = guided(&frame(2.0, [0.0; 2]), &frame(2.0, [-1.0, 1.0]));
         // Pixel (3, 1) was at (2, 2).
-        assert_eq!(guide.known.at(3, 1), 19.0);
+        assert_eq!(guide.known.at(3, 1), 9.5);
         assert_eq!((guide.known.at(0, 1), guide.known.at(3, 3)), (0.0, 0.0), "was off the screen");
         let expected = 0.1 * 0.5 / 0.252_f32.sqrt();
         assert!((guide.deviation.at(3, 1) - expected).abs() < 1e-6 && guide.deviation.at(0, 1).is_nan());

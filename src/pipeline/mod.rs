@@ -95,17 +95,19 @@ enum Executor {
 }
 
 impl Executor {
-    /// Noise of what its history holds, if that is noisy.
-    fn noise(&self) -> Option<Image<Noise>> {
-        let words = match self {
+    /// Noise of what its history holds, if that is noisy, and its settings.
+    fn noise(&self) -> Option<(Image<Noise>, &Settings)> {
+        let (words, settings) = match self {
             Self::PostProcess(post) => {
                 let words = post.history().noise().to_vec();
-                (!words.is_empty()).then(|| Image::from_pixels(post.desc().size_px, words).expect("a word a pixel"))
+                let size_px = post.desc().size_px;
+                let image = (!words.is_empty()).then(|| Image::from_pixels(size_px, words).expect("a word a pixel"));
+                (image?, post.settings())
             }
-            Self::Gpu(lane) => lane.noise(),
-            Self::Oracle { .. } => None,
+            Self::Gpu(lane) => (lane.noise()?, lane.settings()),
+            Self::Oracle { .. } => return None,
         };
-        words.map(|words| words.map(unpack_noise))
+        Some((words.map(unpack_noise), settings))
     }
 }
 
@@ -234,7 +236,9 @@ impl Pipeline {
         let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
         if self.is_guided {
             let noise = self.lanes.iter().zip(&shown).find_map(|(lane, shown)| Some((lane.noise()?, &shown.image)));
-            self.knowledge = noise.map(|(noise, image)| Knowledge::new(noise, image.clone(), frame));
+            self.knowledge = noise.map(|((noise, settings), image)| {
+                Knowledge::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
+            });
         }
         Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, shown, foveation_ms: 0.0 })
     }
