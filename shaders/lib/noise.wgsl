@@ -79,18 +79,21 @@ fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     return (history.samples * history.variance + candidate.samples * candidate.variance) / all_samples;
 }
 
+// noise::root_slope
+fn root_slope(around: f32) -> f32 {
+    return 50.0 / sqrt(max(around, 0.0) + DARK);
+}
+
 // noise::noise_difference
 fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     let of_one = pooled_variance(history, candidate);
     let numbers = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
-    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
-    return (SIGMAS * slope) * sqrt(of_one * numbers * (1.0 / COMPARED));
+    return (SIGMAS * root_slope(around)) * sqrt(of_one * numbers * (1.0 / COMPARED));
 }
 
 // noise::sureness
 fn sureness(history: Noise, around: f32) -> f32 {
-    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
-    let off = slope * sqrt(history.variance / max(history.samples, 1.0));
+    let off = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
     return 1.0 - smooth_step(SURE.x, SURE.y, off);
 }
 
@@ -103,8 +106,7 @@ fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
 
 // noise::sample_difference
 fn sample_difference(candidate: Noise, around: f32) -> f32 {
-    let slope = 50.0 / sqrt(max(around, 0.0) + DARK);
-    return (SIGMAS * slope) * sqrt(candidate.variance * (2.0 / candidate.samples));
+    return (SIGMAS * root_slope(around)) * sqrt(candidate.variance * (2.0 / candidate.samples));
 }
 
 // noise::noise_after

@@ -109,22 +109,26 @@ pub fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     (history.samples * history.variance + candidate.samples * candidate.variance) / all
 }
 
+/// How many of [`root_difference`](super::matched::root_difference)'s units a linear unit is around a luma: the derivative of 100 times its
+/// square root, kept finite.
+#[inline]
+pub fn root_slope(luma: f32) -> f32 {
+    50.0 / (luma.max(0.0) + DARK).sqrt()
+}
+
 /// Difference of a compared mean of candidates and one of history that noise alone makes, in
 /// [`root_difference`](super::matched::root_difference)'s units around a luma: three standard deviations.
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let of_one = pooled_variance(history, candidate);
     let numbers = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
-    // The derivative of 100 sqrt(luma).
-    let slope = 50.0 / (luma.max(0.0) + DARK).sqrt();
-    (SIGMAS * slope) * (of_one * numbers * (1.0 / COMPARED)).sqrt()
+    (SIGMAS * root_slope(luma)) * (of_one * numbers * (1.0 / COMPARED)).sqrt()
 }
 
 /// How far what history holds around a luma is free of noise, in \[0, 1\]: only then is a finer sample the better one.
 #[inline]
 pub fn sureness(history: Noise, luma: f32) -> f32 {
-    let slope = 50.0 / (luma.max(0.0) + DARK).sqrt();
-    let off = slope * (history.variance / history.samples.max(1.0)).sqrt();
+    let off = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
     1.0 - smooth_step(SURE[0], SURE[1], off)
 }
 
@@ -139,8 +143,7 @@ pub fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
 /// Difference of a single candidate and a sample as noisy that noise alone makes.
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
-    let slope = 50.0 / (luma.max(0.0) + DARK).sqrt();
-    (SIGMAS * slope) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
+    (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
 }
 
 /// What is known of the shown colour: `share` is the history's in it, `finer` how far it was shown as the better sample, in which

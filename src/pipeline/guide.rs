@@ -3,7 +3,7 @@
 use crate::display::ViewGeometry;
 use crate::image::Image;
 use crate::kernel::color::luma;
-use crate::kernel::noise::Noise;
+use crate::kernel::noise::{Noise, root_slope};
 use crate::kernel::reproject;
 use crate::source::SourceFrame;
 use crate::trace::sampling::Guide;
@@ -11,9 +11,6 @@ use glam::Vec3;
 
 /// Relative difference of distance that still is the same surface: the least that the post-process tells apart is 2 %.
 const SAME_SURFACE: f32 = 0.02;
-
-/// Keeps the slope of dark colours finite, as where differences of colours are judged.
-const DARK: f32 = 0.002;
 
 /// What was known when the last frame had been shown.
 #[derive(Clone, Debug)]
@@ -38,7 +35,7 @@ impl Knowledge {
             None => [0.0, f32::NAN],
             Some([x, y]) => {
                 let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.shown.at(x, y))));
-                [noise.samples * self.new_share, noise.variance.sqrt() * 0.5 / (luma.max(0.0) + DARK).sqrt()]
+                [noise.samples * self.new_share, noise.variance.sqrt() * root_slope(luma)]
             }
         });
         Guide { known: known.map(|[samples, _]| samples), deviation: known.map(|[_, deviation]| deviation) }
@@ -92,8 +89,8 @@ mod tests {
         // Pixel (3, 1) was at (2, 2).
         assert_eq!(guide.known.at(3, 1), 9.5);
         assert_eq!((guide.known.at(0, 1), guide.known.at(3, 3)), (0.0, 0.0), "was off the screen");
-        let expected = 0.1 * 0.5 / 0.252_f32.sqrt();
-        assert!((guide.deviation.at(3, 1) - expected).abs() < 1e-6 && guide.deviation.at(0, 1).is_nan());
+        let expected = 0.1 * 50.0 / 0.252_f32.sqrt();
+        assert!((guide.deviation.at(3, 1) - expected).abs() < 1e-4 && guide.deviation.at(0, 1).is_nan());
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 use crate::image::Image;
-use crate::trace::sampling::Guide;
+use crate::trace::sampling::{FoveatedFrame, Guide};
 use std::path::Path;
 
 /// One full-rate frame with what a temporal method needs to know about it.
@@ -42,19 +42,6 @@ pub struct SourceFrame {
     pub cut: bool,
     /// Colour pixels of the input that were NaN or infinite.
     pub nonfinite: u64,
-}
-
-/// A frame that a source foveated itself, for a gaze.
-#[derive(Clone, Debug)]
-pub struct FoveatedFrame {
-    /// Linear colour.
-    pub color: Image<[f32; 3]>,
-    /// Level of detail: log2 of the distance of samples in pixels.
-    pub lod: Image<f32>,
-    /// Standard error of the colour's luma, linear, and the samples that it is a mean of.
-    pub noise: Image<[f32; 2]>,
-    /// Camera samples that were traced.
-    pub samples: u64,
 }
 
 /// What is known about a source before its first frame is read.

@@ -2,13 +2,13 @@
 
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
-use super::{FoveatedFrame, FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
+use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
 use crate::error::InputError;
 use crate::pipeline::Backend;
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::{Guide, Sampling};
+use crate::trace::sampling::{FoveatedFrame, Guide, Sampling};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
@@ -162,8 +162,6 @@ impl FrameSource for TracedSource {
                 .guided(guide, index, self.seed)
                 .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
         };
-        let traced = plan.trace(&self.tracer, &self.world, &view, index);
-        let samples = traced.samples.iter().sum();
-        Ok(Some(FoveatedFrame { color: traced.color, lod: traced.lod, noise: traced.noise, samples }))
+        Ok(Some(plan.trace(&self.tracer, &self.world, &view, index)))
     }
 }

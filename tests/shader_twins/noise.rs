@@ -174,6 +174,19 @@ pub const PROBES: &[Probe] = &[
         rows: || pair_rows("pooled_variance", &[]),
     },
     Probe {
+        name: "root_slope",
+        module: "noise",
+        words: [1, 1],
+        wgsl: "out_f(root_slope(in_f(0u)));",
+        rust: |r, o| o.f(noise::root_slope(r.f(0))),
+        rows: || {
+            Rows::new(1).cross(&[&channels()]).random("root_slope", |d, row| {
+                let luma = d.range(-1.0, 100.0);
+                push(row, &[luma]);
+            })
+        },
+    },
+    Probe {
         name: "noise_difference",
         module: "noise",
         words: [5, 1],

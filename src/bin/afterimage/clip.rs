@@ -132,7 +132,7 @@ impl Clip {
             let guide = pipeline.guide(&frame);
             let step = match source.foveated(index as u64, at, guide.as_ref())? {
                 Some(foveated) => {
-                    samples += foveated.samples;
+                    samples += foveated.samples.iter().sum::<u64>();
                     pipeline.step_foveated(index as u64, &frame, at, foveated)?
                 }
                 None => pipeline.step(index as u64, &frame, gaze)?,
