@@ -82,6 +82,8 @@ pub mod settings;
 pub mod source;
 pub mod stats;
 #[cfg(feature = "lab")]
+pub mod sweep;
+#[cfg(feature = "lab")]
 pub mod trace;
 pub mod warning;
 #[cfg(feature = "lab")]

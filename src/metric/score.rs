@@ -7,7 +7,7 @@ use super::{Band, NO_PAST, Reference, Tracked, error_weight, lab_map, psnr_db, s
 use crate::image::Image;
 use crate::kernel::color;
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Share of the pixels that `delta_e94_p99` leaves above it.
 const WORST: f64 = 0.01;
@@ -29,7 +29,7 @@ pub struct Scorer {
 }
 
 /// Figures of one eccentricity band. `None` where no pixel fell into it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BandScores {
     /// PSNR in dB over pooled squared error; also `None` where the error is 0 (then `mse` is 0).
     pub psnr_db: Option<f64>,
@@ -42,13 +42,13 @@ pub struct BandScores {
 }
 
 /// Figures of one method over a clip.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scores {
     /// All pixels of all frames.
     #[serde(flatten)]
     pub whole: BandScores,
     /// By eccentricity, from the gaze outwards.
-    #[serde(serialize_with = "named_bands")]
+    #[serde(with = "named_bands")]
     pub bands: [BandScores; 3],
     /// PSNR in dB over squared error weighted by [`error_weight`]; `None` where it is 0.
     pub weighted_psnr_db: Option<f64>,
@@ -68,13 +68,25 @@ pub struct Scores {
     pub ghost_half_frames: Option<u32>,
 }
 
-fn named_bands<S: serde::Serializer>(bands: &[BandScores; 3], s: S) -> Result<S::Ok, S::Error> {
-    use serde::ser::SerializeMap;
-    let mut map = s.serialize_map(Some(3))?;
-    for (name, scores) in ["fovea", "mid", "periphery"].iter().zip(bands) {
-        map.serialize_entry(name, scores)?;
+/// Bands by name.
+mod named_bands {
+    use super::BandScores;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    struct Named {
+        fovea: BandScores,
+        mid: BandScores,
+        periphery: BandScores,
     }
-    map.end()
+
+    pub fn serialize<S: Serializer>(&[fovea, mid, periphery]: &[BandScores; 3], s: S) -> Result<S::Ok, S::Error> {
+        Named { fovea, mid, periphery }.serialize(s)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<[BandScores; 3], D::Error> {
+        Named::deserialize(d).map(|Named { fovea, mid, periphery }| [fovea, mid, periphery])
+    }
 }
 
 /// Mean squared errors of one frame, on a scale of 1.

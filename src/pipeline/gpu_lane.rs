@@ -1,6 +1,6 @@
 //! The post-process on a GPU for frames that live in memory: upload, record, submit, read back.
 
-use super::Headless;
+use super::{Headless, PassClock};
 use crate::cpu::CpuView;
 use crate::error::{CreateError, FrameError};
 use crate::frame::{ContextDesc, Reset};
@@ -25,6 +25,7 @@ pub(super) struct LaneOutput {
     pub image: Image<[f32; 3]>,
     pub wall_ms: f64,
     pub cpu_ms: Option<f64>,
+    pub device_ms: Option<f64>,
     pub stats: FrameStats,
     pub traffic_bytes_per_pixel: u32,
     pub debug: Vec<Image<[f32; 3]>>,
@@ -43,6 +44,7 @@ pub(super) struct GpuLane {
     noise: Texture,
     output: Texture,
     counters: Buffer,
+    clock: PassClock,
 }
 
 impl GpuLane {
@@ -61,6 +63,7 @@ impl GpuLane {
             noise: texture(TextureFormat::Rg32Float, read),
             output: texture(TextureFormat::Rgba32Float, output),
             counters: gpu.counters(),
+            clock: PassClock::new(gpu),
             gpu: gpu.clone(),
         })
     }
@@ -122,16 +125,20 @@ impl GpuLane {
         self.gpu.wait();
         let watch = Stopwatch::start();
         let mut encoder = self.encoder();
-        self.post.record(&self.gpu.device, &mut encoder, &frame)?;
+        let timed = Frame { timestamps: self.clock.timestamps(), ..frame };
+        self.post.record(&self.gpu.device, &mut encoder, &timed)?;
+        self.clock.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait();
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        let device_ms = self.clock.is_device().then(|| self.clock.read_ms(&self.gpu, &watch));
         let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
         let traffic_bytes_per_pixel = self.post.desc().settings.traffic_bytes_per_pixel(given);
         Ok(LaneOutput {
             image: self.gpu.read_rgb(&self.output, 0),
             wall_ms,
             cpu_ms,
+            device_ms,
             stats: self.gpu.read_counters(&self.counters),
             traffic_bytes_per_pixel,
             debug: pictures,

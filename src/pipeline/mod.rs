@@ -1,9 +1,11 @@
 //! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
 
+mod clock;
 mod gpu_lane;
 mod guide;
 mod headless;
 
+pub use clock::PassClock;
 pub use headless::Headless;
 
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
@@ -42,12 +44,21 @@ pub struct Shown {
     pub wall_ms: f64,
     /// CPU time of the process during the pass in milliseconds, where the system tells.
     pub cpu_ms: Option<f64>,
+    /// The pass's time on a device that tells it; `None` on software devices and the CPU.
+    pub device_ms: Option<f64>,
     /// What the pass counted; empty for the oracle.
     pub stats: FrameStats,
     /// Bytes that the pass reads and writes a pixel; `None` for the oracle.
     pub traffic_bytes_per_pixel: Option<u32>,
     /// Pictures of pixel decisions, linear, in the order in which they were asked for; none for the oracle.
     pub debug: Vec<Image<[f32; 3]>>,
+}
+
+impl Shown {
+    /// What the pass costs: the device's own time, else CPU time, which other work on the machine disturbs less than wall time.
+    pub fn cost_ms(&self) -> f64 {
+        self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
+    }
 }
 
 /// One frame, foveated, and what each lane made of it.
@@ -317,6 +328,7 @@ fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, debug: &[DebugVi
         image,
         wall_ms,
         cpu_ms,
+        device_ms: None,
         stats,
         traffic_bytes_per_pixel: Some(post.traffic_bytes_per_pixel(&frame.views[0])),
         debug: traces.map_or_else(Vec::new, |[trace]| {
@@ -331,6 +343,7 @@ fn post_process_on_gpu(lane: &mut GpuLane, input: &LaneInput<'_>, debug: &[Debug
         image: made.image,
         wall_ms: made.wall_ms,
         cpu_ms: made.cpu_ms,
+        device_ms: made.device_ms,
         stats: made.stats,
         traffic_bytes_per_pixel: Some(made.traffic_bytes_per_pixel),
         debug: made.debug,
@@ -348,6 +361,7 @@ fn oracle(best: &mut Option<Image<f32>>, lods: &Image<f32>, foveation: &Foveatio
         image,
         wall_ms: watch.wall_ms(),
         cpu_ms: watch.cpu_ms(),
+        device_ms: None,
         stats: FrameStats::default(),
         traffic_bytes_per_pixel: None,
         debug: vec![],

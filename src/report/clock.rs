@@ -37,7 +37,7 @@ fn process_cpu_ms() -> Option<f64> {
 }
 
 /// Median and quartiles of a sample; `None` of an empty one.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Quartiles {
     /// Half lie below.
     pub median: f64,

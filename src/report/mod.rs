@@ -4,3 +4,4 @@ mod canvas;
 pub mod clock;
 pub mod picture;
 pub mod sheet;
+pub mod tally;

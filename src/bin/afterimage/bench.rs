@@ -1,6 +1,5 @@
 //! `afterimage bench`: what things cost.
 
-mod clock;
 mod effects;
 mod foveated;
 mod papers;

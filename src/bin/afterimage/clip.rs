@@ -7,15 +7,15 @@ use afterimage::DebugView;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::image::Image;
-use afterimage::metric::{self, Flip, FrameErrors, Reference, References, Scorer, Scores, psnr_db};
-use afterimage::pipeline::{Backend, LaneKind, Pipeline, Shown, Step};
+use afterimage::metric::{self, Flip, Reference, References};
+use afterimage::pipeline::{Backend, LaneKind, Pipeline, Step};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::picture::to_rgb8;
 use afterimage::report::sheet::{Column, Sheet};
+use afterimage::report::tally::{MethodReport, Share, Tally};
 use afterimage::source::{FrameSource, SourceFrame};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use serde::Serialize;
 use std::io::IsTerminal;
 
 /// What is to be done with a clip.
@@ -43,39 +43,6 @@ pub struct Clip {
     pub backend_note: &'static str,
 }
 
-/// Figures of a lane, as `report.json` has them.
-#[derive(Serialize)]
-pub struct MethodReport {
-    /// How far the method gets from the foveated frame to what any reuse could show; where both were run.
-    pub share_of_oracle: Option<Share>,
-    /// Wall time of the pass a frame.
-    pub ms: Option<Quartiles>,
-    /// Mean CPU time of the pass a frame.
-    pub cpu_ms: Option<f64>,
-    #[serde(flatten)]
-    pub scores: Scores,
-    pub psnr_last_frame_db: Option<f64>,
-    pub nonfinite_in: u64,
-    pub nonfinite_out: u64,
-    /// Share of pixels that lost their history to occlusion, the border or bad vectors, after the first frame.
-    pub flushed: Option<f64>,
-    /// Share of pixels with a history whose sample was replaced.
-    pub replaced: Option<f64>,
-    /// Bytes that the pass reads and writes a pixel and frame, half-float inputs assumed.
-    pub bytes_per_pixel: Option<u32>,
-    /// Bytes kept between frames a pixel.
-    pub persistent_bytes_per_pixel: f64,
-}
-
-/// A part of the way from `none` (0) to `oracle` (1); below 0 is worse than doing nothing.
-#[derive(Clone, Copy, Serialize)]
-pub struct Share {
-    /// In whole-image PSNR.
-    pub psnr: Option<f64>,
-    /// In whole-image SSIM.
-    pub ssim: Option<f64>,
-}
-
 /// What a clip came to.
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
@@ -86,21 +53,6 @@ pub struct ClipReport {
     pub backend: String,
     /// Where the eye was taken to look.
     pub gaze_px: Vec<[f32; 2]>,
-}
-
-#[derive(Default)]
-struct Lane {
-    scorer: Scorer,
-    wall_ms: Vec<f64>,
-    cpu_ms: Vec<Option<f64>>,
-    nonfinite_in: u64,
-    nonfinite_out: u64,
-    pixels: u64,
-    flushed: u64,
-    with_history: u64,
-    replaced: u64,
-    last: Option<FrameErrors>,
-    traffic: Option<u32>,
 }
 
 impl Clip {
@@ -117,7 +69,7 @@ impl Clip {
             pipeline = pipeline.with_guidance();
         }
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
-        let mut lanes: Vec<Lane> = kinds.iter().map(|_| Lane::default()).collect();
+        let mut lanes: Vec<Tally> = kinds.iter().map(|_| Tally::default()).collect();
         let mut foveation_ms = vec![];
         let mut samples = 0;
         let mut gaze_px = vec![];
@@ -179,7 +131,7 @@ impl Clip {
         frame: &SourceFrame,
         reference: &Reference<'_>,
         step: &Step,
-        lanes: &mut [Lane],
+        lanes: &mut [Tally],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
         if self.write_reference {
@@ -206,14 +158,14 @@ impl Clip {
         &self,
         reference: &Image<[f32; 3]>,
         encoded: &[Image<[f32; 3]>],
-        lanes: &[Lane],
+        lanes: &[Tally],
         gaze_px: &[[f32; 2]],
         out: &Output,
     ) -> Result<(), Failure> {
         let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
         for (((name, _), shown), lane) in self.lanes.iter().zip(encoded).zip(lanes) {
             let name = if *name == "none" { "none (foveated only)" } else { name };
-            columns.push(Column { name, shown, scores: Some(lane.scorer.scores()) });
+            columns.push(Column { name, shown, scores: Some(lane.scores()) });
         }
         let sheet = Sheet {
             title: self.title.clone(),
@@ -223,59 +175,6 @@ impl Clip {
             fovea_deg: self.foveation.fovea_deg,
         };
         out.sheet("sheet.png", &sheet.draw())
-    }
-}
-
-impl Lane {
-    fn push(
-        &mut self,
-        frame: &SourceFrame,
-        reference: &Reference<'_>,
-        encoded: &Image<[f32; 3]>,
-        shown: &Shown,
-        step: &Step,
-    ) {
-        let errors = self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg);
-        self.last = Some(errors);
-        self.traffic = shown.traffic_bytes_per_pixel;
-        self.wall_ms.push(shown.wall_ms);
-        self.cpu_ms.push(shown.cpu_ms);
-        self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
-        let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
-        self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
-        if !frame.cut {
-            self.pixels += shown.stats.pixels;
-            self.flushed += shown.stats.flushed();
-            self.with_history += shown.stats.valid();
-            self.replaced += shown.stats.replaced;
-        }
-    }
-
-    /// A line of `frames.csv`.
-    fn row(&self, index: usize, name: &str) -> String {
-        let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
-        let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
-        let [fovea, mid, periphery] = self.last.map_or_else(Default::default, |e| e.band_mse.map(db));
-        let ms = self.wall_ms.last().copied().unwrap_or_default();
-        format!("{index},{name},{psnr},{retained},{ms:.3},{fovea},{mid},{periphery}")
-    }
-
-    fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
-        let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
-        let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();
-        MethodReport {
-            share_of_oracle: None,
-            ms: Quartiles::of(&self.wall_ms),
-            cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
-            scores: self.scorer.scores(),
-            psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
-            nonfinite_in: self.nonfinite_in,
-            nonfinite_out: self.nonfinite_out,
-            flushed: share(self.flushed, self.pixels),
-            replaced: share(self.replaced, self.with_history),
-            bytes_per_pixel: self.traffic,
-            persistent_bytes_per_pixel,
-        }
     }
 }
 

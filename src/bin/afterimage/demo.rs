@@ -1,8 +1,8 @@
 //! `afterimage demo`: the method at work on a built-in scene, and in words what to look at.
 
-use crate::clip::MethodReport;
 use crate::failure::Failure;
 use crate::run::{RunArgs, execute};
+use afterimage::report::tally::MethodReport;
 use clap::{Args, Parser};
 use std::path::PathBuf;
 

@@ -3,7 +3,7 @@
 mod input;
 
 use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
-use crate::clip::{Clip, ClipReport, MethodReport};
+use crate::clip::{Clip, ClipReport};
 use crate::failure::Failure;
 use crate::gaze::GazeArgs;
 use crate::output::Output;
@@ -11,6 +11,7 @@ use crate::trace::pattern::{SamplingArgs, SamplingName};
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless, LaneKind};
 use afterimage::report::clock::Quartiles;
+use afterimage::report::tally::MethodReport;
 use afterimage::settings::Method;
 use afterimage::source::{ReadLimits, SourceInfo};
 use clap::{Args, ValueEnum};

@@ -1,6 +1,5 @@
 //! `afterimage bench post`: what the passes cost, off-screen, against a copy pass that moves the same bytes.
 
-use super::clock::Clock;
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
@@ -12,7 +11,7 @@ use afterimage::frame::{Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
-use afterimage::pipeline::Headless;
+use afterimage::pipeline::{Headless, PassClock};
 use afterimage::report::clock::{Quartiles, Stopwatch};
 use afterimage::settings::{Method, Settings};
 use serde::Serialize;
@@ -123,7 +122,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         |pass: &&PassKind| pass.name == "copy" || args.only.is_empty() || args.only.iter().any(|o| o == pass.name);
     let passes: Vec<&PassKind> = PASSES.iter().filter(chosen).collect();
     let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
-    let clock = Clock::new(&gpu);
+    let clock = PassClock::new(&gpu);
     let mut inputs = Inputs::new(&gpu, size)?;
     let first = views(size, 0)?;
     inputs.foveate(&gpu, &first)?;
@@ -158,7 +157,7 @@ fn summarise(
     size: [u32; 2],
     frames: u64,
     gpu: &Headless,
-    clock: &Clock,
+    clock: &PassClock,
     cold_start_ms: f64,
     passes: &[&PassKind],
     times: &[Vec<f64>],
@@ -215,7 +214,7 @@ fn print(report: &Report) {
 /// Milliseconds of one pass of one frame.
 fn time(
     gpu: &Headless,
-    clock: &Clock,
+    clock: &PassClock,
     inputs: &Inputs,
     lane: &mut Lane,
     views: &[ViewFrame],

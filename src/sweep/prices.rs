@@ -1,0 +1,62 @@
+//! What a switch costs and buys.
+
+use super::metrics::METRICS;
+use super::table::Row;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A point with a switch thrown, and the same without.
+#[derive(Clone, Debug, Serialize)]
+pub struct Price {
+    /// The switch, as it is typed.
+    pub switch: String,
+    /// What is sampled.
+    pub input: String,
+    /// Which method.
+    pub method: String,
+    /// [`Row::id`] of the point without it.
+    pub base: String,
+    /// [`Row::id`] of the point with it.
+    pub switched: String,
+    /// Milliseconds of the pass, without it and with it.
+    pub pass_ms: [f64; 2],
+    /// Bytes that the pass reads and writes a pixel, without it and with it.
+    pub bytes_per_pixel: [Option<u32>; 2],
+    /// Bytes kept a pixel, without it and with it.
+    pub memory_bytes_per_pixel: [f64; 2],
+    /// Figures by [`METRICS`]' keys, without it and with it.
+    pub values: BTreeMap<&'static str, [Option<f64>; 2]>,
+}
+
+/// The prices of `switches`: every pair of points that differ in one of them alone, where the one without it is not given at all.
+pub(super) fn prices(rows: &[Row], switches: &[(String, Option<String>)]) -> Vec<Price> {
+    let mut prices = vec![];
+    for (name, value) in switches {
+        for switched in rows.iter().filter(|r| r.point.options.get(name) == value.as_ref() && value.is_some()) {
+            let mut options = switched.point.options.clone();
+            options.remove(name);
+            let is_base = |r: &&Row| {
+                (&r.point.input, &r.point.method, &r.point.options)
+                    == (&switched.point.input, &switched.point.method, &options)
+            };
+            let Some(base) = rows.iter().find(is_base) else { continue };
+            prices.push(price(name, value.as_deref().unwrap_or_default(), base, switched));
+        }
+    }
+    prices
+}
+
+fn price(name: &str, value: &str, base: &Row, switched: &Row) -> Price {
+    let value_of = |row: &Row, key: &str| row.values.get(key).copied().flatten();
+    Price {
+        switch: if value.is_empty() { name.to_owned() } else { format!("{name} {value}") },
+        input: base.point.input.clone(),
+        method: base.point.method.clone(),
+        base: base.id.clone(),
+        switched: switched.id.clone(),
+        pass_ms: [base.pass_ms.median, switched.pass_ms.median],
+        bytes_per_pixel: [base.bytes_per_pixel, switched.bytes_per_pixel],
+        memory_bytes_per_pixel: [base.memory_bytes_per_pixel, switched.memory_bytes_per_pixel],
+        values: METRICS.iter().map(|m| (m.key, [value_of(base, m.key), value_of(switched, m.key)])).collect(),
+    }
+}

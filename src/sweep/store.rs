@@ -1,0 +1,117 @@
+//! The folder of a sweep: a file for every point that is done, written whole, so that nothing finished is ever lost.
+
+use super::grid::Point;
+use super::measurement::Measurement;
+use crate::error::InputError;
+use crate::whole_file::write_whole;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Largest file of a measurement that is read, bytes: a hundred times what one takes.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// A folder with measurements and pictures.
+#[derive(Clone, Debug)]
+pub struct Store {
+    root: PathBuf,
+}
+
+impl Store {
+    /// The folder, made if need be.
+    ///
+    /// # Errors
+    /// If it cannot be made or written.
+    pub fn create(root: &Path) -> Result<Self, InputError> {
+        let refuse = |path: &Path, error: io::Error| {
+            let problem = format!("cannot be written ({error})");
+            InputError::new(path.display().to_string(), problem, "give --out a folder that can be made or written")
+        };
+        for folder in ["points", "pictures"] {
+            let path = root.join(folder);
+            fs::create_dir_all(&path).map_err(|e| refuse(&path, e))?;
+        }
+        let probe = root.join("points/.afterimage.part");
+        fs::File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(&probe, e))?;
+        Ok(Self { root: root.to_owned() })
+    }
+
+    /// A folder that is there.
+    ///
+    /// # Errors
+    /// If it has no measurements.
+    pub fn open(root: &Path) -> Result<Self, InputError> {
+        if !root.join("points").is_dir() {
+            let remedy = "expected a folder that afterimage sweep has written";
+            return Err(InputError::new(root.display().to_string(), "holds no sweep", remedy));
+        }
+        Ok(Self { root: root.to_owned() })
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Keeps a measurement.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn save(&self, measurement: &Measurement) -> io::Result<()> {
+        let text = serde_json::to_string_pretty(measurement).map_err(io::Error::other)?;
+        write_whole(&self.root.join("points").join(format!("{}.json", id(&measurement.point))), |file| {
+            file.write_all(text.as_bytes())
+        })
+    }
+
+    /// All measurements, in the order of their points.
+    ///
+    /// # Errors
+    /// If a file cannot be read or is not one of ours.
+    pub fn load(&self) -> Result<Vec<Measurement>, InputError> {
+        let folder = self.root.join("points");
+        let wrong = |path: &Path, problem: String| {
+            InputError::new(path.display().to_string(), problem, "remove it, and the point is measured anew")
+        };
+        let entries = fs::read_dir(&folder).map_err(|e| wrong(&folder, format!("cannot be read ({e})")))?;
+        let mut measurements = vec![];
+        for path in entries.filter_map(|e| Some(e.ok()?.path())) {
+            if path.extension().is_none_or(|e| e != "json") {
+                continue;
+            }
+            let length = fs::metadata(&path).map_or(0, |m| m.len());
+            if length > MAX_BYTES {
+                return Err(wrong(&path, format!("has {length} bytes, and no measurement has more than {MAX_BYTES}")));
+            }
+            let text = fs::read_to_string(&path).map_err(|e| wrong(&path, format!("cannot be read ({e})")))?;
+            let measurement: Measurement =
+                serde_json::from_str(&text).map_err(|e| wrong(&path, format!("is no measurement ({e})")))?;
+            measurements.push(measurement);
+        }
+        measurements.sort_by(|a, b| a.point.cmp(&b.point));
+        Ok(measurements)
+    }
+
+    /// Where a picture of a point goes: `shown` or `error`.
+    pub fn picture(&self, point: &Point, what: &str) -> PathBuf {
+        self.root.join("pictures").join(format!("{}-{what}.jpg", id(point)))
+    }
+}
+
+/// A name for files: the method, and 64 bits of all that makes the point (FNV-1a).
+pub fn id(point: &Point) -> String {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |word: &str| {
+        // A zero after each word keeps "a" "bc" from being "ab" "c".
+        for byte in word.bytes().chain([0]) {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    };
+    add(&point.input);
+    point.options.iter().for_each(|(name, value)| {
+        add(name);
+        add(value);
+    });
+    add(&point.seed.to_string());
+    format!("{}-{hash:016x}", point.method)
+}
