@@ -2,6 +2,7 @@
 
 mod canvas;
 pub mod clock;
+pub mod page;
 pub mod pareto;
 pub mod picture;
 pub mod sheet;

@@ -14,6 +14,8 @@ const MAX_LINES: usize = 7;
 pub struct Section {
     /// Share of the samples, to a thousandth, where it is not known what they cost.
     pub samples_share: Option<f64>,
+    /// How many rows it is made of.
+    pub points: usize,
     /// Methods, in the order of the columns.
     pub methods: Vec<String>,
     /// A line for each budget in milliseconds.
@@ -106,6 +108,7 @@ fn section(samples_share: Option<f64>, rows: &[Candidate<'_>], metric: &Metric) 
         |bound: f64, best: &dyn Fn(&String) -> Option<Cell>| Line { bound, cells: methods.iter().map(best).collect() };
     Section {
         samples_share,
+        points: rows.len(),
         equal_time: budgets.iter().map(|&ms| line(ms, &|m| within(ms, m).map(Candidate::cell))).collect(),
         equal_quality: levels.iter().map(|&level| line(level, &|m| reaching(level, m).map(Candidate::cell))).collect(),
         methods,
