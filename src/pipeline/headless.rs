@@ -149,7 +149,7 @@ impl Headless {
         self.read_back(from.size(), |encoder, to| encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size()))
     }
 
-    fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
+    pub(super) fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
         let label = Some("afterimage");
         self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
     }

@@ -1,10 +1,12 @@
 //! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
 
+mod bandwidth;
 mod clock;
 mod gpu_lane;
 mod guide;
 mod headless;
 
+pub use bandwidth::copy_ms_per_byte;
 pub use clock::PassClock;
 pub use headless::Headless;
 
@@ -287,9 +289,11 @@ impl Pipeline {
         };
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let cpu_frame = CpuFrame { reset, ..CpuFrame::new(std::slice::from_ref(&view), index) };
-        let mut shown = vec![];
-        for lane in &mut self.lanes {
-            shown.push(match lane {
+        let mut shown: Vec<Option<Shown>> = vec![None; self.lanes.len()];
+        // Another lane first in every frame: whoever is first finds the caches as the foveation left them.
+        let first = index as usize % self.lanes.len().max(1);
+        for i in (first..self.lanes.len()).chain(0..first) {
+            shown[i] = Some(match &mut self.lanes[i] {
                 Executor::PostProcess(post) => post_process(post, &cpu_frame, &self.debug)?,
                 Executor::Gpu(lane) => post_process_on_gpu(lane, &LaneInput { view, index, reset }, &self.debug)?,
                 Executor::Oracle { best } => {
@@ -303,7 +307,7 @@ impl Pipeline {
                 }
             });
         }
-        Ok((tracked, shown))
+        Ok((tracked, shown.into_iter().flatten().collect()))
     }
 
     /// Bytes that lane `index` keeps between frames.

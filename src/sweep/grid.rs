@@ -55,7 +55,10 @@ impl Axis {
     }
 
     /// The same from a list of values.
-    pub(super) fn new<'a>(names: &str, values: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// If a name or the number of values is wrong.
+    pub fn new<'a>(names: &str, values: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         let options: Vec<String> = names.split('+').map(|n| n.trim().trim_start_matches('-').to_owned()).collect();
         if options.iter().any(|o| !o.bytes().all(|b| b.is_ascii_lowercase() || b == b'-') || o.is_empty()) {
             return Err(format!("'{names}' is no name of an option"));

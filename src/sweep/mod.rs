@@ -8,6 +8,7 @@ pub mod frontier;
 pub mod grid;
 pub mod measurement;
 pub mod metrics;
+pub mod paste;
 pub mod prices;
 pub mod store;
 pub mod table;

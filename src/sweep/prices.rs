@@ -28,21 +28,19 @@ pub struct Price {
     pub values: BTreeMap<&'static str, [Option<f64>; 2]>,
 }
 
-/// The prices of `switches`: every pair of points that differ in one of them alone, where the one without it is not given at all.
-pub(super) fn prices(rows: &[Row], switches: &[(String, Option<String>)]) -> Vec<Price> {
+/// Of every pair of points of which one has an option more than the other, and all else alike.
+pub(super) fn prices(rows: &[Row]) -> Vec<Price> {
     let mut prices = vec![];
-    for (name, value) in switches {
-        for switched in rows.iter().filter(|r| r.point.options.get(name) == value.as_ref() && value.is_some()) {
+    for switched in rows {
+        for (name, value) in &switched.point.options {
             let mut options = switched.point.options.clone();
             options.remove(name);
-            let is_base = |r: &&Row| {
-                (&r.point.input, &r.point.method, &r.point.options)
-                    == (&switched.point.input, &switched.point.method, &options)
-            };
-            let Some(base) = rows.iter().find(is_base) else { continue };
-            prices.push(price(name, value.as_deref().unwrap_or_default(), base, switched));
+            let (input, method) = (&switched.point.input, &switched.point.method);
+            let is_base = |r: &&Row| (&r.point.input, &r.point.method, &r.point.options) == (input, method, &options);
+            prices.extend(rows.iter().find(is_base).map(|base| price(name, value, base, switched)));
         }
     }
+    prices.sort_by(|a, b| (&a.input, &a.switch, &a.method).cmp(&(&b.input, &b.switch, &b.method)));
     prices
 }
 

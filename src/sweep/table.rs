@@ -76,13 +76,8 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of the measurements of one sweep. `switches`: options that are priced by themselves.
-    pub fn new(
-        measurements: &[Measurement],
-        switches: &[(String, Option<String>)],
-        renderer_ms: Option<f64>,
-        command: String,
-    ) -> Self {
+    /// Of the measurements of one sweep, for a renderer that takes so long for a full-rate frame, if that is known.
+    pub fn new(measurements: &[Measurement], renderer_ms: Option<f64>, command: String) -> Self {
         let mut groups: BTreeMap<Point, Vec<&Measurement>> = BTreeMap::new();
         for m in measurements {
             groups.entry(Point { seed: 0, ..m.point.clone() }).or_default().push(m);
@@ -110,7 +105,7 @@ impl Table {
             clips: measurements.iter().map(|m| (m.point.input.clone(), m.clip.clone())).collect(),
             machines,
             renderer_ms,
-            prices: prices(&rows, switches),
+            prices: prices(&rows),
             rows,
         }
     }

@@ -2,7 +2,7 @@
 
 use afterimage::DebugView;
 use afterimage::foveation::{Filter, Foveation};
-use afterimage::settings::{Bias, DepthTest, Gate, Method, Sampler, Settings, Smr};
+use afterimage::settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
 use clap::{Args, ValueEnum};
 
 /// Where a frame is how coarse.
@@ -115,6 +115,9 @@ pub struct WrsArgs {
     /// Colour difference that costs nothing, Delta E 94
     #[arg(long, default_value_t = 0.0, value_name = "X")]
     pub gate_offset: f32,
+    /// What the gate compares: the whole colour, or its lightness alone
+    #[arg(long, value_enum, default_value = "delta-e94")]
+    pub gate_metric: GateMetricName,
     /// Never look at colour
     #[arg(long)]
     pub no_gate: bool,
@@ -127,6 +130,12 @@ pub struct WrsArgs {
     /// smr: do not follow changes of light
     #[arg(long)]
     pub no_relight: bool,
+    /// Relative difference of distance that is still the same surface, above 0 and below 1
+    #[arg(long, default_value_t = DepthTest::default().relative, value_name = "X")]
+    pub depth_relative: f32,
+    /// Pixels of a surface's own slope that its distance may be off, 0 to 64; 0: the test knows no slope
+    #[arg(long, default_value_t = DepthTest::default().slope_px, value_name = "PX")]
+    pub depth_slope: f32,
     /// Never look at depth
     #[arg(long)]
     pub no_flush: bool,
@@ -146,9 +155,13 @@ impl WrsArgs {
             gate: (!self.no_gate).then(|| Gate {
                 divisor: self.gate_divisor,
                 offset: self.gate_offset,
-                ..Gate::default()
+                metric: match self.gate_metric {
+                    GateMetricName::DeltaE94 => GateMetric::DeltaE94,
+                    GateMetricName::Lightness => GateMetric::Lightness,
+                },
             }),
-            depth_test: (!self.no_flush).then(DepthTest::default),
+            depth_test: (!self.no_flush)
+                .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
             smr: Smr {
                 accumulate: self.smr_accumulate.unwrap_or(preset.smr.accumulate),
                 tolerance: self.smr_tolerance,
@@ -167,6 +180,16 @@ pub enum SamplerName {
     AChao,
     /// By the larger key
     AEs,
+}
+
+/// Names of what the gate compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GateMetricName {
+    /// The whole colour
+    #[value(name = "delta-e94")]
+    DeltaE94,
+    /// Lightness alone: blind to changes of hue
+    Lightness,
 }
 
 fn parse_bias(text: &str) -> Result<Bias, String> {

@@ -9,7 +9,7 @@ use afterimage::foveation::Foveation;
 use afterimage::image::Image;
 use afterimage::metric::{self, Flip, Reference, References};
 use afterimage::pipeline::{Backend, LaneKind, Pipeline, Step};
-use afterimage::report::clock::Quartiles;
+use afterimage::report::clock::{Quartiles, Stopwatch};
 use afterimage::report::picture::to_rgb8;
 use afterimage::report::sheet::{Column, Sheet};
 use afterimage::report::tally::{MethodReport, Share, Tally};
@@ -43,7 +43,19 @@ pub struct Clip {
     pub backend_note: &'static str,
 }
 
+/// A frame of a clip, and what became of it.
+pub struct Moment<'a> {
+    pub index: usize,
+    pub frame: &'a SourceFrame,
+    pub reference: &'a Reference<'a>,
+    pub step: &'a Step,
+    /// Camera samples, and CPU time of tracing them, of a frame that its source foveated.
+    pub samples: Option<u64>,
+    pub render_ms: Option<f64>,
+}
+
 /// What a clip came to.
+#[derive(Default)]
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
     pub foveation_ms: Option<Quartiles>,
@@ -58,9 +70,49 @@ pub struct ClipReport {
 impl Clip {
     /// Runs the clip and writes everything but `report.json`.
     pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
+        let mut tallies: Vec<Tally> = self.lanes.iter().map(|_| Tally::default()).collect();
+        let mut report = ClipReport { backend: self.backend_in_words(), ..ClipReport::default() };
+        let mut foveation_ms = vec![];
+        let bar = progress(self.gaze.len() as u64);
+        let mut table = out.table(
+            "frames.csv",
+            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
+        )?;
+        let pipeline = self.play(source, &mut |moment| {
+            let encoded = self.score_and_write(moment, &mut tallies, out)?;
+            for ((name, _), tally) in self.lanes.iter().zip(&tallies) {
+                table.row(&tally.row(moment.index, name))?;
+            }
+            report.samples += moment.samples.unwrap_or(0);
+            foveation_ms.push(moment.step.foveation_ms);
+            report.gaze_px.push(moment.step.gaze_px);
+            if moment.index + 1 == self.gaze.len() {
+                self.write_sheet(moment.reference.encoded(), &encoded, &tallies, &report.gaze_px, out)?;
+            }
+            bar.inc(1);
+            Ok(())
+        })?;
+        bar.finish_and_clear();
+        table.finish()?;
+        out.gaze("gaze.csv", &report.gaze_px)?;
+        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
+        let of =
+            |(i, tally): (usize, &Tally)| (self.lanes[i].0, tally.report(pipeline.memory_bytes(i) as f64 / pixels));
+        report.methods = tallies.iter().enumerate().map(of).collect();
+        compare_with_oracle(&mut report.methods);
+        report.foveation_ms = Quartiles::of(&foveation_ms);
+        Ok(report)
+    }
+
+    /// Plays the clip, and hands out each frame with what all methods made of it. Gives the pipeline as the last frame left it.
+    pub fn play(
+        &self,
+        source: &mut dyn FrameSource,
+        each: &mut dyn FnMut(&Moment<'_>) -> Result<(), Failure>,
+    ) -> Result<Pipeline, Failure> {
         let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
-        let is_still = source.info().still;
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
+        let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
         if self.trust {
             pipeline = pipeline.with_trust();
@@ -69,54 +121,31 @@ impl Clip {
             pipeline = pipeline.with_guidance();
         }
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
-        let mut lanes: Vec<Tally> = kinds.iter().map(|_| Tally::default()).collect();
-        let mut foveation_ms = vec![];
-        let mut samples = 0;
-        let mut gaze_px = vec![];
-        let bar = progress(self.gaze.len() as u64);
-        let mut table = out.table(
-            "frames.csv",
-            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
-        )?;
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
-            let step = match source.foveated(index as u64, at, guide.as_ref())? {
-                Some(foveated) => {
-                    samples += foveated.samples.iter().sum::<u64>();
-                    pipeline.step_foveated(index as u64, &frame, at, foveated)?
-                }
+            let watch = Stopwatch::start();
+            let foveated = source.foveated(index as u64, at, guide.as_ref())?;
+            let samples = foveated.as_ref().map(|f| f.samples.iter().sum());
+            let render_ms = foveated.as_ref().map(|_| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()));
+            let step = match foveated {
+                Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
                 None => pipeline.step(index as u64, &frame, gaze)?,
             };
             let full = metric::encode(&frame.color, self.exposure_ev);
             let reference = references.next(&full, &step.tracked);
-            let encoded = self.score_and_write(index, &frame, &reference, &step, &mut lanes, out)?;
-            for ((name, _), lane) in self.lanes.iter().zip(&lanes) {
-                table.row(&lane.row(index, name))?;
-            }
-            foveation_ms.push(step.foveation_ms);
-            gaze_px.push(step.gaze_px);
-            if index + 1 == self.gaze.len() {
-                self.write_sheet(&full, &encoded, &lanes, &gaze_px, out)?;
-            }
-            bar.inc(1);
+            each(&Moment { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
         }
-        bar.finish_and_clear();
-        table.finish()?;
-        out.gaze("gaze.csv", &gaze_px)?;
-        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
-        let mut methods: Vec<_> = lanes
-            .iter()
-            .enumerate()
-            .map(|(i, lane)| (self.lanes[i].0, lane.report(pipeline.memory_bytes(i) as f64 / pixels)))
-            .collect();
-        compare_with_oracle(&mut methods);
-        let backend = match &self.backend {
+        Ok(pipeline)
+    }
+
+    /// What computes the methods, in words.
+    fn backend_in_words(&self) -> String {
+        match &self.backend {
             Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
             Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
-        };
-        Ok(ClipReport { backend, methods, foveation_ms: Quartiles::of(&foveation_ms), samples, gaze_px })
+        }
     }
 
     /// The metric for an eye that sees the view's angles.
@@ -127,23 +156,21 @@ impl Clip {
     /// Scores and writes all lanes of a frame side by side; gives their encoded images.
     fn score_and_write(
         &self,
-        index: usize,
-        frame: &SourceFrame,
-        reference: &Reference<'_>,
-        step: &Step,
-        lanes: &mut [Tally],
+        moment: &Moment<'_>,
+        tallies: &mut [Tally],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
+        let &Moment { index, frame, reference, step, .. } = moment;
         if self.write_reference {
             out.frame("reference", index, &frame.color, reference.encoded(), self.format)?;
         }
-        lanes
+        tallies
             .par_iter_mut()
             .zip(&self.lanes)
             .zip(&step.shown)
-            .map(|((lane, (name, _)), shown)| {
+            .map(|((tally, (name, _)), shown)| {
                 let encoded = metric::encode(&shown.image, self.exposure_ev);
-                lane.push(frame, reference, &encoded, shown, step);
+                tally.push(frame, reference, &encoded, shown, step);
                 out.frame(name, index, &shown.image, &encoded, self.format)?;
                 for (debug, picture) in self.debug.iter().zip(&shown.debug) {
                     let folder = format!("debug/{name}/{}", debug.name());
@@ -158,14 +185,14 @@ impl Clip {
         &self,
         reference: &Image<[f32; 3]>,
         encoded: &[Image<[f32; 3]>],
-        lanes: &[Tally],
+        tallies: &[Tally],
         gaze_px: &[[f32; 2]],
         out: &Output,
     ) -> Result<(), Failure> {
         let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
-        for (((name, _), shown), lane) in self.lanes.iter().zip(encoded).zip(lanes) {
+        for (((name, _), shown), tally) in self.lanes.iter().zip(encoded).zip(tallies) {
             let name = if *name == "none" { "none (foveated only)" } else { name };
-            columns.push(Column { name, shown, scores: Some(lane.scores()) });
+            columns.push(Column { name, shown, scores: Some(tally.scores()) });
         }
         let sheet = Sheet {
             title: self.title.clone(),

@@ -25,6 +25,20 @@ impl Failure {
         ExitCode::from(code)
     }
 
+    /// Options that are wrong, in one line.
+    pub fn usage(error: &clap::Error) -> Self {
+        let text = error.render().to_string();
+        let lines: Vec<&str> = text
+            .lines()
+            .map(str::trim)
+            .take_while(|l| !l.starts_with("Usage:"))
+            .filter(|l| !l.is_empty() && !l.starts_with("For more information"))
+            .collect();
+        let line = lines.join(" ");
+        let line = line.strip_prefix("error: ").unwrap_or(&line);
+        Self::Input(format!("{line}; see --help"))
+    }
+
     /// Something that could not be written while working.
     pub fn writing(path: &Path, error: impl Display) -> Self {
         Self::Work(format!("{}: cannot be written ({error}); free space or choose another --out", path.display()))

@@ -18,6 +18,7 @@ mod info;
 mod output;
 mod run;
 mod scanpath;
+mod sweep;
 mod trace;
 
 use clap::{Parser, Subcommand};
@@ -42,6 +43,8 @@ enum Command {
     Trace(Box<trace::TraceArgs>),
     /// Time the passes against a copy of the same bytes
     Bench(bench::BenchArgs),
+    /// Measure a grid of methods and options: error against time, and what each switch costs
+    Sweep(Box<sweep::SweepArgs>),
     /// Write a synthetic scanpath
     Scanpath(scanpath::ScanpathArgs),
     /// Say what an input holds, or which adapters there are
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Trace(args) => trace::trace(&args),
         Command::Bench(args) => bench::bench(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Scanpath(args) => scanpath::scanpath(&args),
         Command::Info(args) => info::info(&args),
     };
@@ -74,14 +78,5 @@ fn usage(error: &clap::Error) -> ExitCode {
         let _ = error.print();
         return ExitCode::SUCCESS;
     }
-    let text = error.render().to_string();
-    let lines: Vec<&str> = text
-        .lines()
-        .map(str::trim)
-        .take_while(|l| !l.starts_with("Usage:"))
-        .filter(|l| !l.is_empty() && !l.starts_with("For more information"))
-        .collect();
-    let line = lines.join(" ");
-    let line = line.strip_prefix("error: ").unwrap_or(&line);
-    Failure::Input(format!("{line}; see --help")).report()
+    Failure::usage(error).report()
 }

@@ -1,19 +1,19 @@
 //! `afterimage run`: foveate a frame stream, enhance it, score it.
 
-mod input;
+pub mod input;
+pub mod plan;
 
 use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
-use crate::clip::{Clip, ClipReport};
+use crate::clip::ClipReport;
 use crate::failure::Failure;
 use crate::gaze::GazeArgs;
 use crate::output::Output;
+use crate::trace::paths::PathArgs;
 use crate::trace::pattern::{SamplingArgs, SamplingName};
-use afterimage::display::ViewGeometry;
-use afterimage::pipeline::{Backend, Headless, LaneKind};
+use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::tally::MethodReport;
-use afterimage::settings::Method;
-use afterimage::source::{ReadLimits, SourceInfo};
+use afterimage::source::ReadLimits;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -53,6 +53,8 @@ pub struct RunArgs {
     pub reference_spp: u32,
     #[command(flatten)]
     pub sampling: SamplingArgs,
+    #[command(flatten)]
+    pub paths: PathArgs,
     /// With --sampling and the method smr: trace more samples where its history knows little or nothing and fewer where it is sure, as
     /// many in all
     #[arg(long)]
@@ -99,9 +101,6 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
 }
-
-/// Frames of the longest run: two days at 60 frames per second.
-const MAX_FRAMES: u64 = 10_000_000;
 
 /// What to do without an adapter.
 pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
@@ -176,13 +175,6 @@ impl Serialize for Methods<'_> {
     }
 }
 
-/// Everything about a run that is known before its first frame.
-struct Plan {
-    fps: f32,
-    clip: Clip,
-    gaze_map: &'static str,
-}
-
 /// The subcommand.
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let report = execute(args)?;
@@ -192,10 +184,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// Runs and writes, without a word.
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
-    check(args)?;
+    plan::check(args)?;
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let mut source = input::open(args, &limits)?;
-    let plan = plan(args, source.info())?;
+    let plan = plan::plan(args, source.info())?;
     // Proof that the input can be read, before anything is written.
     source.frame(0)?;
     let out = Output::create(&args.out, &folders(args), "report.json")?;
@@ -231,100 +223,6 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
     out.text("report.json", &(text + "\n"))?;
     Ok(report)
-}
-
-/// What can be wrong before anything is opened.
-fn check(args: &RunArgs) -> Result<(), Failure> {
-    let refuse = |text: String| Err(Failure::Input(text));
-    if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
-        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
-    }
-    if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
-        return refuse(format!("--hfov {hfov}: expected above 0 and below 180 degrees"));
-    }
-    if !(-32.0..=32.0).contains(&args.exposure) {
-        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
-    }
-    if let Some(frames) = args.frames.filter(|n| !(1..=MAX_FRAMES).contains(n)) {
-        return refuse(format!("--frames {frames}: expected at least 1 frame and at most {MAX_FRAMES}"));
-    }
-    Ok(())
-}
-
-fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
-    let refuse = |text: String| Err(Failure::Input(text));
-    if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
-        return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
-    }
-    let fps = args.fps.or(info.fps).unwrap_or(60.0);
-    let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
-    let sampling = input::sampling(args)?;
-    let foveation = sampling.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
-    foveation.validate()?;
-    let settings = |method| args.wrs.settings(method, args.seed, sampling.is_some());
-    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
-    for &method in &args.method {
-        if lanes.iter().any(|l| l.0 == method.name()) {
-            return refuse(format!("--method: {} is named twice", method.name()));
-        }
-        let kind = match method {
-            MethodName::None => LaneKind::PostProcess(settings(Method::None)),
-            MethodName::Taa => LaneKind::PostProcess(settings(Method::Taa)),
-            MethodName::Smr => LaneKind::PostProcess(settings(Method::Smr)),
-            MethodName::Wrs => LaneKind::PostProcess(settings(Method::Wrs)),
-            MethodName::Oracle if sampling.is_some() => {
-                return refuse("--method oracle: is defined for simulated foveation only; leave out --sampling".into());
-            }
-            MethodName::Oracle if info.still => LaneKind::Oracle,
-            MethodName::Oracle => {
-                return refuse(format!(
-                    "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
-                    args.input
-                ));
-            }
-        };
-        if let LaneKind::PostProcess(settings) = kind {
-            settings.validate()?;
-        }
-        lanes.push((method.name(), kind));
-    }
-    // Stills and endless scenes last as long as the eye looks.
-    let frames = args.frames.or(if info.still { None } else { info.frames });
-    let backend = backend(args.backend)?;
-    let track = args.gaze.resolve(&geometry, fps, frames)?;
-    Ok(Plan {
-        fps,
-        gaze_map: track.map,
-        clip: Clip {
-            title: format!(
-                "{}   {}x{}, {} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {}",
-                info.name,
-                info.size[0],
-                info.size[1],
-                track.px.len(),
-                foveation.fovea_deg,
-                foveation.rate_mid,
-                foveation.rate_far,
-                simulator(args)
-            ),
-            geometry,
-            foveation,
-            lanes,
-            gaze: track.px,
-            exposure_ev: args.exposure,
-            format: args.format,
-            write_reference: args.reference,
-            debug: args.debug.clone(),
-            trust: args.trust,
-            guided: args.guided,
-            flip: !args.no_flip,
-            backend_note: match (args.backend, &backend) {
-                (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
-                _ => "",
-            },
-            backend,
-        },
-    })
 }
 
 /// What foveates the frames: a simulator, or the pattern that they are traced with.

@@ -2,6 +2,7 @@
 
 mod eyes;
 mod frames;
+pub mod paths;
 pub mod pattern;
 mod report;
 pub mod setup;
@@ -12,14 +13,13 @@ use crate::failure::Failure;
 use crate::output::Output;
 use crate::run::BackendName;
 use afterimage::report::clock::Stopwatch;
-use afterimage::trace::effects::Effects;
 use afterimage::trace::sampling::Sampling;
-use afterimage::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage::trace::view::View;
 use clap::{Args, ValueEnum};
 use eyes::{Eyes, below, scanpath_csv};
 use frames::{folders, write};
 use indicatif::{ProgressBar, ProgressStyle};
+use paths::PathArgs;
 use pattern::PatternArgs;
 use report::Report;
 use setup::Setup;
@@ -74,22 +74,12 @@ pub struct TraceArgs {
     /// the camera; default: one eye, the camera
     #[arg(long, value_name = "IPD_M", allow_negative_numbers = true)]
     pub stereo: Option<f64>,
-    /// Most scattering events after the camera ray, 0 to 64
-    #[arg(long, default_value_t = 3, value_name = "N")]
-    pub max_depth: u32,
-    /// How paths find light: both ways, by looking for lights, or by chance (the thesis' way)
-    #[arg(long, value_enum, default_value = "mis")]
-    pub integrator: IntegratorName,
-    /// How surfaces scatter: the principled model, or the thesis' Lambert and Phong
-    #[arg(long, value_enum, default_value = "auto")]
-    pub bsdf: BsdfName,
+    #[command(flatten)]
+    pub paths: PathArgs,
     /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with light of its
     /// own, else a soft white
     #[arg(long, value_name = "none|R,G,B|FILE.exr")]
     pub sky: Option<String>,
-    /// What the kernels are specialised to: what the scene needs, all, or a list of names (-v prints them)
-    #[arg(long, default_value = "auto", value_name = "auto|all|LIST")]
-    pub effects: String,
     /// More images, separated by commas; also written into the colour's .exr
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub aov: Vec<AovName>,
@@ -111,36 +101,6 @@ pub struct TraceArgs {
     /// Say what is compiled in and why
     #[arg(short, long)]
     pub verbose: bool,
-}
-
-/// Names of integrators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum IntegratorName {
-    /// Both ways, weighted by the power heuristic
-    Mis,
-    /// By looking for lights
-    Nee,
-    /// By chance
-    Naive,
-}
-
-impl From<IntegratorName> for Integrator {
-    fn from(name: IntegratorName) -> Self {
-        match name {
-            IntegratorName::Mis => Self::Mis,
-            IntegratorName::Nee => Self::Nee,
-            IntegratorName::Naive => Self::Naive,
-        }
-    }
-}
-
-/// Names of scattering models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BsdfName {
-    /// The principled model
-    Auto,
-    /// Lambert and Phong
-    Phong,
 }
 
 /// Names of further images.
@@ -244,20 +204,6 @@ fn finish(
     out.text("trace.json", &report.json(args, setup, eyes))?;
     report.print_summary(args, setup, eyes);
     Ok(())
-}
-
-/// What the library is told.
-pub fn settings(args: &TraceArgs, effects: Option<Effects>) -> TraceSettings {
-    TraceSettings {
-        integrator: args.integrator.into(),
-        bsdf: match args.bsdf {
-            BsdfName::Auto => Bsdf::Principled,
-            BsdfName::Phong => Bsdf::Phong,
-        },
-        max_depth: args.max_depth,
-        seed: args.seed,
-        effects,
-    }
 }
 
 /// A bar on a terminal, nothing elsewhere.

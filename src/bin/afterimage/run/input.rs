@@ -6,7 +6,6 @@ use crate::trace::pattern::SamplingName;
 use afterimage::pipeline::Headless;
 use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions, TracedSamples};
 use afterimage::trace::sampling::Sampling;
-use afterimage::trace::settings::TraceSettings;
 
 /// Opens files as they are, scenes with a renderer.
 pub fn open(args: &RunArgs, limits: &ReadLimits) -> Result<Box<dyn FrameSource + Send>, Failure> {
@@ -64,7 +63,7 @@ fn traced(args: &RunArgs, limits: &ReadLimits, options: &SceneOptions) -> Result
     let full_rate_samples = if foveated.is_some() { args.reference_spp } else { args.spp };
     let samples = TracedSamples { foveated, samples: args.spp, full_rate_samples };
     let backend = backend_for_scenes(args.backend)?;
-    let settings = TraceSettings { seed: args.seed, ..TraceSettings::default() };
+    let settings = args.paths.settings(args.seed)?;
     let camera = args.camera.as_deref();
     let source = source::TracedSource::open(&args.input, limits, options, camera, &backend, settings, samples)?;
     warn(source.warnings());

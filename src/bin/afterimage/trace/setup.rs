@@ -1,6 +1,6 @@
 //! What a trace needs before its first ray: scene, light, camera, tracer.
 
-use super::{TraceArgs, settings};
+use super::TraceArgs;
 use crate::failure::Failure;
 use crate::run::backend_for_scenes;
 use afterimage::pipeline::Backend;
@@ -9,8 +9,6 @@ use afterimage::scene::{Environment, Scene, SceneLimits};
 use afterimage::source::raster::DEFAULT_FPS;
 use afterimage::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
 use afterimage::trace::Tracer;
-use afterimage::trace::effects::{Effect, Effects};
-use afterimage::trace::settings::MAX_DEPTH;
 use afterimage::trace::view::View;
 use afterimage::trace::world::{World, light_if_dark};
 use std::path::Path;
@@ -35,6 +33,7 @@ const MAX_SIDE: u32 = 65_536;
 impl Setup {
     pub fn new(args: &TraceArgs) -> Result<Self, Failure> {
         check(args)?;
+        let settings = args.paths.settings(args.seed)?;
         let clock = Stopwatch::start();
         let mut scene = Scene::open_clip(&args.scene, args.clip.as_deref(), &SceneLimits::default())?;
         for warning in &scene.warnings {
@@ -48,8 +47,7 @@ impl Setup {
         let clock = Stopwatch::start();
         let world = World::new(&scene);
         let build_ms = clock.wall_ms();
-        let effects = parse_effects(&args.effects)?;
-        let tracer = Tracer::new(&backend, &world, settings(args, effects))
+        let tracer = Tracer::new(&backend, &world, settings)
             .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
         let moves = scene.duration_s() > 0.0;
         Ok(Self {
@@ -84,9 +82,6 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     }
     if args.spp == 0 || args.spp > 1 << 20 {
         return refuse(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20));
-    }
-    if args.max_depth > MAX_DEPTH {
-        return refuse(format!("--max-depth {}: expected 0 to {MAX_DEPTH}", args.max_depth));
     }
     if args.frames == 0 || args.frames > 10_000_000 {
         return refuse(format!("--frames {}: expected 1 to 10000000", args.frames));
@@ -128,24 +123,4 @@ fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-fn parse_effects(text: &str) -> Result<Option<Effects>, Failure> {
-    match text {
-        "auto" => Ok(None),
-        "all" => Ok(Some(Effects::all())),
-        "none" => Ok(Some(Effects::NONE)),
-        list => {
-            let find = |name: &str| {
-                Effect::ALL.iter().copied().find(|e| e.name() == name).ok_or_else(|| {
-                    let names: Vec<_> = Effect::ALL.iter().map(|e| e.name()).collect();
-                    Failure::Input(format!(
-                        "--effects: '{name}' is none; expected auto, all, none, or a list of {}",
-                        names.join(", ")
-                    ))
-                })
-            };
-            list.split(',').map(|name| find(name.trim())).collect::<Result<Effects, _>>().map(Some)
-        }
-    }
 }

@@ -1,0 +1,120 @@
+//! Everything about a run that is known before its first frame.
+
+use super::{BackendName, RunArgs, backend, input, simulator};
+use crate::args::MethodName;
+use crate::clip::Clip;
+use crate::failure::Failure;
+use crate::trace::pattern::SamplingName;
+use afterimage::display::ViewGeometry;
+use afterimage::pipeline::{Backend, LaneKind};
+use afterimage::settings::Method;
+use afterimage::source::SourceInfo;
+
+/// Frames of the longest run: two days at 60 frames per second.
+const MAX_FRAMES: u64 = 10_000_000;
+
+/// What is to be done, and facts of it that a report needs.
+pub struct Plan {
+    pub fps: f32,
+    pub clip: Clip,
+    pub gaze_map: &'static str,
+}
+
+/// What can be wrong before anything is opened.
+pub fn check(args: &RunArgs) -> Result<(), Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
+        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
+    }
+    if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
+        return refuse(format!("--hfov {hfov}: expected above 0 and below 180 degrees"));
+    }
+    if !(-32.0..=32.0).contains(&args.exposure) {
+        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
+    }
+    if let Some(frames) = args.frames.filter(|n| !(1..=MAX_FRAMES).contains(n)) {
+        return refuse(format!("--frames {frames}: expected at least 1 frame and at most {MAX_FRAMES}"));
+    }
+    Ok(())
+}
+
+/// Plans a run of an input with these facts.
+pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
+        return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
+    }
+    let fps = args.fps.or(info.fps).unwrap_or(60.0);
+    let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
+    let foveation = input::sampling(args)?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    foveation.validate()?;
+    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
+    for &method in &args.method {
+        if lanes.iter().any(|l| l.0 == method.name()) {
+            return refuse(format!("--method: {} is named twice", method.name()));
+        }
+        lanes.push((method.name(), lane(args, method, info)?));
+    }
+    // Stills and endless scenes last as long as the eye looks.
+    let frames = args.frames.or(if info.still { None } else { info.frames });
+    let backend = backend(args.backend)?;
+    let track = args.gaze.resolve(&geometry, fps, frames)?;
+    Ok(Plan {
+        fps,
+        gaze_map: track.map,
+        clip: Clip {
+            title: format!(
+                "{}   {}x{}, {} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {}",
+                info.name,
+                info.size[0],
+                info.size[1],
+                track.px.len(),
+                foveation.fovea_deg,
+                foveation.rate_mid,
+                foveation.rate_far,
+                simulator(args)
+            ),
+            geometry,
+            foveation,
+            lanes,
+            gaze: track.px,
+            exposure_ev: args.exposure,
+            format: args.format,
+            write_reference: args.reference,
+            debug: args.debug.clone(),
+            trust: args.trust,
+            guided: args.guided,
+            flip: !args.no_flip,
+            backend_note: match (args.backend, &backend) {
+                (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
+                _ => "",
+            },
+            backend,
+        },
+    })
+}
+
+/// What a method does in a run with these options.
+pub fn lane(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result<LaneKind, Failure> {
+    let sampling = input::sampling(args)?;
+    let method = match method {
+        MethodName::None => Method::None,
+        MethodName::Taa => Method::Taa,
+        MethodName::Smr => Method::Smr,
+        MethodName::Wrs => Method::Wrs,
+        MethodName::Oracle if sampling.is_some() => {
+            let text = "--method oracle: is defined for simulated foveation only; leave out --sampling";
+            return Err(Failure::Input(text.into()));
+        }
+        MethodName::Oracle if info.still => return Ok(LaneKind::Oracle),
+        MethodName::Oracle => {
+            return Err(Failure::Input(format!(
+                "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
+                args.input
+            )));
+        }
+    };
+    let settings = args.wrs.settings(method, args.seed, sampling.is_some());
+    settings.validate()?;
+    Ok(LaneKind::PostProcess(settings))
+}

@@ -1,0 +1,119 @@
+//! Points that are measured together, on the same frames, one after the other in each.
+
+use crate::args::MethodName;
+use crate::failure::Failure;
+use crate::run::{RunArgs, SourceName};
+use crate::trace::pattern::SamplingName;
+use afterimage::sweep::{Options, Point};
+use clap::Parser;
+use std::collections::BTreeMap;
+
+/// Most points of a batch: what a sweep loses when it is stopped.
+const MAX_POINTS: usize = 24;
+/// Most pixels of a batch, all points together: their histories are in memory at the same time.
+const MAX_PIXELS: u64 = 24_000_000;
+
+/// Options that concern some methods alone, and are no part of the frames that methods get.
+const OF_METHODS: &[(&str, &[MethodName])] = &[
+    ("wrs-sampler", &[MethodName::Wrs]),
+    ("wrs-bias", &[MethodName::Wrs]),
+    ("gate-divisor", &[MethodName::Wrs]),
+    ("gate-offset", &[MethodName::Wrs]),
+    ("gate-metric", &[MethodName::Wrs]),
+    ("no-gate", &[MethodName::Wrs]),
+    ("smr-accumulate", &[MethodName::Smr]),
+    ("smr-tolerance", &[MethodName::Smr]),
+    ("no-relight", &[MethodName::Smr]),
+    ("depth-relative", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("depth-slope", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("no-flush", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+];
+
+/// Whether an option changes anything for a method.
+pub fn concerns(option: &str, method: &str) -> bool {
+    match OF_METHODS.iter().find(|(name, _)| *name == option) {
+        Some((_, methods)) => methods.iter().any(|m| m.name() == method),
+        // Samples are guided by the history of smr.
+        None => option != "guided" || method == MethodName::Smr.name(),
+    }
+}
+
+/// A point, and what `run` would be given for it.
+pub struct Subject {
+    pub point: Point,
+    pub args: RunArgs,
+    pub method: MethodName,
+}
+
+/// Points that get the same frames.
+pub struct Batch {
+    pub subjects: Vec<Subject>,
+}
+
+/// `run`, for its options.
+#[derive(Parser)]
+#[command(name = "run")]
+struct Run {
+    #[command(flatten)]
+    args: RunArgs,
+}
+
+impl Subject {
+    fn new(point: Point, common: &Options) -> Result<Self, Failure> {
+        let mut words = vec!["run".to_owned(), "--out=unused".into(), format!("--seed={}", point.seed)];
+        words.push(format!("--method={}", point.method));
+        for (name, value) in common.iter().chain(&point.options) {
+            words.push(if value.is_empty() { format!("--{name}") } else { format!("--{name}={value}") });
+        }
+        words.extend(["--".into(), point.input.clone()]);
+        let args = Run::try_parse_from(&words).map_err(|e| Failure::usage(&e))?.args;
+        let &[method] = &args.method[..] else {
+            return Err(Failure::Input(format!("method {}: expected one method a point", point.method)));
+        };
+        Ok(Self { point, args, method })
+    }
+
+    /// Whether the seed changes anything.
+    fn is_random(method: &str, common: &Options) -> bool {
+        method == MethodName::Wrs.name() || common.get("source").is_some_and(|s| s == "trace")
+    }
+
+    /// Points of the same key get the same frames.
+    fn key(&self) -> (String, Options, Option<u64>) {
+        let mut options = self.point.options.clone();
+        options.retain(|name, _| OF_METHODS.iter().all(|(of_method, _)| of_method != name));
+        let traced = self.args.source == Some(SourceName::Trace);
+        (self.point.input.clone(), options, traced.then_some(self.point.seed))
+    }
+
+    /// Samples of a pixel of a full-rate frame as good as the fovea; 1 where a simulator foveates.
+    pub fn full_rate_samples(&self) -> u32 {
+        match self.args.sampling.sampling {
+            SamplingName::Uniform => 1,
+            _ => self.args.sampling.most_samples(self.args.spp),
+        }
+    }
+}
+
+/// Whether seeds change anything for a method.
+pub fn is_random(method: &str, common: &Options) -> bool {
+    Subject::is_random(method, common)
+}
+
+/// The batches of points, in an order that does not depend on what is done already.
+pub fn batches(points: Vec<Point>, common: &Options, pixels: impl Fn(&RunArgs) -> u64) -> Result<Vec<Batch>, Failure> {
+    let mut groups: BTreeMap<_, Vec<Subject>> = BTreeMap::new();
+    for point in points {
+        let subject = Subject::new(point, common)?;
+        groups.entry(subject.key()).or_default().push(subject);
+    }
+    let mut batches = vec![];
+    for subjects in groups.into_values() {
+        let most = (MAX_PIXELS / pixels(&subjects[0].args).max(1)).clamp(2, MAX_POINTS as u64) as usize;
+        let mut rest = subjects.into_iter().peekable();
+        while rest.peek().is_some() {
+            batches.push(Batch { subjects: rest.by_ref().take(most).collect() });
+        }
+    }
+    Ok(batches)
+}

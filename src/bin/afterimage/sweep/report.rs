@@ -1,0 +1,38 @@
+//! What a sweep leaves behind: tables, plots, a page.
+
+use super::SweepArgs;
+use crate::failure::Failure;
+use afterimage::sweep::{Measurement, Store, Table};
+use afterimage::whole_file::write_whole;
+use std::io::Write;
+
+/// Writes everything, and gives the table.
+pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, Failure> {
+    let table = Table::new(measurements, args.pick.renderer_ms, command());
+    let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
+    text(store, "sweep.json", &(json + "\n"))?;
+    text(store, "sweep.csv", &table.csv())?;
+    Ok(table)
+}
+
+fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
+    let path = store.root().join(name);
+    write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
+}
+
+/// The command, as it was typed.
+fn command() -> String {
+    ["afterimage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
+}
+
+/// The frontier, and where to look.
+pub fn print_summary(args: &SweepArgs, table: &Table) {
+    let by = args.pick.by;
+    say!("{} points; best {} for its cost:", table.rows.len(), by.title);
+    say!("  ms/frame  {:>10}  point", by.key);
+    for row in table.rows.iter().filter(|r| r.frontier.contains(&by.key)) {
+        let value = row.values.get(by.key).copied().flatten().map_or("-".into(), |v| format!("{v:.*}", by.digits));
+        say!("{:>10.2}  {value:>10}  {}", row.cost_ms, row.label);
+    }
+    say!("table: {}", args.out.join("sweep.csv").display());
+}
