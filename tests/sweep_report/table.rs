@@ -25,10 +25,6 @@ const SWITCHES: [Switch; 4] = [
     ("no-chain", "", &["smr"], 0.71, -12, 1.12),
 ];
 
-pub fn switches() -> Vec<(String, Option<String>)> {
-    SWITCHES.iter().map(|s| (s.0.to_owned(), Some(s.1.to_owned()))).collect()
-}
-
 /// Measurements on both inputs: foveae, rates, switches, and of what is random three seeds.
 pub fn measurements() -> Vec<Measurement> {
     let mut all = vec![];
@@ -121,5 +117,5 @@ pub fn table(renderer_ms: Option<f64>) -> Table {
 
 pub fn of(measurements: &[Measurement], renderer_ms: Option<f64>) -> Table {
     let command = "afterimage sweep sponza/ still.png --out sweep".into();
-    Table::new(measurements, &switches(), renderer_ms, command)
+    Table::new(measurements, renderer_ms, command)
 }

@@ -38,14 +38,14 @@ function showCompare() {
     }
     errors.replaceChildren(...[left, right].map(({ value }) => {
       const error = value === REFERENCE ? null : image(of(rows.get(value)).error);
-      const text = value === REFERENCE ? "the reference has no error" : `error of ${name(value)}${error ? "" : ": no picture"}`;
+      const text = value === REFERENCE ? "the reference has no error" : `FLIP of ${name(value)}${error ? "" : ": no picture"}`;
       return el("figure", {}, el("figcaption", { class: "small" }, text), error && el("img", { src: error, alt: text }));
     }));
   }
   const count = ofInput().length;
   const note = shown.length < count ? `${shown.length} of the ${count} points have pictures in this page. ` : "";
   byId("compare").replaceChildren(
-    el("p", { class: "faint" }, note, "Drag the divider over the picture, or move it with the arrow keys. Errors: black none, white a quarter of full scale or more."),
+    el("p", { class: "faint" }, note, "The last frame of the clip. Drag the divider over the picture, or move it with the arrow keys. Below, FLIP of each pixel: black 0, white 1."),
     el("div", { class: "choose" }, leftLabel, rightLabel), split, divider, errors);
   draw();
 }

@@ -30,7 +30,8 @@ struct Spot<'a> {
 /// Points of an input by a figure and their cost. Rows that have no such figure are left out, and counted.
 pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let of_input = || table.rows.iter().filter(|r| r.point.input == input && r.cost_ms.is_finite());
-    let known: Vec<(&Row, f64)> = of_input().filter_map(|r| Some((r, r.values.get(metric.key).copied()??))).collect();
+    let value = |r: &Row| r.values.get(metric.key).copied().flatten().filter(|v| v.is_finite());
+    let known: Vec<(&Row, f64)> = of_input().filter_map(|r| Some((r, value(r)?))).collect();
     let missing = of_input().count() - known.len();
     let floors = floors(&known);
     let renders_known = known.iter().all(|(r, _)| r.render_ms.is_some());
