@@ -150,6 +150,7 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
     if points == 0 || points > plan::MAX_POINTS {
         return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", plan::MAX_POINTS)));
     }
+    batches.iter().flat_map(|b| &b.subjects).try_for_each(measure::check)?;
     let store = Store::create(&args.out)?;
     let done = store.load()?;
     refuse_another_sweep(args, &done, &batches, &common)?;

@@ -4,7 +4,7 @@ use super::batch::{Batch, Subject};
 use crate::args::MethodName;
 use crate::clip::{Clip, Moment};
 use crate::failure::Failure;
-use crate::run::{backend_report, input, plan};
+use crate::run::{RunArgs, backend_report, input, plan};
 use afterimage::foveation::Filter;
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::heat;
@@ -37,26 +37,39 @@ struct Tallies {
     frames: usize,
 }
 
+/// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
+pub fn check(subject: &Subject) -> Result<(), Failure> {
+    plan::check(&subject.args)?;
+    plan::foveation(&subject.args)?;
+    if let Some(frames) = subject.args.frames {
+        check_frames(&subject.args, frames)?;
+    }
+    // Whether an oracle's input is still shows when it is opened.
+    plan::lane(&subject.args, subject.method, true).map(|_| ())
+}
+
+fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
+    let least = WARM_UP + MIN_TIMED;
+    if frames >= least as u64 {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
+        args.input
+    )))
+}
+
 /// Measures the points and keeps what was measured.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
-    plan::check(args)?;
     let mut source = input::open(args, &ReadLimits::from_megapixels(args.max_megapixels))?;
     let plan = plan::plan(args, source.info())?;
     let mut lanes = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
-        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info())?));
+        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info().still)?));
     }
     let clip = Clip { lanes, debug: vec![], ..plan.clip };
-    if clip.gaze.len() < WARM_UP + MIN_TIMED {
-        return Err(Failure::Input(format!(
-            "{}: {} frames are too few; expected at least {} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {}",
-            args.input,
-            clip.gaze.len(),
-            WARM_UP + MIN_TIMED,
-            WARM_UP + MIN_TIMED
-        )));
-    }
+    check_frames(args, clip.gaze.len() as u64)?;
     let copy_ms_per_byte = copy_ms_per_byte(&clip.backend);
     let (tallies, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
     let machine = machine(&clip.backend);
