@@ -46,6 +46,7 @@ fn measurement(point: Point, ms: f64, control_ms: f64, flip: f64) -> Measurement
         control_ms: around(control_ms),
         render_ms: None,
         samples_share: 0.1,
+        samples_per_pixel: None,
         copy_ms: 0.5,
         figures,
         rust: "Settings::default()".into(),
@@ -186,6 +187,28 @@ fn what_the_renderer_costs_moves_the_frontier() {
     // Free samples leave no reason for fewer.
     let free: Vec<bool> = frontier(Some(0.0)).iter().map(|r| r.2).collect();
     assert_eq!(free.iter().filter(|b| **b).count(), 1);
+}
+
+#[test]
+fn traced_points_with_several_numbers_of_samples_have_a_slope() {
+    let traced = |spp: f64, mse: f64| {
+        let spp_text = spp.to_string();
+        let mut m = measurement(point("none", &[("sampling", "layers"), ("spp", &spp_text)], 0), 1.0, 4.0, 0.2);
+        m.samples_per_pixel = Some(0.25 * spp);
+        m.render_ms = Some(Quartiles { median: 100.0 * spp - 1.0, p25: 1.0, p75: 1.0 });
+        m.figures.scores.whole.mse = Some(mse);
+        m
+    };
+    let measurements = [traced(16.0, 0.01), traced(1.0, 0.16), traced(4.0, 0.04)];
+    let table = Table::new(&measurements, None, String::new());
+    let [found] = &table.convergences[..] else { panic!("one pattern") };
+    assert_eq!(found.label, "none, sampling layers");
+    assert_eq!(found.points.iter().map(|p| p.samples_per_pixel).collect::<Vec<_>>(), [0.25, 1.0, 4.0]);
+    assert!((found.slope_by_samples[0].unwrap() + 1.0).abs() < 1e-12);
+    assert!((found.slope_by_time[0].unwrap() + 1.0).abs() < 1e-12);
+    assert_eq!(found.slope_by_samples[1], None, "the fovea has no figure");
+    // 1 / (0.16 x 0.1 s)
+    assert!((found.points[0].efficiency[0].unwrap() - 62.5).abs() < 1e-9);
 }
 
 #[test]

@@ -34,6 +34,7 @@ struct Tallies {
     control_ms: Vec<f64>,
     render_ms: Vec<f64>,
     samples_share: f64,
+    samples: Option<u64>,
     frames: usize,
 }
 
@@ -97,6 +98,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             control_ms: timed(&tallies.control_ms[WARM_UP..]),
             render_ms: Quartiles::of(tallies.render_ms.get(WARM_UP..).unwrap_or_default()),
             samples_share: tallies.samples_share / tallies.frames as f64,
+            samples_per_pixel: tallies.samples.map(|all| all as f64 / (tallies.frames as f64 * pixels)),
             copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
             figures,
             rust,
@@ -108,7 +110,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
 
 /// The same in every batch, whatever its points: by it, batches tell what the machine did else.
 fn control(subject: &Subject) -> LaneKind {
-    let noisy = subject.args.sampling.sampling != crate::trace::pattern::SamplingName::Uniform;
+    let noisy = matches!(input::sampling(&subject.args), Ok(Some(_)));
     LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
 }
 
@@ -129,6 +131,7 @@ fn play(
         control_ms: vec![],
         render_ms: vec![],
         samples_share: 0.0,
+        samples: None,
         frames: 0,
     };
     let flip = Flip::for_view(&clip.geometry);
@@ -137,6 +140,7 @@ fn play(
         tallies.control_ms.push(moment.step.shown[0].cost_ms());
         tallies.render_ms.extend(moment.render_ms);
         tallies.samples_share += samples_share(moment, clip, &batch.subjects[0]);
+        tallies.samples = moment.samples.map(|now| tallies.samples.unwrap_or(0) + now).or(tallies.samples);
         tallies.frames += 1;
         let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &_))| {
             let shown: &afterimage::pipeline::Shown = shown;
