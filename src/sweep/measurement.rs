@@ -27,6 +27,8 @@ pub struct Measurement {
     pub render_ms: Option<Quartiles>,
     /// Samples of the foveated frame over those of the full-rate one.
     pub samples_share: f64,
+    /// Camera samples a pixel of the frame, on average; `None` where a simulator foveates.
+    pub samples_per_pixel: Option<f64>,
     /// Time of a copy that reads and writes as many bytes as the pass.
     pub copy_ms: f64,
     /// Scores and counts.

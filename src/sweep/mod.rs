@@ -3,9 +3,11 @@
 //! A point is a method with options of `afterimage run`. [`grid`] says which points there are, [`store`] keeps what was measured of each,
 //! so that a sweep can be stopped, resumed and spread over machines, [`table`] puts it side by side.
 
+pub mod convergence;
 pub mod equal;
 pub mod frontier;
 pub mod grid;
+pub mod markdown;
 pub mod measurement;
 pub mod metrics;
 pub mod paste;

@@ -1,5 +1,6 @@
 //! Measurements side by side: seeds together, times made comparable, the frontier marked.
 
+use super::convergence::{Convergence, convergences};
 use super::frontier::{Standing, frontier};
 use super::grid::{Options, Point};
 use super::measurement::{ClipFacts, Machine, Measurement};
@@ -32,6 +33,8 @@ pub struct Row {
     pub cost_ms: f64,
     /// Samples of the foveated frame over those of the full-rate one.
     pub samples_share: f64,
+    /// Camera samples a pixel of the frame, on average, where they were traced for it.
+    pub samples_per_pixel: Option<f64>,
     /// Time of a copy that moves as many bytes: the roofline.
     pub copy_ms: f64,
     /// Bytes that the pass reads and writes a pixel.
@@ -40,6 +43,8 @@ pub struct Row {
     pub memory_bytes_per_pixel: f64,
     /// Figures by [`METRICS`]' keys, means over the seeds.
     pub values: BTreeMap<&'static str, Option<f64>>,
+    /// Mean squared error, whole and by band from the gaze outwards, means over the seeds.
+    pub mse: [Option<f64>; 4],
     /// Least and most over the seeds, where there are several.
     pub spread: BTreeMap<&'static str, [f64; 2]>,
     /// Figures for which no other point of the input costs less and is better.
@@ -73,6 +78,8 @@ pub struct Table {
     pub rows: Vec<Row>,
     /// What each switch changes.
     pub prices: Vec<Price>,
+    /// How fast traced points get better.
+    pub convergences: Vec<Convergence>,
 }
 
 impl Table {
@@ -106,6 +113,7 @@ impl Table {
             machines,
             renderer_ms,
             prices: prices(&rows),
+            convergences: convergences(&rows),
             rows,
         }
     }
@@ -189,10 +197,16 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
         render_ms,
         cost_ms: pass_ms.median + render_ms.unwrap_or(0.0),
         samples_share,
+        samples_per_pixel: first.samples_per_pixel.map(|_| mean(&|m| m.samples_per_pixel.unwrap_or(0.0))),
         copy_ms: mean(&|m| drift(m) * m.copy_ms),
         bytes_per_pixel: first.figures.bytes_per_pixel,
         memory_bytes_per_pixel: first.figures.persistent_bytes_per_pixel,
         values,
+        mse: [0, 1, 2, 3].map(|i| {
+            let of =
+                |m: &&Measurement| [&m.figures.scores.whole].into_iter().chain(&m.figures.scores.bands).nth(i)?.mse;
+            group.iter().map(of).sum::<Option<f64>>().map(|sum| sum / count)
+        }),
         spread,
         frontier: vec![],
         nonfinite_out: group.iter().map(|m| m.figures.nonfinite_out).sum(),

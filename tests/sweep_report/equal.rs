@@ -17,18 +17,23 @@ fn check(table: &Table, input: &str, metric: &Metric, sections: &[Section]) -> R
         for (method, i) in section.methods.iter().zip(0..) {
             let rows = || table.rows.iter().filter(|r| comparable(r, input, section) && r.point.method == *method);
             let error = |r: &Row| metric.error(r.values[metric.key]);
-            let mut test = |cell: &Option<Cell>, is_within: &dyn Fn(&Row) -> bool, goal: &dyn Fn(&Row) -> f64, what: &str| {
-                let best = rows().filter(|r| is_within(r)).map(goal).fold(f64::INFINITY, f64::min);
-                let found = cell.as_ref().map(|c| rows().find(|r| r.id == c.row).ok_or(format!("{what}: {} is not here", c.row)));
-                checked += 1;
-                match found.transpose()? {
-                    None if best == f64::INFINITY => Ok(()),
-                    None => Err(format!("{what}: {method} has nothing, and could have {best}")),
-                    Some(r) if !is_within(r) => Err(format!("{what}: {} is not within", r.label)),
-                    Some(r) if goal(r) != best => Err(format!("{what}: {} has {}, and {best} can be had", r.label, goal(r))),
-                    Some(_) => Ok(()),
-                }
-            };
+            let mut test =
+                |cell: &Option<Cell>, is_within: &dyn Fn(&Row) -> bool, goal: &dyn Fn(&Row) -> f64, what: &str| {
+                    let best = rows().filter(|r| is_within(r)).map(goal).fold(f64::INFINITY, f64::min);
+                    let found = cell
+                        .as_ref()
+                        .map(|c| rows().find(|r| r.id == c.row).ok_or(format!("{what}: {} is not here", c.row)));
+                    checked += 1;
+                    match found.transpose()? {
+                        None if best == f64::INFINITY => Ok(()),
+                        None => Err(format!("{what}: {method} has nothing, and could have {best}")),
+                        Some(r) if !is_within(r) => Err(format!("{what}: {} is not within", r.label)),
+                        Some(r) if goal(r) != best => {
+                            Err(format!("{what}: {} has {}, and {best} can be had", r.label, goal(r)))
+                        }
+                        Some(_) => Ok(()),
+                    }
+                };
             for line in &section.equal_time {
                 test(&line.cells[i], &|r| r.cost_ms <= line.bound, &error, &format!("{} ms", line.bound))?;
             }
@@ -81,7 +86,10 @@ fn budgets_and_levels_separate_the_methods() {
             let filled = |line: &afterimage::sweep::equal::Line| line.cells.iter().flatten().count();
             let ascending = |counts: Vec<usize>| counts.windows(2).all(|w| w[0] <= w[1]);
             assert!(ascending(section.equal_time.iter().map(filled).collect()), "more time loses no method");
-            assert!(ascending(section.equal_quality.iter().rev().map(filled).collect()), "a stricter level gains no method");
+            assert!(
+                ascending(section.equal_quality.iter().rev().map(filled).collect()),
+                "a stricter level gains no method"
+            );
             assert_eq!(filled(&section.equal_time[0]), 1, "the least budget is for one method");
             assert_eq!(filled(&section.equal_quality[section.equal_quality.len() - 1]), 1, "the strictest level too");
         }

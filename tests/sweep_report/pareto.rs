@@ -21,7 +21,8 @@ fn every_plot_is_xml_with_a_mark_for_each_point() {
             let document = Document::parse(&svg).unwrap();
             let known = table.rows.iter().filter(|r| r.point.input == *input && r.values[metric.key].is_some());
             let mut expected: Vec<&str> = known.clone().map(|r| r.id.as_str()).collect();
-            let mut found: Vec<&str> = with_class(&document, "point").map(|n| n.attribute("data-row").unwrap()).collect();
+            let mut found: Vec<&str> =
+                with_class(&document, "point").map(|n| n.attribute("data-row").unwrap()).collect();
             expected.sort_unstable();
             found.sort_unstable();
             assert_eq!(found, expected, "{input} {}", metric.key);
@@ -44,8 +45,11 @@ fn better_and_cheaper_are_where_the_axes_say() {
         let at = |id: &str| -> [f64; 2] {
             let point = with_class(&document, "point").find(|n| n.attribute("data-row") == Some(id)).unwrap();
             let path = point.descendants().find(|n| n.tag_name().name() == "path").unwrap().attribute("d").unwrap();
-            let [x, y] = path[1..path.find('m').unwrap()].split(' ').map(|v| v.parse().unwrap()).collect::<Vec<f64>>()[..]
-            else { panic!("{path}") };
+            let [x, y] =
+                path[1..path.find('m').unwrap()].split(' ').map(|v| v.parse().unwrap()).collect::<Vec<f64>>()[..]
+            else {
+                panic!("{path}")
+            };
             [x, y]
         };
         let rows: Vec<_> = table.rows.iter().filter(|r| r.point.input == INPUTS[0]).collect();
@@ -86,7 +90,9 @@ fn png_has_marks_and_letters_and_is_the_same_again() {
     assert_eq!(picture.width(), 1920);
     assert_eq!(picture, pareto::png(&table, INPUTS[1], flip()));
     let count = |color: [u8; 3]| picture.pixels().filter(|p| p.0 == color).count();
-    for (method, color) in [("none", [122, 122, 122]), ("taa", [230, 159, 0]), ("wrs", [0, 114, 178]), ("smr", [0, 158, 115])] {
+    for (method, color) in
+        [("none", [122, 122, 122]), ("taa", [230, 159, 0]), ("wrs", [0, 114, 178]), ("smr", [0, 158, 115])]
+    {
         assert!(count(color) > 100, "{method} has {} pixels", count(color));
     }
     // Ink between the title's line and the frame is letters: the machine's fonts play no part in it.

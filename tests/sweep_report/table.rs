@@ -9,8 +9,13 @@ use afterimage::sweep::{Measurement, Options, Point, Table};
 pub const INPUTS: [&str; 2] = ["sponza/", "still.png"];
 
 /// Method, milliseconds of its pass, bytes that it moves a pixel, and how much of the foveation's error it leaves.
-const METHODS: [(&str, f64, u32, f64); 5] =
-    [("none", 0.21, 14, 1.0), ("taa", 0.55, 38, 0.8), ("wrs", 0.83, 46, 0.62), ("smr", 1.27, 44, 0.45), ("oracle", 9.0, 0, 0.2)];
+const METHODS: [(&str, f64, u32, f64); 5] = [
+    ("none", 0.21, 14, 1.0),
+    ("taa", 0.55, 38, 0.8),
+    ("wrs", 0.83, 46, 0.62),
+    ("smr", 1.27, 44, 0.45),
+    ("oracle", 9.0, 0, 0.2),
+];
 
 fn options(pairs: &[(&str, &str)]) -> Options {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
@@ -36,7 +41,8 @@ pub fn measurements() -> Vec<Measurement> {
             }
             let mut add = |named: Options, ms: f64, bytes: u32, share: f64, error: f64| {
                 for seed in 0..if method == "wrs" { 3 } else { 1 } {
-                    let point = Point { input: (*input).to_owned(), method: method.to_owned(), options: named.clone(), seed };
+                    let point =
+                        Point { input: (*input).to_owned(), method: method.to_owned(), options: named.clone(), seed };
                     let error = error * (1.0 + 0.01 * seed as f64) * (1.0 + 0.4 * i as f64);
                     all.push(measurement(point, ms, bytes, share, error));
                 }
@@ -51,7 +57,13 @@ pub fn measurements() -> Vec<Measurement> {
             for (name, value, of, ms_by, bytes_by, error_by) in SWITCHES {
                 if of.contains(&method) {
                     let named = options(&[("fovea", "5"), ("rate-far", "16"), (name, value)]);
-                    add(named, ms * 1.005 * ms_by, bytes.saturating_add_signed(bytes_by), 0.043, left * 0.0894 * error_by);
+                    add(
+                        named,
+                        ms * 1.005 * ms_by,
+                        bytes.saturating_add_signed(bytes_by),
+                        0.043,
+                        left * 0.0894 * error_by,
+                    );
                 }
             }
         }
@@ -105,6 +117,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
         control_ms: around(0.55),
         render_ms: None,
         samples_share: share,
+        samples_per_pixel: None,
         copy_ms: 0.011 * f64::from(bytes),
         figures,
     }

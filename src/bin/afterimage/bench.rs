@@ -7,6 +7,7 @@ mod patterns;
 mod post;
 mod rays;
 mod subject;
+mod wrs_table;
 
 use crate::args::parse_size;
 use crate::failure::Failure;
@@ -69,6 +70,7 @@ pub struct BenchArgs {
 #[derive(Clone, Debug, Subcommand)]
 pub enum Compare {
     Patterns(Box<patterns::PatternsArgs>),
+    Wrs(Box<wrs_table::WrsTableArgs>),
 }
 
 /// What can be timed.
@@ -97,8 +99,10 @@ pub enum Traces {
 
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
-    if let Some(Compare::Patterns(args)) = &args.compare {
-        return patterns::bench(args);
+    match &args.compare {
+        Some(Compare::Patterns(args)) => return patterns::bench(args),
+        Some(Compare::Wrs(args)) => return wrs_table::bench(args),
+        None => {}
     }
     let (size, frames) = match args.what {
         What::Post => ([1920, 1080], 60),

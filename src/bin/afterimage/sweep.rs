@@ -9,7 +9,7 @@ mod report;
 use crate::failure::Failure;
 use crate::run::RunArgs;
 use afterimage::source::{ReadLimits, SceneOptions, is_scene};
-use afterimage::sweep::{Measurement, Options, Store};
+use afterimage::sweep::{Measurement, Options, Store, Table};
 use batch::{Batch, batches, concerns, is_random};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -123,6 +123,14 @@ fn parse_shard(text: &str) -> Result<(u64, u64), String> {
 
 /// The subcommand.
 pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    match execute(args)? {
+        Some(table) => pick::print(&args.pick, &table),
+        None => Ok(()),
+    }
+}
+
+/// Measures what there is to measure, and writes what is known then; `None` if that is nothing.
+pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     let store = if !args.merge.is_empty() {
         merge(args)?
     } else if args.input.is_empty() {
@@ -133,11 +141,11 @@ pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     let measurements = store.load()?;
     if measurements.is_empty() {
         say!("nothing is measured yet in {}", args.out.display());
-        return Ok(());
+        return Ok(None);
     }
     let table = report::write(args, &store, &measurements)?;
     report::print_summary(args, &table);
-    pick::print(&args.pick, &table)
+    Ok(Some(table))
 }
 
 /// Measures what is not measured yet.
@@ -150,6 +158,7 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
     if points == 0 || points > plan::MAX_POINTS {
         return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", plan::MAX_POINTS)));
     }
+    batches.iter().flat_map(|b| &b.subjects).try_for_each(measure::check)?;
     let store = Store::create(&args.out)?;
     let done = store.load()?;
     refuse_another_sweep(args, &done, &batches, &common)?;

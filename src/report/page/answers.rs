@@ -17,7 +17,9 @@ pub fn answers(table: &Table, inputs: &[&str]) -> String {
 
 /// The figure that sentences are about: the first that the input has.
 fn figure(table: &Table, input: &str) -> Option<&'static Metric> {
-    let has = |m: &&Metric| table.rows.iter().any(|r| r.point.input == input && r.values.get(m.key).copied().flatten().is_some());
+    let has = |m: &&Metric| {
+        table.rows.iter().any(|r| r.point.input == input && r.values.get(m.key).copied().flatten().is_some())
+    };
     METRICS.iter().find(has)
 }
 
@@ -28,32 +30,41 @@ fn budgets(table: &Table, input: &str) -> Vec<String> {
     let lines = &section.equal_time;
     let mut bests: Vec<(f64, &Row)> = vec![];
     for i in [0, lines.len() / 2, lines.len().saturating_sub(1)] {
-        let Some((ms, row)) = lines.get(i).and_then(|line| Some((line.bound, best(table, line, metric)?))) else { continue };
+        let Some((ms, row)) = lines.get(i).and_then(|line| Some((line.bound, best(table, line, metric)?))) else {
+            continue;
+        };
         if bests.last().is_none_or(|(_, last)| last.id != row.id) {
             bests.push((ms, row));
         }
     }
     let parts: Vec<String> = bests
         .iter()
-        .map(|(ms, row)| format!("up to {ms} ms, <b>{}</b> ({})", escaped(&row.label), value(row, metric)))
+        .map(|(ms, row)| {
+            format!("up to {} ms a frame, <b>{}</b> ({})", three_digits(*ms), escaped(&row.label), value(row, metric))
+        })
         .collect();
-    let (best, direction) = (metric.title, if metric.more_is_better { "Highest" } else { "Lowest" });
+    let (figure, direction) = (metric.title, if metric.more_is_better { "highest" } else { "lowest" });
     let share = section.samples_share.map_or_else(String::new, |share| {
-        format!(", among the {} points that shade {:.1} % of the samples", section.points, 100.0 * share)
+        format!(" among the {} points that shade {:.1} % of the samples", section.points, 100.0 * share)
     });
-    vec![format!("{direction} {best} for a budget a frame{share}: {}.", parts.join("; "))]
+    vec![format!("The {direction} {figure}{share}: for {}.", parts.join("; for "))]
 }
 
 fn best<'a>(table: &'a Table, line: &Line, metric: &Metric) -> Option<&'a Row> {
     let cells = line.cells.iter().flatten();
-    let best = cells.min_by(|a, b| {
-        metric.error(a.value).total_cmp(&metric.error(b.value)).then(a.cost_ms.total_cmp(&b.cost_ms))
-    })?;
+    let best = cells
+        .min_by(|a, b| metric.error(a.value).total_cmp(&metric.error(b.value)).then(a.cost_ms.total_cmp(&b.cost_ms)))?;
     row(table, &best.row)
 }
 
 fn row<'a>(table: &'a Table, id: &str) -> Option<&'a Row> {
     table.rows.iter().find(|r| r.id == id)
+}
+
+/// As budgets are rounded.
+fn three_digits(ms: f64) -> String {
+    let digits = if ms > 0.0 { (2.0 - ms.log10().floor()).max(0.0) as usize } else { 0 };
+    format!("{ms:.digits$}")
 }
 
 fn value(row: &Row, metric: &Metric) -> String {
@@ -88,11 +99,13 @@ fn switches(table: &Table, input: &str) -> Vec<String> {
 fn effect(table: &Table, input: &str, price: &Price) -> String {
     let [without, with] = price.pass_ms;
     let percent = 100.0 * (with / without - 1.0);
-    let name = format!("<b>{}</b> on {}", escaped(&price.switch), escaped(&price.method));
-    let mut text = format!("{name} takes the pass from {without:.3} to {with:.3} ms ({percent:+.1} %)");
-    if let (Some(a), Some(b)) = (row(table, &price.base), row(table, &price.switched)) {
+    let points = row(table, &price.base).zip(row(table, &price.switched));
+    let of = points.map_or(&price.method, |(base, _)| &base.label);
+    let name = format!("<b>{}</b> takes the pass of {}", escaped(&price.switch), escaped(of));
+    let mut text = format!("{name} from {without:.3} to {with:.3} ms ({percent:+.1} %)");
+    if let Some((a, b)) = points {
         if a.pass_ms.p25 <= b.pass_ms.p75 && b.pass_ms.p25 <= a.pass_ms.p75 {
-            text += ", less than its times vary (quartiles overlap)";
+            text += ", no more than its times vary (the quartiles overlap),";
         }
     }
     let figure = figure(table, input).and_then(|m| Some((m, price.values.get(m.key)?)));
@@ -126,10 +139,15 @@ pub fn facts(table: &Table) -> String {
         ("Machine".to_owned(), format!("{} ({}{driver}); times: {}", m.name, m.kind, m.clock))
     });
     let renderer = match (table.renderer_ms, table.rows.iter().any(|r| r.render_ms.is_some())) {
-        (Some(ms), _) => format!("said to take {ms} ms for a full-rate frame, and its share of that for a foveated one"),
+        (Some(ms), _) => {
+            format!("said to take {ms} ms for a full-rate frame, and its share of that for a foveated one")
+        }
         (None, true) => "traced and timed, frame by frame".into(),
-        (None, false) => "its time is not known: costs are those of the pass alone, compared where as many samples are shaded".into(),
+        (None, false) => {
+            "its time is not known: costs are those of the pass alone, compared where as many samples are shaded".into()
+        }
     };
     let rows = clips.chain(machines).chain([("Renderer".to_owned(), renderer)]);
-    rows.map(|(name, text)| format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(&name), escaped(&text))).collect()
+    rows.map(|(name, text)| format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(&name), escaped(&text)))
+        .collect()
 }

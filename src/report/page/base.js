@@ -1,5 +1,5 @@
 // What the other parts share: the data, what is chosen, and elements whose text is never taken for HTML.
-const data = (id) => JSON.parse(document.getElementById(id).textContent);
+const data = (id) => JSON.parse(document.getElementById(`data-${id}`).textContent);
 const table = data("table"), metrics = data("metrics"), equal = data("equal"), plots = data("plots"), pictures = data("pictures");
 const rows = new Map(table.rows.map((row) => [row.id, row]));
 const inputs = [...new Set(table.rows.map((row) => row.input))];
@@ -24,6 +24,7 @@ const el = (name, attributes = {}, ...content) => {
 
 const fixed = (value, digits) => (value == null ? "—" : value.toFixed(digits));
 const ms = (value) => fixed(value, 3);
+const threeDigits = (value) => (value >= 100 ? value.toFixed(0) : value.toPrecision(3));
 const percent = (value) => (value == null ? "—" : `${(100 * value).toFixed(1)} %`);
 const withUnit = (metric, value) => fixed(value, metric.digits) + (metric.unit && value != null ? ` ${metric.unit}` : "");
 const headed = (metric) => metric.title + (metric.unit ? `, ${metric.unit}` : "");

@@ -3,6 +3,7 @@ function showAll() {
   showEqual();
   showPrices();
   showCompare();
+  showConvergences();
   showPoints();
 }
 

@@ -82,7 +82,7 @@ fn fill(template: &str, of: impl Fn(&str) -> String) -> String {
 /// Data for the script. No `<` is left in it, so that nothing in it ends the element.
 fn island(id: &str, data: &impl Serialize) -> String {
     let text = serde_json::to_string(data).expect("figures are JSON").replace('<', "\\u003c");
-    format!("<script type=\"application/json\" id=\"{id}\">{text}</script>")
+    format!("<script type=\"application/json\" id=\"data-{id}\">{text}</script>")
 }
 
 /// As text of HTML, or a quoted attribute.

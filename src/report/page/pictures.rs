@@ -27,9 +27,11 @@ pub fn embed(table: &Table, read: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> Pic
     let mut known: HashMap<Vec<u8>, usize> = HashMap::new();
     let mut bytes = 0;
     for row in in_order(table) {
-        let found: Vec<(&'static str, Vec<u8>)> =
-            ["shown", "error", "reference"].into_iter().filter_map(|what| Some((what, read(&row.id, what)?))).collect();
-        let more: usize = found.iter().filter(|(_, b)| !known.contains_key(b)).map(|(_, b)| b.len().div_ceil(3) * 4).sum();
+        let Some(shown) = read(&row.id, "shown") else { continue };
+        let rest = ["error", "reference"].into_iter().filter_map(|what| Some((what, read(&row.id, what)?)));
+        let found: Vec<(&'static str, Vec<u8>)> = [("shown", shown)].into_iter().chain(rest).collect();
+        let more: usize =
+            found.iter().filter(|(_, b)| !known.contains_key(b)).map(|(_, b)| b.len().div_ceil(3) * 4).sum();
         if pictures.points.len() == MAX_POINTS || bytes + more > MAX_BYTES {
             break;
         }

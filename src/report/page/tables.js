@@ -2,18 +2,20 @@
 function showEqual() {
   const metric = chosen.metric;
   const sections = equal[chosen.input][metric.key];
+  const most = Math.max(...sections.map((s) => s.points));
   const parts = sections.map((section) => {
-    const share = section.samples_share == null ? null
-      : el("h3", {}, `${percent(section.samples_share)} of the samples (${section.points} points)`);
-    const time = lines(section, section.equal_time, "Budget, ms", (line) => `≤ ${line.bound}`,
+    const time = lines(section, section.equal_time, "Budget, ms", (line) => `≤ ${threeDigits(line.bound)}`,
       (cell) => withUnit(metric, cell.value), (a, b) => metric.more_is_better ? b.value - a.value : a.value - b.value,
       `The best ${metric.title} within a budget (${direction(metric)})`);
     const quality = lines(section, section.equal_quality, headed(metric), (line) => `${metric.more_is_better ? "≥" : "≤"} ${fixed(line.bound, metric.digits)}`,
       (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The least time for a ${metric.title}`);
-    return el("div", {}, share, time, quality);
+    const both = el("div", { class: "beside" }, time, quality);
+    if (section.samples_share == null) return both;
+    const share = `${percent(section.samples_share)} of the samples (${section.points} points)`;
+    return el("details", { open: section.points === most }, el("summary", {}, share), both);
   });
   const note = sections.some((s) => s.samples_share != null)
-    ? "What the renderer takes is not known, so only points that shade as many samples are compared." : null;
+    ? "What the renderer takes is not known, so points are compared with those that shade as many samples; --renderer-ms says what it takes." : null;
   byId("equal").replaceChildren(
     el("p", { class: "faint" }, "Bold with ★: the best of the methods in its line. —: no point of the method is within it. ", note),
     ...(parts.length ? parts : [el("p", {}, `No point of this input has a figure of ${metric.title}.`)]),
@@ -65,6 +67,22 @@ function showPrices() {
   const names = ["Pass, ms", "Bytes moved a pixel", "Bytes kept a pixel", ...mainMetrics().map(headed)];
   const head = el("tr", {}, el("th", {}, "Switch"), ...names.map((n) => el("th", { class: "number" }, n)));
   byId("prices").replaceChildren(el("caption", { class: "small" }, "without the switch → with it"), el("thead", {}, head), el("tbody", {}, ...body));
+}
+
+function showConvergences() {
+  const all = table.convergences.filter((c) => c.input === chosen.input);
+  byId("converging").hidden = !all.length;
+  const bands = ["whole", "< 2.5°", "2.5° to 7.5°", "> 7.5°"];
+  const number = (text) => el("td", { class: "number" }, text);
+  const body = all.map((c) => {
+    const samples = c.points.map((p) => fixed(p.samples_per_pixel, 1));
+    return el("tr", {}, el("th", { scope: "row" }, c.label), number(`${samples[0]} to ${samples.at(-1)} (${samples.length} points)`),
+      ...[c.slope_by_samples, c.slope_by_time].flatMap((slopes) => slopes.map((v) => number(fixed(v, 2)))));
+  });
+  const groups = el("tr", {}, el("td"), el("td"), ...["by samples", "by time"].map((n) => el("th", { colspan: bands.length, class: "number" }, n)));
+  const head = el("tr", {}, el("th", {}, "Points"), el("th", { class: "number" }, "Samples a pixel"),
+    ...[...bands, ...bands].map((n) => el("th", { class: "number" }, n)));
+  byId("convergences").replaceChildren(el("thead", {}, groups, head), el("tbody", {}, ...body));
 }
 
 const sorting = { column: "Cost, ms", down: false };

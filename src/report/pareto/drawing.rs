@@ -12,7 +12,9 @@ use svg::node::element::{Group, Line, Path, Rectangle, Text};
 const WIDTH_PX: f64 = 960.0;
 /// Corners of what lies between the axes.
 const LOW_PX: [f64; 2] = [84.0, 78.0];
-const HIGH_PX: [f64; 2] = [930.0, 500.0];
+const HIGH_PX: [f64; 2] = [886.0, 500.0];
+/// Where the second column of notes begins.
+const MIDDLE_PX: f64 = 528.0;
 const LINE_PX: f64 = 20.0;
 
 const INK: &str = "#1b1b1f";
@@ -35,14 +37,15 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let missing = of_input().count() - known.len();
     let floors = floors(&known);
     let renders_known = known.iter().all(|(r, _)| r.render_ms.is_some());
-    let costs = known.iter().map(|(r, _)| r.cost_ms).chain(floors.values().copied());
+    let costs = known.iter().filter(|(r, _)| !is_bound(r)).map(|(r, _)| r.cost_ms).chain(floors.values().copied());
     let x = Scale::new(costs, true, LOW_PX[0], HIGH_PX[0]);
     let y = Scale::new(known.iter().map(|(_, v)| *v), false, HIGH_PX[1], LOW_PX[1]);
     let spots: Vec<Spot<'_>> = known
         .iter()
         .map(|&(row, value)| {
             let is_best = row.frontier.contains(&metric.key);
-            Spot { row, value, at: [px(x.px(row.cost_ms)), px(y.px(value))], is_best }
+            let across = if is_bound(row) { HIGH_PX[0] } else { px(x.px(row.cost_ms)) };
+            Spot { row, value, at: [across, px(y.px(value))], is_best }
         })
         .collect();
     let best: Vec<&Spot<'_>> = spots.iter().filter(|s| s.is_best).collect();
@@ -57,7 +60,7 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
         plot = plot.add(point(spot, &x));
     }
     plot = plot.add(numbers(&best, &spots));
-    let (notes, height) = notes(&best, metric, missing);
+    let (notes, height) = notes(&best, metric, missing, spots.iter().any(|s| is_bound(s.row)));
     Document::new()
         .set("class", "pareto")
         .set("viewBox", format!("0 0 {WIDTH_PX} {height}"))
@@ -74,10 +77,15 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
         .to_string()
 }
 
+/// No renderer can run the oracle: what it takes tells nobody anything, and what it reaches is a bound.
+fn is_bound(row: &Row) -> bool {
+    row.point.method == "oracle"
+}
+
 /// The least that a point of each method could cost: what its renderer takes, and a copy of the bytes that it moves.
 fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
     let mut floors = BTreeMap::new();
-    for (row, _) in known.iter().filter(|(r, _)| r.copy_ms > 0.0) {
+    for (row, _) in known.iter().filter(|(r, _)| r.copy_ms > 0.0 && !is_bound(r)) {
         let floor = floors.entry(row.point.method.as_str()).or_insert(f64::INFINITY);
         *floor = floor.min(row.copy_ms + row.render_ms.unwrap_or(0.0));
     }
@@ -134,23 +142,40 @@ fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
 fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
     let mut classes: BTreeMap<Option<u32>, Vec<&Spot<'_>>> = BTreeMap::new();
     best.iter().for_each(|spot| classes.entry(class(spot.row)).or_default().push(spot));
-    classes.into_iter().fold(Group::new().set("class", "frontier"), |group, (class, mut spots)| {
+    let mut group = Group::new().set("class", "frontier");
+    let mut ends = vec![];
+    for (class, mut spots) in classes {
         spots.sort_by(|a, b| {
             let by_error = metric.error(Some(b.value)).total_cmp(&metric.error(Some(a.value)));
             a.row.cost_ms.total_cmp(&b.row.cost_ms).then(by_error)
         });
-        let Some(first) = spots.first() else { return group };
+        let (first, last) = (spots[0], spots[spots.len() - 1]);
         let path = spots.iter().skip(1).fold(format!("M{} {}", first.at[0], first.at[1]), |path, spot| {
             format!("{path}H{}V{}", spot.at[0], spot.at[1])
         });
         let path = Path::new().set("d", format!("{path}H{}", HIGH_PX[0])).set("class", "axis");
-        let path = path.set("fill", "none").set("stroke", INK).set("stroke-width", 1.5).set("stroke-dasharray", "5 3");
-        let Some(thousandths) = class else { return group.add(path) };
-        let last = spots.last().map_or(HIGH_PX[1], |s| s.at[1]);
-        let share = format!("{:.1} % of the samples", f64::from(thousandths) / 10.0);
-        let share = text(&share, [HIGH_PX[0], px(last - 5.0)], "end").set("fill", FAINT).set("class", "faint");
-        group.add(path).add(share)
-    })
+        group = group.add(path.set("fill", "none").set("stroke", INK).set("stroke-dasharray", "5 3"));
+        ends.extend(class.map(|thousandths| (last.at[1], format!("{:.1} %", f64::from(thousandths) / 10.0))));
+    }
+    // Each at the end of its line, and below the one before it.
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut lowest = LOW_PX[1] - 12.0;
+    if !ends.is_empty() {
+        ends.insert(0, (lowest, "samples".into()));
+    }
+    for (end, share) in ends {
+        lowest = (end + 4.5).max(lowest + 15.0);
+        let share = text(&share, [HIGH_PX[0] + 12.0, px(lowest)], "start").set("fill", FAINT).set("class", "faint");
+        group = group.add(share);
+    }
+    group
+}
+
+/// Legible on lines that it crosses.
+fn on_ground(text: Text) -> Text {
+    let class = format!("{} over", text.get_attributes().get("class").map_or_else(String::new, ToString::to_string));
+    let text = text.set("class", class).set("paint-order", "stroke").set("stroke", "#ffffff");
+    text.set("stroke-width", 4).set("stroke-linejoin", "round")
 }
 
 /// A point, with the quartiles of its pass.
@@ -162,7 +187,8 @@ fn point(spot: &Spot<'_>, x: &Scale) -> Group {
     let bar =
         line([from, spot.at[1]], [to, spot.at[1]], color).set("class", format!("line {}", name(&row.point.method)));
     let group = Group::new().set("class", "point").set("data-row", visible(&row.id));
-    group.add(bar.set("stroke-width", 2)).add(mark(&row.point.method, spot.at, spot.is_best))
+    let group = if is_bound(row) { group } else { group.add(bar.set("stroke-width", 2)) };
+    group.add(mark(&row.point.method, spot.at, spot.is_best))
 }
 
 /// Filled if nothing beats it.
@@ -178,29 +204,35 @@ fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
     let places = tags::place(&at(&mut best.iter().copied()), &at(&mut spots.iter()), LOW_PX, HIGH_PX);
     places.iter().enumerate().fold(Group::new().set("class", "numbers"), |group, (i, [x, y])| {
         let number = text(&(i + 1).to_string(), [px(*x), px(y + 4.5)], "middle");
-        group.add(number.set("font-weight", "bold").set("class", "ink"))
+        group.add(on_ground(number.set("class", "ink")))
     })
 }
 
 /// What the numbers are, and how to read the marks. With it the height of the whole.
-fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize) -> (Group, f64) {
-    let mut y = HIGH_PX[1] + 68.0;
+fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -> (Group, f64) {
+    let top = HIGH_PX[1] + 68.0;
+    let lines = best.len().div_ceil(2);
     let mut notes = Group::new();
     for (i, spot) in best.iter().enumerate() {
         let (digits, value, ms) = (metric.digits, spot.value, spot.row.cost_ms);
-        let label = shortened(&visible(&spot.row.label));
         let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
-        let line = format!("{}   {label}: {value:.digits$}{unit} in {ms:.3} ms", i + 1);
-        notes = notes.add(text(&line, [LOW_PX[0], y], "start").set("class", "ink"));
-        y += LINE_PX;
+        let line = format!("{value:.digits$}{unit} in {ms:.3} ms: {}", visible(&spot.row.label));
+        let (x, y) = if i < lines { (LOW_PX[0], i) } else { (MIDDLE_PX, i - lines) };
+        let y = top + LINE_PX * y as f64;
+        let number = text(&(i + 1).to_string(), [x - 10.0, y], "end").set("fill", FAINT).set("class", "faint");
+        notes = notes.add(number).add(text(&shortened(&line), [x, y], "start").set("class", "ink"));
     }
     let mut reading = vec![
-        "filled and numbered: no point costs less and is better; line of dashes: the best for a budget; bars: quartiles of the pass".into(),
-        "bars at the foot: no point of the method can be further left, for a copy that moves as many bytes takes so long".into(),
+        "filled, with a number: no point costs less and is better (hollow: some point does); dashes: the best for a budget".into(),
+        "bars at marks: quartiles of the pass; bars at the foot: the method can be no further left, a copy of its bytes takes so long".into(),
     ];
+    if has_bound {
+        reading.push("oracle: the most that reuse could show; no renderer can run it, so it is at the border and not at its time".into());
+    }
     if missing > 0 {
         reading.push(format!("{missing} points have no such figure and are left out"));
     }
+    let mut y = top + LINE_PX * lines as f64 + 6.0;
     for line in reading {
         notes = notes.add(text(&line, [LOW_PX[0], y], "start").set("fill", FAINT).set("class", "faint"));
         y += LINE_PX;
@@ -234,7 +266,7 @@ fn visible(text: &str) -> String {
 
 /// To what a line has room for.
 fn shortened(label: &str) -> String {
-    const MOST: usize = 90;
+    const MOST: usize = 62;
     if label.chars().count() <= MOST {
         return label.to_owned();
     }

@@ -1,6 +1,7 @@
 //! What a run gets its frames from.
 
 use super::{NO_ADAPTER, RunArgs, SourceName, backend_for_scenes};
+use crate::args::FilterName;
 use crate::failure::Failure;
 use crate::trace::pattern::SamplingName;
 use afterimage::pipeline::Headless;
@@ -40,10 +41,12 @@ fn rasterised(
 
 /// The pattern that frames are traced with, if they are not to be foveated by a simulator.
 pub fn sampling(args: &RunArgs) -> Result<Option<Sampling>, Failure> {
+    let traced = args.source == Some(SourceName::Trace);
     if args.sampling.sampling == SamplingName::Uniform {
-        return Ok(None);
+        // Nothing foveates these frames: what is wrong about them is their noise.
+        return Ok((traced && args.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
     }
-    if args.source != Some(SourceName::Trace) {
+    if !traced {
         return Err(Failure::Input(format!(
             "--sampling {}: only traced frames are sampled; add --source trace, or use --foveation",
             args.sampling.sampling.name()

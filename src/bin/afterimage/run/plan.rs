@@ -6,6 +6,7 @@ use crate::clip::Clip;
 use crate::failure::Failure;
 use crate::trace::pattern::SamplingName;
 use afterimage::display::ViewGeometry;
+use afterimage::foveation::Foveation;
 use afterimage::pipeline::{Backend, LaneKind};
 use afterimage::settings::Method;
 use afterimage::source::SourceInfo;
@@ -46,14 +47,13 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     }
     let fps = args.fps.or(info.fps).unwrap_or(60.0);
     let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
-    let foveation = input::sampling(args)?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
-    foveation.validate()?;
+    let foveation = foveation(args)?;
     let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
         if lanes.iter().any(|l| l.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
-        lanes.push((method.name(), lane(args, method, info)?));
+        lanes.push((method.name(), lane(args, method, info.still)?));
     }
     // Stills and endless scenes last as long as the eye looks.
     let frames = args.frames.or(if info.still { None } else { info.frames });
@@ -94,8 +94,15 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     })
 }
 
-/// What a method does in a run with these options.
-pub fn lane(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result<LaneKind, Failure> {
+/// Where frames are how coarse.
+pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
+    let foveation = input::sampling(args)?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    foveation.validate()?;
+    Ok(foveation)
+}
+
+/// What a method does in a run with these options, of an input that is still or not.
+pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
     let sampling = input::sampling(args)?;
     let method = match method {
         MethodName::None => Method::None,
@@ -106,7 +113,7 @@ pub fn lane(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result<Lan
             let text = "--method oracle: is defined for simulated foveation only; leave out --sampling";
             return Err(Failure::Input(text.into()));
         }
-        MethodName::Oracle if info.still => return Ok(LaneKind::Oracle),
+        MethodName::Oracle if is_still => return Ok(LaneKind::Oracle),
         MethodName::Oracle => {
             return Err(Failure::Input(format!(
                 "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",

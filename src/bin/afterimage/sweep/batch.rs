@@ -1,6 +1,6 @@
 //! Points that are measured together, on the same frames, one after the other in each.
 
-use crate::args::MethodName;
+use crate::args::{FilterName, MethodName};
 use crate::failure::Failure;
 use crate::run::{RunArgs, SourceName};
 use crate::trace::pattern::SamplingName;
@@ -89,7 +89,7 @@ impl Subject {
     /// Samples of a pixel of a full-rate frame as good as the fovea; 1 where a simulator foveates.
     pub fn full_rate_samples(&self) -> u32 {
         match self.args.sampling.sampling {
-            SamplingName::Uniform => 1,
+            SamplingName::Uniform if self.args.foveation.filter != FilterName::Off => 1,
             _ => self.args.sampling.most_samples(self.args.spp),
         }
     }

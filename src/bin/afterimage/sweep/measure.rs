@@ -4,7 +4,7 @@ use super::batch::{Batch, Subject};
 use crate::args::MethodName;
 use crate::clip::{Clip, Moment};
 use crate::failure::Failure;
-use crate::run::{backend_report, input, plan};
+use crate::run::{RunArgs, backend_report, input, plan};
 use afterimage::foveation::Filter;
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::heat;
@@ -34,29 +34,43 @@ struct Tallies {
     control_ms: Vec<f64>,
     render_ms: Vec<f64>,
     samples_share: f64,
+    samples: Option<u64>,
     frames: usize,
+}
+
+/// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
+pub fn check(subject: &Subject) -> Result<(), Failure> {
+    plan::check(&subject.args)?;
+    plan::foveation(&subject.args)?;
+    if let Some(frames) = subject.args.frames {
+        check_frames(&subject.args, frames)?;
+    }
+    // Whether an oracle's input is still shows when it is opened.
+    plan::lane(&subject.args, subject.method, true).map(|_| ())
+}
+
+fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
+    let least = WARM_UP + MIN_TIMED;
+    if frames >= least as u64 {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
+        args.input
+    )))
 }
 
 /// Measures the points and keeps what was measured.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
-    plan::check(args)?;
     let mut source = input::open(args, &ReadLimits::from_megapixels(args.max_megapixels))?;
     let plan = plan::plan(args, source.info())?;
     let mut lanes = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
-        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info())?));
+        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info().still)?));
     }
     let clip = Clip { lanes, debug: vec![], ..plan.clip };
-    if clip.gaze.len() < WARM_UP + MIN_TIMED {
-        return Err(Failure::Input(format!(
-            "{}: {} frames are too few; expected at least {} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {}",
-            args.input,
-            clip.gaze.len(),
-            WARM_UP + MIN_TIMED,
-            WARM_UP + MIN_TIMED
-        )));
-    }
+    check_frames(args, clip.gaze.len() as u64)?;
     let copy_ms_per_byte = copy_ms_per_byte(&clip.backend);
     let (tallies, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
     let machine = machine(&clip.backend);
@@ -84,6 +98,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             control_ms: timed(&tallies.control_ms[WARM_UP..]),
             render_ms: Quartiles::of(tallies.render_ms.get(WARM_UP..).unwrap_or_default()),
             samples_share: tallies.samples_share / tallies.frames as f64,
+            samples_per_pixel: tallies.samples.map(|all| all as f64 / (tallies.frames as f64 * pixels)),
             copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
             figures,
             rust,
@@ -95,7 +110,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
 
 /// The same in every batch, whatever its points: by it, batches tell what the machine did else.
 fn control(subject: &Subject) -> LaneKind {
-    let noisy = subject.args.sampling.sampling != crate::trace::pattern::SamplingName::Uniform;
+    let noisy = matches!(input::sampling(&subject.args), Ok(Some(_)));
     LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
 }
 
@@ -116,6 +131,7 @@ fn play(
         control_ms: vec![],
         render_ms: vec![],
         samples_share: 0.0,
+        samples: None,
         frames: 0,
     };
     let flip = Flip::for_view(&clip.geometry);
@@ -124,6 +140,7 @@ fn play(
         tallies.control_ms.push(moment.step.shown[0].cost_ms());
         tallies.render_ms.extend(moment.render_ms);
         tallies.samples_share += samples_share(moment, clip, &batch.subjects[0]);
+        tallies.samples = moment.samples.map(|now| tallies.samples.unwrap_or(0) + now).or(tallies.samples);
         tallies.frames += 1;
         let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &_))| {
             let shown: &afterimage::pipeline::Shown = shown;

@@ -27,6 +27,8 @@ pub enum PresetName {
     Traced,
     /// Foveae and methods of the paper, three seeds
     Paper,
+    /// Of scenes: error against samples and time
+    Convergence,
 }
 
 impl PresetName {
@@ -36,6 +38,7 @@ impl PresetName {
             Self::Full => include_str!("presets/full.toml"),
             Self::Traced => include_str!("presets/traced.toml"),
             Self::Paper => include_str!("presets/paper.toml"),
+            Self::Convergence => include_str!("presets/convergence.toml"),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::SweepArgs;
 use crate::failure::Failure;
+use afterimage::sweep::markdown::markdown;
 use afterimage::sweep::{Measurement, Store, Table};
 use afterimage::whole_file::write_whole;
 use std::io::Write;
@@ -12,6 +13,7 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
     let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
     text(store, "sweep.json", &(json + "\n"))?;
     text(store, "sweep.csv", &table.csv())?;
+    text(store, "sweep.md", &markdown(&table))?;
     Ok(table)
 }
 

@@ -18,7 +18,7 @@ pub struct PatternArgs {
 /// How samples are spread over the frame.
 #[derive(Args, Clone, Debug)]
 pub struct SamplingArgs {
-    /// How samples are spread over the frame
+    /// How samples are spread over the frame; of run: uniform leaves foveation to a simulator, or with --foveation off to nobody
     #[arg(long, value_enum, default_value = "uniform")]
     pub sampling: SamplingName,
     /// Samples of regions: of a pixel in the fovea, of a block in the middle, of a block outside
