@@ -117,6 +117,9 @@ fn effect(table: &Table, input: &str, price: &Price) -> String {
             std::cmp::Ordering::Equal => "the same",
             std::cmp::Ordering::Greater => "worse",
         };
+        let spreads = points.and_then(|(a, b)| Some((a.spread.get(metric.key)?, b.spread.get(metric.key)?)));
+        let varies = spreads.is_some_and(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
+        let verdict = if varies { "no more than seeds differ" } else { verdict };
         text += &format!(" and {} from {a} to {b} ({verdict})", metric.title);
     }
     text

@@ -41,7 +41,7 @@ function lines(section, all, heading, bound, text, order, caption) {
 const withoutMethod = (row) => row.label.startsWith(`${row.method}, `) ? row.label.slice(row.method.length + 2) : row.label;
 
 function change(before, after, text, how) {
-  const mark = { better: "▲ better", worse: "▼ worse", same: "same", "": "" }[how];
+  const mark = { better: "▲ better", worse: "▼ worse", same: "same", seeds: "as seeds differ", "": "" }[how];
   return el("td", { class: "number" }, `${text(before)} → ${text(after)}`, el("div", { class: `small ${how}` }, mark));
 }
 
@@ -62,7 +62,12 @@ function showPrices() {
     time(p),
     change(...p.bytes_per_pixel, (v) => fixed(v, 0), verdict(less(0), ...p.bytes_per_pixel)),
     change(...p.memory_bytes_per_pixel, (v) => fixed(v, 1), verdict(less(1), ...p.memory_bytes_per_pixel)),
-    ...mainMetrics().map((m) => change(...(p.values[m.key] ?? [null, null]), (v) => fixed(v, m.digits), verdict(m, ...(p.values[m.key] ?? [null, null])))),
+    ...mainMetrics().map((m) => {
+      const pair = p.values[m.key] ?? [null, null];
+      const [a, b] = [p.base, p.switched].map((id) => rows.get(id).spread[m.key]);
+      const varies = a && b && a[0] <= b[1] && b[0] <= a[1];
+      return change(...pair, (v) => fixed(v, m.digits), varies ? "seeds" : verdict(m, ...pair));
+    }),
   ));
   const names = ["Pass, ms", "Bytes moved a pixel", "Bytes kept a pixel", ...mainMetrics().map(headed)];
   const head = el("tr", {}, el("th", {}, "Switch"), ...names.map((n) => el("th", { class: "number" }, n)));

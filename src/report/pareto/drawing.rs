@@ -129,13 +129,19 @@ fn legend(spots: &[Spot<'_>]) -> Group {
     })
 }
 
-/// A bar at the foot for each method that nothing of it can pass.
+/// A bar at the foot for each method that nothing of it can pass; above another's where it would hide it.
 fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
-    floors.iter().fold(Group::new().set("class", "roofline"), |group, (method, &ms)| {
-        let at = px(x.px(ms));
-        let bar = line([at, HIGH_PX[1] - 26.0], [at, HIGH_PX[1]], Mark::of(method).color);
-        group.add(bar.set("class", format!("line {}", name(method))).set("stroke-width", 3))
-    })
+    let mut sorted: Vec<(f64, &str)> = floors.iter().map(|(method, ms)| (px(x.px(*ms)), *method)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut group = Group::new().set("class", "roofline");
+    let mut below = (f64::NEG_INFINITY, HIGH_PX[1]);
+    for (at, method) in sorted {
+        let foot = if at - below.0 < 4.0 { below.1 - 20.0 } else { HIGH_PX[1] };
+        let bar = line([at, foot - 18.0], [at, foot], Mark::of(method).color);
+        group = group.add(bar.set("class", format!("line {}", name(method))).set("stroke-width", 3));
+        below = (at, foot);
+    }
+    group
 }
 
 /// For each class of comparable points, the best that a budget buys: level until the next step.
