@@ -103,10 +103,9 @@ fn effect(table: &Table, input: &str, price: &Price) -> String {
     let of = points.map_or(&price.method, |(base, _)| &base.label);
     let name = format!("<b>{}</b> takes the pass of {}", escaped(&price.switch), escaped(of));
     let mut text = format!("{name} from {without:.3} to {with:.3} ms ({percent:+.1} %)");
-    if let Some((a, b)) = points {
-        if a.pass_ms.p25 <= b.pass_ms.p75 && b.pass_ms.p25 <= a.pass_ms.p75 {
-            text += ", no more than its times vary (the quartiles overlap),";
-        }
+    let overlap = |a: &Row, b: &Row| a.pass_ms.p25 <= b.pass_ms.p75 && b.pass_ms.p25 <= a.pass_ms.p75;
+    if points.is_some_and(|(a, b)| overlap(a, b)) {
+        text += ", no more than its times vary (the quartiles overlap),";
     }
     let figure = figure(table, input).and_then(|m| Some((m, price.values.get(m.key)?)));
     if let Some((metric, [Some(a), Some(b)])) = figure.map(|(m, v)| (m, *v)) {
