@@ -2,6 +2,8 @@
 
 mod canvas;
 pub mod clock;
+pub mod page;
+pub mod pareto;
 pub mod picture;
 pub mod sheet;
 pub mod tally;

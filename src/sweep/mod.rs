@@ -4,6 +4,7 @@
 //! so that a sweep can be stopped, resumed and spread over machines, [`table`] puts it side by side.
 
 pub mod convergence;
+pub mod equal;
 pub mod frontier;
 pub mod grid;
 pub mod markdown;

@@ -1,0 +1,143 @@
+//! What a reader asks first, in sentences made of the figures alone, and what was measured on what.
+
+use super::{escaped, largest};
+use crate::sweep::equal::{Line, equal};
+use crate::sweep::prices::Price;
+use crate::sweep::{METRICS, Metric, Row, Table};
+
+/// Sentences for every input, as HTML.
+pub fn answers(table: &Table, inputs: &[&str]) -> String {
+    let of_input = |input: &&str| {
+        let sentences = [budgets(table, input), switches(table, input)].concat();
+        let items: String = sentences.iter().map(|s| format!("<li>{s}</li>")).collect();
+        format!("<h3>{}</h3><ul>{items}</ul>", escaped(input))
+    };
+    inputs.iter().map(of_input).collect()
+}
+
+/// The figure that sentences are about: the first that the input has.
+fn figure(table: &Table, input: &str) -> Option<&'static Metric> {
+    let has = |m: &&Metric| {
+        table.rows.iter().any(|r| r.point.input == input && r.values.get(m.key).copied().flatten().is_some())
+    };
+    METRICS.iter().find(has)
+}
+
+fn budgets(table: &Table, input: &str) -> Vec<String> {
+    let Some(metric) = figure(table, input) else { return vec!["Nothing was scored.".into()] };
+    let sections = equal(table, input, metric);
+    let Some(section) = largest(&sections) else { return vec![] };
+    let lines = &section.equal_time;
+    let mut bests: Vec<(f64, &Row)> = vec![];
+    for i in [0, lines.len() / 2, lines.len().saturating_sub(1)] {
+        let Some((ms, row)) = lines.get(i).and_then(|line| Some((line.bound, best(table, line, metric)?))) else {
+            continue;
+        };
+        if bests.last().is_none_or(|(_, last)| last.id != row.id) {
+            bests.push((ms, row));
+        }
+    }
+    let parts: Vec<String> = bests
+        .iter()
+        .map(|(ms, row)| format!("up to {ms} ms, <b>{}</b> ({})", escaped(&row.label), value(row, metric)))
+        .collect();
+    let (best, direction) = (metric.title, if metric.more_is_better { "Highest" } else { "Lowest" });
+    let share = section.samples_share.map_or_else(String::new, |share| {
+        format!(", among the {} points that shade {:.1} % of the samples", section.points, 100.0 * share)
+    });
+    vec![format!("{direction} {best} for a budget a frame{share}: {}.", parts.join("; "))]
+}
+
+fn best<'a>(table: &'a Table, line: &Line, metric: &Metric) -> Option<&'a Row> {
+    let cells = line.cells.iter().flatten();
+    let best = cells
+        .min_by(|a, b| metric.error(a.value).total_cmp(&metric.error(b.value)).then(a.cost_ms.total_cmp(&b.cost_ms)))?;
+    row(table, &best.row)
+}
+
+fn row<'a>(table: &'a Table, id: &str) -> Option<&'a Row> {
+    table.rows.iter().find(|r| r.id == id)
+}
+
+fn value(row: &Row, metric: &Metric) -> String {
+    let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
+    let digits = metric.digits;
+    match row.values.get(metric.key).copied().flatten() {
+        Some(v) => format!("{} {v:.digits$}{unit}", metric.title),
+        None => format!("no {}", metric.title),
+    }
+}
+
+fn switches(table: &Table, input: &str) -> Vec<String> {
+    let prices: Vec<&Price> = table.prices.iter().filter(|p| p.input == input).collect();
+    let more = |p: &&&Price| p.pass_ms[1] - p.pass_ms[0];
+    let by_time = |a: &&&Price, b: &&&Price| more(a).total_cmp(&more(b));
+    let (Some(most), Some(least)) = (prices.iter().max_by(by_time), prices.iter().min_by(by_time)) else {
+        return vec!["No switch was priced.".into()];
+    };
+    let sentence = |which: &str, price: &Price| format!("{which}: {}.", effect(table, input, price));
+    if prices.len() == 1 {
+        return vec![sentence("The one switch that was thrown", most)];
+    }
+    let (count, adds, saves) = (prices.len(), more(&most), more(&least));
+    let adds = if adds > 0.0 { "adds the most time" } else { "saves the least time" };
+    let saves = if saves < 0.0 { "saves the most time" } else { "adds the least time" };
+    vec![
+        sentence(&format!("Of {count} switches thrown, the one that {saves}"), least),
+        sentence(&format!("The one that {adds}"), most),
+    ]
+}
+
+fn effect(table: &Table, input: &str, price: &Price) -> String {
+    let [without, with] = price.pass_ms;
+    let percent = 100.0 * (with / without - 1.0);
+    let name = format!("<b>{}</b> on {}", escaped(&price.switch), escaped(&price.method));
+    let mut text = format!("{name} takes the pass from {without:.3} to {with:.3} ms ({percent:+.1} %)");
+    if let (Some(a), Some(b)) = (row(table, &price.base), row(table, &price.switched)) {
+        if a.pass_ms.p25 <= b.pass_ms.p75 && b.pass_ms.p25 <= a.pass_ms.p75 {
+            text += ", less than its times vary (quartiles overlap)";
+        }
+    }
+    let figure = figure(table, input).and_then(|m| Some((m, price.values.get(m.key)?)));
+    if let Some((metric, [Some(a), Some(b)])) = figure.map(|(m, v)| (m, *v)) {
+        let digits = metric.digits;
+        let [a, b] = [a, b].map(|v| format!("{v:.digits$}"));
+        let verdict = match metric.error(b.parse().ok()).total_cmp(&metric.error(a.parse().ok())) {
+            std::cmp::Ordering::Less => "better",
+            std::cmp::Ordering::Equal => "the same",
+            std::cmp::Ordering::Greater => "worse",
+        };
+        text += &format!(" and {} from {a} to {b} ({verdict})", metric.title);
+    }
+    text
+}
+
+/// Clips and machines, as rows of a table in HTML.
+pub fn facts(table: &Table) -> String {
+    let clips = table.clips.iter().map(|(input, c)| {
+        let [w, h] = c.size;
+        // Pixels a degree in the middle of the view, as FLIP is told.
+        let degrees = 2.0 * ((0.5 * f64::from(c.hfov_deg).to_radians()).tan() / f64::from(w)).atan().to_degrees();
+        let text = format!(
+            "{w}x{h} pixels, {} frames scored and {} timed, {} a second, {} degrees wide, {:.1} pixels a degree in the middle",
+            c.frames, c.timed_frames, c.fps, c.hfov_deg, degrees.recip()
+        );
+        (format!("Clip {input}"), text)
+    });
+    let machines = table.machines.iter().map(|m| {
+        let driver = if m.driver == "none" { String::new() } else { format!(", driver {}", m.driver) };
+        ("Machine".to_owned(), format!("{} ({}{driver}); times: {}", m.name, m.kind, m.clock))
+    });
+    let renderer = match (table.renderer_ms, table.rows.iter().any(|r| r.render_ms.is_some())) {
+        (Some(ms), _) => {
+            format!("said to take {ms} ms for a full-rate frame, and its share of that for a foveated one")
+        }
+        (None, true) => "traced and timed, frame by frame".into(),
+        (None, false) => {
+            "its time is not known: costs are those of the pass alone, compared where as many samples are shaded".into()
+        }
+    };
+    let rows = clips.chain(machines).chain([("Renderer".to_owned(), renderer)]);
+    rows.map(|(name, text)| format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(&name), escaped(&text)))
+        .collect()
+}

@@ -1,0 +1,66 @@
+//! The pictures of a page: those of the points that a reader will ask for first, each once.
+
+use crate::sweep::{Row, Table};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
+
+/// Points with pictures that a page has at most.
+const MAX_POINTS: usize = 24;
+
+/// Bytes that pictures take of a page at most.
+const MAX_BYTES: usize = 8 << 20;
+
+/// Pictures, and whose they are.
+#[derive(Debug, Default, Serialize)]
+pub struct Pictures {
+    /// As addresses that hold the picture itself.
+    images: Vec<String>,
+    /// Where in `images` each picture of a point is, by the point's id and what is shown.
+    points: BTreeMap<String, BTreeMap<&'static str, usize>>,
+}
+
+/// Those that there is room for.
+pub fn embed(table: &Table, read: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> Pictures {
+    let mut pictures = Pictures::default();
+    let mut known: HashMap<Vec<u8>, usize> = HashMap::new();
+    let mut bytes = 0;
+    for row in in_order(table) {
+        let found: Vec<(&'static str, Vec<u8>)> =
+            ["shown", "error", "reference"].into_iter().filter_map(|what| Some((what, read(&row.id, what)?))).collect();
+        let more: usize =
+            found.iter().filter(|(_, b)| !known.contains_key(b)).map(|(_, b)| b.len().div_ceil(3) * 4).sum();
+        if pictures.points.len() == MAX_POINTS || bytes + more > MAX_BYTES {
+            break;
+        }
+        bytes += more;
+        for (what, picture) in found {
+            let next = pictures.images.len();
+            let index = *known.entry(picture).or_insert_with_key(|picture| {
+                pictures.images.push(format!("data:image/jpeg;base64,{}", STANDARD.encode(picture)));
+                next
+            });
+            pictures.points.entry(row.id.clone()).or_default().insert(what, index);
+        }
+    }
+    pictures
+}
+
+/// What is on a frontier first, then what switches are compared with, then the rest; inputs in turn.
+fn in_order(table: &Table) -> Vec<&Row> {
+    let rank = |row: &Row| {
+        let place = ["flip", "psnr_db", "retained_psnr_db"].iter().position(|key| row.frontier.contains(key));
+        let is_base = table.prices.iter().any(|p| p.base == row.id);
+        place.unwrap_or(if is_base { 3 } else { 4 })
+    };
+    let mut seen: HashMap<(&str, usize), usize> = HashMap::new();
+    let mut order: Vec<((usize, usize), &Row)> = vec![];
+    for row in &table.rows {
+        let turn = seen.entry((&row.point.input, rank(row))).or_insert(0);
+        order.push(((rank(row), *turn), row));
+        *turn += 1;
+    }
+    order.sort_by_key(|(key, _)| *key);
+    order.into_iter().map(|(_, row)| row).collect()
+}

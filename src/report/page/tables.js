@@ -1,0 +1,113 @@
+// Same time and same quality, prices of switches, all points.
+function showEqual() {
+  const metric = chosen.metric;
+  const sections = equal[chosen.input][metric.key];
+  const parts = sections.map((section) => {
+    const share = section.samples_share == null ? null
+      : el("h3", {}, `${percent(section.samples_share)} of the samples (${section.points} points)`);
+    const time = lines(section, section.equal_time, "Budget, ms", (line) => `≤ ${line.bound}`,
+      (cell) => withUnit(metric, cell.value), (a, b) => metric.more_is_better ? b.value - a.value : a.value - b.value,
+      `The best ${metric.title} within a budget (${direction(metric)})`);
+    const quality = lines(section, section.equal_quality, headed(metric), (line) => `${metric.more_is_better ? "≥" : "≤"} ${fixed(line.bound, metric.digits)}`,
+      (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The least time for a ${metric.title}`);
+    return el("div", {}, share, time, quality);
+  });
+  const note = sections.some((s) => s.samples_share != null)
+    ? "What the renderer takes is not known, so only points that shade as many samples are compared." : null;
+  byId("equal").replaceChildren(
+    el("p", { class: "faint" }, "Bold with ★: the best of the methods in its line. —: no point of the method is within it. ", note),
+    ...(parts.length ? parts : [el("p", {}, `No point of this input has a figure of ${metric.title}.`)]),
+  );
+}
+
+function lines(section, all, heading, bound, text, order, caption) {
+  const body = all.map((line) => {
+    const best = line.cells.filter(Boolean).sort(order)[0];
+    const cells = line.cells.map((cell) => {
+      if (!cell) return el("td", { class: "number" }, "—");
+      const wins = cell === best || (best && order(cell, best) === 0);
+      return el("td", { class: wins ? "number winner" : "number" }, wins ? "★ " : "", text(cell),
+        el("div", { class: "small" }, pointLink(cell.row, withoutMethod(rows.get(cell.row)))));
+    });
+    return el("tr", {}, el("th", { scope: "row", class: "number" }, bound(line)), ...cells);
+  });
+  const head = el("tr", {}, el("th", {}, heading), ...section.methods.map((m) => el("th", { class: "number" }, m)));
+  return el("div", { class: "wide" }, el("h3", {}, caption), el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
+}
+
+// In a column of one method its name says nothing.
+const withoutMethod = (row) => row.label.startsWith(`${row.method}, `) ? row.label.slice(row.method.length + 2) : row.label;
+
+function change(before, after, text, how) {
+  const mark = { better: "▲ better", worse: "▼ worse", same: "same", "": "" }[how];
+  return el("td", { class: "number" }, `${text(before)} → ${text(after)}`, el("div", { class: `small ${how}` }, mark));
+}
+
+function showPrices() {
+  const prices = table.prices.filter((p) => p.input === chosen.input);
+  if (!prices.length) return byId("prices").replaceChildren(el("tbody", {}, el("tr", {}, el("td", {}, "No switch was priced for this input."))));
+  const less = (digits) => ({ digits, more_is_better: false });
+  const time = (p) => {
+    const [before, after] = p.pass_ms;
+    const how = verdict(less(3), before, after);
+    const part = before > 0 ? ` ${after >= before ? "+" : "−"}${Math.abs(100 * (after / before - 1)).toFixed(1)} %` : "";
+    const cell = change(before, after, ms, how);
+    cell.lastChild.textContent = { better: "▲ faster", worse: "▼ slower", same: "same" }[how] + part;
+    return cell;
+  };
+  const body = prices.map((p) => el("tr", { "data-row": p.switched },
+    el("th", { scope: "row" }, pointLink(p.switched, p.switch), el("div", { class: "small" }, "against ", pointLink(p.base))),
+    time(p),
+    change(...p.bytes_per_pixel, (v) => fixed(v, 0), verdict(less(0), ...p.bytes_per_pixel)),
+    change(...p.memory_bytes_per_pixel, (v) => fixed(v, 1), verdict(less(1), ...p.memory_bytes_per_pixel)),
+    ...mainMetrics().map((m) => change(...(p.values[m.key] ?? [null, null]), (v) => fixed(v, m.digits), verdict(m, ...(p.values[m.key] ?? [null, null])))),
+  ));
+  const names = ["Pass, ms", "Bytes moved a pixel", "Bytes kept a pixel", ...mainMetrics().map(headed)];
+  const head = el("tr", {}, el("th", {}, "Switch"), ...names.map((n) => el("th", { class: "number" }, n)));
+  byId("prices").replaceChildren(el("caption", { class: "small" }, "without the switch → with it"), el("thead", {}, head), el("tbody", {}, ...body));
+}
+
+const sorting = { column: "Cost, ms", down: false };
+
+function showPoints() {
+  const number = (name, of, text) => ({ name, of, text: (row) => text(of(row)) });
+  const columns = [
+    { name: "★", of: (row) => (row.frontier.includes(chosen.metric.key) ? 0 : 1), text: (row) => row.frontier.includes(chosen.metric.key) ? "★" : "" },
+    { name: "Point", of: (row) => row.label },
+    number("Cost, ms", (row) => row.cost_ms, ms),
+    { name: "Pass, ms (quartiles)", of: (row) => row.pass_ms.median, text: (row) => `${ms(row.pass_ms.median)} (${ms(row.pass_ms.p25)}–${ms(row.pass_ms.p75)})` },
+    number("Renderer, ms", (row) => row.render_ms, ms),
+    number("Copy, ms", (row) => row.copy_ms, ms),
+    number("Samples", (row) => row.samples_share, percent),
+    number("Bytes moved", (row) => row.bytes_per_pixel, (v) => fixed(v, 0)),
+    number("Bytes kept", (row) => row.memory_bytes_per_pixel, (v) => fixed(v, 1)),
+    ...mainMetrics().map((m) => number(headed(m), (row) => row.values[m.key], (v) => fixed(v, m.digits))),
+    number("Drift", (row) => row.drift, (v) => fixed(v, 3)),
+    number("Seeds", (row) => row.seeds, String),
+    number("Not finite", (row) => row.nonfinite_out, String),
+  ];
+  const by = columns.find((c) => c.name === sorting.column) ?? columns[2];
+  // What is not known comes last, either way.
+  const order = (a, b) => {
+    const [x, y] = [by.of(a), by.of(b)];
+    if (x == null || y == null) return (x == null) - (y == null);
+    const less = typeof x === "string" ? x.localeCompare(y) : x - y;
+    return sorting.down ? -less : less;
+  };
+  const head = columns.map((c) => {
+    const sort = () => {
+      sorting.down = sorting.column === c.name && !sorting.down;
+      sorting.column = c.name;
+      showPoints();
+      [...document.querySelectorAll("#points thead button")].find((b) => b.dataset.name === c.name)?.focus();
+    };
+    const state = by === c ? (sorting.down ? "descending" : "ascending") : null;
+    const arrow = state ? (sorting.down ? " ↓" : " ↑") : "";
+    return el("th", { "aria-sort": state, class: c.text ? "number" : null }, el("button", { type: "button", "data-name": c.name, onclick: sort }, c.name + arrow));
+  });
+  const body = ofInput().sort(order).map((row) => el("tr", { "data-row": row.id, class: row.id === chosen.pinned ? "chosen" : null },
+    ...columns.map((c) => c.text ? el("td", { class: c.name === "★" ? "star" : "number" }, c.text(row)) : el("th", { scope: "row" }, pointLink(row.id))),
+    el("td", {}, copyButton(row.command, `command of ${row.label}`)),
+  ));
+  byId("points").replaceChildren(el("thead", {}, el("tr", {}, ...head, el("th", {}, "Command"))), el("tbody", {}, ...body));
+}

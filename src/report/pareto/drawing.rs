@@ -1,0 +1,242 @@
+//! The drawing.
+
+use super::marks::Mark;
+use super::scale::Scale;
+use super::tags;
+use crate::sweep::equal::{class, in_order};
+use crate::sweep::{Metric, Row, Table};
+use std::collections::BTreeMap;
+use svg::Document;
+use svg::node::element::{Group, Line, Path, Rectangle, Text};
+
+const WIDTH_PX: f64 = 960.0;
+/// Corners of what lies between the axes.
+const LOW_PX: [f64; 2] = [84.0, 78.0];
+const HIGH_PX: [f64; 2] = [930.0, 500.0];
+const LINE_PX: f64 = 20.0;
+
+const INK: &str = "#1b1b1f";
+const FAINT: &str = "#5c5c66";
+const GRID: &str = "#dcdce2";
+
+/// A row that the figure is known of, and where it is.
+struct Spot<'a> {
+    row: &'a Row,
+    value: f64,
+    at: [f64; 2],
+    is_best: bool,
+}
+
+/// Points of an input by a figure and their cost. Rows that have no such figure are left out, and counted.
+pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
+    let of_input = || table.rows.iter().filter(|r| r.point.input == input && r.cost_ms.is_finite());
+    let value = |r: &Row| r.values.get(metric.key).copied().flatten().filter(|v| v.is_finite());
+    let known: Vec<(&Row, f64)> = of_input().filter_map(|r| Some((r, value(r)?))).collect();
+    let missing = of_input().count() - known.len();
+    let floors = floors(&known);
+    let renders_known = known.iter().all(|(r, _)| r.render_ms.is_some());
+    let costs = known.iter().map(|(r, _)| r.cost_ms).chain(floors.values().copied());
+    let x = Scale::new(costs, true, LOW_PX[0], HIGH_PX[0]);
+    let y = Scale::new(known.iter().map(|(_, v)| *v), false, HIGH_PX[1], LOW_PX[1]);
+    let spots: Vec<Spot<'_>> = known
+        .iter()
+        .map(|&(row, value)| {
+            let is_best = row.frontier.contains(&metric.key);
+            Spot { row, value, at: [px(x.px(row.cost_ms)), px(y.px(value))], is_best }
+        })
+        .collect();
+    let best: Vec<&Spot<'_>> = spots.iter().filter(|s| s.is_best).collect();
+
+    let mut plot = Group::new().set("fill", INK);
+    let title = format!("{}: {} and cost of {} points", visible(input), metric.title, spots.len());
+    plot = plot.add(text(&title, [LOW_PX[0], 24.0], "start").set("font-size", 17).set("class", "ink"));
+    plot = plot.add(legend(&spots)).add(axes(&x, &y, metric, renders_known)).add(roofline(&floors, &x));
+    plot = plot.add(steps(&best, metric));
+    // What is best lies on top.
+    for spot in spots.iter().filter(|s| !s.is_best).chain(best.iter().copied()) {
+        plot = plot.add(point(spot, &x));
+    }
+    plot = plot.add(numbers(&best, &spots));
+    let (notes, height) = notes(&best, metric, missing);
+    Document::new()
+        .set("class", "pareto")
+        .set("viewBox", format!("0 0 {WIDTH_PX} {height}"))
+        .set("width", WIDTH_PX)
+        .set("height", height)
+        .set("font-family", "system-ui, sans-serif")
+        .set("font-size", 13)
+        .set("role", "img")
+        .set("aria-label", title)
+        .add(
+            Rectangle::new().set("class", "ground").set("width", WIDTH_PX).set("height", height).set("fill", "#ffffff"),
+        )
+        .add(plot.add(notes))
+        .to_string()
+}
+
+/// The least that a point of each method could cost: what its renderer takes, and a copy of the bytes that it moves.
+fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
+    let mut floors = BTreeMap::new();
+    for (row, _) in known.iter().filter(|(r, _)| r.copy_ms > 0.0) {
+        let floor = floors.entry(row.point.method.as_str()).or_insert(f64::INFINITY);
+        *floor = floor.min(row.copy_ms + row.render_ms.unwrap_or(0.0));
+    }
+    floors
+}
+
+fn axes(x: &Scale, y: &Scale, metric: &Metric, renders_known: bool) -> Group {
+    let mut axes = Group::new();
+    for (value, name) in x.ticks() {
+        let at = px(x.px(value));
+        axes = axes.add(line([at, LOW_PX[1]], [at, HIGH_PX[1]], GRID).set("class", "grid"));
+        axes = axes.add(text(&name, [at, HIGH_PX[1] + 18.0], "middle").set("class", "ink"));
+    }
+    for (value, name) in y.ticks() {
+        let at = px(y.px(value));
+        axes = axes.add(line([LOW_PX[0], at], [HIGH_PX[0], at], GRID).set("class", "grid"));
+        axes = axes.add(text(&name, [LOW_PX[0] - 8.0, at + 4.5], "end").set("class", "ink"));
+    }
+    let cost = if renders_known { "renderer and pass" } else { "pass alone, the renderer's time is not known" };
+    let along = format!("milliseconds a frame ({cost}); further left is cheaper");
+    let unit = if metric.unit.is_empty() { String::new() } else { format!(", {}", metric.unit) };
+    let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
+    let up = format!("{}{unit}; {better}", metric.title);
+    let middle = [0, 1].map(|i| 0.5 * (LOW_PX[i] + HIGH_PX[i]));
+    let turned = format!("rotate(-90 20 {})", middle[1]);
+    axes.add(line([LOW_PX[0], HIGH_PX[1]], HIGH_PX, INK).set("class", "axis"))
+        .add(line(LOW_PX, [LOW_PX[0], HIGH_PX[1]], INK).set("class", "axis"))
+        .add(text(&along, [middle[0], HIGH_PX[1] + 40.0], "middle").set("class", "ink"))
+        .add(text(&up, [20.0, middle[1]], "middle").set("transform", turned).set("class", "ink"))
+}
+
+/// The methods in a line above the plot.
+fn legend(spots: &[Spot<'_>]) -> Group {
+    let mut left = LOW_PX[0];
+    in_order(spots.iter().map(|s| s.row.point.method.as_str())).iter().fold(Group::new(), |legend, method| {
+        let method = visible(method);
+        let mark = mark(&method, [left + 8.0, 52.0], true);
+        let name = text(&method, [left + 22.0, 57.0], "start").set("class", "ink");
+        left += 48.0 + 8.0 * method.chars().count() as f64;
+        legend.add(mark).add(name)
+    })
+}
+
+/// A bar at the foot for each method that nothing of it can pass.
+fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
+    floors.iter().fold(Group::new().set("class", "roofline"), |group, (method, &ms)| {
+        let at = px(x.px(ms));
+        let bar = line([at, HIGH_PX[1] - 26.0], [at, HIGH_PX[1]], Mark::of(method).color);
+        group.add(bar.set("class", format!("line {}", name(method))).set("stroke-width", 3))
+    })
+}
+
+/// For each class of comparable points, the best that a budget buys: level until the next step.
+fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
+    let mut classes: BTreeMap<Option<u32>, Vec<&Spot<'_>>> = BTreeMap::new();
+    best.iter().for_each(|spot| classes.entry(class(spot.row)).or_default().push(spot));
+    classes.into_iter().fold(Group::new().set("class", "frontier"), |group, (class, mut spots)| {
+        spots.sort_by(|a, b| {
+            let by_error = metric.error(Some(b.value)).total_cmp(&metric.error(Some(a.value)));
+            a.row.cost_ms.total_cmp(&b.row.cost_ms).then(by_error)
+        });
+        let Some(first) = spots.first() else { return group };
+        let path = spots.iter().skip(1).fold(format!("M{} {}", first.at[0], first.at[1]), |path, spot| {
+            format!("{path}H{}V{}", spot.at[0], spot.at[1])
+        });
+        let path = Path::new().set("d", format!("{path}H{}", HIGH_PX[0])).set("class", "axis");
+        let path = path.set("fill", "none").set("stroke", INK).set("stroke-width", 1.5).set("stroke-dasharray", "5 3");
+        let Some(thousandths) = class else { return group.add(path) };
+        let last = spots.last().map_or(HIGH_PX[1], |s| s.at[1]);
+        let share = format!("{:.1} % of the samples", f64::from(thousandths) / 10.0);
+        let share = text(&share, [HIGH_PX[0], px(last - 5.0)], "end").set("fill", FAINT).set("class", "faint");
+        group.add(path).add(share)
+    })
+}
+
+/// A point, with the quartiles of its pass.
+fn point(spot: &Spot<'_>, x: &Scale) -> Group {
+    let row = spot.row;
+    let other = row.cost_ms - row.pass_ms.median;
+    let [from, to] = [row.pass_ms.p25, row.pass_ms.p75].map(|ms| px(x.px(other + ms)));
+    let color = Mark::of(&row.point.method).color;
+    let bar =
+        line([from, spot.at[1]], [to, spot.at[1]], color).set("class", format!("line {}", name(&row.point.method)));
+    let group = Group::new().set("class", "point").set("data-row", visible(&row.id));
+    group.add(bar.set("stroke-width", 2)).add(mark(&row.point.method, spot.at, spot.is_best))
+}
+
+/// Filled if nothing beats it.
+fn mark(method: &str, at: [f64; 2], is_best: bool) -> Path {
+    let mark = Mark::of(method);
+    let path = Path::new().set("d", mark.path(at)).set("fill", mark.color).set("stroke", mark.color);
+    let path = path.set("stroke-width", 1.5).set("class", format!("mark {}", name(method)));
+    if is_best { path } else { path.set("fill-opacity", 0.15) }
+}
+
+fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
+    let at = |spots: &mut dyn Iterator<Item = &Spot<'_>>| spots.map(|s| s.at).collect::<Vec<_>>();
+    let places = tags::place(&at(&mut best.iter().copied()), &at(&mut spots.iter()), LOW_PX, HIGH_PX);
+    places.iter().enumerate().fold(Group::new().set("class", "numbers"), |group, (i, [x, y])| {
+        let number = text(&(i + 1).to_string(), [px(*x), px(y + 4.5)], "middle");
+        group.add(number.set("font-weight", "bold").set("class", "ink"))
+    })
+}
+
+/// What the numbers are, and how to read the marks. With it the height of the whole.
+fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize) -> (Group, f64) {
+    let mut y = HIGH_PX[1] + 68.0;
+    let mut notes = Group::new();
+    for (i, spot) in best.iter().enumerate() {
+        let (digits, value, ms) = (metric.digits, spot.value, spot.row.cost_ms);
+        let label = shortened(&visible(&spot.row.label));
+        let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
+        let line = format!("{}   {label}: {value:.digits$}{unit} in {ms:.3} ms", i + 1);
+        notes = notes.add(text(&line, [LOW_PX[0], y], "start").set("class", "ink"));
+        y += LINE_PX;
+    }
+    let mut reading = vec![
+        "filled and numbered: no point costs less and is better; line of dashes: the best for a budget; bars: quartiles of the pass".into(),
+        "bars at the foot: no point of the method can be further left, for a copy that moves as many bytes takes so long".into(),
+    ];
+    if missing > 0 {
+        reading.push(format!("{missing} points have no such figure and are left out"));
+    }
+    for line in reading {
+        notes = notes.add(text(&line, [LOW_PX[0], y], "start").set("fill", FAINT).set("class", "faint"));
+        y += LINE_PX;
+    }
+    (notes, y)
+}
+
+fn text(content: &str, at: [f64; 2], anchor: &str) -> Text {
+    Text::new(content).set("x", at[0]).set("y", at[1]).set("text-anchor", anchor)
+}
+
+fn line(from: [f64; 2], to: [f64; 2], color: &str) -> Line {
+    Line::new().set("x1", from[0]).set("y1", from[1]).set("x2", to[0]).set("y2", to[1]).set("stroke", color)
+}
+
+/// To a tenth.
+fn px(v: f64) -> f64 {
+    (v * 10.0).round() / 10.0
+}
+
+/// As a class of CSS; of a stranger `other`.
+fn name(method: &str) -> &'static str {
+    ["none", "taa", "wrs", "smr", "oracle"].into_iter().find(|m| *m == method).unwrap_or("other")
+}
+
+/// Without characters that XML forbids.
+fn visible(text: &str) -> String {
+    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
+}
+
+/// To what a line has room for.
+fn shortened(label: &str) -> String {
+    const MOST: usize = 90;
+    if label.chars().count() <= MOST {
+        return label.to_owned();
+    }
+    label.chars().take(MOST - 1).chain(['…']).collect()
+}
