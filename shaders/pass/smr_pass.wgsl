@@ -49,18 +49,29 @@ fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
         || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
 }
 
-fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
+// Four texels of a level, and how far from the lower two a position is.
+struct Texels {
+    low: vec2<u32>,
+    high: vec2<u32>,
+    fraction: vec2<f32>,
+}
+
+fn texels_around(at: vec2<f32>, level: u32) -> Texels {
     let size = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
     let x = split(level_coordinate(at.x, level), size.x);
     let y = split(level_coordinate(at.y, level), size.y);
     let low = vec2<u32>(x.whole, y.whole);
-    let high = min(low + 1u, size - 1u);
+    return Texels(low, min(low + 1u, size - 1u), vec2<f32>(x.fraction, y.fraction));
+}
+
+fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
+    let four = texels_around(at, level);
     return chain_bilinear(
-        textureLoad(past_chain, low, view, level - 1u),
-        textureLoad(past_chain, vec2<u32>(high.x, low.y), view, level - 1u),
-        textureLoad(past_chain, vec2<u32>(low.x, high.y), view, level - 1u),
-        textureLoad(past_chain, high, view, level - 1u),
-        vec2<f32>(x.fraction, y.fraction),
+        textureLoad(past_chain, four.low, view, level - 1u),
+        textureLoad(past_chain, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(past_chain, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(past_chain, four.high, view, level - 1u),
+        four.fraction,
     );
 }
 
@@ -86,17 +97,13 @@ fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Ma
 }
 
 fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
-    let size = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
-    let x = split(level_coordinate(at.x, level), size.x);
-    let y = split(level_coordinate(at.y, level), size.y);
-    let low = vec2<u32>(x.whole, y.whole);
-    let high = min(low + 1u, size - 1u);
+    let four = texels_around(at, level);
     return candidate_bilinear(
-        textureLoad(candidate_chain, low, view, level - 1u),
-        textureLoad(candidate_chain, vec2<u32>(high.x, low.y), view, level - 1u),
-        textureLoad(candidate_chain, vec2<u32>(low.x, high.y), view, level - 1u),
-        textureLoad(candidate_chain, high, view, level - 1u),
-        vec2<f32>(x.fraction, y.fraction),
+        textureLoad(candidate_chain, four.low, view, level - 1u),
+        textureLoad(candidate_chain, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(candidate_chain, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(candidate_chain, four.high, view, level - 1u),
+        four.fraction,
     );
 }
 

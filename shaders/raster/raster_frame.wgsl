@@ -59,7 +59,9 @@ struct RasterLights {
 }
 
 @group(0) @binding(0) var<uniform> frame: RasterFrame;
-@group(0) @binding(1) var<uniform> lights: RasterLights;
+// What shaders branch and loop by is in storage, here and in raster_material.wgsl: where that is a uniform, software Vulkan (Mesa
+// 22.3) compiles a variant each time the pipeline is bound, and keeps it as long as the pipeline lives.
+@group(0) @binding(1) var<storage, read> lights: RasterLights;
 
 // A corner of a triangle, and where it was a frame ago.
 struct Corner {

@@ -47,7 +47,7 @@ struct RasterMaterial {
     unused: vec2<f32>,
 }
 
-@group(1) @binding(0) var<uniform> material: RasterMaterial;
+@group(1) @binding(0) var<storage, read> material: RasterMaterial;
 @group(1) @binding(1) var base_color_map: texture_2d<f32>;
 @group(1) @binding(2) var base_color_sampler: sampler;
 @group(1) @binding(3) var metallic_roughness_map: texture_2d<f32>;

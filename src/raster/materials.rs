@@ -35,12 +35,12 @@ pub(super) fn bind_groups(
             }
         }
     }
-    let stride = 256_u64.max(u64::from(device.limits().min_uniform_buffer_offset_alignment));
+    let stride = 256_u64.max(u64::from(device.limits().min_storage_buffer_offset_alignment));
     let bytes = size_of::<MaterialRecord>() as u64;
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("materials"),
         size: stride * materials.len() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     let groups = materials.iter().enumerate().map(|(i, m)| {

@@ -224,11 +224,9 @@ pub(super) fn slot_binding(i: usize) -> u32 {
 impl Layouts {
     pub fn new(device: &Device) -> Self {
         let entry = |binding, visibility, ty| BindGroupLayoutEntry { binding, visibility, ty, count: None };
-        let uniform = BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
+        let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform = buffer(wgpu::BufferBindingType::Uniform);
+        let storage = buffer(wgpu::BufferBindingType::Storage { read_only: true });
         let texture = |sample_type| BindingType::Texture {
             sample_type,
             view_dimension: TextureViewDimension::D2,
@@ -241,7 +239,7 @@ impl Layouts {
         };
         let both = ShaderStages::VERTEX_FRAGMENT;
         let fragment = ShaderStages::FRAGMENT;
-        let mut material = vec![entry(0, fragment, uniform)];
+        let mut material = vec![entry(0, fragment, storage)];
         for i in 0..SLOTS {
             let binding = slot_binding(i);
             material.push(entry(binding, fragment, filtered));
@@ -250,7 +248,7 @@ impl Layouts {
             }
         }
         Self {
-            frame: make("frame", &[entry(0, both, uniform), entry(1, both, uniform)]),
+            frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
             material: make("material", &material),
             scenery: make(
                 "scenery",

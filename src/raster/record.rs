@@ -44,8 +44,10 @@ impl Raster {
     }
 
     fn frame_group(&self, device: &Device, frame: &FrameWords, lights: &LightsWords) -> BindGroup {
-        let buffers = [bytemuck::bytes_of(frame), bytemuck::bytes_of(lights)]
-            .map(|bytes| filled(device, bytes, BufferUsages::UNIFORM));
+        let buffers = [
+            filled(device, bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
+            filled(device, bytemuck::bytes_of(lights), BufferUsages::STORAGE),
+        ];
         let entry =
             |binding: u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
         device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -17,4 +17,5 @@ mod rig;
 mod sequences;
 mod surfaces;
 mod surfaces_controls;
+mod surfaces_lifecycle;
 mod surfaces_variants;

@@ -127,7 +127,10 @@ fn every_planted_error_in_smr_is_caught() {
             ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
             ("clamp((candidate + DARK)", "clamp(1.01 * (candidate + DARK)"),
             // The other eye's chain, its levels and texels one off.
-            ("textureLoad(past_chain, low, view, level - 1u)", "textureLoad(past_chain, low, 1u - view, level - 1u)"),
+            (
+                "textureLoad(past_chain, four.low, view, level - 1u)",
+                "textureLoad(past_chain, four.low, 1u - view, level - 1u)",
+            ),
             ("textureStore(next_chain, id.xy, group.z,", "textureStore(next_chain, id.xy, 1u - group.z,"),
             ("first = chain_level(at, level, view);", "first = chain_level(at, min(level + 1u, last), view);"),
             (
@@ -185,8 +188,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
                 "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
             ),
             (
-                "textureLoad(candidate_chain, low, view, level - 1u)",
-                "textureLoad(candidate_chain, low, 1u - view, level - 1u)",
+                "textureLoad(candidate_chain, four.low, view, level - 1u)",
+                "textureLoad(candidate_chain, four.low, 1u - view, level - 1u)",
             ),
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
             // Noise that exposure forgets, a mean of broken candidates, three sigmas that are two.

@@ -54,15 +54,10 @@ impl PatternReport {
     }
 }
 
-/// Regions as the paper names them, with one of `fewer` samples each.
-pub fn regions(of: [u32; 3], fewer: u32, radius_scale: f32, gaze_px: [f32; 2]) -> Pattern {
-    let samples = of.map(|s| s / fewer);
+/// Regions as the paper names them, or with a quarter of their samples.
+pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f32; 2]) -> Pattern {
     let [a, b, c] = of;
-    let share = match fewer {
-        1 => "",
-        4 => ", a quarter of the samples",
-        _ => ", an eighth of the samples",
-    };
+    let (samples, share) = if is_quartered { (of.map(|s| s / 4), ", a quarter of the samples") } else { (of, "") };
     let radii = if radius_scale == 1.0 { "" } else { ", halved radii" };
     Pattern {
         name: format!("regions {a},{b},{c}{radii}{share}"),
@@ -76,9 +71,9 @@ pub fn regions(of: [u32; 3], fewer: u32, radius_scale: f32, gaze_px: [f32; 2]) -
 pub fn patterns(subject: &Subject) -> Vec<Pattern> {
     let middle = subject.middle_px();
     vec![
-        regions([32, 16, 8], 4, 1.0, middle),
-        regions([32, 8, 4], 4, 1.0, middle),
-        regions([32, 2, 1], 1, 1.0, middle),
+        regions([32, 16, 8], true, 1.0, middle),
+        regions([32, 8, 4], true, 1.0, middle),
+        regions([32, 2, 1], false, 1.0, middle),
         Pattern {
             name: "layers 6,10,20 degrees, steps 1,2,3,4".into(),
             sampling: Sampling::Layers(Layers::default()),

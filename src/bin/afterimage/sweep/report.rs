@@ -2,6 +2,9 @@
 
 use super::SweepArgs;
 use crate::failure::Failure;
+use afterimage::report::page::page;
+use afterimage::report::pareto;
+use afterimage::report::picture::write_png;
 use afterimage::sweep::markdown::markdown;
 use afterimage::sweep::{Measurement, Store, Table};
 use afterimage::whole_file::write_whole;
@@ -14,6 +17,16 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
     text(store, "sweep.json", &(json + "\n"))?;
     text(store, "sweep.csv", &table.csv())?;
     text(store, "sweep.md", &markdown(&table))?;
+    for (i, input) in table.clips.keys().enumerate() {
+        // The first has the name that is promised.
+        let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
+        text(store, &format!("{name}.svg"), &pareto::svg(&table, input, args.pick.by))?;
+        let path = store.root().join(format!("{name}.png"));
+        write_png(&path, &pareto::png(&table, input, args.pick.by)).map_err(|e| Failure::writing(&path, e))?;
+    }
+    let picture =
+        |id: &str, what: &str| std::fs::read(store.root().join("pictures").join(format!("{id}-{what}.jpg"))).ok();
+    text(store, "report.html", &page(&table, &picture))?;
     Ok(table)
 }
 
@@ -36,5 +49,5 @@ pub fn print_summary(args: &SweepArgs, table: &Table) {
         let value = row.values.get(by.key).copied().flatten().map_or("-".into(), |v| format!("{v:.*}", by.digits));
         say!("{:>10.2}  {value:>10}  {}", row.cost_ms, row.label);
     }
-    say!("table: {}", args.out.join("sweep.csv").display());
+    say!("report: {}", args.out.join("report.html").display());
 }

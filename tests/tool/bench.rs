@@ -1,0 +1,142 @@
+//! `afterimage bench`.
+
+use super::rig::{Folder, read_json, refuses, succeeds, tool};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn bench_times_every_pass_against_the_copy() {
+    let folder = Folder::new();
+    let json = folder.text("bench.json");
+    let output = tool(&["bench", "post", "--size", "160x90", "--frames", "30", "--json", &json]);
+    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = read_json(Path::new(&json));
+    let passes = report["passes"].as_array().unwrap();
+    assert_eq!(
+        passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["copy", "none", "wrs", "taa", "smr", "mip", "gauss", "block"]
+    );
+    for pass in passes {
+        assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
+        assert!((1..=48).contains(&pass["bytes_per_pixel"].as_u64().unwrap()));
+        assert!(
+            pass["ms_per_megapixel"].as_f64().unwrap() > 0.0 && pass["share_of_copy_bandwidth"].as_f64().unwrap() > 0.0
+        );
+    }
+    assert!(!report["adapter"].as_str().unwrap().is_empty() && report["cold_start_ms"].as_f64().unwrap() > 0.0);
+    refuses(&["bench", "post", "--frames", "3"], &["30"]);
+}
+
+#[test]
+fn bench_counts_the_rays_of_the_tracer() {
+    let folder = Folder::new();
+    let json = folder.text("rays.json");
+    let small = ["--size", "32x18", "--backend", "cpu", "--scene", "builtin:cornell", "--json", &json];
+    succeeds(&[&["bench", "trace"], &small[..]].concat());
+    let report = read_json(Path::new(&json));
+    let tracer = &report["scenes"][0]["tracers"][0];
+    // A camera ray a pixel at least, and no more than two a bounce and the last.
+    assert!((576..=576 * 7).contains(&tracer["rays_per_frame"].as_u64().unwrap()));
+    assert!(tracer["mrays_per_core_second"].as_f64().unwrap() > 0.0);
+    refuses(&["bench", "trace", "--scene", "builtin:none"], &["builtin:none"]);
+    refuses(&["bench", "effects", "--frames", "3"], &["30"]);
+}
+
+#[test]
+fn bench_puts_the_papers_figures_beside_ours() {
+    let folder = Folder::new();
+    let json = folder.text("papers.json");
+    let small = ["bench", "papers", "--backend", "cpu", "--size", "64x36", "--frames", "1", "--json", &json];
+    let text = succeeds(&small);
+    assert!(text.contains("| 32,16,8 | 8.60 | 30.9x | 8.6 |"), "{text}");
+    let report = read_json(Path::new(&json));
+    let regions = report["regions"]["patterns"].as_array().unwrap();
+    assert_eq!(regions.len(), 4);
+    assert!((report["regions"]["hfov_deg"].as_f64().unwrap() - 61.1).abs() < 0.1);
+    assert_eq!(regions[0]["paper_time_reduction"], 23.93);
+    // Of a few pixels: what is measured is anything.
+    assert!(regions.iter().all(|p| p["time_reduction"].as_f64().unwrap() > 0.0 && p["clock"] == "CPU"));
+    let layers = report["layers"].as_array().unwrap();
+    assert_eq!(layers.len(), 5);
+    assert!(layers.iter().all(|scene| scene["size"] == serde_json::json!([36, 40]) && scene["max_depth"] == 8));
+    assert!(layers.iter().all(|scene| scene["patterns"].as_array().unwrap().len() == 2));
+    refuses(&["bench", "papers", "--frames", "0"], &["1 to"]);
+    refuses(&["bench", "papers", "--camera", "no/such.json"], &["no/such.json"]);
+}
+
+#[test]
+fn bench_prices_effects_between_the_markers() {
+    let folder = Folder::new();
+    let (page, json) = (folder.text("effects.md"), folder.text("effects.json"));
+    let small = ["--size", "16x9", "--backend", "cpu", "--scene", "builtin:cornell", "--json", &json, "--out", &page];
+    let command = [&["bench", "effects"], &small[..]].concat();
+    succeeds(&command);
+    let table = std::fs::read_to_string(&page).unwrap();
+    std::fs::write(&page, format!("before\n{table}after\n")).unwrap();
+    succeeds(&command);
+    let text = std::fs::read_to_string(&page).unwrap();
+    assert!(text.starts_with("before\n<!--") && text.ends_with("-->\nafter\n"), "{text}");
+    for word in [
+        "### builtin:cornell",
+        "| auto again |",
+        "| clearcoat |",
+        "| auto and clearcoat |",
+        "| emissive-triangles | needed |",
+    ] {
+        assert!(text.contains(word), "{word} in {text}");
+    }
+    let prices = &read_json(Path::new(&json))["scenes"][0]["prices"][0];
+    assert_eq!(prices[0]["ratio"]["median"].as_f64(), Some(1.0));
+    std::fs::write(&page, "no markers").unwrap();
+    refuses(&command, &["markers"]);
+}
+
+#[test]
+fn bench_compares_patterns_at_equal_numbers_of_samples() {
+    let folder = Folder::new();
+    let (out, json) = (folder.text("out"), folder.text("patterns.json"));
+    let base = ["bench", "patterns", "builtin:courtyard", "--out", &out, "--backend", "cpu", "--json", &json];
+    succeeds(&[&base[..], &["--size", "320x180", "--frames", "2", "--reference-spp", "3"]].concat());
+    let report = read_json(Path::new(&json));
+    let patterns = report["patterns"].as_array().unwrap();
+    let names: Vec<_> = patterns.iter().map(|p| p["pattern"].as_str().unwrap()).collect();
+    assert_eq!(names, ["regions", "uniform", "layers", "acuity"]);
+    for p in patterns {
+        let share = p["samples_of_regions"].as_f64().unwrap();
+        assert!((share - 1.0).abs() <= 0.02, "{}: {share}", p["pattern"]);
+        assert!(p["rays"].as_f64() > p["samples"].as_f64());
+        for key in ["psnr_db", "weighted_psnr_db", "ssim", "flip"] {
+            assert!(p[key].is_number(), "{key}");
+        }
+    }
+    let table = fs::read_to_string(Path::new(&out).join("patterns.md")).unwrap();
+    assert_eq!(table.lines().count(), 2 + patterns.len());
+    for file in ["reference.exr", "reference.png", "acuity.png", "acuity_flip.png", "layers_flip.png"] {
+        assert!(Path::new(&out).join(file).exists(), "{file}");
+    }
+    // The reference that was written is one; of another size it is none.
+    let exr = folder.text("out/reference.exr");
+    let again = [&base[..], &["--frames", "2", "--reference", &exr, "--size"]].concat();
+    succeeds(&[&again[..], &["320x180"]].concat());
+    let second = read_json(Path::new(&json));
+    let db = |report: &Value, i: usize| report["patterns"][i]["psnr_db"].as_f64().unwrap();
+    for i in 0..patterns.len() {
+        assert!((db(&report, i) - db(&second, i)).abs() < 0.01, "half floats are exact enough");
+    }
+    refuses(&[&again[..], &["160x90"]].concat(), &["320x180", "160x90"]);
+    for more in [
+        ["--region-spp", "8,4"],
+        ["--gaze", "12"],
+        ["--frames", "0"],
+        ["--reference-spp", "0"],
+        ["--size", "4x4"],
+        ["--camera", "nowhere"],
+    ] {
+        refuses(&[&base[..], &more].concat(), &[more[0].trim_start_matches("--camera")]);
+    }
+}

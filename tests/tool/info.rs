@@ -1,0 +1,101 @@
+//! `afterimage info`, `scanpath` and `--help`.
+
+use super::rig::{Folder, SMALL, refuses, run, succeeds};
+use std::fs;
+
+#[test]
+fn scanpath_writes_what_run_reads_and_info_explains_both() {
+    let folder = Folder::new();
+    let csv = folder.text("view.csv");
+    succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", &csv]);
+    let again = folder.text("again.csv");
+    succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", &again]);
+    assert_eq!(fs::read(&csv).unwrap(), fs::read(&again).unwrap());
+    let text = succeeds(&["info", &csv]);
+    assert!(text.contains("1920x1080 px") && text.contains("--gaze-map: angle"), "{text}");
+    succeeds(&run("analytic:scroll", &folder.text("out"), &[SMALL, &["--gaze", &csv, "--start", "1"]].concat()));
+    let text = succeeds(&["info", "analytic:lateral"]);
+    assert!(text.contains("640x360") && text.contains("motion convention: as read"), "{text}");
+    refuses(&["scanpath", "--seconds=-1", "--out", &csv], &["-1"]);
+    refuses(&["scanpath", "--out", &format!("{csv}/x.csv")], &["cannot be written"]);
+    assert!(succeeds(&["info", "adapters"]).contains("CPU"));
+}
+
+#[test]
+fn info_says_what_a_scene_holds() {
+    let text = succeeds(&["info", "builtin:cornell"]);
+    for line in [
+        "builtin:cornell",
+        "triangles: 36 (0 of them move)",
+        "textures: 0, 0 bytes",
+        "lights: none",
+        "environment: none",
+        "cameras: 1 ('main')",
+        "animations: 0",
+        "effects that it calls for: emissive-triangles",
+    ] {
+        assert!(text.lines().any(|l| l == line), "'{line}' in\n{text}");
+    }
+    assert!(text.contains("bounds, m: x ") && text.contains("materials that emit light: 1 ("), "{text}");
+
+    // A triangle that a light, a camera and two animations go with.
+    let folder = Folder::new();
+    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let corners = floats(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0, -1.0]);
+    let keys = floats(&[0.0, 1.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    folder.write("data.bin", &[corners, keys].concat());
+    let scene = folder.write(
+        "scene.gltf",
+        br#"{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual", "KHR_xyz"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point"}]}},
+        "buffers": [{"uri": "data.bin", "byteLength": 68}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, -1], "max": [2, 3, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1.5]},
+            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "materials": [{"name": "red\npaint"}, {"name": "unused"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "cameras": [{"type": "perspective", "name": "door", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+        "nodes": [{"mesh": 0}, {"camera": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "animations": [
+            {"name": "walk", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": 1, "output": 2}]},
+            {"channels": [], "samplers": []}],
+        "scenes": [{"nodes": [0, 1, 2]}]}"#,
+    );
+    let text = succeeds(&["info", &scene]);
+    for line in [
+        scene.as_str(),
+        "triangles: 1 (1 of them move)",
+        "bounds, m: x 0 to 2, y 0 to 3, z -1 to 0",
+        "materials: 1 ('red\\npaint')",
+        "lights: 1 point",
+        "materials that emit light: 0",
+        "cameras: 1 ('door')",
+        "animations: 2 ('walk')",
+        "length of the first animation, s: 1.500",
+        "effects that it calls for: metal, punctual-lights, moving-objects",
+    ] {
+        assert!(text.lines().any(|l| l == line), "'{line}' in\n{text}");
+    }
+    assert!(text.contains("warning: ") && text.contains("KHR_xyz"), "{text}");
+
+    refuses(&["info", "builtin:teapot"], &["teapot", "cornell"]);
+    refuses(&["info", "missing.glb"], &["missing.glb"]);
+    refuses(&["info", &folder.write("broken.gltf", b"no scene")], &["broken.gltf"]);
+}
+
+#[test]
+fn help_states_units_and_an_example() {
+    for command in ["demo", "run", "bench", "scanpath", "info"] {
+        let text = succeeds(&[command, "--help"]);
+        assert!(text.contains("Example"), "{command}");
+        assert!(text.contains(&format!("afterimage {command}")), "{command}");
+    }
+    let text = succeeds(&["run", "--help"]);
+    for word in ["degrees", "pixels", "seconds", "[default: 5]", "stops"] {
+        assert!(text.contains(word), "{word}");
+    }
+    assert!(succeeds(&["--version"]).starts_with("afterimage 0."));
+}

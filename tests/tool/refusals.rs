@@ -1,0 +1,64 @@
+//! Bad usage and bad files of `afterimage run`.
+
+use super::rig::{Folder, SMALL, refuses, run};
+use std::fs;
+
+#[test]
+fn bad_usage_is_one_line_and_exit_code_2() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let still = "analytic:still";
+    refuses(&["run", still], &["--out"]);
+    refuses(&["dance"], &["dance"]);
+    refuses(&run(still, &out, &["--method", "none,dlss"]), &["dlss", "wrs"]);
+    refuses(&run(still, &out, &["--method", "wrs,wrs"]), &["twice"]);
+    refuses(&run("analytic:lateral", &out, &["--method", "oracle"]), &["stills"]);
+    refuses(&run("analytic:sponza", &out, &[]), &["sponza", "lateral"]);
+    refuses(&run(still, &out, &["--size", "0x5"]), &["WxH"]);
+    refuses(&run(still, &out, &["--size", "100000x100000"]), &["limit", "--max-megapixels"]);
+    refuses(&run(still, &out, &["--frames", "0"]), &["at least 1"]);
+    refuses(&run(still, &out, &["--frames", "1000000000000"]), &["at most"]);
+    refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
+    refuses(&run(still, &out, &["--fovea", "NaN"]), &["fovea"]);
+    refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);
+    refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
+    refuses(&run(still, &out, &["--fps", "0"]), &["--fps"]);
+    refuses(&run(still, &out, &["--start=-1"]), &["start"]);
+    refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
+    refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
+    refuses(&run(still, &out, &["--gaze", "1,x"]), &["X,Y"]);
+    refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
+    refuses(&run(still, &out, &["--camera", "lateral"]), &["--camera", "scene"]);
+    refuses(&run("analytic:still", &out, &["--source", "raster"]), &["--source", "scene"]);
+    assert!(!folder.path("out").exists(), "nothing was written");
+}
+
+#[test]
+fn bad_files_are_one_line_and_exit_code_2() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let gaze = |csv: &str, words: &[&str]| {
+        let file = folder.write("gaze.csv", csv.as_bytes());
+        refuses(&run("analytic:still", &out, &["--gaze", &file]), words);
+    };
+    gaze("# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,1,1,1\n0.1,abc,1,1\n", &["gaze.csv", "line 4"]);
+    gaze("# screen_px: 100x100\nt_s,x_px,y_px,valid\n0,nan,nan,0\n0.1,nan,nan,0\n", &["gaze.csv", "lost"]);
+    gaze("", &["gaze.csv"]);
+    refuses(&run("analytic:still", &out, &["--gaze", "no/such.csv"]), &["no/such.csv"]);
+    refuses(&run("no/such/folder", &out, &[]), &["no/such/folder", "does not exist"]);
+    fs::create_dir(folder.path("empty")).unwrap();
+    refuses(&run(&folder.text("empty"), &out, &[]), &["empty", ".exr"]);
+    let file = folder.write("broken.png", b"\x89PNG\r\n\x1a\nnot a picture");
+    refuses(&run(&file, &out, &[]), &["broken.png"]);
+    let file = folder.write("broken.exr", b"v/1\x01 and nothing more");
+    refuses(&run(&file, &out, &[]), &["broken.exr"]);
+    // A PNG whose header claims 1,000,000 x 1,000,000 pixels.
+    let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0fB@\0\x0fB@\x08\x02\0\0\0".to_vec();
+    png.extend([0; 64]);
+    let file = folder.write("huge.png", &png);
+    refuses(&run(&file, &out, &[]), &["huge.png"]);
+    assert!(!folder.path("out").exists(), "nothing was written");
+    // A file where the folder should be.
+    let file = folder.write("file", b"");
+    refuses(&run("analytic:still", &format!("{file}/out"), SMALL), &["cannot be written", "--out"]);
+}

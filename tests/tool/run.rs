@@ -1,0 +1,183 @@
+//! `afterimage run`: what it writes, and that it does so again.
+
+use super::rig::{DEBUG, Folder, SMALL, files, read_json, refuses, run, succeeds, tool};
+use serde_json::Value;
+use std::fs;
+use std::process::Command;
+
+#[test]
+fn run_writes_what_the_contract_says() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let more = [SMALL, &["--reference", "--method", "none,wrs", "--debug", DEBUG]].concat();
+    succeeds(&run("analytic:lateral", &out, &more));
+    let out = folder.path("out");
+    assert_eq!(
+        files(&out),
+        ["debug", "frames.csv", "gaze.csv", "none", "reference", "report.json", "sheet.png", "wrs"]
+    );
+    let frames = ["000000.png", "000001.png", "000002.png", "000003.png"];
+    for part in ["none", "wrs", "reference", "debug/wrs/flush", "debug/none/motion"] {
+        assert_eq!(files(&out.join(part)), frames, "{part}");
+    }
+    assert_eq!(image::open(out.join("wrs/000003.png")).unwrap().to_rgb8().dimensions(), (160, 90));
+
+    let report = read_json(&out.join("report.json"));
+    assert_eq!(report["tool"], "afterimage");
+    assert_eq!((&report["frames"], &report["size"][0], &report["fps"]), (&4.into(), &160.into(), &60.0.into()));
+    assert_eq!(report["backend"]["kind"], "cpu");
+    for method in ["none", "wrs"] {
+        let m = &report["methods"][method];
+        for key in ["psnr_db", "ssim", "flicker", "cpu_ms", "bytes_per_pixel", "nonfinite_in", "flushed"] {
+            assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
+        }
+        for key in ["median", "p25", "p75"] {
+            assert!(m["ms"][key].is_number());
+        }
+        for band in ["fovea", "mid", "periphery"] {
+            assert!(m["bands"][band].get("psnr_db").is_some() && m["bands"][band].get("flip").is_some());
+        }
+        assert_eq!(m["nonfinite_out"], 0);
+        for key in ["flip", "weighted_psnr_db", "delta_e94_mean", "delta_e94_p99"] {
+            assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
+        }
+        for key in ["retained_psnr_db", "replaced", "ghost_energy", "ghost_half_frames"] {
+            assert!(m.get(key).is_some(), "{method}.{key}");
+        }
+    }
+    assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 48);
+    // 160 pixels over 70 degrees.
+    assert!((report["flip_pixels_per_degree"].as_f64().unwrap() - 1.994).abs() < 1e-3);
+    let gaze = fs::read_to_string(out.join("gaze.csv")).unwrap();
+    assert_eq!((gaze.lines().next(), gaze.lines().count()), (Some("frame,x_px,y_px"), 5));
+}
+
+#[test]
+fn run_leaves_flip_out_when_told() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "none", "--no-flip"]].concat()));
+    let report = read_json(&folder.path("out").join("report.json"));
+    let none = &report["methods"]["none"];
+    assert!(none["flip"].is_null() && none["bands"]["mid"]["flip"].is_null() && none["psnr_db"].is_number());
+    assert!(report["flip_pixels_per_degree"].is_null());
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
+    let folder = Folder::new();
+    let frames = |name: &str, threads: &str, seed: &str| {
+        let out = folder.text(name);
+        let status = Command::new(env!("CARGO_BIN_EXE_afterimage"))
+            .args(run("analytic:occluder", &out, &[SMALL, &["--seed", seed, "--format", "exr"]].concat()))
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap();
+        assert!(status.status.success());
+        (0..4).map(|i| fs::read(folder.path(name).join(format!("wrs/{i:06}.exr"))).unwrap()).collect::<Vec<_>>()
+    };
+    let one = frames("one", "1", "5");
+    assert_eq!(one, frames("two", "2", "5"));
+    assert_ne!(one, frames("other", "2", "6"));
+}
+
+#[test]
+fn both_backends_write_the_same_bytes() {
+    let folder = Folder::new();
+    let on = |backend| {
+        let out = folder.text(backend);
+        let more = ["--format", "exr", "--wrs-sampler", "a-es", "--backend", backend, "--debug", DEBUG];
+        tool(&run("analytic:occluder", &out, &[SMALL, &more].concat()))
+    };
+    let gpu = on("gpu");
+    if gpu.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        let text = String::from_utf8_lossy(&gpu.stderr).into_owned();
+        assert!(text.contains("mesa-vulkan-drivers"), "{text}");
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(gpu.status.success(), "{}", String::from_utf8_lossy(&gpu.stderr));
+    assert!(on("cpu").status.success());
+    let report = read_json(&folder.path("gpu/report.json"));
+    assert_eq!(report["backend"]["kind"], "gpu");
+    if report["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+        let cpu = read_json(&folder.path("cpu/report.json"));
+        for method in ["none", "wrs"] {
+            let of = |report: &Value, key: &str| report["methods"][method][key].clone();
+            for key in ["flushed", "replaced", "nonfinite_in", "bytes_per_pixel", "persistent_bytes_per_pixel"] {
+                assert_eq!(of(&report, key), of(&cpu, key), "{method}.{key}");
+            }
+            assert!(of(&report, "flushed").is_number());
+            for view in DEBUG.split(',') {
+                for i in 0..4 {
+                    let path = |b: &str| folder.path(b).join(format!("debug/{method}/{view}/{i:06}.png"));
+                    assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, {view}, {i}");
+                }
+            }
+        }
+        for i in 0..4 {
+            let frame = |b: &str| fs::read(folder.path(b).join(format!("wrs/{i:06}.exr"))).unwrap();
+            assert_eq!(frame("cpu"), frame("gpu"), "frame {i}");
+        }
+    }
+}
+
+#[test]
+fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run("analytic:still", &out, SMALL));
+    fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
+    succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2"]));
+    assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
+    // Frames of something else are not touched.
+    fs::create_dir_all(folder.path("foreign/wrs")).unwrap();
+    fs::write(folder.path("foreign/wrs/000007.png"), "photo").unwrap();
+    refuses(&run("analytic:still", &folder.text("foreign"), SMALL), &["frames of something else", "--out"]);
+    assert_eq!(fs::read_to_string(folder.path("foreign/wrs/000007.png")).unwrap(), "photo");
+}
+
+#[test]
+fn scenes_are_rasterised_and_go_through_every_method() {
+    let folder = Folder::new();
+    let mut args =
+        vec!["run", "builtin:cubes", "--source", "raster", "--size", "96x54", "--frames", "3", "--fps", "30"];
+    let out = folder.text("out");
+    args.extend(["--method", "none,taa,wrs,smr", "--backend", "cpu", "--out", &out]);
+    let output = tool(&args);
+    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
+        assert!(String::from_utf8_lossy(&output.stderr).contains("adapter"));
+        eprintln!("SKIPPED: no adapter");
+        return;
+    }
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = read_json(&folder.path("out/report.json"));
+    assert_eq!((&report["fps"], &report["frames"]), (&serde_json::json!(30.0), &serde_json::json!(3)));
+    for method in ["none", "taa", "wrs", "smr"] {
+        assert!(folder.path(&format!("out/{method}/000002.png")).is_file());
+        assert_eq!(report["methods"][method]["nonfinite_out"], 0);
+    }
+    refuses(&["run", "builtin:cubes", "--camera", "left", "--out", &folder.text("none")], &["left", "lateral"]);
+    refuses(&["run", "builtin:none", "--out", &folder.text("none")], &["builtin:none", "courtyard"]);
+    refuses(&["run", "no/such.glb", "--out", &folder.text("none")], &["such.glb"]);
+}
+
+#[test]
+fn a_still_from_a_picture_file_works_without_depth_and_motion() {
+    let folder = Folder::new();
+    let picture = folder.text("still.png");
+    image::RgbImage::from_fn(33, 21, |x, y| image::Rgb([x as u8 * 7, y as u8 * 11, 90])).save(&picture).unwrap();
+    let out = folder.text("out");
+    succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5"]));
+    let report = read_json(&folder.path("out/report.json"));
+    assert!(report["methods"]["oracle"]["bytes_per_pixel"].is_null());
+    assert!(report["methods"]["oracle"]["share_of_oracle"]["psnr"].is_null(), "the eye did not move: nothing to gain");
+    let more = ["--size", "160x90", "--frames", "60", "--method", "none,wrs,oracle"];
+    succeeds(&run("analytic:still", &folder.text("moving eye"), &more));
+    let methods = &read_json(&folder.path("moving eye/report.json"))["methods"];
+    let share = |method: &str| methods[method]["share_of_oracle"]["psnr"].as_f64().unwrap();
+    assert_eq!((share("none"), share("oracle")), (0.0, 1.0));
+    assert!(share("wrs") > 0.0 && share("wrs") < 1.0);
+    assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
+    assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
+}
