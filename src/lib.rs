@@ -51,7 +51,8 @@
 //! - [`gpu`] and [`cpu`]: the two executors of the same passes, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
 //!   they share, one function a formula.
 //! - With the feature `lab`: `scene` (glTF and built-in scenes), `trace` (path tracing), `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
-//!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric` and `report`.
+//!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric`, `report`, and `sweep` (what
+//!   accuracy costs in time).
 //!
 //! Results do not depend on the number of threads: same seed, same frames, same bytes.
 
