@@ -152,7 +152,7 @@ impl WrsArgs {
                 SamplerName::AEs => Sampler::AEs,
             },
             bias: self.wrs_bias,
-            gate: (!self.no_gate).then(|| Gate {
+            gate: (!self.no_gate).then_some(Gate {
                 divisor: self.gate_divisor,
                 offset: self.gate_offset,
                 metric: match self.gate_metric {
