@@ -43,6 +43,8 @@ fn measurement(point: Point, ms: f64, control_ms: f64, flip: f64) -> Measurement
         clip: ClipFacts { size: [64, 36], frames: 40, timed_frames: 32, fps: 60.0, hfov_deg: 70.0 },
         machine: Machine { kind: "cpu".into(), name: "2 threads".into(), driver: "none".into(), clock: "CPU".into() },
         pass_ms: around(ms),
+        frame_ms: vec![0.5 * ms, ms, 2.0 * ms],
+        round: "a".into(),
         control_ms: around(control_ms),
         render_ms: None,
         samples_share: 0.1,
@@ -223,6 +225,12 @@ fn a_switch_is_priced_against_the_point_without_it() {
     let [price] = &table.prices[..] else { panic!("one price: {:?}", table.prices) };
     assert_eq!((price.switch.as_str(), price.method.as_str(), price.pass_ms), ("no-gate", "wrs", [10.0, 6.0]));
     assert_eq!(price.values["flip"], [Some(0.2), Some(0.25)]);
+    // Frames that are dear for both are not what the switch costs: their ratio is the same in all.
+    assert_eq!(price.time_ratio, Quartiles { median: 0.6, p25: 0.6, p75: 0.6 });
+    let mut apart = measurements;
+    apart[1].round = "b".into();
+    let ratio = Table::new(&apart, None, String::new()).prices[0].time_ratio;
+    assert_eq!((ratio.median, ratio.p25, ratio.p75), (0.6, 5.4 / 12.0, 7.2 / 9.0));
 }
 
 #[test]

@@ -21,6 +21,10 @@ pub struct Measurement {
     pub machine: Machine,
     /// Cost of the pass a frame in milliseconds, without the first frames.
     pub pass_ms: Quartiles,
+    /// The same of each frame: of points of one round, frame by frame comparable.
+    pub frame_ms: Vec<f64>,
+    /// Name of the round that it was measured in.
+    pub round: String,
     /// Cost of the control, the method `taa` with its defaults, in the same frames: what the machine's drift is told by.
     pub control_ms: Quartiles,
     /// Cost of tracing the foveated frame; `None` where a simulator foveates, which costs what no renderer would pay.

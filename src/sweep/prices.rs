@@ -2,6 +2,7 @@
 
 use super::metrics::METRICS;
 use super::table::Row;
+use crate::report::clock::Quartiles;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -20,6 +21,9 @@ pub struct Price {
     pub switched: String,
     /// Milliseconds of the pass, without it and with it.
     pub pass_ms: [f64; 2],
+    /// Time of the pass with it over that without it: median and quartiles over the frames, frame by frame where both were measured in one
+    /// round, so that what makes a frame dear for both is not in it; else of the times' own quartiles.
+    pub time_ratio: Quartiles,
     /// Bytes that the pass reads and writes a pixel, without it and with it.
     pub bytes_per_pixel: [Option<u32>; 2],
     /// Bytes kept a pixel, without it and with it.
@@ -53,8 +57,18 @@ fn price(name: &str, value: &str, base: &Row, switched: &Row) -> Price {
         base: base.id.clone(),
         switched: switched.id.clone(),
         pass_ms: [base.pass_ms.median, switched.pass_ms.median],
+        time_ratio: time_ratio(base, switched),
         bytes_per_pixel: [base.bytes_per_pixel, switched.bytes_per_pixel],
         memory_bytes_per_pixel: [base.memory_bytes_per_pixel, switched.memory_bytes_per_pixel],
         values: METRICS.iter().map(|m| (m.key, [value_of(base, m.key), value_of(switched, m.key)])).collect(),
     }
+}
+
+fn time_ratio(base: &Row, switched: &Row) -> Quartiles {
+    let (same_round, pairs) = (base.frames.0 == switched.frames.0, base.frames.1.iter().zip(&switched.frames.1));
+    let ratios: Vec<f64> =
+        pairs.map(|(without, with)| with / without).filter(|r| same_round && r.is_finite()).collect();
+    let (a, b) = (base.pass_ms, switched.pass_ms);
+    let apart = Quartiles { median: b.median / a.median, p25: b.p25 / a.p75, p75: b.p75 / a.p25 };
+    Quartiles::of(&ratios).unwrap_or(apart)
 }

@@ -25,6 +25,9 @@ pub struct Row {
     pub seeds: usize,
     /// Cost of the pass a frame, milliseconds, the machine's drift taken out.
     pub pass_ms: Quartiles,
+    /// Round and cost of each frame of the first seed.
+    #[serde(skip)]
+    pub frames: (String, Vec<f64>),
     /// What its times were multiplied with for that, on average.
     pub drift: f64,
     /// Cost of rendering the foveated frame, milliseconds: traced, or the share of the samples of what the renderer was said to take.
@@ -193,6 +196,7 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
         label: [first.point.method.clone()].into_iter().chain(words).collect::<Vec<_>>().join(", "),
         seeds: group.len(),
         pass_ms,
+        frames: (first.round.clone(), first.frame_ms.clone()),
         drift: mean(&drift),
         render_ms,
         cost_ms: pass_ms.median + render_ms.unwrap_or(0.0),

@@ -114,6 +114,8 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
             clock: "timestamp queries of the device".into(),
         },
         pass_ms: around(ms),
+        frame_ms: vec![ms],
+        round: String::new(),
         control_ms: around(0.55),
         render_ms: None,
         samples_share: share,

@@ -98,14 +98,14 @@ fn switches(table: &Table, input: &str) -> Vec<String> {
 
 fn effect(table: &Table, input: &str, price: &Price) -> String {
     let [without, with] = price.pass_ms;
-    let percent = 100.0 * (with / without - 1.0);
+    let ratio = price.time_ratio;
+    let percent = 100.0 * (ratio.median - 1.0);
     let points = row(table, &price.base).zip(row(table, &price.switched));
     let of = points.map_or(&price.method, |(base, _)| &base.label);
     let name = format!("<b>{}</b> takes the pass of {}", escaped(&price.switch), escaped(of));
     let mut text = format!("{name} from {without:.3} to {with:.3} ms ({percent:+.1} %)");
-    let overlap = |a: &Row, b: &Row| a.pass_ms.p25 <= b.pass_ms.p75 && b.pass_ms.p25 <= a.pass_ms.p75;
-    if points.is_some_and(|(a, b)| overlap(a, b)) {
-        text += ", no more than its times vary (the quartiles overlap),";
+    if ratio.p25 <= 1.0 && ratio.p75 >= 1.0 {
+        text += ", no more than frames vary,";
     }
     let figure = figure(table, input).and_then(|m| Some((m, price.values.get(m.key)?)));
     if let Some((metric, [Some(a), Some(b)])) = figure.map(|(m, v)| (m, *v)) {

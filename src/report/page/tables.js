@@ -51,12 +51,12 @@ function showPrices() {
   const less = (digits) => ({ digits, more_is_better: false });
   const time = (p) => {
     const [before, after] = p.pass_ms;
-    const [a, b] = [p.base, p.switched].map((id) => rows.get(id).pass_ms);
-    const varies = a.p25 <= b.p75 && b.p25 <= a.p75;
-    const how = varies ? "" : verdict(less(3), before, after);
-    const part = before > 0 ? ` ${after >= before ? "+" : "−"}${Math.abs(100 * (after / before - 1)).toFixed(1)} %` : "";
+    const { median, p25, p75 } = p.time_ratio;
+    const how = p75 < 1 ? "better" : p25 > 1 ? "worse" : "";
+    const percent = (ratio) => `${ratio >= 1 ? "+" : "−"}${Math.abs(100 * (ratio - 1)).toFixed(1)}`;
+    const part = ` ${percent(median)} % (${percent(p25)} to ${percent(p75)})`;
     const cell = change(before, after, ms, how);
-    cell.lastChild.textContent = { better: "▲ faster", worse: "▼ slower", same: "same", "": "quartiles overlap" }[how] + part;
+    cell.lastChild.textContent = { better: "▲ faster", worse: "▼ slower", "": "as frames vary" }[how] + part;
     return cell;
   };
   const body = prices.map((p) => el("tr", { "data-row": p.switched },

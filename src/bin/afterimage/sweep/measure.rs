@@ -17,6 +17,7 @@ use afterimage::settings::{Method, Settings};
 use afterimage::source::{FrameSource, ReadLimits};
 use afterimage::sweep::measurement::{ClipFacts, Machine};
 use afterimage::sweep::paste::as_rust;
+use afterimage::sweep::store::id;
 use afterimage::sweep::{Measurement, Options, Store};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -81,6 +82,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
         fps: plan.fps,
         hfov_deg: clip.geometry.hfov_deg(),
     };
+    let round = format!("{} and {} more", id(&batch.subjects[0].point), batch.subjects.len() - 1);
     let pixels = facts.size.iter().map(|&s| f64::from(s)).product::<f64>();
     for (i, (subject, tally)) in batch.subjects.iter().zip(&tallies.of_subjects).enumerate() {
         let figures = tally.report(memory_bytes[i] as f64 / pixels);
@@ -95,6 +97,8 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             clip: facts.clone(),
             machine: machine.clone(),
             pass_ms: timed(&tally.cost_ms()[WARM_UP..]),
+            frame_ms: tally.cost_ms()[WARM_UP..].iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
+            round: round.clone(),
             control_ms: timed(&tallies.control_ms[WARM_UP..]),
             render_ms: Quartiles::of(tallies.render_ms.get(WARM_UP..).unwrap_or_default()),
             samples_share: tallies.samples_share / tallies.frames as f64,
