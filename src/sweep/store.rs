@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 /// Largest file of a measurement that is read, bytes: a hundred times what one takes.
 const MAX_BYTES: u64 = 1 << 20;
 
+/// Pictures of a point: what was shown, where it is wrong, what it should have been.
+pub const PICTURES: [&str; 3] = ["shown", "error", "reference"];
+
 /// A folder with measurements and pictures.
 #[derive(Clone, Debug)]
 pub struct Store {
@@ -59,9 +62,28 @@ impl Store {
     /// Those of the file system.
     pub fn save(&self, measurement: &Measurement) -> io::Result<()> {
         let text = serde_json::to_string_pretty(measurement).map_err(io::Error::other)?;
-        write_whole(&self.root.join("points").join(format!("{}.json", id(&measurement.point))), |file| {
-            file.write_all(text.as_bytes())
-        })
+        write_whole(&self.file(&measurement.point), |file| file.write_all(text.as_bytes()))
+    }
+
+    /// Takes a point with its pictures from another folder, byte by byte.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn adopt(&self, from: &Self, point: &Point) -> io::Result<()> {
+        // The measurement last: what has one is finished.
+        for what in PICTURES {
+            match fs::read(from.picture(point, what)) {
+                Ok(bytes) => write_whole(&self.picture(point, what), |file| file.write_all(&bytes))?,
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let bytes = fs::read(from.file(point))?;
+        write_whole(&self.file(point), |file| file.write_all(&bytes))
+    }
+
+    fn file(&self, point: &Point) -> PathBuf {
+        self.root.join("points").join(format!("{}.json", id(point)))
     }
 
     /// All measurements, in the order of their points.
@@ -92,7 +114,7 @@ impl Store {
         Ok(measurements)
     }
 
-    /// Where a picture of a point goes: `shown` or `error`.
+    /// Where a picture of a point goes: one of [`PICTURES`].
     pub fn picture(&self, point: &Point, what: &str) -> PathBuf {
         self.root.join("pictures").join(format!("{}-{what}.jpg", id(point)))
     }

@@ -15,7 +15,6 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use pick::PickArgs;
 use plan::{PresetName, SweepPlan};
-use std::fs;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
@@ -218,13 +217,7 @@ fn merge(args: &SweepArgs) -> Result<Store, Failure> {
                     first.version
                 )));
             }
-            store.save(&measurement).map_err(|e| Failure::writing(store.root(), e))?;
-            for what in ["shown", "error", "reference"] {
-                let (from, to) = (part.picture(&measurement.point, what), store.picture(&measurement.point, what));
-                if from != to && from.exists() {
-                    fs::copy(&from, &to).map_err(|e| Failure::writing(&to, e))?;
-                }
-            }
+            store.adopt(part, &measurement.point).map_err(|e| Failure::writing(store.root(), e))?;
         }
     }
     Ok(store)

@@ -17,7 +17,7 @@ use afterimage::settings::{Method, Settings};
 use afterimage::source::{FrameSource, ReadLimits};
 use afterimage::sweep::measurement::{ClipFacts, Machine};
 use afterimage::sweep::paste::as_rust;
-use afterimage::sweep::store::id;
+use afterimage::sweep::store::{PICTURES, id};
 use afterimage::sweep::{Measurement, Options, Store};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -180,7 +180,7 @@ fn pictures(
     flip: &Flip,
 ) -> Result<(), Failure> {
     let error = flip.map(reference, shown).map(|v| heat(v).to_array());
-    for (what, picture) in [("shown", shown), ("error", &error), ("reference", reference)] {
+    for (what, picture) in PICTURES.into_iter().zip([shown, &error, reference]) {
         let path = store.picture(&subject.point, what);
         write_jpeg(&path, &to_rgb8(picture), PICTURE_WIDTH).map_err(|e| Failure::writing(&path, e))?;
     }
