@@ -3,6 +3,8 @@
 //! The caller owns device, queue, encoder, every input and output texture, and submission; [`Afterimage`] owns nothing but
 //! history and constants. [`Afterimage::record`] never submits, polls, maps or waits.
 
+#[cfg(feature = "ablation")]
+pub mod ablation;
 mod bindings;
 mod candidates;
 mod chain;

@@ -49,12 +49,32 @@ pub(super) struct GpuLane {
 
 impl GpuLane {
     pub fn new(gpu: &Arc<Headless>, context: ContextDesc, settings: Settings) -> Result<Self, CreateError> {
+        Self::with(gpu, context, settings, |desc| Afterimage::new(&gpu.device, desc))
+    }
+
+    /// With another text of the pass.
+    #[cfg(feature = "ablation")]
+    pub fn from_shader(
+        gpu: &Arc<Headless>,
+        context: ContextDesc,
+        settings: Settings,
+        source: &str,
+    ) -> Result<Self, CreateError> {
+        Self::with(gpu, context, settings, |desc| Afterimage::from_shader(&gpu.device, desc, source))
+    }
+
+    fn with(
+        gpu: &Arc<Headless>,
+        context: ContextDesc,
+        settings: Settings,
+        post: impl FnOnce(&GpuDesc) -> Result<Afterimage, CreateError>,
+    ) -> Result<Self, CreateError> {
         let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
         let texture = |format, usage| gpu.texture(context.size_px, 1, format, usage);
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let output = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         Ok(Self {
-            post: Afterimage::new(&gpu.device, &desc)?,
+            post: post(&desc)?,
             color: texture(TextureFormat::Rgba32Float, read),
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg32Float, read),

@@ -12,6 +12,8 @@ pub use headless::Headless;
 
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use crate::display::ViewGeometry;
+#[cfg(feature = "ablation")]
+use crate::error::SettingsError;
 use crate::error::{CreateError, FrameError};
 use crate::foveation::{Filter, Foveation, Pyramid};
 use crate::frame::{ContextDesc, Gaze, Reset, ViewFrame};
@@ -33,6 +35,9 @@ use std::sync::Arc;
 pub enum LaneKind {
     /// The post-process with these settings; their foveation is replaced by the pipeline's.
     PostProcess(Settings),
+    /// The same with a part of the pass left out, on a device only: to see what the part costs and buys.
+    #[cfg(feature = "ablation")]
+    Without(Settings, &'static crate::gpu::ablation::Part),
     /// Every pixel at the best level of detail it was ever shown at: the upper bound of temporal reuse. Only right for stills.
     Oracle,
 }
@@ -166,6 +171,17 @@ impl Pipeline {
                         Backend::Cpu => Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?))),
                         Backend::Gpu(gpu) => Ok(Executor::Gpu(Box::new(GpuLane::new(gpu, desc, settings)?))),
                     }
+                }
+                #[cfg(feature = "ablation")]
+                LaneKind::Without(settings, part) => {
+                    let Backend::Gpu(gpu) = backend else {
+                        let expected = "a device: parts are left out of shaders".into();
+                        Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })?
+                    };
+                    let settings = Settings { foveation, ..*settings };
+                    let shader = part.shader_without(settings.method);
+                    let desc = ContextDesc::new(geometry.size_px());
+                    Ok(Executor::Gpu(Box::new(GpuLane::from_shader(gpu, desc, settings, &shader)?)))
                 }
             })
             .collect::<Result<_, CreateError>>()?;

@@ -94,20 +94,20 @@ pub fn parse_switch(text: &str) -> (String, Option<String>) {
 }
 
 impl Grid {
-    /// The points for inputs and seeds, each once. `concerns` tells whether an option changes anything for a method, `is_random`
+    /// The points for inputs and seeds, each once. `concerns` tells whether an option with a value changes anything for a method, `is_random`
     /// whether a seed does; what changes nothing is left out.
     pub fn points(
         &self,
         inputs: &[String],
         seeds: u64,
-        concerns: impl Fn(&str, &str) -> bool,
+        concerns: impl Fn(&str, &str, &str) -> bool,
         is_random: impl Fn(&str) -> bool,
     ) -> Vec<Point> {
         let mut points = vec![];
         let mut add = |input: &String, options: &Options| {
             let mut options = options.clone();
             let method = options.remove("method").unwrap_or_else(|| "smr".into());
-            options.retain(|name, _| concerns(name, &method));
+            options.retain(|name, value| concerns(name, value, &method));
             for seed in 0..if is_random(&method) { seeds.max(1) } else { 1 } {
                 let point = Point { input: input.clone(), method: method.clone(), options: options.clone(), seed };
                 if !points.contains(&point) {
@@ -122,7 +122,11 @@ impl Grid {
                 add(input, options);
             }
             for (base, (name, value)) in bases.iter().flat_map(|base| self.switches.iter().map(move |s| (base, s))) {
-                if concerns(name, base.get("method").map_or("smr", String::as_str)) {
+                if concerns(
+                    name,
+                    value.as_deref().unwrap_or_default(),
+                    base.get("method").map_or("smr", String::as_str),
+                ) {
                     let mut options = base.clone();
                     put(&mut options, name, value.as_ref());
                     add(input, &options);

@@ -38,6 +38,9 @@ pub struct Clip {
     pub guided: bool,
     /// Whether FLIP is measured.
     pub flip: bool,
+    /// Share of the pixels that come in broken.
+    #[cfg(feature = "ablation")]
+    pub poison: f32,
     pub backend: Backend,
     /// Why the CPU, if that was not asked for.
     pub backend_note: &'static str,
@@ -123,6 +126,9 @@ impl Clip {
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
+            let full = metric::encode(&frame.color, self.exposure_ev);
+            #[cfg(feature = "ablation")]
+            let frame = poisoned(frame, self.poison, index as u32);
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
             let watch = Stopwatch::start();
@@ -133,7 +139,6 @@ impl Clip {
                 Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
                 None => pipeline.step(index as u64, &frame, gaze)?,
             };
-            let full = metric::encode(&frame.color, self.exposure_ev);
             let reference = references.next(&full, &step.tracked);
             each(&Moment { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
         }
@@ -203,6 +208,21 @@ impl Clip {
         };
         out.sheet("sheet.png", &sheet.draw())
     }
+}
+
+/// A frame with pixels as renderers spoil them.
+#[cfg(feature = "ablation")]
+fn poisoned(mut frame: SourceFrame, share: f32, index: u32) -> SourceFrame {
+    use afterimage::kernel::rng;
+    const POISONS: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -5.0];
+    let width = frame.color.width();
+    for (i, pixel) in frame.color.pixels_mut().iter_mut().enumerate() {
+        let bits = rng::bits((i % width) as u32, (i / width) as u32, index, 0x706f_6973);
+        if rng::unit_draw(bits) < share {
+            *pixel = [POISONS[(bits & 0xff) as usize % POISONS.len()]; 3];
+        }
+    }
+    frame
 }
 
 /// Fills in the shares, where `none` and `oracle` were run.

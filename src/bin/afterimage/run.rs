@@ -10,6 +10,8 @@ use crate::gaze::GazeArgs;
 use crate::output::Output;
 use crate::trace::paths::PathArgs;
 use crate::trace::pattern::{SamplingArgs, SamplingName};
+#[cfg(feature = "ablation")]
+use afterimage::gpu::ablation::{PARTS, Part};
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::tally::MethodReport;
@@ -94,12 +96,35 @@ pub struct RunArgs {
     /// Leave FLIP out, which takes a third of a second a megapixel of one core
     #[arg(long)]
     pub no_flip: bool,
+    #[cfg(feature = "ablation")]
+    #[command(flatten)]
+    pub ablation: AblationArgs,
     /// Pixel decisions to write as images, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugName>,
     /// Largest image that is read, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
+}
+
+/// Measurements of parts of the passes; in builds with the feature `ablation` alone.
+#[cfg(feature = "ablation")]
+#[derive(Args, Clone, Debug)]
+pub struct AblationArgs {
+    /// Part of the passes that is left out; with --backend gpu
+    #[arg(long, value_parser = parse_part, value_name = "PART")]
+    pub without: Option<&'static Part>,
+    /// Share of the pixels that come in as NaN, infinite, huge or negative in every frame, 0 to 1
+    #[arg(long, default_value_t = 0.0, value_name = "SHARE")]
+    pub poison: f32,
+}
+
+#[cfg(feature = "ablation")]
+fn parse_part(name: &str) -> Result<&'static Part, String> {
+    Part::find(name).ok_or_else(|| {
+        let names: Vec<_> = PARTS.iter().map(|p| format!("{} ({})", p.name, p.instead)).collect();
+        format!("expected one of {}", names.join("; "))
+    })
 }
 
 /// What to do without an adapter.

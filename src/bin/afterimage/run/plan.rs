@@ -85,6 +85,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             trust: args.trust,
             guided: args.guided,
             flip: !args.no_flip,
+            #[cfg(feature = "ablation")]
+            poison: args.ablation.poison,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
@@ -123,5 +125,12 @@ pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKi
     };
     let settings = args.wrs.settings(method, args.seed, sampling.is_some());
     settings.validate()?;
+    #[cfg(feature = "ablation")]
+    if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
+        if args.backend != BackendName::Gpu {
+            return Err(Failure::Input("--without: parts are left out of shaders; add --backend gpu".into()));
+        }
+        return Ok(LaneKind::Without(settings, part));
+    }
     Ok(LaneKind::PostProcess(settings))
 }

@@ -27,10 +27,17 @@ const OF_METHODS: &[(&str, &[MethodName])] = &[
     ("depth-relative", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
     ("depth-slope", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
     ("no-flush", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("without", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
 ];
 
-/// Whether an option changes anything for a method.
-pub fn concerns(option: &str, method: &str) -> bool {
+/// Whether an option changes anything for a method; a part that is left out does for the methods that have it.
+pub fn concerns(option: &str, value: &str, method: &str) -> bool {
+    #[cfg(feature = "ablation")]
+    if let ("without", Some(part)) = (option, afterimage::gpu::ablation::Part::find(value)) {
+        return part.methods.iter().any(|m| format!("{m:?}").to_lowercase() == method);
+    }
+    #[cfg(not(feature = "ablation"))]
+    let _ = value;
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, methods)) => methods.iter().any(|m| m.name() == method),
         // Samples are guided by the history of smr.

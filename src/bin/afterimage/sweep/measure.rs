@@ -88,6 +88,8 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
         let figures = tally.report(memory_bytes[i] as f64 / pixels);
         let rust = match clip.lanes[i + 1].1 {
             LaneKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
+            #[cfg(feature = "ablation")]
+            LaneKind::Without(..) => "no settings: nobody should leave this out".into(),
             LaneKind::Oracle => "no settings: the upper bound knows what was shown before".into(),
         };
         let measurement = Measurement {

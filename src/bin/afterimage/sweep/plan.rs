@@ -29,6 +29,9 @@ pub enum PresetName {
     Paper,
     /// Of scenes: error against samples and time
     Convergence,
+    /// Parts of the passes left out, on frames with broken pixels
+    #[cfg(feature = "ablation")]
+    Safeguards,
 }
 
 impl PresetName {
@@ -38,6 +41,8 @@ impl PresetName {
             Self::Full => include_str!("presets/full.toml"),
             Self::Traced => include_str!("presets/traced.toml"),
             Self::Paper => include_str!("presets/paper.toml"),
+            #[cfg(feature = "ablation")]
+            Self::Safeguards => include_str!("presets/safeguards.toml"),
             Self::Convergence => include_str!("presets/convergence.toml"),
         }
     }
