@@ -126,7 +126,21 @@ fn dwa_counters_do_not_set_memory_aside() {
 
 fn cases() -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok());
-    ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, ..ProptestConfig::default() }
+    let rng_seed = proptest::test_runner::RngSeed::Fixed(0x6578_7220);
+    ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, rng_seed, ..ProptestConfig::default() }
+}
+
+/// Panics of the EXR decoder are caught and become errors. Their backtraces would be what takes the most memory here.
+fn silence_the_decoder() {
+    static ONCE: OnceLock<()> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        let report = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !panic.location().is_some_and(|at| at.file().contains("exr-")) {
+                report(panic);
+            }
+        }));
+    });
 }
 
 proptest! {
@@ -137,6 +151,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), any::<u8>()), 1..6),
     ) {
+        silence_the_decoder();
         static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
         let folder = FOLDER.get_or_init(|| tempfile::tempdir().unwrap());
         let (name, bytes) = which.get(samples());
