@@ -143,6 +143,8 @@ pub struct Pipeline {
     /// For guided sampling, if that is done.
     knowledge: Option<Knowledge>,
     is_guided: bool,
+    #[cfg(feature = "ablation")]
+    poison: f32,
 }
 
 impl Pipeline {
@@ -197,6 +199,8 @@ impl Pipeline {
             use_trust: false,
             knowledge: None,
             is_guided: false,
+            #[cfg(feature = "ablation")]
+            poison: 0.0,
         })
     }
 
@@ -204,6 +208,13 @@ impl Pipeline {
     #[must_use]
     pub fn with_trust(self) -> Self {
         Self { use_trust: true, ..self }
+    }
+
+    /// Spoils a share of the foveated pixels of every frame as renderers do: NaN, infinite, huge, negative.
+    #[cfg(feature = "ablation")]
+    #[must_use]
+    pub fn with_poison(self, share: f32) -> Self {
+        Self { poison: share, ..self }
     }
 
     /// Remembers after each frame what the history of the first noisy lane of smr knows.
@@ -290,6 +301,10 @@ impl Pipeline {
         candidate: &Candidate<'_>,
     ) -> Result<(Tracked, Vec<Shown>), FrameError> {
         let tracked = self.tracker.advance(frame, &self.geometry, ecc_deg, candidate.lods);
+        #[cfg(feature = "ablation")]
+        let spoiled = poisoned(candidate.color, self.poison, index as u32);
+        #[cfg(feature = "ablation")]
+        let candidate = &Candidate { color: &spoiled, ..*candidate };
         let facts = ViewFrame {
             geometry: self.geometry,
             gaze: Gaze::At { px: gaze_px },
@@ -334,6 +349,24 @@ impl Pipeline {
             Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
         }
     }
+}
+
+/// A share of the pixels replaced by what renderers' mistakes leave.
+#[cfg(feature = "ablation")]
+fn poisoned(color: &Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3]> {
+    use crate::kernel::rng;
+    const POISONS: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -5.0];
+    /// No purpose of the methods' draws.
+    const PURPOSE: u32 = 0x706f_6973;
+    let mut spoiled = color.clone();
+    let width = color.width();
+    for (i, pixel) in spoiled.pixels_mut().iter_mut().enumerate() {
+        let bits = rng::bits((i % width) as u32, (i / width) as u32, index, PURPOSE);
+        if rng::unit_draw(bits) < share {
+            *pixel = [POISONS[bits as usize % POISONS.len()]; 3];
+        }
+    }
+    spoiled
 }
 
 fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, debug: &[DebugView]) -> Result<Shown, FrameError> {

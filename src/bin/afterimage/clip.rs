@@ -123,12 +123,12 @@ impl Clip {
         if self.guided {
             pipeline = pipeline.with_guidance();
         }
+        #[cfg(feature = "ablation")]
+        let mut pipeline = pipeline.with_poison(self.poison);
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
             let full = metric::encode(&frame.color, self.exposure_ev);
-            #[cfg(feature = "ablation")]
-            let frame = poisoned(frame, self.poison, index as u32);
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
             let watch = Stopwatch::start();
@@ -208,21 +208,6 @@ impl Clip {
         };
         out.sheet("sheet.png", &sheet.draw())
     }
-}
-
-/// A frame with pixels as renderers spoil them.
-#[cfg(feature = "ablation")]
-fn poisoned(mut frame: SourceFrame, share: f32, index: u32) -> SourceFrame {
-    use afterimage::kernel::rng;
-    const POISONS: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -5.0];
-    let width = frame.color.width();
-    for (i, pixel) in frame.color.pixels_mut().iter_mut().enumerate() {
-        let bits = rng::bits((i % width) as u32, (i / width) as u32, index, 0x706f_6973);
-        if rng::unit_draw(bits) < share {
-            *pixel = [POISONS[(bits & 0xff) as usize % POISONS.len()]; 3];
-        }
-    }
-    frame
 }
 
 /// Fills in the shares, where `none` and `oracle` were run.
