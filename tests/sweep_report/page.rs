@@ -45,7 +45,9 @@ fn it_fetches_nothing() {
 fn its_data_is_the_table() {
     for table in [table(Some(12.0)), table(None)] {
         let page = page(&table, &nothing);
-        assert!(island(&page, "table") == serde_json::to_value(&table).unwrap());
+        // Read from text as well: the last digit of a number is the reader's.
+        let same: serde_json::Value = serde_json::from_str(&serde_json::to_string(&table).unwrap()).unwrap();
+        assert!(island(&page, "table") == same);
         for (input, key) in INPUTS.iter().flat_map(|i| ["flip", "psnr_db"].map(|k| (*i, k))) {
             assert!(!island(&page, "equal")[input][key][0]["equal_time"].as_array().unwrap().is_empty());
             assert!(island(&page, "plots")[input][key].as_str().unwrap().starts_with("<svg"));
