@@ -63,7 +63,7 @@ fn an_axis_is_read_as_it_is_typed() {
     assert_eq!(axis("--fovea = 5 , 10").options, ["fovea"]);
     let rates = axis("rate-mid+rate-far=2+4,8+16");
     assert_eq!((&rates.options[1][..], &rates.values[1][1]), ("rate-far", &some("16")));
-    assert_eq!(axis("no-gate=off,on").values, [[None], [some("")]]);
+    assert_eq!(axis("no-gate=-,on").values, [[None], [some("")]]);
     assert_eq!(axis("region-spp=32,16,8;2,2,2").values[1], [some("2,2,2")]);
     assert_eq!(parse_switch("wrs-bias=none"), ("wrs-bias".into(), some("none")));
     assert_eq!(parse_switch("no-gate"), ("no-gate".into(), some("")));
@@ -86,7 +86,7 @@ fn a_grid_has_every_combination_once_and_switches_one_at_a_time() {
         "no-flush" => method != "none",
         _ => true,
     };
-    let points = grid.points(&["clip".into()], 3, concerns, |method| method == "wrs");
+    let points = grid.points(&["clip".into()], 3, concerns, |method, _| method == "wrs");
     // 2 of none, 2 + 2 of smr, and (2 + 2) x 3 seeds of wrs.
     assert_eq!(points.len(), 2 + 4 + 12);
     assert_eq!(points.iter().collect::<BTreeSet<_>>().len(), points.len());

@@ -215,6 +215,33 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     refuses(&tool(&args).output().unwrap(), 2, &["missing.toml", "cannot be read"]);
 }
 
+/// Traced samples are independent and, where every pixel has them, without bias: the squared error of a frame alone falls with
+/// their number, all of it in a frame of uniform samples.
+#[test]
+fn traced_patterns_converge_with_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let small = ["--size", "32x24", "--gaze", "16,12", "--frames", "38", "--backend", "cpu"];
+    let quick = ["--set", "reference-spp=1024", "--set", "no-flip", "--out", out.to_str().unwrap()];
+    succeeds(&[&["sweep", "builtin:cornell", "--preset", "convergence"][..], &small, &quick].concat());
+    let table = table(&out);
+    let all = table["convergences"].as_array().unwrap();
+    assert_eq!(all.len(), 8, "four patterns, with and without history");
+    let slope = |method: &str, pattern: &str| {
+        let of = |c: &&Value| {
+            c["method"] == method && c["label"].as_str().unwrap().ends_with(&format!("sampling {pattern}"))
+        };
+        all.iter().find(of).unwrap()["slope_by_samples"][0].as_f64().unwrap()
+    };
+    for pattern in ["uniform", "regions", "layers", "acuity"] {
+        println!("{pattern}: none {:.2}, smr {:.2}", slope("none", pattern), slope("smr", pattern));
+        assert!(slope("none", pattern) < 0.0, "{pattern}");
+    }
+    assert!(slope("none", "uniform") < slope("none", "layers"), "filled pixels are biased, and bias stays");
+    let text = fs::read_to_string(out.join("sweep.md")).unwrap();
+    assert!(text.contains("sampling uniform: slopes"), "{text}");
+}
+
 #[test]
 fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
     let folder = tempfile::tempdir().unwrap();

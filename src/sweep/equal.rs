@@ -67,7 +67,7 @@ pub fn class(row: &Row) -> Option<u32> {
 /// The oracle, which no renderer can run, is in none.
 pub fn equal(table: &Table, input: &str, metric: &Metric) -> Vec<Section> {
     let value = |row: &Row| row.values.get(metric.key).copied().flatten();
-    let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.point.method != "oracle").collect();
+    let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
     if rows.iter().all(|r| value(r).is_none()) {
         return vec![];
     }

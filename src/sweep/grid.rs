@@ -41,7 +41,7 @@ pub struct Grid {
 const EXPECTED_AXIS: &str = "expected NAME=VALUE,VALUE,... with the name of an option of run, or NAME+NAME=VALUE+VALUE,... for options that vary together";
 
 impl Axis {
-    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=off,on`, or `region-spp=32,16,8;2,2,2`: values that have commas of their
+    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=-,on`, or `region-spp=32,16,8;2,2,2`: values that have commas of their
     /// own are separated by semicolons.
     ///
     /// # Errors
@@ -78,10 +78,10 @@ impl Axis {
     }
 }
 
-/// What is typed for an option: `off` leaves it out, `on` is a flag.
+/// What is typed for an option: `-` leaves it out, `on` is a flag. (`off` is a value: of `foveation`.)
 fn setting(value: &str) -> Option<String> {
     match value {
-        "off" => None,
+        "-" => None,
         "on" => Some(String::new()),
         value => Some(value.to_owned()),
     }
@@ -95,20 +95,20 @@ pub fn parse_switch(text: &str) -> (String, Option<String>) {
 
 impl Grid {
     /// The points for inputs and seeds, each once. `concerns` tells whether an option with a value changes anything for a method, `is_random`
-    /// whether a seed does; what changes nothing is left out.
+    /// whether a seed does with the point's options; what changes nothing is left out.
     pub fn points(
         &self,
         inputs: &[String],
         seeds: u64,
         concerns: impl Fn(&str, &str, &str) -> bool,
-        is_random: impl Fn(&str) -> bool,
+        is_random: impl Fn(&str, &Options) -> bool,
     ) -> Vec<Point> {
         let mut points = vec![];
         let mut add = |input: &String, options: &Options| {
             let mut options = options.clone();
             let method = options.remove("method").unwrap_or_else(|| "smr".into());
             options.retain(|name, value| concerns(name, value, &method));
-            for seed in 0..if is_random(&method) { seeds.max(1) } else { 1 } {
+            for seed in 0..if is_random(&method, &options) { seeds.max(1) } else { 1 } {
                 let point = Point { input: input.clone(), method: method.clone(), options: options.clone(), seed };
                 if !points.contains(&point) {
                     points.push(point);
@@ -171,8 +171,8 @@ impl Point {
     }
 }
 
-/// For a shell.
-fn quoted(word: &str) -> String {
+/// A word as a shell takes it.
+pub fn quoted(word: &str) -> String {
     let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_./:,+=@%".contains(&b);
     if !word.is_empty() && word.bytes().all(plain) {
         word.to_owned()

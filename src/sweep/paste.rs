@@ -1,79 +1,90 @@
 //! Settings as a program has them.
 
 use crate::foveation::Foveation;
-use crate::settings::{Bias, DepthTest, Gate, Settings, Smr};
+use crate::settings::{Bias, Settings, Smr};
 
 /// `Settings { .. }` with what differs from the defaults, ready to paste.
 pub fn as_rust(settings: &Settings) -> String {
-    let plain = Settings::default();
-    let mut fields = vec![];
-    let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));
-    field(settings.method != plain.method, format!("method: Method::{:?}", settings.method));
-    field(settings.foveation != plain.foveation, format!("foveation: {}", foveation(&settings.foveation)));
-    field(settings.smr != plain.smr, format!("smr: {}", smr(&settings.smr)));
-    field(settings.sampler != plain.sampler, format!("sampler: Sampler::{:?}", settings.sampler));
-    field(settings.bias != plain.bias, format!("bias: {}", bias(settings.bias)));
-    field(settings.gate != plain.gate, format!("gate: {}", settings.gate.map_or("None".into(), gate)));
-    let depth_test = settings.depth_test.map_or("None".into(), depth_test);
-    field(settings.depth_test != plain.depth_test, format!("depth_test: {depth_test}"));
-    field(settings.noisy, "noisy: true".into());
-    field(settings.seed != plain.seed, format!("seed: {}", settings.seed));
-    of("Settings", &fields)
+    Literal::new("Settings", settings, &Settings::default())
+        .field("method", |s| format!("Method::{:?}", s.method))
+        .field("foveation", |s| foveation(&s.foveation))
+        .field("smr", |s| smr(&s.smr))
+        .field("sampler", |s| format!("Sampler::{:?}", s.sampler))
+        .field("bias", |s| match s.bias {
+            Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
+            other => format!("Bias::{other:?}"),
+        })
+        .field("gate", |s| match s.gate {
+            None => "None".into(),
+            Some(g) => format!(
+                "Some(Gate {{ metric: GateMetric::{:?}, divisor: {:?}, offset: {:?} }})",
+                g.metric, g.divisor, g.offset
+            ),
+        })
+        .field("depth_test", |s| match s.depth_test {
+            None => "None".into(),
+            Some(t) => format!("Some(DepthTest {{ relative: {:?}, slope_px: {:?} }})", t.relative, t.slope_px),
+        })
+        .field("noisy", |s| s.noisy.to_string())
+        .field("seed", |s| s.seed.to_string())
+        .end()
 }
 
-fn foveation(f: &Foveation) -> String {
-    let plain = Foveation::default();
-    let mut fields = vec![];
-    let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));
-    field(f.filter != plain.filter, format!("filter: Filter::{:?}", f.filter));
-    field(f.fovea_deg != plain.fovea_deg, format!("fovea_deg: {:?}", f.fovea_deg));
-    field(f.mid_deg != plain.mid_deg, format!("mid_deg: {:?}", f.mid_deg));
-    field(f.blend_deg != plain.blend_deg, format!("blend_deg: {:?}", f.blend_deg));
-    field(f.rate_mid != plain.rate_mid, format!("rate_mid: {}", f.rate_mid));
-    field(f.rate_far != plain.rate_far, format!("rate_far: {}", f.rate_far));
-    of("Foveation", &fields)
+fn foveation(foveation: &Foveation) -> String {
+    Literal::new("Foveation", foveation, &Foveation::default())
+        .field("filter", |f| format!("Filter::{:?}", f.filter))
+        .field("fovea_deg", |f| format!("{:?}", f.fovea_deg))
+        .field("mid_deg", |f| format!("{:?}", f.mid_deg))
+        .field("blend_deg", |f| format!("{:?}", f.blend_deg))
+        .field("rate_mid", |f| f.rate_mid.to_string())
+        .field("rate_far", |f| f.rate_far.to_string())
+        .end()
 }
 
-fn smr(s: &Smr) -> String {
-    let plain = Smr::default();
-    let mut fields = vec![];
-    let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));
-    field(s.accumulate != plain.accumulate, format!("accumulate: {:?}", s.accumulate));
-    field(s.tolerance != plain.tolerance, format!("tolerance: {:?}", s.tolerance));
-    field(s.relight != plain.relight, format!("relight: {}", s.relight));
-    of("Smr", &fields)
+fn smr(smr: &Smr) -> String {
+    Literal::new("Smr", smr, &Smr::default())
+        .field("accumulate", |s| format!("{:?}", s.accumulate))
+        .field("tolerance", |s| format!("{:?}", s.tolerance))
+        .field("relight", |s| s.relight.to_string())
+        .end()
 }
 
-fn bias(bias: Bias) -> String {
-    match bias {
-        Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
-        other => format!("Bias::{other:?}"),
+/// The expression of a struct, field by field, without those that are written as the default's are.
+struct Literal<'a, T> {
+    name: &'static str,
+    value: &'a T,
+    plain: &'a T,
+    fields: Vec<String>,
+}
+
+impl<'a, T> Literal<'a, T> {
+    fn new(name: &'static str, value: &'a T, plain: &'a T) -> Self {
+        Self { name, value, plain, fields: vec![] }
     }
-}
 
-fn gate(gate: Gate) -> String {
-    format!(
-        "Some(Gate {{ metric: GateMetric::{:?}, divisor: {:?}, offset: {:?} }})",
-        gate.metric, gate.divisor, gate.offset
-    )
-}
-
-fn depth_test(test: DepthTest) -> String {
-    format!("Some(DepthTest {{ relative: {:?}, slope_px: {:?} }})", test.relative, test.slope_px)
-}
-
-fn of(name: &str, fields: &[String]) -> String {
-    if fields.is_empty() {
-        return format!("{name}::default()");
+    fn field(mut self, name: &str, written: impl Fn(&T) -> String) -> Self {
+        let value = written(self.value);
+        if value != written(self.plain) {
+            self.fields.push(format!("{name}: {value}"));
+        }
+        self
     }
-    format!("{name} {{ {}, ..{name}::default() }}", fields.join(", "))
+
+    fn end(self) -> String {
+        let Self { name, fields, .. } = self;
+        if fields.is_empty() {
+            format!("{name}::default()")
+        } else {
+            format!("{name} {{ {}, ..{name}::default() }}", fields.join(", "))
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::foveation::Filter;
-    use crate::settings::{GateMetric, Method, Sampler};
+    use crate::settings::{DepthTest, Gate, GateMetric, Method, Sampler};
 
     /// The text compiles to the settings it was made of: it is a macro's argument and its own expectation.
     macro_rules! round_trip {

@@ -224,7 +224,7 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
 fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
     let inputs: std::collections::BTreeSet<String> = rows.iter().map(|r| r.point.input.clone()).collect();
     for input in inputs {
-        let runs = |r: &Row| r.point.input == input && r.point.method != "oracle";
+        let runs = |r: &Row| r.point.input == input && r.is_choice();
         let of_input: Vec<usize> = (0..rows.len()).filter(|&i| runs(&rows[i])).collect();
         for metric in METRICS {
             let standings: Vec<Standing> = of_input.iter().map(|&i| rows[i].standing(metric, renderer_ms)).collect();
@@ -238,6 +238,11 @@ fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
 }
 
 impl Row {
+    /// Whether a program could choose it: the oracle is a bound and no method.
+    pub fn is_choice(&self) -> bool {
+        self.point.method != "oracle"
+    }
+
     /// Its place by a figure. Samples count where it is not known what they cost.
     pub fn standing(&self, metric: &super::Metric, renderer_ms: Option<f64>) -> Standing {
         let priced = renderer_ms.is_some() || self.render_ms.is_some();

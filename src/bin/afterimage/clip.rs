@@ -3,6 +3,7 @@
 use crate::args::{DebugName, FormatName};
 use crate::failure::Failure;
 use crate::output::Output;
+use crate::progress;
 use afterimage::DebugView;
 use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
@@ -14,9 +15,7 @@ use afterimage::report::picture::to_rgb8;
 use afterimage::report::sheet::{Column, Sheet};
 use afterimage::report::tally::{MethodReport, Share, Tally};
 use afterimage::source::{FrameSource, SourceFrame};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use std::io::IsTerminal;
 
 /// What is to be done with a clip.
 pub struct Clip {
@@ -76,7 +75,7 @@ impl Clip {
         let mut tallies: Vec<Tally> = self.lanes.iter().map(|_| Tally::default()).collect();
         let mut report = ClipReport { backend: self.backend_in_words(), ..ClipReport::default() };
         let mut foveation_ms = vec![];
-        let bar = progress(self.gaze.len() as u64);
+        let bar = progress::bar(self.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
@@ -227,14 +226,4 @@ fn compare_with_oracle(methods: &mut [(&'static str, MethodReport)]) {
             ssim: share(whole.ssim, none.ssim, oracle.ssim),
         });
     }
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress(frames: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style =
-        ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {eta} left").expect("the template is a constant");
-    ProgressBar::new(frames).with_style(style)
 }

@@ -16,6 +16,7 @@ mod failure;
 mod gaze;
 mod info;
 mod output;
+mod progress;
 mod run;
 mod scanpath;
 mod sweep;

@@ -7,15 +7,17 @@ mod plan;
 mod report;
 
 use crate::failure::Failure;
+use crate::progress;
 use crate::run::RunArgs;
+use afterimage::source::raster::DEFAULT_SIZE;
 use afterimage::source::{ReadLimits, SceneOptions, is_scene};
 use afterimage::sweep::{Measurement, Options, Store, Table};
 use batch::{Batch, batches, concerns, is_random};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use pick::PickArgs;
 use plan::{PresetName, SweepPlan};
-use std::io::IsTerminal;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::PathBuf;
 
 /// Measure a grid of methods and options: error against time, and what each switch costs
@@ -41,7 +43,7 @@ pub struct SweepArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub file: Option<PathBuf>,
     /// An option of run and its values; every combination of the axes is measured. NAME=V,V; options that vary together: N+N=V+V,V+V; values
-    /// with commas: NAME=V;V; flags: NAME=off,on
+    /// with commas: NAME=V;V; flags: NAME=-,on, and - for any option that is left out
     #[arg(long, value_name = "NAME=VALUES")]
     pub axis: Vec<String>,
     /// An option of run that is changed by itself, all else as in the first value of each axis: NAME or NAME=VALUE
@@ -151,8 +153,15 @@ pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
 fn run(args: &SweepArgs) -> Result<Store, Failure> {
     let plan = SweepPlan::new(args)?;
     let common = plan.common.clone();
-    let points = plan.grid.points(&args.input, plan.seeds, concerns, |method| is_random(method, &common));
-    let batches = batches(points, &common, pixels)?;
+    let points = plan
+        .grid
+        .points(&args.input, plan.seeds, concerns, |method, options| is_random(method, options.iter().chain(&common)));
+    // An input is opened once for all points that take it in the same size.
+    let mut known: BTreeMap<(String, Option<[u32; 2]>), u64> = BTreeMap::new();
+    let batches = batches(points, &common, |args| match known.entry((args.input.clone(), args.size)) {
+        Entry::Occupied(known) => Ok(*known.get()),
+        Entry::Vacant(new) => Ok(*new.insert(pixels(args)?)),
+    })?;
     let points: usize = batches.iter().map(|b| b.subjects.len()).sum();
     if points == 0 || points > plan::MAX_POINTS {
         return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", plan::MAX_POINTS)));
@@ -167,7 +176,7 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
         batches.iter().enumerate().filter(|(i, b)| is_ours(*i) && !is_done(b)).map(|(_, b)| b).collect();
     let left: usize = pending.iter().map(|b| b.subjects.len()).sum();
     say!("{points} points, {left} to measure in {} rounds", pending.len());
-    let bar = progress(pending.iter().map(|b| measure::work(b)).sum());
+    let bar = progress::bar(pending.iter().map(|b| measure::work(b)).sum(), "{percent} %");
     for batch in pending {
         measure::measure(batch, &common, &store, &bar)?;
     }
@@ -223,23 +232,13 @@ fn merge(args: &SweepArgs) -> Result<Store, Failure> {
     Ok(store)
 }
 
-/// Pixels of a frame, as far as that can be told before the input is read.
-fn pixels(args: &RunArgs) -> u64 {
+/// Pixels of a frame. What cannot be opened is refused here, before anything is measured; scenes are read when their turn comes.
+fn pixels(args: &RunArgs) -> Result<u64, Failure> {
     let of = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     if is_scene(&args.input) {
-        return args.size.map_or(640 * 360, of);
+        return Ok(of(args.size.unwrap_or(DEFAULT_SIZE)));
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let options = SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
-    // What cannot be opened is refused with its reason when its turn comes.
-    afterimage::source::open(&args.input, &limits, &options).map_or(1, |source| of(source.info().size))
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress(work: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left").expect("the template is a constant");
-    ProgressBar::new(work).with_style(style)
+    Ok(of(afterimage::source::open(&args.input, &limits, &options)?.info().size))
 }

@@ -11,6 +11,7 @@ mod shot;
 use crate::args::parse_size;
 use crate::failure::Failure;
 use crate::output::Output;
+use crate::progress;
 use crate::run::BackendName;
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::sampling::Sampling;
@@ -18,13 +19,11 @@ use afterimage::trace::view::View;
 use clap::{Args, ValueEnum};
 use eyes::{Eyes, below, scanpath_csv};
 use frames::{folders, write};
-use indicatif::{ProgressBar, ProgressStyle};
 use paths::PathArgs;
 use pattern::PatternArgs;
 use report::Report;
 use setup::Setup;
 use shot::Shot;
-use std::io::IsTerminal;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -136,7 +135,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         report.print_effects(&setup);
     }
     let sampling = args.pattern.of.sampling()?;
-    let bar = progress(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]));
+    let bar = progress::bar(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]), "{percent} %");
     let mut previous: Option<View> = None;
     let mut gaze = GazeOfFrames::default();
     for frame in 0..args.frames {
@@ -204,13 +203,4 @@ fn finish(
     out.text("trace.json", &report.json(args, setup, eyes))?;
     report.print_summary(args, setup, eyes);
     Ok(())
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress(rows: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left").expect("the template is a constant");
-    ProgressBar::new(rows).with_style(style)
 }

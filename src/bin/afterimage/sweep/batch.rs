@@ -80,11 +80,6 @@ impl Subject {
         Ok(Self { point, args, method })
     }
 
-    /// Whether the seed changes anything.
-    fn is_random(method: &str, common: &Options) -> bool {
-        method == MethodName::Wrs.name() || common.get("source").is_some_and(|s| s == "trace")
-    }
-
     /// Points of the same key get the same frames.
     fn key(&self) -> (String, Options, Option<u64>) {
         let mut options = self.point.options.clone();
@@ -102,13 +97,17 @@ impl Subject {
     }
 }
 
-/// Whether seeds change anything for a method.
-pub fn is_random(method: &str, common: &Options) -> bool {
-    Subject::is_random(method, common)
+/// Whether seeds change anything for a method with these options.
+pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
+    method == MethodName::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
 }
 
 /// The batches of points, in an order that does not depend on what is done already.
-pub fn batches(points: Vec<Point>, common: &Options, pixels: impl Fn(&RunArgs) -> u64) -> Result<Vec<Batch>, Failure> {
+pub fn batches(
+    points: Vec<Point>,
+    common: &Options,
+    mut pixels: impl FnMut(&RunArgs) -> Result<u64, Failure>,
+) -> Result<Vec<Batch>, Failure> {
     let mut groups: BTreeMap<_, Vec<Subject>> = BTreeMap::new();
     for point in points {
         let subject = Subject::new(point, common)?;
@@ -116,7 +115,7 @@ pub fn batches(points: Vec<Point>, common: &Options, pixels: impl Fn(&RunArgs) -
     }
     let mut batches = vec![];
     for subjects in groups.into_values() {
-        let most = (MAX_PIXELS / pixels(&subjects[0].args).max(1)).clamp(2, MAX_POINTS as u64) as usize;
+        let most = (MAX_PIXELS / pixels(&subjects[0].args)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
         let mut rest = subjects.into_iter().peekable();
         while rest.peek().is_some() {
             batches.push(Batch { subjects: rest.by_ref().take(most).collect() });

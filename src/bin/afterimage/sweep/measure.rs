@@ -1,7 +1,6 @@
 //! A batch of points on the same frames: every frame all methods in turn, so that what the machine does else meets all alike.
 
 use super::batch::{Batch, Subject};
-use crate::args::MethodName;
 use crate::clip::{Clip, Moment};
 use crate::failure::Failure;
 use crate::run::{RunArgs, backend_report, input, plan};
@@ -9,7 +8,7 @@ use afterimage::foveation::Filter;
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::heat;
 use afterimage::metric::{self, Flip};
-use afterimage::pipeline::{Backend, LaneKind, PassClock, copy_ms_per_byte};
+use afterimage::pipeline::{Backend, LaneKind, PassClock, Shown, copy_ms_per_byte};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::picture::{to_rgb8, write_jpeg};
 use afterimage::report::tally::Tally;
@@ -148,8 +147,7 @@ fn play(
         tallies.samples_share += samples_share(moment, clip, &batch.subjects[0]);
         tallies.samples = moment.samples.map(|now| tallies.samples.unwrap_or(0) + now).or(tallies.samples);
         tallies.frames += 1;
-        let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &_))| {
-            let shown: &afterimage::pipeline::Shown = shown;
+        let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &Shown))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
             tally.push(moment.frame, moment.reference, &encoded, shown, moment.step);
             if is_last { pictures(store, subject, moment.reference.encoded(), &encoded, &flip) } else { Ok(()) }
@@ -202,9 +200,4 @@ pub fn machine(backend: &Backend) -> Machine {
 /// The frames of a batch, times its points: what its progress counts.
 pub fn work(batch: &Batch) -> u64 {
     batch.subjects.len() as u64 * batch.subjects[0].args.frames.unwrap_or(300)
-}
-
-/// Whether a point of this method can be chosen for a program.
-pub fn is_for_programs(method: &str) -> bool {
-    method != MethodName::Oracle.name()
 }

@@ -1,6 +1,5 @@
 //! `--budget-ms`, `--target`: the settings that a sweep recommends.
 
-use super::measure::is_for_programs;
 use crate::failure::Failure;
 use afterimage::sweep::{METRICS, Metric, Row, Table};
 use clap::Args;
@@ -53,8 +52,7 @@ pub fn print(args: &PickArgs, table: &Table) -> Result<(), Failure> {
 
 /// Points that may be compared by their time alone: those that shade as much, where it is not known what shading costs.
 fn classes<'a>(table: &'a Table, input: &str) -> Vec<(String, Vec<&'a Row>)> {
-    let rows: Vec<&Row> =
-        table.rows.iter().filter(|r| r.point.input == input && is_for_programs(&r.point.method)).collect();
+    let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
     if rows.iter().all(|r| r.render_ms.is_some()) {
         return vec![(String::new(), rows)];
     }

@@ -90,7 +90,7 @@ impl Value {
     fn typed(&self) -> String {
         match self {
             Self::Flag(true) => "on".into(),
-            Self::Flag(false) => "off".into(),
+            Self::Flag(false) => "-".into(),
             Self::Integer(v) => v.to_string(),
             Self::Number(v) => v.to_string(),
             Self::Text(text) => text.clone(),
@@ -133,29 +133,29 @@ impl SweepPlan {
             ))
         })?;
         self.seeds = file.seeds.unwrap_or(self.seeds);
-        for (option, value) in &file.common {
-            if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.typed())) {
-                self.common.insert(name, value);
-            }
-        }
         for (names, values) in &file.axes {
             let typed: Vec<String> = values.iter().map(Value::typed).collect();
             self.put(
                 Axis::new(names, typed.iter().map(String::as_str)).map_err(|e| wrong(format!("axis {names}: {e}")))?,
             );
         }
+        for (option, value) in &file.common {
+            if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.typed())) {
+                self.common.insert(name, value);
+            }
+        }
         self.grid.switches.extend(file.switches.of.iter().map(|s| parse_switch(s)));
         Ok(())
     }
 
-    /// An axis takes the place of one of the same options.
+    /// An axis takes the place of what was said of its options before.
     fn put(&mut self, axis: Axis) {
         self.grid.axes.retain(|a| !a.options.iter().any(|o| axis.options.contains(o)));
         self.common.retain(|name, _| !axis.options.contains(name));
         self.grid.axes.push(axis);
     }
 
-    fn check(&mut self) -> Result<(), Failure> {
+    fn check(&self) -> Result<(), Failure> {
         for reserved in ["out", "input", "seed", "help"] {
             let is_taken = self.common.contains_key(reserved)
                 || self.grid.axes.iter().any(|a| a.options.iter().any(|o| o == reserved))
@@ -166,9 +166,13 @@ impl SweepPlan {
                 )));
             }
         }
-        // What is an axis is not common.
         let axes = &self.grid.axes;
-        self.common.retain(|name, _| !axes.iter().any(|a| a.options.contains(name)));
+        if let Some(name) = self.common.keys().find(|name| axes.iter().any(|a| a.options.contains(name))) {
+            let text = format!(
+                "{name}: is an axis of the sweep and cannot be the same for all points; expected --axis {name}=VALUE"
+            );
+            return Err(Failure::Input(text));
+        }
         let combinations = axes.iter().map(|a| a.values.len()).try_fold(1_usize, usize::checked_mul);
         if combinations.is_none_or(|n| n.saturating_mul(self.seeds as usize) > MAX_POINTS) {
             return Err(Failure::Input(format!("the axes have more than {MAX_POINTS} combinations; leave some out")));

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use afterimage::report::page::page;
 use afterimage::report::pareto;
 use afterimage::report::picture::write_png;
+use afterimage::sweep::grid::quoted;
 use afterimage::sweep::markdown::markdown;
 use afterimage::sweep::{Measurement, Store, Table};
 use afterimage::whole_file::write_whole;
@@ -35,9 +36,10 @@ fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
     write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
 }
 
-/// The command, as it was typed.
+/// The command, as a shell takes it.
 fn command() -> String {
-    ["afterimage".to_owned()].into_iter().chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
+    let arguments = std::env::args().skip(1).map(|word| quoted(&word));
+    ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// The frontier, and where to look.
