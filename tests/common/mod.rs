@@ -1,6 +1,8 @@
 //! What several test files share: p-values that are printed, and independent seeds.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod hard_case;
+
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
