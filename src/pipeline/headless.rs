@@ -50,16 +50,22 @@ impl Headless {
         let mut adapters = Self::adapters();
         adapters.sort_by_key(rank);
         adapters.retain(|a| software || rank(a) < 3);
-        adapters.into_iter().find_map(|adapter| {
-            let request = adapter.request_device(&wgpu::DeviceDescriptor {
-                label: Some("afterimage"),
-                required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
-                required_limits: limits(&adapter.limits()),
-                ..wgpu::DeviceDescriptor::default()
-            });
-            let (device, queue) = pollster::block_on(request).ok()?;
-            Some(Arc::new(Self { device, queue, info: adapter.get_info() }))
-        })
+        adapters.iter().find_map(|adapter| Self::on(adapter, limits(&adapter.limits())).ok())
+    }
+
+    /// A device of this adapter.
+    ///
+    /// # Errors
+    /// If the adapter gives none with these limits.
+    pub fn on(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Arc<Self>, wgpu::RequestDeviceError> {
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("afterimage"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(request)?;
+        Ok(Arc::new(Self { device, queue, info: adapter.get_info() }))
     }
 
     /// Whether the device is a program on the CPU.

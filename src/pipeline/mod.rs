@@ -5,10 +5,12 @@ mod clock;
 mod gpu_lane;
 mod guide;
 mod headless;
+mod self_test;
 
 pub use bandwidth::copy_ms_per_byte;
 pub use clock::PassClock;
 pub use headless::Headless;
+pub use self_test::{Finding, SelfTestError, self_test};
 
 use crate::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use crate::display::ViewGeometry;

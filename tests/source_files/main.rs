@@ -6,6 +6,8 @@ mod data;
 mod formats;
 mod motion;
 mod mutation;
+#[path = "../common/panics.rs"]
+mod panics;
 
 use afterimage::error::InputError;
 use afterimage::image::Image;

@@ -1,5 +1,6 @@
 //! Damaged files: flipped, inserted and lost bytes must give an error or a picture, never a panic or a flood of memory.
 
+use crate::panics::silence_the_exr_decoder;
 use crate::{picture, vectors};
 use afterimage::source::exr_file::{ColorFormat, FrameToWrite, write};
 use afterimage::source::{ReadLimits, SceneOptions, open};
@@ -130,19 +131,6 @@ fn cases() -> ProptestConfig {
     ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, rng_seed, ..ProptestConfig::default() }
 }
 
-/// Panics of the EXR decoder are caught and become errors. Their backtraces would be what takes the most memory here.
-fn silence_the_decoder() {
-    static ONCE: OnceLock<()> = OnceLock::new();
-    ONCE.get_or_init(|| {
-        let report = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |panic| {
-            if !panic.location().is_some_and(|at| at.file().contains("exr-")) {
-                report(panic);
-            }
-        }));
-    });
-}
-
 proptest! {
     #![proptest_config(cases())]
 
@@ -151,7 +139,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), any::<u8>()), 1..6),
     ) {
-        silence_the_decoder();
+        silence_the_exr_decoder();
         static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
         let folder = FOLDER.get_or_init(|| tempfile::tempdir().unwrap());
         let (name, bytes) = which.get(samples());

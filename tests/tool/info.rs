@@ -19,6 +19,12 @@ fn scanpath_writes_what_run_reads_and_info_explains_both() {
     refuses(&["scanpath", "--seconds=-1", "--out", &csv], &["-1"]);
     refuses(&["scanpath", "--out", &format!("{csv}/x.csv")], &["cannot be written"]);
     assert!(succeeds(&["info", "adapters"]).contains("CPU"));
+    refuses(&["info", "analytic:lateral", "--self-test"], &["--self-test", "expected the word adapters"]);
+    let text = succeeds(&["info", "adapters", "--self-test"]);
+    let required = std::env::var("AFTERIMAGE_GPU").is_ok_and(|v| v == "require");
+    for line in ["bits of NaN through a variable", "two-sum", "smr against its twin"] {
+        assert!(text.contains(line) || !required, "{text}");
+    }
 }
 
 #[test]

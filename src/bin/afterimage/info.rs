@@ -1,10 +1,10 @@
 //! `afterimage info`: what an input holds, or which adapters there are.
 
+mod adapters;
 mod scene;
 
 use crate::failure::Failure;
 use afterimage::error::InputError;
-use afterimage::pipeline::Headless;
 use afterimage::scanpath::{GazeMap, read_csv};
 use afterimage::source::motion_check::{self, Verdict};
 use afterimage::source::{self, FrameSource, ReadLimits, SceneOptions};
@@ -15,7 +15,7 @@ use std::path::Path;
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Examples:\n  afterimage info frames/\n  afterimage info scene.glb\n  afterimage info viewing.csv\n  \
-                  afterimage info adapters"
+                  afterimage info adapters --self-test"
 )]
 pub struct InfoArgs {
     /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a scanpath (.csv), or the word adapters
@@ -23,21 +23,18 @@ pub struct InfoArgs {
     /// Largest image that is read, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
+    /// With adapters: ask each how it computes, and whether the passes give the CPU's bits there (seconds on software devices)
+    #[arg(long)]
+    pub self_test: bool,
 }
 
 /// The subcommand.
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.input == "adapters" {
-        let adapters = Headless::adapters();
-        if adapters.is_empty() {
-            say!("no GPU adapters; software Vulkan (Debian: mesa-vulkan-drivers) gives one");
-        }
-        for adapter in adapters {
-            let info = adapter.get_info();
-            say!("{:?}: {}, {} {}, {:?}", info.device_type, info.name, info.driver, info.driver_info, info.backend);
-        }
-        say!("CPU: {} threads", rayon::current_num_threads());
-        return Ok(());
+        return adapters::adapters_info(args.self_test);
+    }
+    if args.self_test {
+        return Err(Failure::Input(format!("--self-test: expected the word adapters, not {}", args.input)));
     }
     if Path::new(&args.input).extension().is_some_and(|e| e == "csv") {
         return Ok(scanpath_info(&args.input)?);

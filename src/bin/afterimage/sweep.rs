@@ -11,11 +11,12 @@ use crate::progress;
 use crate::run::RunArgs;
 use afterimage::source::raster::DEFAULT_SIZE;
 use afterimage::source::{ReadLimits, SceneOptions, is_scene};
+use afterimage::sweep::plan::MAX_POINTS;
 use afterimage::sweep::{Measurement, Options, Store, Table};
 use batch::{Batch, batches, concerns, is_random};
 use clap::Args;
 use pick::PickArgs;
-use plan::{PresetName, SweepPlan};
+use plan::PresetName;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::PathBuf;
@@ -151,7 +152,7 @@ pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
 
 /// Measures what is not measured yet.
 fn run(args: &SweepArgs) -> Result<Store, Failure> {
-    let plan = SweepPlan::new(args)?;
+    let plan = plan::plan(args)?;
     let common = plan.common.clone();
     let points = plan
         .grid
@@ -163,8 +164,8 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
         Entry::Vacant(new) => Ok(*new.insert(pixels(args)?)),
     })?;
     let points: usize = batches.iter().map(|b| b.subjects.len()).sum();
-    if points == 0 || points > plan::MAX_POINTS {
-        return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", plan::MAX_POINTS)));
+    if points == 0 || points > MAX_POINTS {
+        return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", MAX_POINTS)));
     }
     batches.iter().flat_map(|b| &b.subjects).try_for_each(measure::check)?;
     let store = Store::create(&args.out)?;
