@@ -1,0 +1,93 @@
+//! What happens to a stream: drawn anew for every frame, the same on every machine.
+
+use super::common::Draws;
+
+/// Length of a stretch, in frames.
+const STRETCH: u64 = 100;
+/// Every so many stretches nothing happens but frames.
+const QUIET: u64 = 4;
+
+/// What happens before or in a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Event {
+    pub reset: bool,
+    pub size: Option<[u32; 2]>,
+    pub exposure: Option<f32>,
+    /// Pixels of colour, depth or motion are broken.
+    pub is_broken: bool,
+    /// The eye is not tracked.
+    pub is_lost: bool,
+    /// Depth and motion are given, and what they say is arbitrary.
+    pub moves: bool,
+    /// First frame of a stretch in which nothing else happens.
+    pub begins_quiet: bool,
+}
+
+/// Where a stream is: which picture, where the eye looks, how bright.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    pub frame: u64,
+    pub picture: u32,
+    pub gaze: u32,
+    pub exposure: f32,
+    pub is_quiet: bool,
+}
+
+/// An endless stream.
+pub struct Stream {
+    draws: Draws,
+    full: [u32; 2],
+    moment: Moment,
+}
+
+impl Stream {
+    pub fn new(name: &str, full: [u32; 2]) -> Self {
+        let moment = Moment { frame: 0, picture: 0, gaze: 0, exposure: 1.0, is_quiet: false };
+        Self { draws: Draws::new(name), full, moment }
+    }
+
+    pub fn moment(&self) -> Moment {
+        self.moment
+    }
+
+    pub fn next(&mut self) -> Event {
+        let frame = self.moment.frame;
+        self.moment.frame += 1;
+        let is_quiet = frame / STRETCH % QUIET == QUIET - 1;
+        self.moment.is_quiet = is_quiet;
+        if is_quiet {
+            let begins_quiet = frame.is_multiple_of(STRETCH);
+            // Colours that a factor has moved off halves would not equal what is stored of them.
+            self.moment.exposure = 1.0;
+            return Event { reset: begins_quiet, begins_quiet, ..Event::default() };
+        }
+        let mut one_in = |n: u32| self.draws.bits().is_multiple_of(n);
+        let mut event = Event {
+            reset: one_in(60),
+            is_broken: one_in(8),
+            is_lost: one_in(15),
+            moves: one_in(2),
+            ..Event::default()
+        };
+        let (resizes, steps, looks, changes) = (one_in(90), one_in(40), one_in(12), one_in(25));
+        if resizes {
+            let [w, h] = self.full;
+            let sizes = [[w, h], [w, h], [w - 1, h + 1], [w / 2, h / 2], [w / 3 | 1, h / 3 | 1], [1, 1], [7, 2]];
+            event.size = Some(sizes[self.draws.bits() as usize % sizes.len()]);
+        } else if (frame + 1).is_multiple_of(STRETCH) {
+            event.size = Some(self.full);
+        }
+        if steps {
+            let wanted = 2.0_f32.powi(self.draws.bits() as i32 % 4);
+            event.exposure = Some(wanted / self.moment.exposure);
+            self.moment.exposure = wanted;
+        }
+        if looks {
+            self.moment.gaze = self.draws.bits() % 8;
+        }
+        if changes {
+            self.moment.picture = self.draws.bits() % 3;
+        }
+        event
+    }
+}

@@ -1,0 +1,164 @@
+//! Frames without end, on both executors in lockstep: whatever happens to a stream, nothing drifts, leaks, or shows what is no number.
+//!
+//! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a process of its own.
+#![cfg(feature = "gpu")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod events;
+#[path = "../common/gpu.rs"]
+mod gpu;
+mod pictures;
+#[path = "../common/resident.rs"]
+mod resident;
+#[path = "../gpu_pass/rig.rs"]
+#[allow(dead_code, reason = "the passes' tests use all of it")]
+mod rig;
+mod witness;
+
+use afterimage::frame::{ContextDesc, Exposure, Reset};
+use afterimage::image::Image;
+use afterimage::settings::{Method, Settings};
+use events::{Event, Stream};
+use pictures::Pictures;
+use rig::{Made, Rig, View};
+use witness::Witness;
+
+const SIZE: [u32; 2] = [320, 180];
+
+/// What a soak found.
+#[derive(Debug, Default)]
+struct Found {
+    frames: u64,
+    events: u64,
+    /// Shown components that are NaN or infinite.
+    nonfinite: u64,
+    /// Shown components above the brightest that was presented, by more than halves round.
+    above: u64,
+    /// Fovea pixels of smr that were not the candidate, bit for bit.
+    not_candidate: u64,
+    /// Quiet stretches that were held against the recurrence in f64, and the largest difference as a share of what storage may round.
+    stretches: u64,
+    drift: f64,
+    resident_mib: Vec<f64>,
+}
+
+/// Runs `frames` frames of `size` through both executors, which must agree in every bit.
+fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
+    let settings = Settings { method, foveation: pictures::FOVEATION, ..Settings::default() };
+    let mut rig = Rig::new(ContextDesc::new(size), settings)?;
+    let mut stream = Stream::new(&format!("soak {method:?}"), size);
+    let mut pictures = Pictures::default();
+    let mut witness = Witness::default();
+    let mut found = Found { frames, ..Found::default() };
+    // The brightest that history may hold.
+    let mut brightest = 0.0_f32;
+    for index in 0..frames {
+        let event = stream.next();
+        found.events += u64::from(event != Event::default());
+        if let Some(size) = event.size {
+            rig.resize(size);
+        }
+        let view = pictures.view(rig.context.size_px, &event, stream.moment());
+        let reset = if event.reset { Reset::All } else { Reset::None };
+        rig.exposure = event.exposure.map_or(Exposure::Same, |ratio| Exposure::Changed { ratio });
+        let (made, _) = rig.both(index, reset, std::slice::from_ref(&view));
+        brightest = brightest.max(0.0) * event.exposure.unwrap_or(1.0);
+        brightest = brightest_of(&view).max(if event.reset || event.size.is_some() { 0.0 } else { brightest });
+        check(&mut found, method, &event, &view, &made, brightest);
+        if method == Method::Wrs {
+            witness.step(&mut found, &event, &view, &made.words);
+        }
+        if frames >= 10 && index % (frames / 10) == frames / 20 {
+            found.resident_mib.extend(resident::resident_mib());
+            if frames > 5000 {
+                println!("{method:?}: frame {index}, {found:?}");
+            }
+        }
+    }
+    Some(found)
+}
+
+/// The brightest finite component of the colour.
+fn brightest_of(view: &View) -> f32 {
+    view.color.pixels().iter().flatten().filter(|v| v.is_finite()).fold(0.0, |a, &b| a.max(b))
+}
+
+fn check(found: &mut Found, method: Method, event: &Event, view: &View, made: &Made, brightest: f32) {
+    let color: &Image<[f32; 3]> = &view.color;
+    for value in made.shown.iter().flatten().map(|&bits| f32::from_bits(bits)) {
+        found.nonfinite += u64::from(!value.is_finite());
+        // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to what the candidate is.
+        found.above += u64::from(method == Method::Wrs && value > brightest * 1.002 + 1e-6);
+    }
+    if method == Method::Smr && !event.is_broken {
+        let (width, lods) = (color.width(), view.lod.as_ref());
+        for (i, (shown, given)) in made.shown.iter().zip(color.pixels()).enumerate() {
+            if lods.is_some_and(|l| l.at(i % width, i / width) == 0.0) {
+                found.not_candidate += u64::from(shown.map(f32::from_bits) != *given);
+            }
+        }
+    }
+}
+
+fn assert_sound(method: Method, found: &Found) {
+    println!("{method:?}: {found:?}");
+    assert!(found.events * 20 > found.frames, "too little happened");
+    assert_eq!([found.nonfinite, found.above, found.not_candidate], [0; 3], "{found:?}");
+    if method == Method::Wrs {
+        assert!(found.stretches > 0 && found.drift < 1.0, "{found:?}");
+    }
+    // A leak of a kilobyte a frame would be 8 MiB in 8,000 frames.
+    let late = &found.resident_mib[found.resident_mib.len().min(2)..];
+    if found.frames >= 10_000 && late.len() > 2 {
+        let growth = late[late.len() - 1] - late[0];
+        assert!(growth < 8.0, "{growth} MiB in {} frames: {:?}", found.frames, found.resident_mib);
+    }
+}
+
+fn frames(default: u64) -> u64 {
+    std::env::var("SOAK_FRAMES").map_or(default, |n| n.parse().expect("SOAK_FRAMES is a number of frames"))
+}
+
+#[test]
+fn a_short_stream_is_sound() {
+    for method in [Method::Wrs, Method::Smr] {
+        let Some(found) = soak(method, [64, 36], 600) else { return };
+        assert_sound(method, &found);
+    }
+}
+
+/// The oracles notice what they are there for.
+#[test]
+fn damage_is_noticed() {
+    let view = View::still(Image::filled([4, 3], [0.5; 3]), [1.0, 1.0]);
+    let view = View { lod: Some(Image::filled([4, 3], 0.0)), ..view };
+    let good = Made { shown: vec![[0.5_f32.to_bits(); 3]; 12], words: vec![], stats: Default::default() };
+    let checked = |method, value: f32| {
+        let (mut found, mut made) = (Found::default(), good.clone());
+        made.shown[5][1] = value.to_bits();
+        check(&mut found, method, &Event::default(), &view, &made, 0.5);
+        [found.nonfinite, found.above, found.not_candidate]
+    };
+    assert_eq!(checked(Method::Wrs, 0.5), [0, 0, 0]);
+    assert_eq!(checked(Method::Wrs, f32::NAN), [1, 0, 0]);
+    assert_eq!(checked(Method::Wrs, 0.6), [0, 1, 0]);
+    assert_eq!(checked(Method::Smr, 0.5_f32.next_up()), [0, 0, 1]);
+    assert!(witness::drift(14.1, 14.2, 100) > 1.0 && witness::drift(7.5, 7.5, 1) == 0.0);
+}
+
+#[test]
+#[ignore = "hours: tests/soak.sh"]
+fn wrs_for_100_000_frames() {
+    if let Some(found) = soak(Method::Wrs, SIZE, frames(100_000)) {
+        assert_sound(Method::Wrs, &found);
+    }
+}
+
+#[test]
+#[ignore = "hours: tests/soak.sh"]
+fn smr_for_100_000_frames() {
+    if let Some(found) = soak(Method::Smr, SIZE, frames(100_000)) {
+        assert_sound(Method::Smr, &found);
+    }
+}
