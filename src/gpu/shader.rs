@@ -136,6 +136,10 @@ const MODULES: &[Module] = &[
     module!("trace", "texture"),
     #[cfg(feature = "lab")]
     module!("trace", "traverse"),
+    #[cfg(feature = "view")]
+    module!("view", "view_quality"),
+    #[cfg(feature = "view")]
+    module!("view", "view_screen"),
 ];
 
 /// A shader put together, and where each of its lines comes from.

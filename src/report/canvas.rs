@@ -1,6 +1,6 @@
 //! Drawing on an 8-bit picture: panels, captions, marks.
 
-use embedded_graphics::mono_font::iso_8859_1::{FONT_9X18_BOLD, FONT_10X20};
+use embedded_graphics::mono_font::iso_8859_1::{FONT_7X13, FONT_9X18_BOLD, FONT_10X20};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::*;
@@ -67,6 +67,11 @@ impl Canvas {
     /// The same in bold.
     pub fn heading(&mut self, text: &str, x: u32, y: u32, color: [u8; 3]) {
         self.write(text, x, y, color, &FONT_9X18_BOLD);
+    }
+
+    /// The same in small letters, 7 by 13 pixels.
+    pub fn small(&mut self, text: &str, x: u32, y: u32, color: [u8; 3]) {
+        self.write(text, x, y, color, &FONT_7X13);
     }
 
     fn write(&mut self, text: &str, x: u32, y: u32, color: [u8; 3], font: &MonoFont<'_>) {

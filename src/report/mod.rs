@@ -1,6 +1,6 @@
 //! What a run leaves behind: figures, pictures, and a sheet that shows them at a glance.
 
-mod canvas;
+pub mod canvas;
 pub mod clock;
 pub mod page;
 pub mod pareto;

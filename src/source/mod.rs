@@ -14,7 +14,7 @@ pub mod traced;
 pub use analytic::AnalyticSource;
 pub use limits::ReadLimits;
 pub use raster::RasterSource;
-pub use scene_camera::SceneCamera;
+pub use scene_camera::{SceneCamera, Stance};
 pub use sequence::SequenceSource;
 pub use still::StillSource;
 pub use traced::{TracedSamples, TracedSource};
@@ -22,6 +22,7 @@ pub use traced::{TracedSamples, TracedSource};
 use crate::error::InputError;
 use crate::image::Image;
 use crate::trace::sampling::{FoveatedFrame, Guide};
+use glam::DMat4;
 use std::path::Path;
 
 /// One full-rate frame with what a temporal method needs to know about it.
@@ -89,6 +90,14 @@ pub trait FrameSource {
     ) -> Result<Option<FoveatedFrame>, InputError> {
         Ok(None)
     }
+
+    /// Where the camera stands at playback position `index`; `None` if there is none that can be steered.
+    fn stance(&self, _index: u64) -> Option<Stance> {
+        None
+    }
+
+    /// Takes a camera that can be steered off its path, or with `None` back ([`SceneCamera::steer`]).
+    fn steer(&mut self, _index: u64, _before_and_now: Option<[DMat4; 2]>) {}
 }
 
 /// What a scene needs to be told; files know it themselves.

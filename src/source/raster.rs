@@ -1,12 +1,13 @@
 //! Frames of a scene by the rasteriser.
 
-use super::scene_camera::SceneCamera;
+use super::scene_camera::{SceneCamera, Stance};
 use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
 use crate::error::InputError;
 use crate::pipeline::Headless;
 use crate::raster::{Raster, RasterSettings};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
+use glam::DMat4;
 use std::sync::Arc;
 
 /// Width and height in pixels where nothing else is asked for.
@@ -132,5 +133,13 @@ impl FrameSource for RasterSource {
             cut: index == 0,
             nonfinite,
         })
+    }
+
+    fn stance(&self, index: u64) -> Option<Stance> {
+        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    }
+
+    fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.camera.steer(index, before_and_now);
     }
 }

@@ -20,6 +20,17 @@ const ORBIT_DEG_PER_S: f64 = 15.0;
 pub struct SceneCamera {
     path: CameraPath,
     geometry: ViewGeometry,
+    /// From frame `.0` on in the second of these places, in the first before; `None`: on its path.
+    steered: Option<(u64, [DMat4; 2])>,
+}
+
+/// Where a camera stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stance {
+    /// x right, y up, looking along -z.
+    pub world_from_camera: DMat4,
+    /// How many metres a second are a walk in its scene: through all of it in about ten.
+    pub speed_m_s: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -84,7 +95,7 @@ impl SceneCamera {
                 let file = CameraFile::open(Path::new(file))?;
                 let hfov_deg = hfov_deg.or(file.hfov_deg).unwrap_or(DEFAULT_HFOV_DEG);
                 let geometry = flat(scene, size_px, hfov_deg)?;
-                return Ok(Self { path: CameraPath::File(file), geometry });
+                return Ok(Self { path: CameraPath::File(file), geometry, steered: None });
             }
             Some(name) => {
                 let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
@@ -101,7 +112,7 @@ impl SceneCamera {
             let half = (camera.vfov_deg.to_radians() * 0.5).tan() * aspect;
             2.0 * half.atan().to_degrees()
         };
-        Ok(Self { path, geometry: flat(scene, size_px, hfov_deg.unwrap_or_else(own))? })
+        Ok(Self { path, geometry: flat(scene, size_px, hfov_deg.unwrap_or_else(own))?, steered: None })
     }
 
     /// Pixels and angles of all frames.
@@ -135,8 +146,28 @@ impl SceneCamera {
         }
     }
 
+    /// Takes the camera off its path: from frame `index` on it is at the second of these places (x right, y up, looking along -z), until
+    /// then it was at the first. `None`: back onto its path.
+    pub fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.steered = before_and_now.map(|places| (index, places));
+    }
+
+    /// Whether it is off its path.
+    pub fn is_steered(&self) -> bool {
+        self.steered.is_some()
+    }
+
+    /// Where it stands in frame `index`, at `time_s`.
+    pub fn stance(&self, scene: &Scene, index: u64, time_s: f64) -> Stance {
+        let (radius, _) = middle(scene);
+        Stance { world_from_camera: self.view(scene, index, time_s).world_from_camera(), speed_m_s: radius / 5.0 }
+    }
+
     /// What it sees in frame `index`, at `time_s`.
     pub fn view(&self, scene: &Scene, index: u64, time_s: f64) -> View {
+        if let Some((from, [before, now])) = self.steered {
+            return View::new(self.geometry, if index < from { before } else { now });
+        }
         let world_from_camera = match &self.path {
             CameraPath::Scene(camera) => scene.pose(time_s).cameras[*camera].world_from_camera,
             CameraPath::Framing(camera) => camera.world_from_camera,
@@ -215,6 +246,19 @@ mod tests {
         let far = eye(&orbit, &scene, 0.0).distance(middle);
         assert!(eye(&orbit, &scene, 1.0).distance(eye(&orbit, &scene, 0.0)) > 0.1 * far);
         assert!((eye(&orbit, &scene, 7.0).distance(middle) - far).abs() < 1e-9 * far.max(1.0));
+    }
+
+    #[test]
+    fn a_steered_camera_is_where_it_is_put_and_finds_its_path_again() {
+        let scene = builtin::courtyard();
+        let mut camera = SceneCamera::choose(&scene, Some("orbit"), [64, 36], None).unwrap();
+        let on_path = camera.stance(&scene, 7, 0.5);
+        let [before, now] = [1.0, 2.0].map(|x| DMat4::from_translation(DVec3::X * x));
+        camera.steer(7, Some([before, now]));
+        let places = [6, 7, 8].map(|i| camera.view(&scene, i, 0.5).world_from_camera());
+        assert_eq!((places, camera.is_steered()), ([before, now, now], true));
+        camera.steer(8, None);
+        assert_eq!((camera.stance(&scene, 7, 0.5), camera.is_steered()), (on_path, false));
     }
 
     #[test]

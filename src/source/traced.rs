@@ -1,7 +1,7 @@
 //! Frames of a scene by path tracing.
 
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
-use super::scene_camera::SceneCamera;
+use super::scene_camera::{SceneCamera, Stance};
 use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
 use crate::error::InputError;
 use crate::pipeline::Backend;
@@ -14,6 +14,7 @@ use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
+use glam::DMat4;
 
 /// Samples that are traced at once: their paths' film stays small.
 const STEP: u32 = 1 << 20;
@@ -136,7 +137,7 @@ impl FrameSource for TracedSource {
     }
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        if !self.info.still {
+        if !self.info.still || self.camera.is_steered() {
             return self.full_rate(index);
         }
         let frame = match self.still.take() {
@@ -163,5 +164,13 @@ impl FrameSource for TracedSource {
                 .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
         };
         Ok(Some(plan.trace(&self.tracer, &self.world, &view, index)))
+    }
+
+    fn stance(&self, index: u64) -> Option<Stance> {
+        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    }
+
+    fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.camera.steer(index, before_and_now);
     }
 }

@@ -21,6 +21,8 @@ mod run;
 mod scanpath;
 mod sweep;
 mod trace;
+#[cfg(feature = "view")]
+mod view;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -50,6 +52,9 @@ enum Command {
     Scanpath(scanpath::ScanpathArgs),
     /// Say what an input holds, or which adapters there are
     Info(info::InfoArgs),
+    /// Look at it in a window: the mouse is the gaze
+    #[cfg(feature = "view")]
+    View(Box<view::ViewArgs>),
 }
 
 fn main() -> ExitCode {
@@ -65,6 +70,8 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Scanpath(args) => scanpath::scanpath(&args),
         Command::Info(args) => info::info(&args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::view(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

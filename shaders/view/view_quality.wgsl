@@ -1,0 +1,60 @@
+//#use acuity
+//#use color
+// Squared error of what is shown against the full-rate frame, beyond an eccentricity: a sum and a count for each tile of 64x16 pixels.
+// Its twin on the CPU is src/metric/score.rs: Scorer::push_errors.
+
+// src/bin/afterimage/view/quality.rs: QualityConstants, which explains them
+struct QualityConstants {
+    ray_scale: vec2<f32>,
+    ray_offset: vec2<f32>,
+    gaze_ray: vec4<f32>,
+    size: vec2<u32>,
+    gain: f32,
+    from_deg: f32,
+}
+
+@group(0) @binding(0) var<uniform> frame: QualityConstants;
+@group(0) @binding(1) var full: texture_2d<f32>;
+@group(0) @binding(2) var shown: texture_2d<f32>;
+@group(0) @binding(3) var<storage, read_write> sums: array<vec2<f32>>;
+
+const TILE_ROWS: u32 = 16u;
+
+var<workgroup> columns: array<vec2<f32>, 64>;
+
+// metric::encode. NaN fails the comparison.
+fn encoded(color: vec3<f32>) -> vec3<f32> {
+    let v = color * frame.gain;
+    let c = select(vec3<f32>(0.0), min(v, vec3<f32>(1.0)), v > vec3<f32>(0.0));
+    return vec3<f32>(srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(local_invocation_index) column: u32,
+    @builtin(workgroup_id) tile: vec3<u32>,
+    @builtin(num_workgroups) tiles: vec3<u32>,
+) {
+    let x = tile.x * 64u + column;
+    var sum = vec2<f32>(0.0);
+    for (var row = 0u; row < TILE_ROWS; row++) {
+        let px = vec2<u32>(x, tile.y * TILE_ROWS + row);
+        if px.x < frame.size.x && px.y < frame.size.y {
+            let ray = vec3<f32>(vec2<f32>(px) * frame.ray_scale + frame.ray_offset, 1.0);
+            if eccentricity_deg(ray, frame.gaze_ray.xyz) > frame.from_deg {
+                let error = encoded(textureLoad(shown, px, 0).xyz) - encoded(textureLoad(full, px, 0).xyz);
+                sum += vec2<f32>(dot(error, error) / 3.0, 1.0);
+            }
+        }
+    }
+    columns[column] = sum;
+    for (var half = 32u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if column < half {
+            columns[column] += columns[column + half];
+        }
+    }
+    if column == 0u {
+        sums[tile.y * tiles.x + tile.x] = columns[0];
+    }
+}

@@ -1,0 +1,119 @@
+//#use color
+// What the window shows: one or two pictures with a divider, where the eye looks, and the panel. One invocation a pixel of the window.
+
+// src/bin/afterimage/view/screen.rs: ScreenConstants, which explains them
+struct ScreenConstants {
+    corner: vec2<f32>,
+    size: vec2<f32>,
+    gain: vec2<f32>,
+    ray_scale: vec2<f32>,
+    ray_offset: vec2<f32>,
+    gaze_px: vec2<f32>,
+    gaze_direction: vec4<f32>,
+    ring_cosines: vec2<f32>,
+    panel: vec2<f32>,
+    scale: f32,
+    divider: f32,
+    panel_scale: f32,
+    target_encodes: u32,
+}
+
+@group(0) @binding(0) var<uniform> screen: ScreenConstants;
+@group(0) @binding(1) var left: texture_2d<f32>;
+@group(0) @binding(2) var right: texture_2d<f32>;
+@group(0) @binding(3) var panel: texture_2d<f32>;
+
+const MARK = vec3<f32>(1.0, 0.85, 0.1);
+const BESIDE = vec3<f32>(0.12, 0.12, 0.13);
+// Share of the panel in what is shown where it lies.
+const PANEL_OPACITY: f32 = 0.86;
+// Half width of the divider, and radius of the gaze point, in pixels of the window.
+const DIVIDER_PX: f32 = 1.5;
+const POINT_PX: f32 = 3.0;
+// Most texels a side that are averaged where the picture is made smaller.
+const MOST_TAPS: f32 = 4.0;
+
+@vertex
+fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    // One triangle over everything.
+    return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+fn nearest(picture: texture_2d<f32>, at: vec2<f32>) -> vec3<f32> {
+    return textureLoad(picture, vec2<u32>(clamp(at, vec2<f32>(0.0), screen.size - 1.0)), 0).xyz;
+}
+
+// The picture at a position from its top left corner, in its own pixels.
+fn picture_at(picture: texture_2d<f32>, at: vec2<f32>) -> vec3<f32> {
+    if screen.scale == 1.0 {
+        return nearest(picture, at);
+    }
+    if screen.scale > 1.0 {
+        let from = floor(at - 0.5);
+        let share = at - 0.5 - from;
+        let above = mix(nearest(picture, from), nearest(picture, from + vec2<f32>(1.0, 0.0)), share.x);
+        let below = mix(nearest(picture, from + vec2<f32>(0.0, 1.0)), nearest(picture, from + 1.0), share.x);
+        return mix(above, below, share.y);
+    }
+    let taps = min(ceil(1.0 / screen.scale), MOST_TAPS);
+    let step = 1.0 / (screen.scale * taps);
+    var sum = vec3<f32>(0.0);
+    for (var y = 0.0; y < taps; y += 1.0) {
+        for (var x = 0.0; x < taps; x += 1.0) {
+            sum += nearest(picture, at + (vec2<f32>(x, y) - 0.5 * (taps - 1.0)) * step);
+        }
+    }
+    return sum / (taps * taps);
+}
+
+// sRGB-encoded, limited to what a screen shows. NaN fails the comparison.
+fn encoded(color: vec3<f32>) -> vec3<f32> {
+    let c = select(vec3<f32>(0.0), min(color, vec3<f32>(1.0)), color > vec3<f32>(0.0));
+    return vec3<f32>(srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z));
+}
+
+// A ring around the fovea and a point in its middle.
+fn marked(color: vec3<f32>, at: vec2<f32>) -> vec3<f32> {
+    let offset = (at - 0.5 - screen.gaze_px) * screen.scale;
+    if dot(offset, offset) < POINT_PX * POINT_PX {
+        return MARK;
+    }
+    let ray = vec3<f32>((at - 0.5) * screen.ray_scale + screen.ray_offset, 1.0);
+    let cosine = dot(ray, screen.gaze_direction.xyz) * inverseSqrt(dot(ray, ray));
+    if cosine > screen.ring_cosines.x && cosine < screen.ring_cosines.y {
+        return mix(color, MARK, 0.8);
+    }
+    return color;
+}
+
+fn composed(at_window: vec2<f32>) -> vec3<f32> {
+    let at = (at_window - screen.corner) / screen.scale;
+    var shown = BESIDE;
+    if all(at >= vec2<f32>(0.0)) && all(at < screen.size) {
+        let from_divider = (at.x - screen.divider) * screen.scale;
+        if abs(from_divider) < DIVIDER_PX {
+            shown = vec3<f32>(1.0);
+        } else {
+            if from_divider < 0.0 {
+                shown = encoded(picture_at(left, at) * screen.gain.x);
+            } else {
+                shown = encoded(picture_at(right, at) * screen.gain.y);
+            }
+            shown = marked(shown, at);
+        }
+    }
+    let on_panel = at_window / screen.panel_scale;
+    if all(on_panel < screen.panel) {
+        shown = mix(shown, textureLoad(panel, vec2<u32>(on_panel), 0).xyz, PANEL_OPACITY);
+    }
+    return shown;
+}
+
+@fragment
+fn main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+    let shown = composed(at.xy);
+    if screen.target_encodes == 0u {
+        return vec4<f32>(shown, 1.0);
+    }
+    return vec4<f32>(srgb_decode(shown.x), srgb_decode(shown.y), srgb_decode(shown.z), 1.0);
+}

@@ -1,0 +1,241 @@
+//! From the window's events to the viewer.
+
+use super::feed::Feed;
+use super::layout::Layout;
+use super::setup::Setup;
+use super::state::{Action, action_of};
+use super::viewer::{Outcome, Viewer};
+use crate::failure::Failure;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, KeyEvent, MouseButton, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::keyboard::{ModifiersState, PhysicalKey};
+use winit::window::{CursorIcon, Window, WindowId};
+
+/// Until the input or the window is asked again whether it is ready.
+const PATIENCE: Duration = Duration::from_millis(4);
+/// Until a window that shows nothing new is looked at again.
+const IDLE: Duration = Duration::from_millis(100);
+/// Window sizes where the screen's is not known.
+const SCREEN: [u32; 2] = [1920, 1080];
+
+/// What the left button holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drag {
+    Nothing,
+    Divider,
+    Camera,
+}
+
+/// A viewer and its window.
+pub struct App {
+    /// Until there is a window.
+    start: Option<(Setup, Feed)>,
+    window: Option<Arc<Window>>,
+    viewer: Option<Viewer>,
+    modifiers: ModifiersState,
+    drag: Drag,
+    cursor: [f32; 2],
+    is_occluded: bool,
+    /// Occluded or minimised, when it was last looked at.
+    was_hidden: bool,
+    next: Instant,
+    /// How it ended.
+    pub outcome: Result<(), Failure>,
+}
+
+impl App {
+    pub fn new(setup: Setup, feed: Feed) -> Self {
+        Self {
+            start: Some((setup, feed)),
+            window: None,
+            viewer: None,
+            modifiers: ModifiersState::empty(),
+            drag: Drag::Nothing,
+            cursor: [0.0; 2],
+            is_occluded: false,
+            was_hidden: false,
+            next: Instant::now(),
+            outcome: Ok(()),
+        }
+    }
+
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        let Some((setup, feed)) = self.start.take() else { return Ok(()) };
+        let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
+        let screen = monitor.map(|m| m.size()).filter(|s| s.width > 0 && s.height > 0);
+        let [width, height] = Layout::window(setup.info.size, screen.map_or(SCREEN, |s| [s.width, s.height]));
+        let attributes = Window::default_attributes()
+            .with_title(format!("afterimage: {}", setup.info.name))
+            .with_inner_size(PhysicalSize::new(width, height));
+        let window = events.create_window(attributes);
+        let window = Arc::new(window.map_err(|e| Failure::Work(format!("no window can be opened ({e})")))?);
+        self.viewer = Some(Viewer::new(setup, feed, window.clone())?);
+        self.window = Some(window);
+        Ok(())
+    }
+
+    /// Ends, if the work failed.
+    fn check(&mut self, events: &ActiveEventLoop, result: Result<(), Failure>) {
+        if result.is_err() {
+            if self.outcome.is_ok() {
+                self.outcome = result;
+            }
+            events.exit();
+        }
+    }
+
+    /// Ends as planned.
+    fn end(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        events.exit();
+        self.viewer.as_ref().map_or(Ok(()), Viewer::finish)
+    }
+
+    fn handle(&mut self, events: &ActiveEventLoop, event: WindowEvent) -> Result<(), Failure> {
+        let Some(viewer) = &mut self.viewer else { return Ok(()) };
+        match event {
+            WindowEvent::CloseRequested => return self.end(events),
+            WindowEvent::Resized(size) => viewer.resize([size.width, size.height]),
+            WindowEvent::Occluded(is_occluded) => self.is_occluded = is_occluded,
+            WindowEvent::Focused(false) => {
+                viewer.flight.release();
+                self.drag = Drag::Nothing;
+            }
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.modifiers = modifiers.state();
+                viewer.flight.is_hasty = self.modifiers.shift_key();
+            }
+            WindowEvent::CursorMoved { position, .. } => self.moved([position.x as f32, position.y as f32]),
+            WindowEvent::MouseInput { state, button, .. } => {
+                if let Some(action) = self.pressed(button, state) {
+                    return self.act(events, action);
+                }
+            }
+            WindowEvent::KeyboardInput { event, .. } => {
+                if let Some(action) = self.key(&event) {
+                    return self.act(events, action);
+                }
+            }
+            WindowEvent::RedrawRequested => return self.redraw(events),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, events: &ActiveEventLoop, action: Action) -> Result<(), Failure> {
+        let goes_on = self.viewer.as_mut().map_or(Ok(true), |viewer| viewer.act(action))?;
+        if goes_on { Ok(()) } else { self.end(events) }
+    }
+
+    /// Whether nobody sees the window. One that comes back shows nothing of what it showed.
+    fn is_hidden(&mut self) -> bool {
+        let is_minimized = self.window.as_ref().is_some_and(|window| window.is_minimized() == Some(true));
+        let is_hidden = self.is_occluded || is_minimized;
+        if let (Some(viewer), true, false) = (&mut self.viewer, self.was_hidden, is_hidden) {
+            viewer.begin_anew();
+        }
+        self.was_hidden = is_hidden;
+        is_hidden
+    }
+
+    fn moved(&mut self, at: [f32; 2]) {
+        let by = [0, 1].map(|i| f64::from(at[i] - self.cursor[i]));
+        self.cursor = at;
+        let (Some(viewer), Some(window)) = (&mut self.viewer, &self.window) else { return };
+        match self.drag {
+            Drag::Divider => {
+                viewer.state.divider = viewer.layout().share(at[0]);
+                viewer.is_stale = true;
+            }
+            Drag::Camera => viewer.flight.drag(by),
+            Drag::Nothing => {
+                let over_panel = viewer.panel_click(at);
+                let grips = viewer.state.is_split && viewer.layout().grips(at[0], viewer.state.divider);
+                if over_panel.is_none() {
+                    viewer.pointer = Some(at);
+                }
+                window.set_cursor(match over_panel {
+                    Some(Some(_)) => CursorIcon::Pointer,
+                    Some(None) => CursorIcon::Default,
+                    None if grips => CursorIcon::EwResize,
+                    None => CursorIcon::Crosshair,
+                });
+            }
+        }
+    }
+
+    fn pressed(&mut self, button: MouseButton, state: ElementState) -> Option<Action> {
+        let viewer = self.viewer.as_mut()?;
+        if state == ElementState::Released {
+            self.drag = Drag::Nothing;
+            return None;
+        }
+        match button {
+            MouseButton::Left => {
+                if let Some(action) = viewer.panel_click(self.cursor) {
+                    return action;
+                }
+                if viewer.state.is_split && viewer.layout().grips(self.cursor[0], viewer.state.divider) {
+                    self.drag = Drag::Divider;
+                }
+            }
+            MouseButton::Right if viewer.state.is_flying == Some(true) => self.drag = Drag::Camera,
+            _ => {}
+        }
+        None
+    }
+
+    fn key(&mut self, event: &KeyEvent) -> Option<Action> {
+        let PhysicalKey::Code(code) = event.physical_key else { return None };
+        let is_down = event.state == ElementState::Pressed;
+        let (shift, control) = (self.modifiers.shift_key(), self.modifiers.control_key());
+        let viewer = self.viewer.as_mut()?;
+        if viewer.state.is_flying == Some(true) && viewer.flight.key(code, is_down && !control) {
+            return None;
+        }
+        let action = action_of(code, shift, control)?;
+        let may_repeat = matches!(action, Action::Fovea(_));
+        (is_down && (may_repeat || !event.repeat)).then_some(action)
+    }
+
+    fn redraw(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        let Some(viewer) = &mut self.viewer else { return Ok(()) };
+        let begun = Instant::now();
+        match viewer.frame()? {
+            Outcome::Shown => self.next = begun + viewer.period(),
+            Outcome::Waiting => self.next = Instant::now() + PATIENCE,
+            Outcome::Done => return self.end(events),
+        }
+        Ok(())
+    }
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        let opened = self.open(events);
+        self.check(events, opened);
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        // After an end nothing is begun.
+        if self.outcome.is_ok() && !events.exiting() {
+            let handled = self.handle(events, event);
+            self.check(events, handled);
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let is_hidden = self.is_hidden();
+        let (Some(viewer), Some(window)) = (&self.viewer, &self.window) else { return };
+        let is_idle = is_hidden || (viewer.state.is_frozen && !viewer.is_stale);
+        let now = Instant::now();
+        let next = if is_idle { now + IDLE } else { self.next };
+        if !is_idle && now >= next {
+            window.request_redraw();
+        }
+        events.set_control_flow(ControlFlow::WaitUntil(next.max(now + Duration::from_micros(100))));
+    }
+}

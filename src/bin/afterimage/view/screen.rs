@@ -1,0 +1,189 @@
+//! What the window shows, drawn in one pass: pictures, divider, gaze, panel.
+
+use super::layout::Layout;
+use afterimage::display::ViewGeometry;
+use afterimage::gpu::{Timestamps, shader};
+use afterimage::pipeline::Headless;
+use bytemuck::{Pod, Zeroable};
+use image::RgbImage;
+use wgpu::util::DeviceExt;
+use wgpu::{BindGroupEntry, CommandEncoder, RenderPipeline, Texture, TextureFormat, TextureUsages, TextureView};
+
+/// `ScreenConstants` in `shaders/view/view_screen.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct ScreenConstants {
+    /// Where the picture's top left corner lies in the window, pixels.
+    corner: [f32; 2],
+    /// Of the picture, in its own pixels.
+    size: [f32; 2],
+    /// Factors of the exposure, left and right.
+    gain: [f32; 2],
+    /// Slope of rays per pixel of the picture, and the ray through pixel (0, 0).
+    ray_scale: [f32; 2],
+    ray_offset: [f32; 2],
+    /// Where the eye looks, in pixels of the picture, and in which direction, of length 1.
+    gaze_px: [f32; 2],
+    gaze_direction: [f32; 4],
+    /// Cosines of the eccentricities between which the ring lies; the first above the second: no ring.
+    ring_cosines: [f32; 2],
+    /// Size of the panel in its own pixels; 0: none.
+    panel: [f32; 2],
+    /// Pixels of the window for a pixel of the picture.
+    scale: f32,
+    /// Where the picture is divided, in its own pixels; beyond its width: nowhere.
+    divider: f32,
+    /// Pixels of the window for a pixel of the panel.
+    panel_scale: f32,
+    /// Whether the target takes linear light and encodes it.
+    target_encodes: u32,
+}
+
+/// What is on screen.
+pub struct Scene<'a> {
+    pub layout: &'a Layout,
+    pub geometry: &'a ViewGeometry,
+    /// Left and right picture, and the factors of their exposure.
+    pub pictures: [&'a Texture; 2],
+    pub gain: [f32; 2],
+    /// As a share of the picture's width, if it is divided.
+    pub divider: Option<f32>,
+    /// Where the eye looks, if that is to be marked, and the diameter of its fovea in degrees.
+    pub gaze_px: Option<[f32; 2]>,
+    pub fovea_deg: f32,
+    pub has_panel: bool,
+    /// Pixels of the window for a pixel of the panel.
+    pub panel_scale: u32,
+}
+
+/// Width of the ring around the fovea, pixels of the window.
+const RING_PX: f32 = 1.5;
+
+/// Draws scenes to targets of one format.
+pub struct Screen {
+    pipeline: RenderPipeline,
+    format: TextureFormat,
+    panel: Texture,
+}
+
+impl Screen {
+    pub fn new(gpu: &Headless, format: TextureFormat) -> Self {
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("view screen"),
+            source: wgpu::ShaderSource::Wgsl(shader::compose("view_screen").source.into()),
+        });
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("view screen"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("corner"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: Default::default(),
+                targets: &[Some(format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let panel = panel_texture(gpu, [1, 1]);
+        Self { pipeline, format, panel }
+    }
+
+    /// Takes another panel.
+    pub fn set_panel(&mut self, gpu: &Headless, panel: &RgbImage) {
+        let (width, height) = panel.dimensions();
+        if [self.panel.width(), self.panel.height()] != [width, height] {
+            self.panel = panel_texture(gpu, [width, height]);
+        }
+        let rgba: Vec<u8> = panel.pixels().flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        gpu.queue.write_texture(self.panel.as_image_copy(), &rgba, layout, self.panel.size());
+    }
+
+    /// Draws a scene to `target`.
+    pub fn record(
+        &self,
+        gpu: &Headless,
+        encoder: &mut CommandEncoder,
+        target: &TextureView,
+        scene: &Scene<'_>,
+        timestamps: Option<Timestamps<'_>>,
+    ) {
+        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("view screen"),
+            contents: bytemuck::bytes_of(&self.constants(scene)),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let view = |t: &Texture| t.create_view(&Default::default());
+        let views = [view(scene.pictures[0]), view(scene.pictures[1]), view(&self.panel)];
+        let textures = (1..).zip(&views).map(|(binding, view)| {
+            let resource = wgpu::BindingResource::TextureView(view);
+            BindGroupEntry { binding, resource }
+        });
+        let constants = BindGroupEntry { binding: 0, resource: constants.as_entire_binding() };
+        let entries: Vec<_> = [constants].into_iter().chain(textures).collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view screen"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("view screen"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            timestamp_writes: timestamps.map(|t| wgpu::RenderPassTimestampWrites {
+                query_set: t.queries,
+                beginning_of_pass_write_index: Some(t.begin),
+                end_of_pass_write_index: Some(t.end),
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn constants(&self, scene: &Scene<'_>) -> ScreenConstants {
+        let geometry = scene.geometry;
+        let size = geometry.size_px().map(|s| s as f32);
+        let (ray_scale, ray_offset) = geometry.scale_offset();
+        let gaze_px = scene.gaze_px.unwrap_or([-1e6; 2]);
+        let direction = geometry.ray(gaze_px).normalize();
+        let radius = (0.5 * scene.fovea_deg).to_radians();
+        // As wide everywhere as in the middle of the view.
+        let half_width = 0.5 * RING_PX * ray_scale[0] / scene.layout.scale;
+        let ring = [radius + half_width, (radius - half_width).max(0.0)].map(f32::cos);
+        ScreenConstants {
+            corner: scene.layout.corner,
+            size,
+            gain: scene.gain,
+            ray_scale,
+            ray_offset,
+            gaze_px,
+            gaze_direction: direction.extend(0.0).to_array(),
+            ring_cosines: if scene.gaze_px.is_some() { ring } else { [2.0, -2.0] },
+            panel: if scene.has_panel { [self.panel.width() as f32, self.panel.height() as f32] } else { [0.0; 2] },
+            scale: scene.layout.scale,
+            divider: scene.divider.map_or(2.0 * size[0] + 16.0, |share| share * size[0]),
+            panel_scale: scene.panel_scale.max(1) as f32,
+            // What is not encoded by the target is encoded by the shader, except in targets that are to be linear.
+            target_encodes: u32::from(self.format.is_srgb() || self.format == TextureFormat::Rgba32Float),
+        }
+    }
+}
+
+fn panel_texture(gpu: &Headless, size: [u32; 2]) -> Texture {
+    gpu.texture(size, 1, TextureFormat::Rgba8Unorm, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST)
+}

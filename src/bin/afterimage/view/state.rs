@@ -1,0 +1,319 @@
+//! What is shown, and what keys and clicks change about it. No window, no device.
+
+use crate::args::{DebugName, FilterName};
+use afterimage::settings::Method;
+use clap::ValueEnum;
+use winit::keyboard::KeyCode;
+
+/// What a side of the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Shows {
+    /// The foveated frame alone
+    None,
+    /// Temporal antialiasing of the foveated frame
+    Taa,
+    /// Weighted reservoirs: A-Chao with Bernoulli bias
+    Wrs,
+    /// Scale-matched reservoir
+    Smr,
+    /// The full-rate frame
+    Reference,
+}
+
+impl Shows {
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Taa => "taa",
+            Self::Wrs => "wrs",
+            Self::Smr => "smr",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// What makes it of the foveated frame; `None`: nothing does.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Self::None => Some(Method::None),
+            Self::Taa => Some(Method::Taa),
+            Self::Wrs => Some(Method::Wrs),
+            Self::Smr => Some(Method::Smr),
+            Self::Reference => None,
+        }
+    }
+}
+
+/// A side of the split picture; without a split the left one is all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Left = 0,
+    Right = 1,
+}
+
+impl Side {
+    /// Both.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}
+
+/// What a key or a click asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    Show(Side, Shows),
+    /// The next method.
+    Next(Side),
+    Split,
+    Filter,
+    /// A factor on the fovea's diameter.
+    Fovea(f32),
+    Debug,
+    Freeze,
+    Play,
+    Fly,
+    Mark,
+    Panel,
+    Restart,
+    /// The shown picture at its own resolution, without marks.
+    Picture,
+    /// The window as it is.
+    Window,
+    LoseDevice,
+    Quit,
+}
+
+/// What follows from an action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// The next frame shows it.
+    Nothing,
+    /// Something else is computed: history starts afresh, on both sides, so that they have the same past.
+    Anew,
+    /// Everything from the input's first frame on.
+    Restart,
+    /// A file is to be written.
+    Picture,
+    Window,
+    LoseDevice,
+    Quit,
+}
+
+/// Smallest and largest fovea, degrees.
+const FOVEA_DEG: [f32; 2] = [1.0, 60.0];
+
+/// What is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    pub sides: [Shows; 2],
+    pub is_split: bool,
+    /// Where the picture is divided, as a share of its width.
+    pub divider: f32,
+    pub filter: FilterName,
+    pub fovea_deg: f32,
+    /// Diameter of the middle region, degrees; the fovea never passes it.
+    pub mid_deg: f32,
+    pub debug: Option<DebugName>,
+    pub is_frozen: bool,
+    /// The gaze is the scanpath's, not the mouse's.
+    pub is_playing: bool,
+    /// The camera is steered; `None` if there is none to steer.
+    pub is_flying: Option<bool>,
+    pub is_marked: bool,
+    pub has_panel: bool,
+}
+
+impl State {
+    /// Does what is asked for.
+    pub fn apply(&mut self, action: Action) -> Effect {
+        match action {
+            Action::Show(Side::Right, _) | Action::Next(Side::Right) if !self.is_split => {
+                self.is_split = true;
+                self.apply(action);
+                return Effect::Anew;
+            }
+            Action::Show(side, shows) => {
+                let before = std::mem::replace(&mut self.sides[side as usize], shows);
+                return if before == shows { Effect::Nothing } else { Effect::Anew };
+            }
+            Action::Next(side) => {
+                self.sides[side as usize] = next(self.sides[side as usize]);
+                return Effect::Anew;
+            }
+            Action::Split => {
+                self.is_split = !self.is_split;
+                return Effect::Anew;
+            }
+            Action::Filter => {
+                self.filter = next(self.filter);
+                return Effect::Anew;
+            }
+            Action::Fovea(factor) => {
+                let most = FOVEA_DEG[1].min(self.mid_deg);
+                let fovea_deg = (self.fovea_deg * factor).clamp(FOVEA_DEG[0].min(most), most);
+                if fovea_deg == self.fovea_deg {
+                    return Effect::Nothing;
+                }
+                self.fovea_deg = fovea_deg;
+                return Effect::Anew;
+            }
+            Action::Debug => {
+                self.debug = match self.debug {
+                    None => Some(DebugName::value_variants()[0]),
+                    Some(view) => following(view),
+                };
+            }
+            Action::Freeze => self.is_frozen = !self.is_frozen,
+            Action::Play => self.is_playing = !self.is_playing,
+            Action::Fly => self.is_flying = self.is_flying.map(|flies| !flies),
+            Action::Mark => self.is_marked = !self.is_marked,
+            Action::Panel => self.has_panel = !self.has_panel,
+            Action::Restart => {
+                self.is_frozen = false;
+                return Effect::Restart;
+            }
+            Action::Picture => return Effect::Picture,
+            Action::Window => return Effect::Window,
+            Action::LoseDevice => return Effect::LoseDevice,
+            Action::Quit => return Effect::Quit,
+        }
+        Effect::Nothing
+    }
+
+    /// Sides that are on screen.
+    pub fn shown_sides(&self) -> &'static [Side] {
+        if self.is_split { &Side::BOTH } else { &Side::BOTH[..1] }
+    }
+}
+
+/// The value after this one; `None` after the last.
+fn following<T: ValueEnum + PartialEq + Clone>(value: T) -> Option<T> {
+    let all = T::value_variants();
+    let at = all.iter().position(|v| *v == value)?;
+    all.get(at + 1).cloned()
+}
+
+/// The value after this one; the first after the last.
+fn next<T: ValueEnum + PartialEq + Clone>(value: T) -> T {
+    following(value).unwrap_or_else(|| T::value_variants()[0].clone())
+}
+
+/// Largest step of the fovea's diameter that still looks like a step.
+const FOVEA_STEP: f32 = 1.25;
+
+/// What a key does.
+pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
+    let side = if shift { Side::Right } else { Side::Left };
+    Some(match key {
+        KeyCode::KeyL if control && shift => Action::LoseDevice,
+        _ if control => return None,
+        KeyCode::Digit1 => Action::Show(side, Shows::None),
+        KeyCode::Digit2 => Action::Show(side, Shows::Taa),
+        KeyCode::Digit3 => Action::Show(side, Shows::Wrs),
+        KeyCode::Digit4 => Action::Show(side, Shows::Smr),
+        KeyCode::Digit5 => Action::Show(side, Shows::Reference),
+        KeyCode::Tab => Action::Split,
+        KeyCode::KeyF => Action::Filter,
+        KeyCode::Minus | KeyCode::NumpadSubtract | KeyCode::ArrowDown => Action::Fovea(1.0 / FOVEA_STEP),
+        KeyCode::Equal | KeyCode::NumpadAdd | KeyCode::ArrowUp => Action::Fovea(FOVEA_STEP),
+        KeyCode::KeyV => Action::Debug,
+        KeyCode::Space => Action::Freeze,
+        KeyCode::KeyP => Action::Play,
+        KeyCode::KeyC => Action::Fly,
+        KeyCode::KeyG => Action::Mark,
+        KeyCode::KeyH => Action::Panel,
+        KeyCode::KeyR => Action::Restart,
+        KeyCode::F12 if shift => Action::Window,
+        KeyCode::F12 => Action::Picture,
+        KeyCode::Escape => Action::Quit,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub fn state() -> State {
+        State {
+            sides: [Shows::Smr, Shows::Reference],
+            is_split: false,
+            divider: 0.5,
+            filter: FilterName::Mip,
+            fovea_deg: 5.0,
+            mid_deg: 15.0,
+            debug: None,
+            is_frozen: false,
+            is_playing: false,
+            is_flying: None,
+            is_marked: true,
+            has_panel: true,
+        }
+    }
+
+    fn press(state: &mut State, key: KeyCode, shift: bool) -> Effect {
+        state.apply(action_of(key, shift, false).unwrap())
+    }
+
+    #[test]
+    fn digits_choose_methods_and_only_changes_cost_anything() {
+        let mut state = state();
+        assert_eq!(press(&mut state, KeyCode::Digit4, false), Effect::Nothing, "smr is shown already");
+        assert_eq!(press(&mut state, KeyCode::Digit3, false), Effect::Anew);
+        assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Reference], false));
+        assert_eq!(press(&mut state, KeyCode::Digit2, true), Effect::Anew);
+        assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Taa], true), "what is chosen is shown");
+        assert_eq!(state.shown_sides(), Side::BOTH);
+        press(&mut state, KeyCode::Tab, false);
+        assert_eq!(state.shown_sides(), [Side::Left]);
+    }
+
+    #[test]
+    fn clicks_go_through_all_values_and_round() {
+        let mut state = state();
+        let shown: Vec<_> = (0..5).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
+        assert_eq!(shown, [Shows::Reference, Shows::None, Shows::Taa, Shows::Wrs, Shows::Smr]);
+        let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
+        let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
+        assert_eq!((&views[..6], views[6]), (&expected[..], None));
+        let filters: Vec<_> = (0..4).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
+        assert_eq!(filters, ["gauss", "block", "off", "mip"]);
+    }
+
+    #[test]
+    fn the_fovea_stays_within_its_bounds() {
+        let mut state = state();
+        for _ in 0..40 {
+            press(&mut state, KeyCode::Equal, false);
+        }
+        assert_eq!(state.fovea_deg, 15.0, "never beyond the middle region");
+        assert_eq!(press(&mut state, KeyCode::ArrowUp, false), Effect::Nothing);
+        for _ in 0..40 {
+            press(&mut state, KeyCode::Minus, false);
+        }
+        assert_eq!(state.fovea_deg, 1.0);
+        state.mid_deg = 0.5;
+        press(&mut state, KeyCode::Minus, false);
+        assert_eq!(state.fovea_deg, 0.5);
+    }
+
+    #[test]
+    fn what_cannot_be_steered_does_not_fly_and_a_restart_thaws() {
+        let mut state = state();
+        press(&mut state, KeyCode::KeyC, false);
+        assert_eq!(state.is_flying, None);
+        state.is_flying = Some(false);
+        press(&mut state, KeyCode::KeyC, false);
+        assert_eq!(state.is_flying, Some(true));
+        press(&mut state, KeyCode::Space, false);
+        assert!(state.is_frozen);
+        assert_eq!(press(&mut state, KeyCode::KeyR, false), Effect::Restart);
+        assert!(!state.is_frozen);
+    }
+
+    #[test]
+    fn rare_keys_need_their_modifiers() {
+        assert_eq!(action_of(KeyCode::KeyL, false, false), None);
+        assert_eq!(action_of(KeyCode::KeyL, true, true), Some(Action::LoseDevice));
+        assert_eq!(action_of(KeyCode::KeyP, false, true), None, "Control and a letter are the system's");
+        assert_eq!(action_of(KeyCode::F12, true, false), Some(Action::Window));
+    }
+}
