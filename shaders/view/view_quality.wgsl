@@ -48,10 +48,10 @@ fn main(
         }
     }
     columns[column] = sum;
-    for (var half = 32u; half > 0u; half /= 2u) {
+    for (var count = 32u; count > 0u; count /= 2u) {
         workgroupBarrier();
-        if column < half {
-            columns[column] += columns[column + half];
+        if column < count {
+            columns[column] += columns[column + count];
         }
     }
     if column == 0u {

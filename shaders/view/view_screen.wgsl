@@ -15,7 +15,8 @@ struct ScreenConstants {
     scale: f32,
     divider: f32,
     panel_scale: f32,
-    target_encodes: u32,
+    ring_reach_px: f32,
+    shader_encodes: u32,
 }
 
 @group(0) @binding(0) var<uniform> screen: ScreenConstants;
@@ -23,8 +24,9 @@ struct ScreenConstants {
 @group(0) @binding(2) var right: texture_2d<f32>;
 @group(0) @binding(3) var panel: texture_2d<f32>;
 
-const MARK = vec3<f32>(1.0, 0.85, 0.1);
-const BESIDE = vec3<f32>(0.12, 0.12, 0.13);
+// Linear.
+const MARK = vec3<f32>(1.0, 0.69, 0.01);
+const BESIDE = vec3<f32>(0.013, 0.013, 0.015);
 // Share of the panel in what is shown where it lies.
 const PANEL_OPACITY: f32 = 0.86;
 // Half width of the divider, and radius of the gaze point, in pixels of the window.
@@ -49,34 +51,32 @@ fn picture_at(picture: texture_2d<f32>, at: vec2<f32>) -> vec3<f32> {
         return nearest(picture, at);
     }
     if screen.scale > 1.0 {
-        let from = floor(at - 0.5);
-        let share = at - 0.5 - from;
-        let above = mix(nearest(picture, from), nearest(picture, from + vec2<f32>(1.0, 0.0)), share.x);
-        let below = mix(nearest(picture, from + vec2<f32>(0.0, 1.0)), nearest(picture, from + 1.0), share.x);
+        let base = floor(at - 0.5);
+        let share = at - 0.5 - base;
+        let above = mix(nearest(picture, base), nearest(picture, base + vec2<f32>(1.0, 0.0)), share.x);
+        let below = mix(nearest(picture, base + vec2<f32>(0.0, 1.0)), nearest(picture, base + 1.0), share.x);
         return mix(above, below, share.y);
     }
     let taps = min(ceil(1.0 / screen.scale), MOST_TAPS);
-    let step = 1.0 / (screen.scale * taps);
+    let stride = 1.0 / (screen.scale * taps);
     var sum = vec3<f32>(0.0);
     for (var y = 0.0; y < taps; y += 1.0) {
         for (var x = 0.0; x < taps; x += 1.0) {
-            sum += nearest(picture, at + (vec2<f32>(x, y) - 0.5 * (taps - 1.0)) * step);
+            sum += nearest(picture, at + (vec2<f32>(x, y) - 0.5 * (taps - 1.0)) * stride);
         }
     }
     return sum / (taps * taps);
 }
 
-// sRGB-encoded, limited to what a screen shows. NaN fails the comparison.
-fn encoded(color: vec3<f32>) -> vec3<f32> {
-    let c = select(vec3<f32>(0.0), min(color, vec3<f32>(1.0)), color > vec3<f32>(0.0));
-    return vec3<f32>(srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z));
-}
-
 // A ring around the fovea and a point in its middle.
 fn marked(color: vec3<f32>, at: vec2<f32>) -> vec3<f32> {
     let offset = (at - 0.5 - screen.gaze_px) * screen.scale;
-    if dot(offset, offset) < POINT_PX * POINT_PX {
+    let squared = dot(offset, offset);
+    if squared < POINT_PX * POINT_PX {
         return MARK;
+    }
+    if squared > screen.ring_reach_px * screen.ring_reach_px {
+        return color;
     }
     let ray = vec3<f32>((at - 0.5) * screen.ray_scale + screen.ray_offset, 1.0);
     let cosine = dot(ray, screen.gaze_direction.xyz) * inverseSqrt(dot(ray, ray));
@@ -95,9 +95,9 @@ fn composed(at_window: vec2<f32>) -> vec3<f32> {
             shown = vec3<f32>(1.0);
         } else {
             if from_divider < 0.0 {
-                shown = encoded(picture_at(left, at) * screen.gain.x);
+                shown = picture_at(left, at) * screen.gain.x;
             } else {
-                shown = encoded(picture_at(right, at) * screen.gain.y);
+                shown = picture_at(right, at) * screen.gain.y;
             }
             shown = marked(shown, at);
         }
@@ -111,9 +111,11 @@ fn composed(at_window: vec2<f32>) -> vec3<f32> {
 
 @fragment
 fn main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let shown = composed(at.xy);
-    if screen.target_encodes == 0u {
+    // What a screen shows. NaN fails the comparison.
+    let sum = composed(at.xy);
+    let shown = select(vec3<f32>(0.0), min(sum, vec3<f32>(1.0)), sum > vec3<f32>(0.0));
+    if screen.shader_encodes == 0u {
         return vec4<f32>(shown, 1.0);
     }
-    return vec4<f32>(srgb_decode(shown.x), srgb_decode(shown.y), srgb_decode(shown.z), 1.0);
+    return vec4<f32>(srgb_encode(shown.x), srgb_encode(shown.y), srgb_encode(shown.z), 1.0);
 }

@@ -115,15 +115,14 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let run = setup::run_args(args)?;
     let (feed, info) = Feed::open(&run)?;
     let setup = Setup::new(args, run, info)?;
-    let events = EventLoop::new().map_err(|e| {
-        let text = "there is no display for a window; start it on a desktop, or use afterimage run";
-        Failure::Work(format!("{text} ({})", e.to_string().replace('\n', " ")))
+    let events = EventLoop::new().map_err(|_| {
+        Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
     })?;
     let mut app = App::new(setup, feed);
     events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's events broke off ({e})")))?;
     app.outcome?;
     match device::messages() {
         0 => Ok(()),
-        n => Err(Failure::Work(format!("the device found fault {n} times, as said above; please report it"))),
+        n => Err(Failure::Work(format!("the device found fault {n} times, first as said above; please report it"))),
     }
 }

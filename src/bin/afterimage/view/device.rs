@@ -44,7 +44,10 @@ impl Device {
         let found = adapters.iter().find_map(|a| Some((Headless::on(a, limits(a.limits())).ok()?, a)));
         let (gpu, adapter) = found.ok_or_else(|| Failure::Work(format!("a window cannot be drawn to: {NO_ADAPTER}")))?;
         gpu.device.on_uncaptured_error(Arc::new(|error| {
-            MESSAGES.fetch_add(1, Ordering::Relaxed);
+            // One mistake is followed by many that come of it.
+            if MESSAGES.fetch_add(1, Ordering::Relaxed) > 0 {
+                return;
+            }
             eprintln!("afterimage: the device says: {}", error.to_string().replace('\n', " "));
         }));
         let lost = Arc::new(AtomicBool::new(false));

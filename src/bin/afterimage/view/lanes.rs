@@ -176,7 +176,8 @@ impl Lanes {
             let frame = FoveationFrame { lod, timestamps, ..FoveationFrame::new(&self.full, &self.foveated, &views) };
             self.foveation.record(device, encoder, &frame)
         })?;
-        let fresh = self.index == 0 || (self.cut && !again);
+        // A cut is one when its frame comes, not for as long as it stays.
+        let fresh = self.index == 0 || std::mem::take(&mut self.cut);
         let motion = if again { &self.no_motion } else { &self.motion };
         for (lane, pass) in self.lanes.iter_mut().zip([Pass::Left, Pass::Right]) {
             let Some(post) = &mut lane.post else { continue };

@@ -144,3 +144,62 @@ impl Quality {
         (count > 0.0).then(|| psnr_db(squared / count))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use afterimage::image::Image;
+    use afterimage::kernel::color::srgb_encode;
+    use wgpu::{TextureFormat, TextureUsages};
+
+    const SIZE: [u32; 2] = [150, 70];
+    const GAIN: f32 = 1.5;
+
+    fn pattern(seed: u32) -> Image<[f32; 3]> {
+        let value = |x: u32, y: u32, c: u32| ((x * 31 + y * 57 + c * 91 + seed * 7) % 101) as f32 / 80.0 - 0.1;
+        Image::from_fn(SIZE, |[x, y]| [0, 1, 2].map(|c| value(x, y, c)))
+    }
+
+    /// The formula, pixel by pixel.
+    fn expected_db(full: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, viewing: &Viewing<'_>) -> f64 {
+        let encode = |v: f32| f64::from(srgb_encode((v * GAIN).clamp(0.0, 1.0)));
+        let (mut squared, mut count) = (0.0, 0.0);
+        for (i, (f, s)) in full.pixels().iter().zip(shown.pixels()).enumerate() {
+            let px = [i % SIZE[0] as usize, i / SIZE[0] as usize].map(|v| v as f32);
+            if viewing.geometry.eccentricity_deg(px, viewing.gaze_px) > PERIPHERY_DEG {
+                squared += (0..3).map(|c| (encode(s[c]) - encode(f[c])).powi(2)).sum::<f64>() / 3.0;
+                count += 1.0;
+            }
+        }
+        psnr_db(squared / count).unwrap()
+    }
+
+    #[test]
+    fn the_device_adds_up_what_the_formula_says() {
+        let Some(gpu) = Headless::find(true) else {
+            assert!(std::env::var("AFTERIMAGE_GPU").is_err(), "AFTERIMAGE_GPU is set, but there is no adapter");
+            eprintln!("SKIPPED: no adapter");
+            return;
+        };
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let images = [pattern(0), pattern(1)];
+        let textures = images.each_ref().map(|image| {
+            let texture = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage);
+            gpu.write_rgb(&texture, 0, image);
+            texture
+        });
+        let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+        let viewing = Viewing { geometry: &geometry, gaze_px: [40.0, 30.0], gain: GAIN };
+        let mut quality = Quality::new(&gpu, SIZE);
+        let mut measured = |shown: &Texture| {
+            quality.measure(&gpu, Side::Right, &textures[0], shown, &viewing);
+            gpu.wait();
+            quality.take(&gpu, Side::Right)
+        };
+        let found = measured(&textures[1]).flatten().unwrap();
+        let expected = expected_db(&images[0], &images[1], &viewing);
+        println!("{found} dB, expected {expected}");
+        assert!((found - expected).abs() < 1e-3, "{found} dB, expected {expected}");
+        assert_eq!(measured(&textures[0]), Some(None), "no error has no PSNR");
+    }
+}

@@ -35,8 +35,11 @@ struct ScreenConstants {
     divider: f32,
     /// Pixels of the window for a pixel of the panel.
     panel_scale: f32,
-    /// Whether the target takes linear light and encodes it.
-    target_encodes: u32,
+    /// No part of the ring is farther from the gaze, pixels of the window.
+    ring_reach_px: f32,
+    /// Whether the target takes sRGB-encoded numbers as they are.
+    shader_encodes: u32,
+    unused: [u32; 3],
 }
 
 /// What is on screen.
@@ -178,12 +181,23 @@ impl Screen {
             scale: scene.layout.scale,
             divider: scene.divider.map_or(2.0 * size[0] + 16.0, |share| share * size[0]),
             panel_scale: scene.panel_scale.max(1) as f32,
-            // What is not encoded by the target is encoded by the shader, except in targets that are to be linear.
-            target_encodes: u32::from(self.format.is_srgb() || self.format == TextureFormat::Rgba32Float),
+            ring_reach_px: ring_reach_px(geometry, gaze_px, scene),
+            // Targets of floats stay linear.
+            shader_encodes: u32::from(!self.format.is_srgb() && self.format != TextureFormat::Rgba32Float),
+            unused: [0; 3],
         }
     }
 }
 
+/// How far the ring reaches at most: away from the middle of the view, where a degree has most pixels.
+fn ring_reach_px(geometry: &ViewGeometry, gaze_px: [f32; 2], scene: &Scene<'_>) -> f32 {
+    let ray = geometry.ray(gaze_px);
+    let (eccentricity, radius) = ((ray.length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());
+    let outer = (eccentricity + radius).min(1.5);
+    let (scale, _) = geometry.scale_offset();
+    (outer.tan() - eccentricity.min(1.5).tan()) / scale[0].min(scale[1]) * scene.layout.scale + 8.0
+}
+
 fn panel_texture(gpu: &Headless, size: [u32; 2]) -> Texture {
-    gpu.texture(size, 1, TextureFormat::Rgba8Unorm, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST)
+    gpu.texture(size, 1, TextureFormat::Rgba8UnormSrgb, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST)
 }
