@@ -78,16 +78,27 @@ impl App {
         let renderer = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: None,
-            vertex: wgpu::VertexState { module: &module, entry_point: entries[0], compilation_options: Default::default(), buffers: &[] },
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: entries[0],
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
             primitive: Default::default(),
             depth_stencil: None,
             multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState { module: &module, entry_point: entries[1], compilation_options: Default::default(), targets: &targets }),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: entries[1],
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
             multiview_mask: None,
             cache: None,
         });
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let gaze_buffer = device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false });
+        let gaze_buffer =
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false });
         Ok(Self {
             // The post-process, once.
             post: Afterimage::new(&device, &GpuDesc::new(size, Rgba16Float))?,
@@ -96,7 +107,13 @@ impl App {
             output: texture(&device, size, TextureUsages::STORAGE_BINDING),
             gaze: Gaze::Lost,
             index: 0,
-            window, device, queue, surface, config, renderer, gaze_buffer,
+            window,
+            device,
+            queue,
+            surface,
+            config,
+            renderer,
+            gaze_buffer,
         })
     }
 
@@ -139,7 +156,11 @@ impl App {
         let focal = 0.5 * self.config.width as f32 / (0.5 * HFOV_DEG).to_radians().tan();
         // Radii of 2.5 and 7.5 degrees, as `Settings::foveation` has them.
         let [fovea, mid] = [2.5_f32, 7.5].map(|deg| focal * deg.to_radians().tan());
-        let px = if let Gaze::At { px } = self.gaze { px } else { [0.5 * self.config.width as f32, 0.5 * self.config.height as f32] };
+        let px = if let Gaze::At { px } = self.gaze {
+            px
+        } else {
+            [0.5 * self.config.width as f32, 0.5 * self.config.height as f32]
+        };
         self.queue.write_buffer(&self.gaze_buffer, 0, bytemuck::bytes_of(&[px[0], px[1], fovea, mid]));
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
@@ -149,7 +170,12 @@ impl App {
         let view = self.color.create_view(&Default::default());
         let ops = wgpu::Operations::default();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment { view: &view, depth_slice: None, resolve_target: None, ops })],
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops,
+            })],
             ..Default::default()
         });
         pass.set_pipeline(&self.renderer);
@@ -171,7 +197,9 @@ impl Shell {
         match event {
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(size) => app.resize([size.width, size.height])?,
-            WindowEvent::CursorMoved { position: p, .. } => app.gaze = Gaze::At { px: [p.x as f32 - 0.5, p.y as f32 - 0.5] },
+            WindowEvent::CursorMoved { position: p, .. } => {
+                app.gaze = Gaze::At { px: [p.x as f32 - 0.5, p.y as f32 - 0.5] }
+            }
             WindowEvent::RedrawRequested => {
                 app.frame()?;
                 app.window.request_redraw();

@@ -180,7 +180,10 @@ impl<'a> Viewer<'a> {
         let shown = pixels(self.folder.join("shown.png"));
         let expected = pixels(self.folder.join(format!("run/{method}/{:06}.png", frames - 1)));
         let differ = shown.pixels().zip(expected.pixels()).filter(|(a, b)| a != b).count();
-        say(&format!("{method}: after {frames} frames {differ} of {} pixels differ from those of run", shown.len() / 3));
+        say(&format!(
+            "{method}: after {frames} frames {differ} of {} pixels differ from those of run",
+            shown.len() / 3
+        ));
         assert_eq!((shown.dimensions(), differ), (expected.dimensions(), 0), "{method}");
         frames
     }
@@ -260,7 +263,8 @@ fn playback_shows_what_run_writes_on_both_sides_of_the_divider() {
     run(&[&["run", "--method", "none,smr", "--backend", "gpu", "--no-flip", "--out", "run"], &common[..]].concat());
     let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
     let (shown, sides) = (pixels("shown.png"), ["none", "smr"].map(|m| pixels(&format!("run/{m}/000039.png"))));
-    let differ = shown.enumerate_pixels().filter(|&(x, y, p)| p != sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y));
+    let differ =
+        shown.enumerate_pixels().filter(|&(x, y, p)| p != sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y));
     assert_eq!(differ.count(), 0);
 }
 

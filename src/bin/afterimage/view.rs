@@ -36,11 +36,13 @@ use winit::event_loop::EventLoop;
 
 /// Look at it in a window: the mouse is the gaze
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "Keys: 1 to 5 choose what is shown (none, taa, wrs, smr, reference), with Shift on the right side; Tab splits; the divider is \
+#[command(
+    after_help = "Keys: 1 to 5 choose what is shown (none, taa, wrs, smr, reference), with Shift on the right side; Tab splits; the divider is \
     dragged with the left button. F foveation, - and = fovea, V decisions, P scanpath or mouse, G gaze mark, Space freezes, C steers the camera of \
     a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 writes the picture, Shift F12 the window, H hides the panel, \
     Ctrl Shift L loses the device (to see it come back), Esc quits.\n\n\
-    Example:\n  afterimage view photo.jpg --split none,smr --fovea 8")]
+    Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
+)]
 pub struct ViewArgs {
     /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME, as of run
     pub input: String,

@@ -42,7 +42,8 @@ impl Device {
             ..wgpu::Limits::default()
         };
         let found = adapters.iter().find_map(|a| Some((Headless::on(a, limits(a.limits())).ok()?, a)));
-        let (gpu, adapter) = found.ok_or_else(|| Failure::Work(format!("a window cannot be drawn to: {NO_ADAPTER}")))?;
+        let (gpu, adapter) =
+            found.ok_or_else(|| Failure::Work(format!("a window cannot be drawn to: {NO_ADAPTER}")))?;
         gpu.device.on_uncaptured_error(Arc::new(|error| {
             // One mistake is followed by many that come of it.
             if MESSAGES.fetch_add(1, Ordering::Relaxed) > 0 {

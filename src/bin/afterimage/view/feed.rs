@@ -156,7 +156,8 @@ mod tests {
         for size in [[9, 6], [6, 4], [4, 3], [1, 1]] {
             let small = averaged(&color, size);
             let mean = |image: &Image<[f32; 3]>| {
-                let sum = image.pixels().iter().fold([0.0; 3], |s: [f64; 3], c| [0, 1, 2].map(|i| s[i] + f64::from(c[i])));
+                let sum =
+                    image.pixels().iter().fold([0.0; 3], |s: [f64; 3], c| [0, 1, 2].map(|i| s[i] + f64::from(c[i])));
                 sum.map(|s| s / image.pixels().len() as f64)
             };
             let (found, expected) = (mean(&small), mean(&color));

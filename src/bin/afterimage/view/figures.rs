@@ -87,7 +87,8 @@ impl Figures {
     /// Draws the panel.
     pub fn draw(&mut self, state: &State, lines: Vec<String>) {
         self.lines = lines;
-        self.panel = panel::draw(state, &Facts { lines: &self.lines, graphs: &[&self.milliseconds, &self.periphery_db] });
+        self.panel =
+            panel::draw(state, &Facts { lines: &self.lines, graphs: &[&self.milliseconds, &self.periphery_db] });
         self.drawn = Some(Instant::now());
     }
 }

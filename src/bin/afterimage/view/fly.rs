@@ -75,7 +75,10 @@ mod tests {
         let mut flight = Flight::default();
         assert!(flight.key(KeyCode::KeyW, true) && flight.key(KeyCode::KeyW, true) && !flight.key(KeyCode::KeyV, true));
         let there = flight.step(DMat4::IDENTITY, 0.05, 2.0);
-        assert!((there.w_axis.truncate() - DVec3::new(0.0, 0.0, -0.1)).length() < 1e-12, "held once, however often told");
+        assert!(
+            (there.w_axis.truncate() - DVec3::new(0.0, 0.0, -0.1)).length() < 1e-12,
+            "held once, however often told"
+        );
         assert!(flight.step(DMat4::IDENTITY, 60.0, 2.0).w_axis.z > -0.201, "a pause is no jump");
         flight.key(KeyCode::KeyW, false);
         assert_eq!(flight.step(there, 0.05, 2.0).w_axis, there.w_axis);

@@ -177,7 +177,8 @@ impl Lanes {
             self.foveation.record(device, encoder, &frame)
         })?;
         // A cut is one when its frame comes, not for as long as it stays.
-        let fresh = self.index == 0 || std::mem::take(&mut self.cut);
+        let cut = std::mem::take(&mut self.cut);
+        let fresh = cut || self.index == 0;
         let motion = if again { &self.no_motion } else { &self.motion };
         for (lane, pass) in self.lanes.iter_mut().zip([Pass::Left, Pass::Right]) {
             let Some(post) = &mut lane.post else { continue };

@@ -73,11 +73,7 @@ impl Quality {
             gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size: bytes, usage, mapped_at_creation: false })
         };
         let readback = || Readback { buffer: buffer(BufferUsages::MAP_READ | BufferUsages::COPY_DST), done: None };
-        Self {
-            pipeline,
-            sums: buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC),
-            sides: [readback(), readback()],
-        }
+        Self { pipeline, sums: buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC), sides: [readback(), readback()] }
     }
 
     /// Measures a side's picture, unless its last figure is still on its way.

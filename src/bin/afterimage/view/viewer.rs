@@ -278,8 +278,7 @@ impl Viewer {
                 self.figures.quality(side, psnr_db);
             }
             if self.figures.is_due() && self.state.has_panel {
-                let viewing =
-                    Viewing { geometry: on.lanes.geometry(), gaze_px: self.gaze_px, gain: self.setup.gain() };
+                let viewing = Viewing { geometry: on.lanes.geometry(), gaze_px: self.gaze_px, gain: self.setup.gain() };
                 on.quality.measure(&on.device.gpu, side, on.lanes.full(), on.lanes.picture(side), &viewing);
             }
         }
