@@ -53,7 +53,12 @@ impl Display {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let (name, server) = (format!(":{}", number.trim()), Running(server));
         let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
-        Some(Self { name, _server: server, _manager: Running(manager) })
+        let display = Self { name, _server: server, _manager: Running(manager) };
+        // A window that is opened while the manager starts may stay unseen.
+        wait_for("the window manager", || {
+            display.xdotool(&["get_num_desktops"]).status.success().then_some(())
+        });
+        Some(display)
     }
 
     fn xdotool(&self, words: &[&str]) -> Output {
@@ -96,7 +101,7 @@ struct Viewer<'a> {
 impl<'a> Viewer<'a> {
     fn open(display: &'a Display, folder: &Path, words: &[&str]) -> Self {
         let file = |name| File::create(folder.join(name)).unwrap();
-        let child = Command::new(TOOL)
+        let mut child = Command::new(TOOL)
             .args(["view", "still.png", "--internal-scale", "1", "--record", "gaze.csv", "--screenshot", "shown.png"])
             .args(words)
             .current_dir(folder)
@@ -107,6 +112,10 @@ impl<'a> Viewer<'a> {
             .spawn()
             .unwrap();
         let window = wait_for("the window", || {
+            if let Some(status) = child.try_wait().unwrap() {
+                let complaints = fs::read_to_string(folder.join("complaints.txt")).unwrap();
+                panic!("the viewer ended before its window opened, {status}: {complaints}");
+            }
             let found = display.xdotool(&["search", "--onlyvisible", "--name", "^afterimage: "]);
             String::from_utf8(found.stdout).unwrap().lines().next().map(str::to_owned)
         });
@@ -292,7 +301,7 @@ fn what_it_cannot_show_is_refused_before_any_window() {
         (&["still.png", "--split", "smr"], "expected two"),
         (&["still.png", "--split", "smr,oracle"], "oracle"),
         (&["still.png", "--internal-scale", "2"], "at most 1"),
-        (&["still.png", "--fovea", "-1"], "fovea"),
+        (&["still.png", "--fovea=-1"], "fovea"),
         (&["still.png", "--gaze", "none.csv"], "none.csv"),
     ];
     for (words, expected) in refused {

@@ -56,6 +56,8 @@ pub struct Viewer {
     pose: Option<DMat4>,
     /// The window is not what the state says.
     pub is_stale: bool,
+    /// Pictures to write when the next frame is on screen.
+    wanted: Vec<Effect>,
 }
 
 impl Viewer {
@@ -81,6 +83,7 @@ impl Viewer {
             stance: None,
             pose: None,
             is_stale: true,
+            wanted: vec![],
         };
         viewer.ask();
         Ok(viewer)
@@ -106,8 +109,7 @@ impl Viewer {
                 self.begin_anew();
                 self.fetch_anew();
             }
-            Effect::Picture => self.write_picture()?,
-            Effect::Window => self.write_window()?,
+            wanted @ (Effect::Picture | Effect::Window) => self.wanted.push(wanted),
             Effect::LoseDevice => self.on.device.gpu.device.destroy(),
             Effect::Quit => return Ok(false),
         }
@@ -185,6 +187,9 @@ impl Viewer {
         self.on.times.end(&self.on.device.gpu);
         self.is_stale = false;
         self.figures.frame(&self.on.times);
+        for wanted in std::mem::take(&mut self.wanted) {
+            if wanted == Effect::Picture { self.write_picture()? } else { self.write_window()? }
+        }
         if self.setup.args.frames == Some(self.record.len() as u64) {
             return Ok(Outcome::Done);
         }
