@@ -55,9 +55,7 @@ impl Display {
         let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
         let display = Self { name, _server: server, _manager: Running(manager) };
         // A window that is opened while the manager starts may stay unseen.
-        wait_for("the window manager", || {
-            display.xdotool(&["get_num_desktops"]).status.success().then_some(())
-        });
+        wait_for("the window manager", || display.xdotool(&["get_num_desktops"]).status.success().then_some(()));
         Some(display)
     }
 

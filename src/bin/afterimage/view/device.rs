@@ -66,6 +66,8 @@ impl Device {
 
     /// Whether the device has gone.
     pub fn is_lost(&self) -> bool {
+        // The loss is told by a callback, and callbacks are run by polls.
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Acquire)
     }
 }
