@@ -8,6 +8,7 @@ mod lifecycle;
 mod light;
 mod nan;
 mod reprojection;
+mod reservoirs;
 mod trust;
 mod views;
 
