@@ -38,7 +38,7 @@ fn h50_z_fighting_stays_next_to_the_colours_presented() {
 #[test]
 fn h59_h60_zoom_and_turn_leave_no_hole() {
     let before = noise(SIZE, "zoom of surfaces").map(|c| c.map(|v| 0.5 + 0.125 * (8.0 * v).floor() / 8.0));
-    let later = Input::at_lod(Image::filled(SIZE, [0.5; 3]), 2.0);
+    let low_pass = LowPass::new(&before, 4);
     let zoomed = |factor: f32| {
         // Samples as they are, not in another light.
         let plain = afterimage::settings::Smr { relight: false, ..Default::default() };
@@ -46,7 +46,12 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
         step(&mut post, 0, &Input::sharp(before.clone()));
         let shift = |v: u32, middle: f32| (v as f32 - middle) * (factor - 1.0);
         let motion = Image::from_fn(SIZE, |[x, y]| [shift(x, 26.0), shift(y, 20.0)]);
-        let made = step(&mut post, 1, &Input { motion: Some(motion), ..later.clone() });
+        // What a renderer of quarter resolution delivers of it then.
+        let color = Image::from_fn(SIZE, |[x, y]| {
+            low_pass.at([f64::from(x) + f64::from(shift(x, 26.0)), f64::from(y) + f64::from(shift(y, 20.0))], 2.0)
+        });
+        let later = Input { motion: Some(motion), ..Input::at_lod(color, 2.0) };
+        let made = step(&mut post, 1, &later);
         let mut kept = 0;
         for y in 0..41_usize {
             for x in 0..52_usize {
@@ -55,7 +60,10 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
                 let [qx, qy] = [source(x, 26.0), source(y, 20.0)];
                 let shown = made.shown.at(x, y);
                 if t.verdict != Verdict::Valid {
-                    assert_eq!((t.verdict, shown), (Verdict::OffScreen, later.color.at(x, y)));
+                    // Near the middle, where neighbours' vectors differ by much of themselves, they are taken for a silhouette's.
+                    let inside = (-0.5..51.5).contains(&qx) && (-0.5..40.5).contains(&qy);
+                    assert_eq!(t.verdict, if inside { Verdict::Disoccluded } else { Verdict::OffScreen });
+                    assert_eq!(shown, later.color.at(x, y));
                     continue;
                 }
                 // On texels the sample itself, with its quality; between them what the lobes of the resampling make of their range.
@@ -64,7 +72,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
                     assert_eq!(made.surfaces()[y * 52 + x].lod, 0.0);
                     kept += 1;
                 }
-                assert!(shown.iter().all(|v| (0.4..0.75).contains(v)), "{shown:?}");
+                assert!(shown.iter().all(|v| (0.45..0.7).contains(v)), "{shown:?}");
             }
         }
         [kept, made.stats.flushed()]
@@ -79,6 +87,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
 
     let mut post = context(Method::Smr);
     step(&mut post, 0, &Input::sharp(before));
+    let later = Input::at_lod(Image::filled(SIZE, [0.5; 3]), 2.0);
     let made = step(&mut post, 1, &Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..later.clone() });
     assert!(made.shown == later.color && made.stats.flushed() == 52 * 41);
     holds!("H60", Cpu, "smr: all 2132 pixels are the candidate, bit for bit");
