@@ -89,6 +89,21 @@ fn h17_h18_bad_weights_leave_the_reservoir_as_it_was() {
     holds!("H18", Cpu, "NaN and +-Inf count as 0: w_sum stays 2, the first is kept at a draw of 0");
 }
 
+/// A stored key that no key can pass would keep its sample for ever.
+#[test]
+fn h19_a_corrupt_key_loses_to_the_next_candidate() {
+    let params = WrsParams { sampler: SamplerCode::AEs, ..PAPER };
+    for bad in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MIN_POSITIVE, 5.0, f32::MAX] {
+        for draw in [0.0, 0.5, 16_777_215.0 / 16_777_216.0] {
+            let d = wrs::step(Vec3::ONE, 0.02, Past { log_key: bad, ..past(5.42) }, &params, draw);
+            assert!(d.take && (f32::MIN..=0.0).contains(&d.log_key), "{bad}: {d:?}");
+        }
+    }
+    for sound in [0.0, -0.0, -1e-30] {
+        assert!(!wrs::step(Vec3::ONE, 0.02, Past { log_key: sound, ..past(5.42) }, &params, 0.5).take);
+    }
+}
+
 #[test]
 fn h15_counts_and_ages_saturate() {
     let mut r = Reservoir { w_sum: 1.0, count: u32::MAX };

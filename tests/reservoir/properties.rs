@@ -76,7 +76,7 @@ proptest! {
         let past = wrs::believe(past, trust, params.sampler);
         prop_assert!(past.w_sum >= 0.0 && past.w_sum <= history.w_sum);
         let d = wrs::step(candidate, weight, past, &params, draw as f32 / 16_777_216.0);
-        prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && !d.log_key.is_nan());
+        prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && d.log_key.is_finite() && d.log_key <= 0.0);
         prop_assert!((0.0..=1.0).contains(&d.gate) && (0.0..=1.0).contains(&d.survival));
         let shown = if d.take { candidate } else { past.color };
         let next = pack::unpack(pack::pack(Stored { color: shown, disparity: history.disparity, w_sum: d.w_sum, age: 1 }));

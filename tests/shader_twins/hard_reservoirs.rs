@@ -158,6 +158,19 @@ fn h15_h17_h18_bad_weights_leave_the_reservoir_as_it_was_and_counts_saturate() {
 }
 
 #[test]
+fn h19_a_corrupt_key_loses_to_the_next_candidate() {
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 5.0];
+    let row = |key: f32| {
+        let mut row = step_row(1, [0.3; 3], 0.02, [0.3; 3], 5.42, 0.0);
+        row[14] = key.to_bits();
+        row
+    };
+    let Some(decided) = steps(&bad.map(row)) else { return };
+    assert!(decided.iter().all(|d| d.0 && (f32::MIN..=0.0).contains(&d.1[1])), "{decided:?}");
+    holds!("H19", Gpu, "NaN, +-Inf and 5 as A-ES keys lose to the next candidate at a draw of 0");
+}
+
+#[test]
 fn h20_a_difference_beyond_100_takes_the_candidate_for_certain() {
     // Delta E 94 of 150, the most in sRGB, and L* of 276.
     let bright = [((276.0_f32 + 16.0) / 116.0).powi(3); 3];
