@@ -19,7 +19,6 @@ const fn row(id: &'static str, input: &'static str, must: &'static str, sides: &
 }
 
 impl Row {
-    #[expect(dead_code, reason = "until a row needs it")]
     const fn but(self, limit: &'static str) -> Self {
         Self { limit: Some(limit), ..self }
     }
@@ -42,26 +41,45 @@ pub const ROWS: [Row; 84] = [
         "selection frequency still w/(w_sum+w) +- CI or treated as 0 consistently on flush-to-zero hardware",
         BOTH,
     ),
-    row("H05", "w_sum = 65504 in half storage, w = 1", "no Inf; saturates; documented selection floor", BOTH),
+    row("H05", "w_sum = 65504 in half storage, w = 1", "no Inf; saturates; documented selection floor", BOTH).but(
+        "weight sums are not stored as halves, but with 16 significant bits up to 2^100: a plain sum of \
+         ones goes on to 65536, where replacement is 1/65537 a frame.",
+    ),
     row(
         "H06",
         "plain A-Chao, f16 w_sum, w=1",
         "sum stalls at 2048: storage must be f32 or capped below the stall",
         BOTH,
-    ),
+    )
+    .but("stored with 16 significant bits, a plain sum of ones stalls at 65536 instead."),
     row(
         "H07",
         "biased recurrence, f16, constant w=1",
         "stalls at 32.8 after 574 frames; with cap, replacement probability >= stated floor",
         BOTH,
+    )
+    .but(
+        "there is no cap. Stored sums stall between 256 and 363 times the weight, which holds the stated \
+         floor of 1/364.",
     ),
-    row("H08", "same in f32, 1e6 frames", "s = 1412.7 +- 0.5 (sqrt(2n) = 1414.2); compare to f64", BOTH),
-    row("H09", "biased, w=0.05, f16", "stall at 2.83 after 1401 frames; scale invariance: s(w)/w equal for all w", CPU),
+    row("H08", "same in f32, 1e6 frames", "s = 1412.7 +- 0.5 (sqrt(2n) = 1414.2); compare to f64", BOTH).but(
+        "in the arithmetic. Stored between frames, the sum stalls between 256 and 363 times the weight \
+         (H07).",
+    ),
+    row("H09", "biased, w=0.05, f16", "stall at 2.83 after 1401 frames; scale invariance: s(w)/w equal for all w", CPU)
+        .but(
+            "in the arithmetic: exactly for powers of two, to 3e-5 for other weights. Where the stored sum \
+         stalls depends on the mantissa: 256 to 363 times the weight.",
+        ),
     row(
         "H10",
         "1e9 simulated frames via closed form",
         "no drift > 1e-3 relative between incremental and closed form",
         CPU,
+    )
+    .but(
+        "in f64. In f32 the sum stays within 1e-3 for 1.2e6 frames and stalls at 4096 times the weight; \
+         stored, it stalls earlier (H07).",
     ),
     row(
         "H11",
@@ -83,8 +101,15 @@ pub const ROWS: [Row; 84] = [
     ),
     row("H14", "combine(A,combine(B,C)) vs combine(combine(A,B),C)", "same law in unbiased mode", CPU),
     row("H15", "m-count/age at u16 or u8 max", "saturates, never wraps to 0", BOTH),
-    row("H16", "cap M: history cap = 8, 32, infinite", "step response half-life equals theory +- 5 %", CPU),
-    row("H17", "weight negative (bad caller)", "treated as 0, counted, debug warning; never negative w_sum", BOTH),
+    row("H16", "cap M: history cap = 8, 32, infinite", "step response half-life equals theory +- 5 %", CPU).but(
+        "no setting caps the history. The kernel answers a step as theory says if its caller caps the \
+         sum.",
+    ),
+    row("H17", "weight negative (bad caller)", "treated as 0, counted, debug warning; never negative w_sum", BOTH).but(
+        "no caller gives weights: they follow from the gaze, and a candidate that must not be used has \
+         weight 0. Such candidates are counted and warned of; in the kernel, a negative weight counts as \
+         0, silently.",
+    ),
     row("H18", "weight NaN / +-Inf", "treated as 0; sample dropped; previous reservoir survives", BOTH),
     row(
         "H19",
@@ -109,6 +134,10 @@ pub const ROWS: [Row; 84] = [
         "saved sample colour vs weight pair",
         "colour always one of the presented inputs bit-exactly when reprojection is integer (no invented colours)",
         BOTH,
+    )
+    .but(
+        "samples are remembered as halves: bit for bit for colours that halves hold, else the nearest \
+         half.",
     ),
     // Random numbers
     row(
@@ -122,7 +151,8 @@ pub const ROWS: [Row; 84] = [
         "seed = pixel + frame",
         "forbidden: frame t+1 shows frame t shifted; cross-correlation at every shift abs rho < 4/sqrt N",
         CPU,
-    ),
+    )
+    .but("over 31 x 31 shifts of a 128 x 128 picture. Over many more, chance alone passes 4 / sqrt N."),
     row(
         "H25",
         "(x,y,frame,purpose) hash, 2^24 samples",
@@ -140,7 +170,8 @@ pub const ROWS: [Row; 84] = [
         "two eyes, same frame",
         "streams independent, or *identical* when the option for binocular agreement is on",
         CPU,
-    ),
+    )
+    .but("there is no option for binocular agreement: two views always draw independent numbers."),
     row("H28", "CPU vs GPU", "bit-identical integer stream for 1e6 (x,y,f)", BOTH),
     row("H29", "same frame re-run", "bit-identical output (determinism), any workgroup size", BOTH),
     // Colour difference
@@ -164,7 +195,11 @@ pub const ROWS: [Row; 84] = [
         "Delta L* about 1.8: gate must not flush; noise floor parameter tested",
         CPU,
     ),
-    row("H35", "8-bit linear step 1/255 near black", "Delta L* 3.54: quantised sources must not look like change", CPU),
+    row("H35", "8-bit linear step 1/255 near black", "Delta L* 3.54: quantised sources must not look like change", CPU)
+        .but(
+            "the gate of the paper, without an offset, closes by 3.5 % at such a step, and by 0.5 % at a step \
+         of 8-bit sRGB. With an offset of 3.6 it stays open.",
+        ),
     row("H36", "negative linear RGB (wide gamut, filter lobes)", "signed cbrt or clamp; never NaN", BOTH),
     row("H37", "HDR 1e4 nits, 65504, 1e30", "finite Delta E; normalisation by adapted white or saturating map", BOTH),
     row(
