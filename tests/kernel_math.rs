@@ -128,6 +128,11 @@ fn h61_eccentricity_is_exact_where_acos_reads_0() {
     println!("eccentricity: worst error {worst:.2e} rad; by acos {worst_acos:.2e}");
     assert!(worst < 1e-6);
     assert!(worst_acos > 1e-5, "the planted error must show");
+    holds!(
+        "H61",
+        Cpu,
+        "80000 pairs of rays, 1e-5 to 179.9 degrees: off by {worst:.1e} rad at the most; by acos {worst_acos:.1e}"
+    );
 }
 
 #[test]
@@ -179,7 +184,26 @@ proptest! {
 #[test]
 fn h65_weight_at_90_degrees_has_its_floor() {
     let inv = 1.0 / acuity::cell_density(2.5);
-    assert_abs_diff_eq!(acuity::candidate_weight(90.0, 2.5, inv), 0.0013, epsilon = 1e-4);
+    let at = |e: f32| acuity::candidate_weight(e, 2.5, inv);
+    assert_abs_diff_eq!(at(90.0), 0.0013, epsilon = 1e-4);
+    // Down to straight behind, a sum of weights is a normal half from its first frame on.
+    let least = (0..=90_000).map(|i| at(90.0 + i as f32 * 1e-3)).fold(f32::MAX, f32::min);
+    assert!(least > 6.104e-5, "{least}");
+    let sum = afterimage::kernel::pack::half_value(afterimage::kernel::pack::half_bits(least));
+    assert!((sum / least - 1.0).abs() < 1e-3);
+    holds!("H65", Cpu, "w(90) = {:.5}, w(180) = {least:.2e}: above a half's least normal, 6.1e-5", at(90.0));
+}
+
+#[test]
+fn h64_a_fovea_of_nothing_has_weight_1_at_the_gaze_point_alone() {
+    let inv = 1.0 / acuity::cell_density(0.0);
+    let w = |e: f32| acuity::candidate_weight(e, 0.0, inv);
+    assert_eq!(w(0.0), 1.0);
+    // As near as f32 tells the weight from 1: a fall of 2 / 1.058 a degree.
+    let nearest = (0..1000).map(|i| 1e-9 * 1.02_f32.powi(i)).find(|&e| w(e) < 1.0).unwrap();
+    assert!(nearest < 2e-7, "{nearest}");
+    assert!((0..=180_000).all(|i| w(i as f32 * 1e-3).is_normal() && (i == 0 || w(i as f32 * 1e-3) < 1.0)));
+    holds!("H64", Cpu, "w(0) = 1, below 1 from {nearest:.1e} degrees on; finite and normal to 180 degrees");
 }
 
 #[test]

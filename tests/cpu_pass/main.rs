@@ -7,6 +7,7 @@ mod depth;
 mod lifecycle;
 mod light;
 mod nan;
+mod properties;
 mod reprojection;
 mod reservoirs;
 mod trust;

@@ -195,14 +195,14 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
     let mut ratios = vec![];
     for method in METHODS {
         let depth = Some(Image::from_fn(LARGE, |[x, y]| 2.0 + (x + y) as f32 * 0.01));
-        let frame = |motion: f32| Input {
+        let frame = |name: &str, motion: f32| Input {
             depth: depth.clone(),
             motion: Some(Image::filled(LARGE, [motion, 0.25])),
-            ..Input::still(noise(LARGE, "cost"))
+            ..Input::still(noise(LARGE, name))
         };
-        let (normal, turn) = (frame(0.25), frame(5000.0));
+        let (normal, turn) = (frame("cost", 0.25), frame("cost", 5000.0));
         let mut start = CpuAfterimage::new(ContextDesc::new(LARGE), Settings { method, ..Settings::paper() }).unwrap();
-        one(&mut start, 0, &normal);
+        one(&mut start, 0, &frame("before", 0.0));
         let time = |input: &Input| {
             let mut post = start.clone();
             pool.install(|| {

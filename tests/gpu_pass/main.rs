@@ -13,6 +13,7 @@ mod layout;
 mod lifecycle;
 mod light;
 mod motion;
+mod properties;
 mod reservoirs;
 mod rig;
 mod sequences;

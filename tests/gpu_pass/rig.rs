@@ -1,7 +1,5 @@
 //! The same frames through both executors, and what comes back from the device.
 
-mod clock;
-
 use super::common::Draws;
 use super::gpu;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
