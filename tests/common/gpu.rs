@@ -55,11 +55,10 @@ pub fn adapter() -> Option<&'static wgpu::Adapter> {
     adapter
 }
 
-/// A fresh device with default limits, and a clock where the adapter has one. Its uncaptured errors panic.
+/// A fresh device with default limits. Its uncaptured errors panic.
 pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
     let adapter = adapter()?;
-    let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
-    let desc = wgpu::DeviceDescriptor { label: Some("test"), required_features, ..Default::default() };
+    let desc = wgpu::DeviceDescriptor { label: Some("test"), ..Default::default() };
     Some(pollster::block_on(adapter.request_device(&desc)).expect("a device with default limits"))
 }
 
