@@ -43,7 +43,7 @@ fn cases(name: &str, count: u32, mut check: impl FnMut(&mut Draws, f32) -> Resul
 fn any_bits_agree_bit_for_bit_and_are_finite() {
     for settings in all_settings() {
         let Some(mut rig) = Rig::new(stereo(), settings) else { return };
-        cases("whole pass on the device", 12, |draws, wild| {
+        cases("whole pass on the device", 8, |draws, wild| {
             for index in 0..3 {
                 let views = [0; 2].map(|_| view(any_frame(draws, wild), &settings));
                 let reset = if index == 0 { Reset::All } else { Reset::None };
@@ -59,7 +59,7 @@ fn any_bits_agree_bit_for_bit_and_are_finite() {
 fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
     for settings in all_settings().into_iter().filter(|s| s.method != Method::None) {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
-        cases("any history", 16, |draws, _| {
+        cases("any history", 8, |draws, _| {
             let mut frame = || view(any_frame(draws, 0.0), &settings);
             let frames = [0; 3].map(|_| frame());
             rig.on_gpu(0, Reset::All, &frames[..1]);
@@ -99,7 +99,7 @@ fn what_one_view_is_given_changes_no_bit_of_the_other() {
         };
         let (mut one, mut other) = (make()?, make()?);
         let mut leaked = false;
-        cases("two views on the device", 8, |draws, wild| {
+        cases("two views on the device", 4, |draws, wild| {
             for index in 0..3 {
                 let [left, a, b] = [0; 3].map(|_| view(any_frame(draws, wild.min(0.3)), &settings));
                 let reset = if index == 0 { Reset::All } else { Reset::None };
