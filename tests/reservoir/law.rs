@@ -57,6 +57,9 @@ fn h11_constant_weights_keep_every_frame_as_often() {
     holds!("H11", Cpu, "p = {p:.2} for 10 frames in 1e7 trials");
 }
 
+/// Chooses one of a stream with these weights.
+type Chooser<'a> = &'a mut dyn FnMut(&[f32], &mut Draws) -> usize;
+
 #[test]
 fn h12_samples_are_kept_in_proportion_to_their_weights() {
     let mut first = 0.0;
@@ -66,7 +69,7 @@ fn h12_samples_are_kept_in_proportion_to_their_weights() {
         let (mut draws, trials) = (Draws::new(name), 2_500_000);
         let mut off = weights.to_vec();
         off[1] *= 1.02;
-        let all: [(&str, &mut dyn FnMut(&[f32], &mut Draws) -> usize); 3] = [
+        let all: [(&str, Chooser); 3] = [
             ("update", &mut |w, d| stream(w, d)),
             ("combine", &mut |w, d| stream_by_combine(w, d)),
             ("A-ES", &mut |w, d| stream_by_keys(w, d)),
