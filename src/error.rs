@@ -108,6 +108,9 @@ pub enum FrameError {
         /// What is accepted.
         expected: &'static str,
     },
+    /// Nothing that was asked of the device is done any more.
+    #[error("the graphics device was lost: make a new device and a new context on it, which starts afresh")]
+    DeviceLost,
     /// A number of the frame's description is not usable.
     #[error("{what} of view {view} is {found}: expected {expected}")]
     Value {

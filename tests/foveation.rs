@@ -32,7 +32,16 @@ fn mean(image: &Image<[f32; 3]>) -> f64 {
 
 #[test]
 fn h69_a_constant_image_stays_constant_at_any_size() {
+    let mut worst = 0.0_f32;
     for size in [[1, 1], [17, 1], [1, 33], [4097, 3], [640, 360], [333, 77]] {
+        // At every level and between, the whole picture.
+        let foveation = Foveation { rate_mid: 256, rate_far: 256, ..Foveation::default() };
+        let pyramid = Pyramid::new(Image::filled(size, [0.3, 0.6, 0.9]), foveation.max_level());
+        for lod in (0..=32).map(|l| l as f32 / 4.0) {
+            for c in foveation.render(&pyramid, &Image::filled(size, lod)).pixels() {
+                worst = c.iter().zip([0.3, 0.6, 0.9]).fold(worst, |w, (v, exact)| w.max((v - exact).abs()));
+            }
+        }
         for filter in FILTERS {
             let foveation = Foveation { filter, ..Foveation::default() };
             let out = foveate(&foveation, &Image::filled(size, [0.3, 0.6, 0.9]), [0.0, 0.0]);
@@ -43,10 +52,17 @@ fn h69_a_constant_image_stays_constant_at_any_size() {
             }
         }
     }
+    assert!(worst < 1e-6, "{worst}");
+    holds!(
+        "H69",
+        Cpu,
+        "levels 0 to 8 by quarters, 1x1, 17x1, 1x33, 4097x3 and two more: off by {worst:.1e} at the most"
+    );
 }
 
 #[test]
 fn h70_the_mean_is_preserved() {
+    let mut worst = 0.0_f64;
     // Random pictures, whose mean the borders can move by chance only as far as their share of the picture reaches.
     for size in [[640, 360], [641, 359], [1023, 257]] {
         let image = noise(size, "energy");
@@ -55,8 +71,10 @@ fn h70_the_mean_is_preserved() {
             let change = (mean(&foveate(&foveation, &image, [300.0, 100.0])) / mean(&image) - 1.0).abs();
             println!("{filter:?} {size:?}: mean changes by {change:.1e}");
             assert!(change <= 1e-3);
+            worst = worst.max(change);
         }
     }
+    holds!("H70", Cpu, "mip and gauss, three sizes, odd ones too: the mean changes by {worst:.1e} at the most");
 }
 
 #[test]
@@ -125,15 +143,26 @@ fn h71_the_level_of_detail_is_continuous_and_monotone() {
     }
     let hard = Foveation { blend_deg: 0.0, ..foveation };
     assert_eq!((hard.lod(2.5), hard.lod(2.501)), (0.0, 3.0));
+    let steps = (0..90_000).map(|i| foveation.lod((i + 1) as f32 * 1e-3) - foveation.lod(i as f32 * 1e-3));
+    let steepest = 1000.0 * steps.fold(0.0, f32::max);
+    holds!(
+        "H71",
+        Cpu,
+        "level of detail: continuous, monotone, at the most {steepest:.2} levels a degree (stated: 3, +- rounding)"
+    );
 }
 
 #[test]
 fn h71_the_image_has_no_seam_at_the_rings() {
     // A smooth ramp: neighbouring pixels may differ by its own step and what the blend adds, never by a jump.
     let image = Image::from_fn([640, 360], |[x, y]| [x as f32 / 640.0, y as f32 / 360.0, 0.5]);
+    let mut worst = 0.0_f32;
     for filter in [Filter::Mip, Filter::Gauss] {
         let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [320.0, 180.0]);
         let jump = |a: [f32; 3], b: [f32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
+        let ramp =
+            (17..343).flat_map(|y| (17..623).map(move |x| (x, y))).map(|(x, y)| jump(out.at(x, y), out.at(x + 1, y)));
+        worst = worst.max(640.0 * ramp.fold(0.0, f32::max));
         for y in 17..343 {
             for x in 17..623 {
                 assert!(
@@ -143,6 +172,7 @@ fn h71_the_image_has_no_seam_at_the_rings() {
             }
         }
     }
+    holds!("H71", Cpu, "mip and gauss over a ramp: the steepest step is {worst:.3} of the ramp's own (bound: 2)");
 }
 
 #[test]
@@ -220,17 +250,34 @@ fn blocks_are_aligned_nested_and_constant() {
 fn h62_angles_follow_rays_not_the_screen() {
     // 110 degrees wide: the same pixel distance is a smaller angle at the side. 2 atan(tan(55) (x + 0.5 - 500) / 500) by hand.
     let geometry = ViewGeometry::flat([1000, 500], 110.0).unwrap();
+    let mut worst = 0.0_f64;
     let angle = |x: f64| (55.0_f64.to_radians().tan() * (x + 0.5 - 500.0) / 500.0).atan().to_degrees();
     for (a, b) in [(500.0, 550.0), (900.0, 950.0), (0.0, 999.0)] {
         let got = geometry.eccentricity_deg([a as f32, 249.5], [b as f32, 249.5]);
         assert_abs_diff_eq!(f64::from(got), (angle(b) - angle(a)).abs(), epsilon = 1e-3);
+        worst = worst.max((f64::from(got) - (angle(b) - angle(a)).abs()).abs());
     }
+    // Every pixel of the row, for an eye off the middle: the planted error, distance on the screen, is tens of degrees off.
+    let map = geometry.eccentricity_map([900.0, 249.5]);
+    let mut by_screen = 0.0_f64;
+    for x in 0..1000 {
+        let exact = (angle(x as f64) - angle(900.0)).abs();
+        worst = worst.max((f64::from(geometry.eccentricity_deg([x as f32, 249.5], [900.0, 249.5])) - exact).abs());
+        by_screen = by_screen.max(((x as f64 - 900.0).abs() * 110.0 / 1000.0 - exact).abs());
+        assert!((f64::from(map.at(x, 249)) - exact).abs() < 0.2, "the row next to the axis");
+    }
+    assert!(worst < 1e-3 && by_screen > 5.0, "{worst}, {by_screen}");
     assert_abs_diff_eq!(geometry.hfov_deg(), 110.0, epsilon = 1e-3);
     let right_eye = ViewGeometry::off_axis([1000, 1000], [-0.8, 1.2], [-1.0, 1.0]).unwrap();
     assert_abs_diff_eq!(right_eye.ray([399.5, 499.5]).x, 0.0, epsilon = 1e-6);
     let px = right_eye.project(right_eye.ray([12.0, 34.0]) * 7.0).unwrap();
     assert_abs_diff_eq!(px[0], 12.0, epsilon = 1e-3);
     assert!(right_eye.project(glam::Vec3::NEG_Z).is_none());
+    holds!(
+        "H62",
+        Cpu,
+        "110 degrees, eye at the side: off by {worst:.1e} degrees; distance on the screen {by_screen:.0} degrees"
+    );
 }
 
 #[test]

@@ -277,6 +277,39 @@ fn the_store_gives_back_what_it_was_given_and_refuses_what_is_not_its_own() {
     }
 }
 
+/// A folder from a stranger makes nobody read or write elsewhere.
+#[test]
+fn a_measurement_that_leads_out_of_its_folder_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (theirs, ours) = (folder.path().join("a/b/theirs"), folder.path().join("a/b/ours"));
+    let (store, own) = (Store::create(&theirs).unwrap(), Store::create(&ours).unwrap());
+    let good = measurement(point("smr", &[], 0), 3.25, 4.0, 0.3125);
+    store.save(&good).unwrap();
+    let file = theirs.join("points").join(format!("{}.json", id(&good.point)));
+    let text = std::fs::read_to_string(&file).unwrap();
+    for method in ["../../../evil", "/tmp/evil", "..", "wrs"] {
+        let evil = text.replace("\"smr\"", &format!("\"{method}\""));
+        assert_ne!(evil, text);
+        std::fs::write(&file, evil).unwrap();
+        let error = store.load().unwrap_err().to_string();
+        assert!(error.contains("is not named as its point is"), "{error}");
+    }
+    std::fs::write(&file, &text).unwrap();
+    assert_eq!(store.load().unwrap().len(), 1);
+    #[cfg(unix)]
+    {
+        let secret = folder.path().join("secret");
+        std::fs::write(&secret, "secret").unwrap();
+        std::os::unix::fs::symlink(&secret, store.picture(&good.point, "shown")).unwrap();
+        let error = own.adopt(&store, &good.point).unwrap_err().to_string();
+        assert!(error.contains("is a link"), "{error}");
+        std::fs::rename(&file, folder.path().join("away.json")).unwrap();
+        std::os::unix::fs::symlink(folder.path().join("away.json"), &file).unwrap();
+        assert!(store.load().unwrap_err().to_string().contains("is a link"));
+    }
+    assert!(own.load().unwrap().is_empty() && std::fs::read_dir(folder.path()).unwrap().count() <= 3);
+}
+
 #[test]
 fn metrics_know_which_way_is_better() {
     let find = |key| Metric::find(key).unwrap();

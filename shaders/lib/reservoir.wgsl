@@ -57,7 +57,9 @@ fn a_es_log_key(draw: f32, sample_weight: f32) -> f32 {
 
 // reservoir::a_es_decay: key / survival
 fn a_es_decay(log_key: f32, survival: f32) -> f32 {
-    if survival <= 0.0 {
+    let key_bits = bitcast<u32>(log_key);
+    let is_key = key_bits == 0u || (key_bits >= 0x80000000u && key_bits <= 0xff7fffffu);
+    if survival <= 0.0 || !is_key {
         return LOWEST;
     }
     return max(log_key / survival, LOWEST);

@@ -2,15 +2,15 @@
 //! method's pass; stand-ins for what a frame does not bring.
 
 use super::Frame;
+use super::filled;
 use super::history::{History, array_view};
 use super::types::FrameConstants;
 use crate::settings::HistoryLayout;
 use crate::stats::COUNTERS_BYTES;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, BufferViewMut, Device,
-    ShaderStages, StorageTextureAccess, Texture, TextureFormat, TextureSampleType, TextureUsages, TextureView,
-    TextureViewDimension,
+    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, Device, ShaderStages,
+    StorageTextureAccess, Texture, TextureFormat, TextureSampleType, TextureUsages, TextureView, TextureViewDimension,
 };
 
 /// Layout of the bindings, and stand-ins: 1x1 textures and a buffer that no specialised shader touches.
@@ -54,7 +54,7 @@ impl Bindings {
         constants: &FrameConstants,
         history: &History,
     ) -> BindGroup {
-        let constants = uniform(device, bytemuck::bytes_of(constants));
+        let constants = filled(device, "afterimage constants", bytemuck::bytes_of(constants), BufferUsages::UNIFORM);
         let optional = |texture: Option<&Texture>| texture.map_or_else(|| self.no_float.clone(), array_view);
         let inputs = [
             array_view(frame.color),
@@ -113,39 +113,6 @@ fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
         HistoryLayout::Surfaces { .. } => [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint],
         _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
-    }
-}
-
-/// A buffer of its own for the constants of one frame. Not by wgpu's `create_buffer_init`, which panics on a lost device (H77).
-pub(super) fn uniform(device: &Device, bytes: &[u8]) -> Buffer {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("afterimage constants"),
-        size: bytes.len() as u64,
-        usage: BufferUsages::UNIFORM,
-        mapped_at_creation: true,
-    });
-    if buffer.slice(..).get_mapped_range_mut().fill(bytes) {
-        buffer.unmap();
-    }
-    buffer
-}
-
-/// What mapping gives: a view with wgpu 29; with wgpu 30 a result, an error on a lost device.
-trait Mapped {
-    /// Whether there is something to write to.
-    fn fill(self, bytes: &[u8]) -> bool;
-}
-
-impl Mapped for BufferViewMut {
-    fn fill(mut self, bytes: &[u8]) -> bool {
-        self.copy_from_slice(bytes);
-        true
-    }
-}
-
-impl<E> Mapped for Result<BufferViewMut, E> {
-    fn fill(self, bytes: &[u8]) -> bool {
-        self.is_ok_and(|view| view.fill(bytes))
     }
 }
 

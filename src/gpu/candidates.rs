@@ -1,14 +1,14 @@
 //! The coarser levels of a frame's noisy candidates.
 
-use super::bindings::uniform;
 use super::chain::{ChainKind, ChainLevel, ChainPass};
+use super::filled;
 use super::history::{array_view, chain_texture, levels_view};
 use super::{Frame, WORKGROUP_WIDTH, shader};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use wgpu::{
     BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType,
-    BufferBindingType, ComputePass, ComputePipeline, Device, ShaderStages, StorageTextureAccess, Texture,
+    BufferBindingType, BufferUsages, ComputePass, ComputePipeline, Device, ShaderStages, StorageTextureAccess, Texture,
     TextureFormat, TextureSampleType, TextureView, TextureViewDimension,
 };
 
@@ -87,7 +87,7 @@ impl CandidatePass {
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, frame: &Frame<'_>, candidates: &Candidates) {
         let Some(noise) = frame.noise else { return };
         let size_px = [frame.color.width(), frame.color.height()];
-        let size = uniform(device, bytemuck::bytes_of(&size_px));
+        let size = filled(device, "afterimage constants", bytemuck::bytes_of(&size_px), BufferUsages::UNIFORM);
         let [color, noise] = [frame.color, noise].map(array_view);
         let group = device.create_bind_group(&BindGroupDescriptor {
             label: Some("afterimage candidates"),

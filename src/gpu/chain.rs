@@ -1,11 +1,11 @@
 //! The coarser levels of remembered surfaces or of noisy candidates, each from the next finer one.
 
 use super::WORKGROUP_WIDTH;
-use super::bindings::uniform;
+use super::filled;
 use super::history::levels_view;
 use super::shader;
 use crate::kernel::foveate::level_len;
-use wgpu::{BindGroup, ComputePass, ComputePipeline, Device, Texture};
+use wgpu::{BindGroup, BufferUsages, ComputePass, ComputePipeline, Device, Texture};
 
 /// What the levels are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,8 @@ impl ChainPass {
                 // Level 0 of the texture is level 1 of the chain.
                 let fine_size = size_px.map(|s| level_len(s, coarse));
                 let [width, height] = size_px.map(|s| level_len(s, coarse + 1));
-                let buffer = uniform(device, bytemuck::bytes_of(&fine_size));
+                let buffer =
+                    filled(device, "afterimage constants", bytemuck::bytes_of(&fine_size), BufferUsages::UNIFORM);
                 let [fine, target] = [coarse - 1, coarse].map(|level| levels_view(texture, level, Some(1)));
                 let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("afterimage chain"),

@@ -6,6 +6,7 @@
 #[cfg(feature = "ablation")]
 pub mod ablation;
 mod bindings;
+mod buffer;
 mod candidates;
 mod chain;
 mod desc;
@@ -24,6 +25,7 @@ pub use frame::{Frame, Recorded, Timestamps};
 pub use types::MAX_VIEWS;
 
 #[cfg(feature = "lab")]
+pub(crate) use buffer::filled;
 pub(crate) use history::array_view;
 #[cfg(feature = "lab")]
 pub(crate) use input::{check_readable, check_texture};

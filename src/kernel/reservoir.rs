@@ -65,10 +65,12 @@ pub fn a_es_log_key(draw: f32, w: f32) -> f32 {
     (approx::ln(draw.max(1.0 / 33_554_432.0)) / w).max(f32::MIN)
 }
 
-/// The history's log key after all its weights were multiplied by `survival` in \[0, 1\]: `key / survival`.
+/// The history's log key after all its weights were multiplied by `survival` in \[0, 1\]: `key / survival`. Minus the largest float
+/// for what is no key: NaN, infinite or above 0, which no candidate's key would ever pass.
 #[inline]
 pub fn a_es_decay(log_key: f32, survival: f32) -> f32 {
-    if survival <= 0.0 {
+    let is_key = matches!(log_key.to_bits(), 0 | 0x8000_0000..=0xff7f_ffff);
+    if survival <= 0.0 || !is_key {
         return f32::MIN;
     }
     (log_key / survival).max(f32::MIN)

@@ -154,7 +154,7 @@ impl GpuLane {
         let device_ms = self.clock.is_device().then(|| self.clock.read_ms(&self.gpu, &watch));
         let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
         let traffic_bytes_per_pixel = self.post.desc().settings.traffic_bytes_per_pixel(given);
-        Ok(LaneOutput {
+        let output = LaneOutput {
             image: self.gpu.read_rgb(&self.output, 0),
             wall_ms,
             cpu_ms,
@@ -162,7 +162,8 @@ impl GpuLane {
             stats: self.gpu.read_counters(&self.counters),
             traffic_bytes_per_pixel,
             debug: pictures,
-        })
+        };
+        self.gpu.check().map(|()| output)
     }
 
     fn encoder(&self) -> CommandEncoder {

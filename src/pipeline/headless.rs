@@ -1,9 +1,11 @@
 //! A device without a window, and frames between it and memory. For experiments; an engine keeps its frames on its device and
 //! calls [`Afterimage`](crate::gpu::Afterimage) itself.
 
+use crate::error::FrameError;
 use crate::image::Image;
 use crate::stats::{COUNTERS_BYTES, FrameStats};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
 /// A device without a window.
@@ -15,6 +17,7 @@ pub struct Headless {
     pub queue: wgpu::Queue,
     /// Adapter, driver, version and kind of device.
     pub info: wgpu::AdapterInfo,
+    is_lost: Arc<AtomicBool>,
 }
 
 impl Headless {
@@ -65,7 +68,10 @@ impl Headless {
             ..wgpu::DeviceDescriptor::default()
         });
         let (device, queue) = pollster::block_on(request)?;
-        Ok(Arc::new(Self { device, queue, info: adapter.get_info() }))
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let told = is_lost.clone();
+        device.set_device_lost_callback(move |_, _| told.store(true, Ordering::Relaxed));
+        Ok(Arc::new(Self { device, queue, info: adapter.get_info(), is_lost }))
     }
 
     /// Whether the device is a program on the CPU.
@@ -73,9 +79,17 @@ impl Headless {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
+    /// To be called after reading: what is read from a lost device is zeros.
+    ///
+    /// # Errors
+    /// [`FrameError::DeviceLost`], from then on.
+    pub fn check(&self) -> Result<(), FrameError> {
+        if self.is_lost.load(Ordering::Relaxed) { Err(FrameError::DeviceLost) } else { Ok(()) }
+    }
+
     /// Waits until the device has done all that was submitted.
     pub fn wait(&self) {
-        // A lost device shows at the next map, with wgpu's own message.
+        // A lost device shows at the next map.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
@@ -161,12 +175,20 @@ impl Headless {
     }
 
     fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {
+        // A buffer of a lost device is none, and mapping it an error that nobody else would catch.
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let buffer = self.buffer(size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         copy(&mut encoder, &buffer);
         self.queue.submit([encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |_| ());
         self.wait();
-        buffer.slice(..).get_mapped_range().expect("the buffer was mapped and waited for").to_vec()
+        let error = pollster::block_on(scope.pop());
+        let bytes = buffer.slice(..).get_mapped_range().map(|bytes| bytes.to_vec());
+        bytes.unwrap_or_else(|missing| {
+            let is_lost = self.is_lost.load(Ordering::Relaxed);
+            assert!(is_lost, "{missing}, {error:?}: a mistake in this package");
+            vec![0; size as usize]
+        })
     }
 }

@@ -60,6 +60,9 @@ enum Question {
     FromHalf,
 }
 
+/// Takes rows of three numbers and gives a word for each.
+type Ask<'a> = &'a dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>;
+
 /// Asks everything of an adapter. Takes seconds on software devices.
 ///
 /// # Errors
@@ -87,8 +90,8 @@ pub enum SelfTestError {
     Frame(#[from] crate::error::FrameError),
 }
 
-/// What the answers say. `ask` takes rows of three numbers and gives a word for each.
-fn arithmetic(ask: &dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>) -> Vec<Finding> {
+/// What the answers say.
+fn arithmetic(ask: Ask<'_>) -> Vec<Finding> {
     let one = |question, row: [f32; 3]| ask(question, &[row])[0];
     let value = |question, row| f32::from_bits(one(question, row));
     let payload = f32::from_bits(0x7fc1_2345);
@@ -130,12 +133,7 @@ fn arithmetic(ask: &dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>) -> Vec<Finding> {
 }
 
 /// Largest error in units of the last place over rows in (0, 8).
-fn error_of(
-    ask: &dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>,
-    what: &'static str,
-    question: Question,
-    exact: fn([f64; 2]) -> f64,
-) -> Finding {
+fn error_of(ask: Ask<'_>, what: &'static str, question: Question, exact: fn([f64; 2]) -> f64) -> Finding {
     let rows: Vec<[f32; 3]> =
         (0..ROWS).map(|i| [(i + 1) as f32 * (8.0 / ROWS as f32), 0.1 + (i * 37 % ROWS) as f32 * 1e-3, 0.0]).collect();
     let worst = ask(question, &rows).iter().zip(&rows).fold(0.0_f64, |worst, (&word, row)| {
@@ -148,7 +146,7 @@ fn error_of(
 }
 
 /// Whether halves are made and read as on the CPU, which rounds to the nearest even.
-fn halves(ask: &dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>) -> Finding {
+fn halves(ask: Ask<'_>) -> Finding {
     let rows: Vec<[f32; 3]> = (0..ROWS)
         .map(|i| {
             let magnitude = 2.0_f32.powf((i % 40) as f32 - 24.0) * (1.0 + i as f32 / ROWS as f32);

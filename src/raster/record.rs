@@ -4,6 +4,7 @@ use super::corners::{Kind, STRIDE};
 use super::frame::FrameWords;
 use super::lighting::LightsWords;
 use super::{Raster, Set};
+use crate::gpu::filled;
 use crate::trace::view::View;
 use std::ops::Range;
 use wgpu::{
@@ -38,15 +39,15 @@ impl Raster {
     fn upload(&mut self, device: &Device, encoder: &mut CommandEncoder) {
         let Some([now, before]) = self.pending.take() else { return };
         for (to, corners) in [(&self.moving.buffer, now), (&self.previous, before)] {
-            let from = filled(device, bytemuck::cast_slice(&corners), BufferUsages::COPY_SRC);
+            let from = filled(device, "raster frame", bytemuck::cast_slice(&corners), BufferUsages::COPY_SRC);
             encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * corners.len() as u64);
         }
     }
 
     fn frame_group(&self, device: &Device, frame: &FrameWords, lights: &LightsWords) -> BindGroup {
         let buffers = [
-            filled(device, bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
-            filled(device, bytemuck::bytes_of(lights), BufferUsages::STORAGE),
+            filled(device, "raster frame", bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
+            filled(device, "raster frame", bytemuck::bytes_of(lights), BufferUsages::STORAGE),
         ];
         let entry =
             |binding: u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
@@ -168,7 +169,8 @@ impl Raster {
             indices.extend(group.iter().flat_map(|&(_, v)| [v, v + 1, v + 2]));
             runs.push(Run { is_moving, material, indices: first..indices.len() as u32 });
         }
-        let buffer = (!indices.is_empty()).then(|| filled(device, bytemuck::cast_slice(&indices), BufferUsages::INDEX));
+        let buffer = (!indices.is_empty())
+            .then(|| filled(device, "raster frame", bytemuck::cast_slice(&indices), BufferUsages::INDEX));
         (buffer, runs)
     }
 }
@@ -190,17 +192,4 @@ fn begin<'e>(
         }),
         ..Default::default()
     })
-}
-
-/// A buffer that holds `bytes`.
-fn filled(device: &Device, bytes: &[u8], usage: BufferUsages) -> Buffer {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("raster frame"),
-        size: bytes.len().next_multiple_of(4) as u64,
-        usage,
-        mapped_at_creation: true,
-    });
-    buffer.slice(..bytes.len() as u64).get_mapped_range_mut().expect("mapped at creation").copy_from_slice(bytes);
-    buffer.unmap();
-    buffer
 }

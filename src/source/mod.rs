@@ -19,7 +19,7 @@ pub use sequence::SequenceSource;
 pub use still::StillSource;
 pub use traced::{TracedSamples, TracedSource};
 
-use crate::error::InputError;
+use crate::error::{FrameError, InputError};
 use crate::image::Image;
 use crate::trace::sampling::{FoveatedFrame, Guide};
 use glam::DMat4;
@@ -175,6 +175,11 @@ fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<()
         format!("{w}x{h} pixels are above the limit of {} million", limits.max_pixels / 1_000_000),
         format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
     ))
+}
+
+/// What a renderer says that has lost its device.
+fn device_lost(name: &str, lost: &FrameError) -> InputError {
+    InputError::new(name, lost.to_string(), "start again, or use --backend cpu where that is possible")
 }
 
 fn scene_error(input: &str) -> InputError {

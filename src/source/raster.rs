@@ -1,7 +1,7 @@
 //! Frames of a scene by the rasteriser.
 
 use super::scene_camera::{SceneCamera, Stance};
-use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
+use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size, device_lost};
 use crate::error::InputError;
 use crate::pipeline::Headless;
 use crate::raster::{Raster, RasterSettings};
@@ -124,10 +124,13 @@ impl FrameSource for RasterSource {
             nonfinite += u64::from(!usable);
             if usable { c } else { [0.0; 3] }
         });
+        let (depth, motion) =
+            (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
+        self.device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
         Ok(SourceFrame {
             color,
-            depth: Some(targets.read_distance(&self.device, self.raster.near())),
-            motion: Some(targets.read_motion(&self.device)),
+            depth: Some(depth),
+            motion: Some(motion),
             trust: None,
             previous_from_current: Some(view.previous_from_current(&previous)),
             cut: index == 0,

@@ -2,7 +2,7 @@
 
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::{SceneCamera, Stance};
-use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size};
+use super::{FrameSource, ReadLimits, SceneOptions, SourceFrame, SourceInfo, check_size, device_lost};
 use crate::error::InputError;
 use crate::pipeline::Backend;
 use crate::scene::{Scene, SceneLimits};
@@ -108,6 +108,11 @@ impl TracedSource {
         Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
     }
 
+    /// Whether what was traced is worth anything.
+    fn check(&self) -> Result<(), InputError> {
+        self.tracer.check().map_err(|lost| device_lost(&self.info.name, &lost))
+    }
+
     fn full_rate(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let [view, previous] = self.pose(index)?;
         let [width, height] = self.info.size;
@@ -118,6 +123,7 @@ impl TracedSource {
             let spans = Spans::uniform(width, first..(first + rows).min(height), 0..samples);
             self.tracer.trace(&self.world, &view, FULL_RATE_FRAMES + index, &spans, &mut film);
         }
+        self.check()?;
         let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
         Ok(SourceFrame {
             color: film.color(),
@@ -163,7 +169,9 @@ impl FrameSource for TracedSource {
                 .guided(guide, index, self.seed)
                 .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
         };
-        Ok(Some(plan.trace(&self.tracer, &self.world, &view, index)))
+        let frame = plan.trace(&self.tracer, &self.world, &view, index);
+        self.check()?;
+        Ok(Some(frame))
     }
 
     fn stance(&self, index: u64) -> Option<Stance> {

@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// Largest file of a measurement that is read, bytes: a hundred times what one takes.
 const MAX_BYTES: u64 = 1 << 20;
+/// Largest picture that is taken from another folder, bytes: one of 4K takes two million.
+const MAX_PICTURE_BYTES: u64 = 32 << 20;
 
 /// Pictures of a point: what was shown, where it is wrong, what it should have been.
 pub const PICTURES: [&str; 3] = ["shown", "error", "reference"];
@@ -72,13 +74,13 @@ impl Store {
     pub fn adopt(&self, from: &Self, point: &Point) -> io::Result<()> {
         // The measurement last: what has one is finished.
         for what in PICTURES {
-            match fs::read(from.picture(point, what)) {
+            match read_own(&from.picture(point, what), MAX_PICTURE_BYTES) {
                 Ok(bytes) => write_whole(&self.picture(point, what), |file| file.write_all(&bytes))?,
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                 Err(error) => return Err(error),
             }
         }
-        let bytes = fs::read(from.file(point))?;
+        let bytes = read_own(&from.file(point), MAX_BYTES)?;
         write_whole(&self.file(point), |file| file.write_all(&bytes))
     }
 
@@ -101,13 +103,13 @@ impl Store {
             if path.extension().is_none_or(|e| e != "json") {
                 continue;
             }
-            let length = fs::metadata(&path).map_or(0, |m| m.len());
-            if length > MAX_BYTES {
-                return Err(wrong(&path, format!("has {length} bytes, and no measurement has more than {MAX_BYTES}")));
-            }
-            let text = fs::read_to_string(&path).map_err(|e| wrong(&path, format!("cannot be read ({e})")))?;
+            let text = read_own(&path, MAX_BYTES).map_err(|e| wrong(&path, format!("cannot be read ({e})")))?;
             let measurement: Measurement =
-                serde_json::from_str(&text).map_err(|e| wrong(&path, format!("is no measurement ({e})")))?;
+                serde_json::from_slice(&text).map_err(|e| wrong(&path, format!("is no measurement ({e})")))?;
+            // A name that its content does not give would be written elsewhere when it is merged: outside the folder, even.
+            if path.file_stem().is_none_or(|name| *name != *id(&measurement.point)) {
+                return Err(wrong(&path, "is not named as its point is".into()));
+            }
             measurements.push(measurement);
         }
         measurements.sort_by(|a, b| a.point.cmp(&b.point));
@@ -118,6 +120,18 @@ impl Store {
     pub fn picture(&self, point: &Point, what: &str) -> PathBuf {
         self.root.join("pictures").join(format!("{}-{what}.jpg", id(point)))
     }
+}
+
+/// The bytes of a file in the folder itself: no link out of it, and no more than `max`.
+fn read_own(path: &Path, max: u64) -> io::Result<Vec<u8>> {
+    let facts = fs::symlink_metadata(path)?;
+    if !facts.is_file() {
+        return Err(io::Error::other("is a link or a folder; expected a file"));
+    }
+    if facts.len() > max {
+        return Err(io::Error::other(format!("has {} bytes; expected at most {max}", facts.len())));
+    }
+    fs::read(path)
 }
 
 /// A name for files: the method, and 64 bits of all that makes the point (FNV-1a).

@@ -9,6 +9,7 @@ use super::settings::TraceSettings;
 use super::view::View;
 use super::work::Work;
 use super::world::World;
+use crate::error::FrameError;
 use crate::pipeline::Backend;
 use std::time::Duration;
 
@@ -65,6 +66,17 @@ impl Tracer {
         match self {
             Self::Cpu(_) => Ok(()),
             Self::Gpu(tracer) => tracer.update(world),
+        }
+    }
+
+    /// To be called after [`trace`](Self::trace): on a lost device the film gets black samples.
+    ///
+    /// # Errors
+    /// [`FrameError::DeviceLost`].
+    pub fn check(&self) -> Result<(), FrameError> {
+        match self {
+            Self::Cpu(_) => Ok(()),
+            Self::Gpu(tracer) => tracer.check(),
         }
     }
 

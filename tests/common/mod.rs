@@ -1,6 +1,7 @@
 //! What several test files share: p-values that are printed, and independent seeds.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod any_frame;
 pub mod hard_case;
 
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};

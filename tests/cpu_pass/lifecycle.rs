@@ -21,9 +21,11 @@ fn h29_the_same_bytes_whatever_the_number_of_threads() {
         };
         assert_eq!(with(1), with(2));
         assert_eq!(with(2), with(7));
+        assert_eq!(with(2), with(2));
     }
     let other_seed = run(&mut context(Settings { seed: 1, ..Settings::paper() }), 0..20);
     assert_ne!(other_seed, run(&mut context(Settings::paper()), 0..20));
+    crate::holds!("H29", Cpu, "20 frames of two samplers bit-equal on 1, 2 and 7 threads, and again");
 }
 
 #[test]
@@ -39,17 +41,33 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
     forgotten.forget();
     assert_eq!(run(&mut forgotten, 20..30), fresh);
 
+    // Odd, even, a single pixel and back (another pixel density is another size), with frames between.
     let mut resized = used.clone();
-    resized.resize([3, 5]).unwrap();
-    resized.resize(SIZE).unwrap();
+    for size in [[3, 5], [64, 64], [1, 1], [65, 47], SIZE] {
+        resized.resize(size).unwrap();
+        if size != SIZE {
+            let input = Input::still(noise(size, "resized"));
+            assert_eq!(one(&mut resized, 0, &input).0, input.color, "the first frame of a size is the candidate");
+            one(&mut resized, 1, &input);
+        }
+    }
     assert_eq!(run(&mut resized, 20..30), fresh);
+    holds!("H76", Cpu, "wrs: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit");
 
     let mut cut = used.clone();
     let input = Input::still(noise(SIZE, "run 20"));
     for _ in 0..2 {
-        assert_eq!(step(&mut cut, 20, Reset::All, &[&input]).0[0], fresh[0], "reset two frames running");
+        let (out, ..) = step(&mut cut, 20, Reset::All, &[&input]);
+        assert_eq!((&out[0], &out[0]), (&fresh[0], &input.color), "reset two frames running");
     }
     assert_eq!(run(&mut cut, 21..30), fresh[1..]);
+    let mut told = context(settings);
+    step(&mut told, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
+    let mut untold = context(settings);
+    run(&mut untold, 0..1);
+    assert_eq!(run(&mut told, 1..10), run(&mut untold, 1..10), "a reset at frame 0");
+    holds!("H77", Cpu, "wrs: the first frame after a cut is the candidate, bit for bit; 9 more as of a fresh context");
+    holds!("H78", Cpu, "wrs: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit");
 }
 
 #[test]
@@ -106,6 +124,7 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);
+    holds!("H76", Cpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused, the context stays as it was; 1x1 works");
 }
 
 #[test]

@@ -65,6 +65,11 @@ fn h72_with_the_ratio_history_follows_the_exposure_at_once() {
     one(&mut post, 0, &Input::still(frame(0, 1.0)));
     let (_, _, trace) = exposed(&mut post, 1, 1.0 / EXPOSED, &frame(0, EXPOSED));
     assert!(share(&trace, |_, t| t.gate == 0.0) > 0.9);
+    holds!(
+        "H72",
+        Cpu,
+        "wrs, x256 and /256 told: 20 frames the same as unexposed ones times the ratio, bit for bit; 0 flushed"
+    );
 }
 
 #[test]
@@ -83,6 +88,7 @@ fn h72_an_exposed_colour_stays_within_halves() {
 fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
     // Brighter: at once, all history is too dark to be true. Darker: what happens to look alike stays a little longer. Without the
     // gate history dies of age.
+    let mut took = vec![];
     for (ratio, gate, frames, all) in [(EXPOSED, true, 0, 0), (1.0 / EXPOSED, true, 3, 20), (EXPOSED, false, 60, 100)] {
         let mut post = gated(gate);
         for index in 0..30 {
@@ -101,7 +107,16 @@ fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
             until(0.0)
         );
         assert!(until(0.01) <= frames && until(0.0) <= all, "stated are {frames} and {all}");
+        took.push(until(0.01));
     }
+    holds!(
+        "H72",
+        Cpu,
+        "wrs, not told: 1 % stale after {} frames (x256), {} (/256); without a gate {}",
+        took[0],
+        took[1],
+        took[2]
+    );
 }
 
 /// Pixels that are not `dark`, frame after frame, if all of them flash once at frame 30.
@@ -121,6 +136,7 @@ fn h73_a_firefly_lives_one_frame() {
     // The gate lets go of history that differs so much, and then of the firefly: out comes what went in.
     let lit = flash(true, 65504.0, 100);
     assert_eq!((lit[0], lit[1..].iter().sum()), (64 * 48, 0_u64));
+    holds!("H73", Cpu, "wrs, gated: 65504 in 1/32 is shown for 1 frame of 101, in all 3072 pixels");
 }
 
 #[test]
@@ -148,11 +164,18 @@ fn h73_without_the_gate_a_firefly_is_drawn_and_dies_as_the_law_says() {
     );
     assert!(energy > 1.0 && energy < 1.15, "what a stream of constant light keeps is within 15 % of what it brings");
     assert!(lit[70..].iter().all(|&n| n == 0), "gone within 70 frames");
+    let last = lit.iter().rposition(|&n| n > 0).unwrap() + 1;
+    holds!(
+        "H73",
+        Cpu,
+        "wrs, no gate: light shown over light brought {shown:.3} (by the law {energy:.3}), gone after {last} frames"
+    );
 }
 
 #[test]
 fn h74_a_strobe_leaves_nothing_behind() {
     // One frame on, one off, for 60 frames, by a lot and by a stop; then dark again, and exactly so after the frames stated.
+    let mut left = vec![];
     for (gate, on, frames) in [(true, 1.0, 6), (true, 0.0625, 40), (false, 1.0, 100)] {
         let mut post = gated(gate);
         let dark = 0.031_25;
@@ -168,7 +191,16 @@ fn h74_a_strobe_leaves_nothing_behind() {
         let frames_lit = last_lit.map_or(0, |frame| frame + 1);
         println!("strobe {dark} to {on}, gate {gate}: nothing left after {frames_lit} frames");
         assert!(frames_lit <= frames, "{frames_lit} frames, stated are {frames}");
+        left.push(frames_lit);
     }
+    holds!(
+        "H74",
+        Cpu,
+        "wrs, 60 frames of strobe: gone exactly after {} frames (by 1 stop {}, no gate {})",
+        left[0],
+        left[1],
+        left[2]
+    );
 }
 
 #[test]
@@ -197,4 +229,6 @@ fn h75_black_and_white_by_turns_keep_their_mean() {
     let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
     common::accept(&format!("mean over time {mean:.4}"), common::p_of_z((mean - 0.5) / (variance / n).sqrt()));
     common::reject("the same against 0.55", common::p_of_z((mean - 0.55) / (variance / n).sqrt()));
+    let p = common::p_of_z((mean - 0.5) / (variance / n).sqrt());
+    holds!("H75", Cpu, "wrs: black or white only; gated the frame itself, else mean over time {mean:.4} (p = {p:.2})");
 }

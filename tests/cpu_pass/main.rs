@@ -7,7 +7,9 @@ mod depth;
 mod lifecycle;
 mod light;
 mod nan;
+mod properties;
 mod reprojection;
+mod reservoirs;
 mod trust;
 mod views;
 
@@ -26,6 +28,8 @@ use common::Draws;
 use proptest::prelude::*;
 
 const SIZE: [u32; 2] = [64, 48];
+/// Those that find the past by the same rules, each in its own history.
+const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
 type Color = Image<[f32; 3]>;
 
 fn geometry(size: [u32; 2]) -> ViewGeometry {
@@ -68,6 +72,11 @@ impl Input {
             ..CpuView::new(facts, &self.color)
         }
     }
+}
+
+/// Without a gate, so that only the test in question takes history away.
+fn context_of(method: Method) -> CpuAfterimage {
+    context(Settings { method, gate: None, ..Settings::paper() })
 }
 
 fn context(settings: Settings) -> CpuAfterimage {

@@ -52,6 +52,11 @@ fn h79_poisoned_fresh_history_is_never_read() {
     assert_eq!(one(&mut post.clone(), 0, &input).0, input.color, "all NaN words are empty");
     let (out, _, _) = step(&mut post, 0, Reset::All, &[&input]);
     assert_eq!(out[0], input.color);
+    holds!(
+        "H79",
+        Cpu,
+        "wrs: 3072 reservoirs of NaN words show the candidate, bit for bit, as history and after a reset"
+    );
 }
 
 #[test]

@@ -4,13 +4,30 @@ use super::*;
 
 #[test]
 fn h51_a_thousand_still_frames_never_move_a_sample() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
-    let picture = noise(SIZE, "still");
+    // Every frame another picture at the same depths: what is shown is the sample of some frame at its own pixel.
+    let mut post = context_of(Method::Wrs);
+    let mut seen = vec![std::collections::HashSet::new(); 64 * 48];
+    let depth = Image::from_fn(SIZE, |[x, y]| 1.0 + ((x / 5) * (y / 3)) as f32);
+    let mut kept = 0;
     for index in 0..1000 {
-        let (out, stats, _) = one(&mut post, index, &Input::still(picture.clone()));
-        assert_eq!(out, picture);
+        let input = Input {
+            depth: Some(depth.clone()),
+            motion: Some(Image::filled(SIZE, [0.0, -0.0])),
+            ..Input::still(noise(SIZE, &format!("still {index}")))
+        };
+        let (out, stats, trace) = one(&mut post, index, &input);
         assert_eq!(stats.flushed(), 0);
+        for (i, colors) in seen.iter_mut().enumerate() {
+            colors.insert(input.color.pixels()[i].map(f32::to_bits));
+            assert!(colors.contains(&out.pixels()[i].map(f32::to_bits)), "frame {index}, pixel {i}");
+        }
+        kept += trace.pixels().iter().filter(|t| !t.take).count();
     }
+    holds!(
+        "H51",
+        Cpu,
+        "wrs, 1000 frames of noise over 200 depths: {kept} samples kept, each at its own pixel, bit for bit"
+    );
 }
 
 #[test]
@@ -21,6 +38,7 @@ fn h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new() {
     sticky(&mut post);
     let input = Input { motion: Some(Image::filled(SIZE, [3.0, -2.0])), ..Input::still(noise(SIZE, "after")) };
     let (out, _, trace) = one(&mut post, 1, &input);
+    let mut border = 0;
     for y in 0..48_usize {
         for x in 0..64_usize {
             let (qx, qy) = (x + 3, y as i64 - 2);
@@ -30,9 +48,12 @@ fn h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new() {
             } else {
                 assert_eq!(out.at(x, y), input.color.at(x, y));
                 assert_eq!(trace.at(x, y).verdict, Verdict::OffScreen);
+                border += 1;
             }
         }
     }
+    assert_eq!(border, 64 * 48 - 61 * 46);
+    holds!("H52", Cpu, "wrs: {} samples moved bit for bit, {border} of the border new", 61 * 46);
 }
 
 #[test]
@@ -74,13 +95,20 @@ fn h53_half_pixel_motion_never_blurs() {
     // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every colour is still one that was put in.
     let mut post = context(Settings { gate: None, ..Settings::paper() });
     let mut known = std::collections::HashSet::new();
+    let mut kept = 0;
     for index in 0..200 {
         let color = noise(SIZE, &format!("frame {index}"));
         known.extend(color.pixels().iter().map(|c| c.map(f32::to_bits)));
         let input = Input { motion: Some(Image::filled(SIZE, [-0.5, 0.5])), ..Input::still(color) };
-        let (out, ..) = one(&mut post, index, &input);
+        let (out, _, trace) = one(&mut post, index, &input);
         assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "H22: no invented colours");
+        kept += trace.pixels().iter().filter(|t| !t.take).count();
     }
+    holds!(
+        "H53",
+        Cpu,
+        "wrs, 0.5 px x 200: {kept} samples kept, no colour that no frame brought; nearest, nothing is mixed"
+    );
 }
 
 #[test]
@@ -98,22 +126,103 @@ fn h54_garbage_motion_shows_the_candidate() {
         assert_eq!(stats.flushed(), 2);
         assert_eq!((out.at(7, 5), out.at(7, 6)), (input.color.at(7, 5), input.color.at(7, 6)));
     }
+    holds!("H54", Cpu, "wrs: NaN, infinities, 1e9 and -1e9 on either axis show the candidate, bit for bit");
 }
 
 #[test]
-fn h59_h60_zoom_and_turn_leave_no_hole() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
-    one(&mut post, 0, &Input::still(noise(SIZE, "zoom")));
-    // A zoom out by 2: the border comes from outside; inside, texels are skipped.
-    let zoom = Image::from_fn(SIZE, |[x, y]| [x as f32 - 32.0, y as f32 - 24.0]);
-    let (out, stats, trace) = one(&mut post, 1, &Input { motion: Some(zoom), ..Input::still(noise(SIZE, "zoom 2")) });
-    assert!(out.pixels().iter().flatten().all(|v| v.is_finite()));
-    assert!(stats.flushed() > 0);
-    let kept = trace.pixels().iter().filter(|t| !t.take).count();
-    assert!(trace.pixels().iter().filter(|t| !t.take).all(|t| t.age == 1), "ages are kept by duplicates ({kept})");
-    // A turn by 180 degrees: everything is off screen, everything is the candidate.
-    let turn = Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..Input::still(noise(SIZE, "turn")) };
-    let (out, stats, _) = one(&mut post, 2, &turn);
-    assert_eq!(out, turn.color);
-    assert_eq!(stats.flushed(), 64 * 48);
+fn h59_a_zoom_leaves_no_hole() {
+    let before = noise(SIZE, "zoom");
+    let zoomed = |factor: f32| {
+        let mut post = context_of(Method::Wrs);
+        one(&mut post, 0, &Input::still(before.clone()));
+        sticky(&mut post);
+        // Previous minus current, about pixel (32, 24).
+        let motion =
+            Image::from_fn(SIZE, |[x, y]| [(x as f32 - 32.0) * (factor - 1.0), (y as f32 - 24.0) * (factor - 1.0)]);
+        let input = Input { motion: Some(motion), ..Input::still(noise(SIZE, "zoom 2")) };
+        let (out, stats, trace) = one(&mut post, 1, &input);
+        let (mut kept, mut sources) = (0, std::collections::HashSet::new());
+        for y in 0..48_usize {
+            for x in 0..64_usize {
+                let source = |at: usize, middle: f32| (middle + (at as f32 - middle) * factor + 0.5).floor();
+                let [qx, qy] = [source(x, 32.0), source(y, 24.0)];
+                let t = trace.at(x, y);
+                if (0.0..64.0).contains(&qx) && (0.0..48.0).contains(&qy) {
+                    assert_eq!((out.at(x, y), t.age, t.take), (before.at(qx as usize, qy as usize), 1, false));
+                    sources.insert((qx as usize, qy as usize));
+                    kept += 1;
+                } else {
+                    assert_eq!((out.at(x, y), t.age, t.verdict), (input.color.at(x, y), 0, Verdict::OffScreen));
+                }
+            }
+        }
+        assert_eq!(stats.flushed(), 64 * 48 - kept);
+        [kept, sources.len() as u64]
+    };
+    let ([near, originals], [far, all]) = (zoomed(0.5), zoomed(2.0));
+    assert!(near == 64 * 48 && near > 3 * originals && far == all && far < 1000);
+    holds!(
+        "H59",
+        Cpu,
+        "wrs, in x2: {near} show {originals} samples, ages kept; out x2: {far} kept, the rest is the candidate"
+    );
+}
+
+#[test]
+fn h60_a_turn_is_a_full_reset() {
+    for method in METHODS {
+        let mut post = context_of(method);
+        one(&mut post, 0, &Input::still(noise(SIZE, "turn 0")));
+        let turn = Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..Input::still(noise(SIZE, "turn")) };
+        let (out, stats, _) = one(&mut post, 1, &turn);
+        assert_eq!((out, stats.flushed()), (turn.color, 64 * 48), "{method:?}");
+    }
+}
+
+/// CPU time of the calling thread.
+#[cfg(all(unix, feature = "lab"))]
+fn thread_ns() -> f64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    t.tv_sec as f64 * 1e9 + t.tv_nsec as f64
+}
+
+#[cfg(all(unix, feature = "lab"))]
+#[test]
+fn h60_a_turn_costs_no_more_than_any_other_frame() {
+    const LARGE: [u32; 2] = [256, 192];
+    // On one thread, whose time is counted; normal frames and turns by turns, so that both meet the same machine.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let mut ratios = vec![];
+    for method in METHODS {
+        let depth = Some(Image::from_fn(LARGE, |[x, y]| 2.0 + (x + y) as f32 * 0.01));
+        let frame = |name: &str, motion: f32| Input {
+            depth: depth.clone(),
+            motion: Some(Image::filled(LARGE, [motion, 0.25])),
+            ..Input::still(noise(LARGE, name))
+        };
+        let (normal, turn) = (frame("cost", 0.25), frame("cost", 5000.0));
+        let mut start = CpuAfterimage::new(ContextDesc::new(LARGE), Settings { method, ..Settings::paper() }).unwrap();
+        one(&mut start, 0, &frame("before", 0.0));
+        let time = |input: &Input| {
+            let mut post = start.clone();
+            pool.install(|| {
+                let from = thread_ns();
+                one(&mut post, 1, input);
+                thread_ns() - from
+            })
+        };
+        let mut times = [vec![], vec![]];
+        for _ in 0..15 {
+            times[0].push(time(&normal));
+            times[1].push(time(&turn));
+        }
+        let [normal, turn] = times.map(|mut t| {
+            t.sort_by(f64::total_cmp);
+            t[t.len() / 2]
+        });
+        ratios.push(turn / normal);
+    }
+    assert!(ratios.iter().all(|&r| r < 1.1), "{ratios:?}");
+    let [wrs, smr] = ratios[..] else { unreachable!() };
+    holds!("H60", Cpu, "all is new, bit for bit; CPU time over a normal frame's: wrs {wrs:.2}, smr {smr:.2}");
 }

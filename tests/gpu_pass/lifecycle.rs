@@ -3,13 +3,14 @@
 use super::common::Draws;
 use super::gpu;
 use super::rig::{Made, Rig, View, make_texture};
+use crate::holds;
 use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::display::ViewGeometry;
 use afterimage::error::{CreateError, FrameError};
 use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::image::Image;
-use afterimage::settings::{Sampler, Settings};
+use afterimage::settings::{Method, Sampler, Settings};
 use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [70, 40];
@@ -111,6 +112,7 @@ fn h79_poisoned_fresh_history_is_never_visible() {
         let views = [noise_view(&format!("poison {index}"), &rig.context)];
         assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
     }
+    holds!("H79", Gpu, "wrs: fresh textures of NaN words, 3 frames as of the CPU's clean ones, bit for bit");
 }
 
 /// Frames `range`, on both.
@@ -161,6 +163,10 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
     let Some(mut told) = fresh() else { return };
     let views = [noise_view("run 0", &told.context)];
     assert!(told.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0], "a reset at frame 0 changes nothing");
+    assert!(run(&mut told, 1..4) == run(&mut from_zero, 1..4));
+    holds!("H76", Gpu, "wrs: 4 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit");
+    holds!("H77", Gpu, "wrs: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit");
+    holds!("H78", Gpu, "wrs: reset twice running, and at frame 0: as a fresh context, bit for bit");
 }
 
 #[test]
@@ -179,25 +185,60 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
     }
     assert_eq!(rig.gpu.desc().context.size_px, SIZE);
     assert!(run(&mut rig, 3..6) == run(&mut other, 3..6), "the history is still there");
+    holds!("H76", Gpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused by a typed error; the history goes on, bit for bit");
 }
 
 #[test]
 fn h77_a_lost_device_is_left_behind_for_a_new_one() {
-    let Some(mut lost) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
-        return;
-    };
-    run(&mut lost, 0..4);
-    lost.device.destroy();
-    // Until the caller hears of it, recording goes on without a panic.
-    let facts = [noise_view("lost", &lost.context).facts];
-    let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
-    let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
-    let mut encoder = lost.device.create_command_encoder(&Default::default());
-    lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
-    lost.queue.submit([encoder.finish()]);
-    drop(lost);
-    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }).unwrap();
-    assert!(run(&mut fresh(), 4..8) == run(&mut fresh(), 4..8));
+    use std::sync::{Arc, OnceLock};
+    for method in [Method::Wrs, Method::Taa, Method::Smr] {
+        let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() });
+        let Some(mut lost) = fresh() else { return };
+        let reason = Arc::new(OnceLock::new());
+        let told = reason.clone();
+        lost.device.set_device_lost_callback(move |why, _| {
+            let _ = told.set(why);
+        });
+        run(&mut lost, 0..4);
+        let desc = wgpu::BufferDescriptor {
+            label: None,
+            size: 16,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        let buffer = lost.device.create_buffer(&desc);
+        lost.device.destroy();
+        // Until the caller hears of it, recording goes on without a panic, whatever the context has to make for it.
+        let facts = [noise_view("lost", &lost.context).facts];
+        let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
+        let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+        let mut encoder = lost.device.create_command_encoder(&Default::default());
+        lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
+        lost.queue.submit([encoder.finish()]);
+        lost.gpu.resize(&lost.device, [33, 17]).unwrap();
+        lost.gpu.forget();
+        // What it hears are typed errors of wgpu's: the reason, and a readback that does not map.
+        let mapped = Arc::new(OnceLock::new());
+        let result = mapped.clone();
+        buffer.map_async(wgpu::MapMode::Read, .., move |r| {
+            let _ = result.set(r);
+        });
+        let _ = lost.device.poll(wgpu::PollType::wait_indefinitely());
+        assert!(matches!(mapped.get(), Some(Err(wgpu::BufferAsyncError))), "{mapped:?}");
+        assert_eq!(reason.get(), Some(&wgpu::DeviceLostReason::Destroyed));
+        drop(lost);
+        // A new context on a new device knows nothing of the old one's frames: it starts with the candidate.
+        let mut again = fresh().unwrap();
+        let made = run(&mut again, 4..8);
+        let candidate = noise_view("run 4", &again.context).color;
+        assert!(made[0].shown.iter().zip(candidate.pixels()).all(|(a, b)| *a == b.map(f32::to_bits)), "{method:?}");
+        assert!(made == run(&mut fresh().unwrap(), 4..8));
+    }
+    holds!(
+        "H77",
+        Gpu,
+        "wrs, taa, smr: a lost device gives DeviceLostReason and BufferAsyncError, no panic; a new one starts afresh"
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::lifecycle::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated};
 use super::surfaces_variants::{both_methods, settings};
+use crate::holds;
 use afterimage::foveation::{Filter, Foveation};
 use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
 use afterimage::gpu::{Afterimage, GpuDesc};
@@ -68,6 +69,7 @@ fn h79_poisoned_fresh_history_is_never_visible() {
         let (cpu, _) = rig.on_cpu(1, Reset::None, &views);
         assert!(rig.on_gpu(1, Reset::None, &views) != cpu, "the planted error: no reset");
     }
+    holds!("H79", Gpu, "smr and taa: NaN words and levels, fresh, after a reset and a resize: never seen, bit for bit");
 }
 
 #[test]
@@ -97,7 +99,32 @@ fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
             }
         }
         assert!(run(&mut used, 22..26) == expected);
+        // A cut, said twice running; and a reset at frame 0.
+        let mut cut = fresh().unwrap();
+        run(&mut cut, 16..22);
+        let views = [noise_view("run 5", &cut.context)];
+        for _ in 0..2 {
+            let (made, _) = cut.both(22, Reset::All, &views);
+            let candidate = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits));
+            assert!(made.shown.iter().copied().eq(candidate) && made == expected[0]);
+        }
+        assert!(run(&mut cut, 23..26) == expected[1..]);
+        let (mut told, mut untold) = (fresh().unwrap(), fresh().unwrap());
+        let views = [noise_view("run 0", &told.context)];
+        assert!(told.both(0, Reset::All, &views).0 == run(&mut untold, 0..1)[0]);
+        assert!(run(&mut told, 1..3) == run(&mut untold, 1..3));
     }
+    holds!(
+        "H76",
+        Gpu,
+        "smr and taa: 3 sizes, odd, even and 1x1, then back: 4 frames as of a fresh context, bit for bit"
+    );
+    holds!(
+        "H77",
+        Gpu,
+        "smr and taa: the first frame after a cut is the candidate, 3 more as of a fresh context, bit for bit"
+    );
+    holds!("H78", Gpu, "smr and taa: reset twice running, and at frame 0: as a fresh context, bit for bit");
 }
 
 #[test]

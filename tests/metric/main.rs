@@ -32,24 +32,31 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
     let image = noise(size, "latency");
     let reference = metric::encode(&image, 0.0);
     let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    let ecc = geometry.eccentricity_map([320.0, 180.0]);
     // The eye moves at 30 degrees a second; the foveation lags.
-    let errors: Vec<f64> = [0.0, 30.0, 60.0, 100.0, 150.0]
-        .iter()
-        .map(|latency_ms| {
-            let lag_px = 30.0 * latency_ms / 1000.0 * 8.0;
-            let shown = metric::encode(&foveate(&Foveation::default(), &image, [320.0 - lag_px, 180.0]), 0.0);
-            let mut frame = source_frame(image.clone());
-            frame.cut = true;
-            let ecc = geometry.eccentricity_map([320.0, 180.0]);
-            let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
-            let mut scorer = Scorer::default();
-            scorer.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
-            scorer.scores().bands[0].mse.unwrap()
-        })
-        .collect();
-    println!("mean squared error in the true fovea by latency: {errors:.4?}");
-    assert_eq!(errors[0], 0.0);
-    assert!(errors.windows(2).all(|w| w[0] <= w[1]));
+    let latencies_ms = [0.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0, 100.0, 125.0, 150.0];
+    let scores = latencies_ms.map(|latency_ms| {
+        let lag_px = 30.0 * latency_ms / 1000.0 * 8.0;
+        let shown = metric::encode(&foveate(&Foveation::default(), &image, [320.0 - lag_px, 180.0]), 0.0);
+        let mut frame = source_frame(image.clone());
+        frame.cut = true;
+        let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
+        let mut scorer = Scorer::default();
+        scorer.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+        let scores = scorer.scores();
+        (scores.bands[0].mse.unwrap(), scores.weighted_psnr_db.unwrap())
+    });
+    for (ms, (mse, db)) in latencies_ms.iter().zip(scores) {
+        println!("{ms} ms: mean squared error in the true fovea {mse:.4}, weighted {db:.2} dB");
+    }
+    assert_eq!(scores[0].0, 0.0);
+    assert!(scores.windows(2).all(|w| w[0].0 <= w[1].0 && w[0].1 > w[1].1), "{scores:?}");
+    let [none, half, all] = [0, 5, 9].map(|i| scores[i].1);
+    holds!(
+        "H68",
+        Cpu,
+        "weighted PSNR falls at each of 10 latencies: {none:.2} dB at 0 ms, {half:.2} at 60, {all:.2} at 150"
+    );
 }
 
 fn source_frame(color: Image<[f32; 3]>) -> SourceFrame {

@@ -4,7 +4,9 @@
 mod common;
 
 mod arithmetic;
+mod growth;
 mod law;
+mod properties;
 mod storage;
 
 use afterimage::kernel::pack::{self, Stored};

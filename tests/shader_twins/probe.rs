@@ -8,7 +8,7 @@ use glam::Vec3;
 /// A function under test.
 pub struct Probe {
     pub name: &'static str,
-    /// The module it is in.
+    /// The module it is in, or those it needs, with a space between.
     pub module: &'static str,
     /// Words of a row of input and of output.
     pub words: [usize; 2],
@@ -92,7 +92,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
             workgroup = gpu::WORKGROUP,
             wgsl = self.wgsl
         );
-        compose_with(&[self.module], &harness).source
+        compose_with(&self.module.split(' ').collect::<Vec<_>>(), &harness).source
     }
 
     /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin.
@@ -127,23 +127,47 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         (count, lines)
     }
 
+    /// What the device makes of each row, on a fresh device; Rust makes the same in every bit. `None` without an adapter.
+    #[track_caller]
+    pub fn outputs(&self, rows: &[Vec<u32>]) -> Option<Vec<Vec<u32>>> {
+        let (device, queue) = gpu::device()?;
+        let outs = self.words[1];
+        let inputs = [heap(self.module), rows.concat()].concat();
+        let got = gpu::run_probe(&device, &queue, &self.source(), "main", &inputs, rows.len() * outs);
+        let got: Vec<Vec<u32>> = got.chunks(outs).map(<[u32]>::to_vec).collect();
+        for (input, got) in rows.iter().zip(&got) {
+            assert_eq!(input.len(), self.words[0], "{}", self.name);
+            let mut expected = Out::default();
+            (self.rust)(&Row(input), &mut expected);
+            assert_eq!(*got, expected.0, "{} of {input:08x?}: device, then Rust", self.name);
+        }
+        Some(got)
+    }
+
     /// Fails unless device and Rust agree in every bit of every row.
-    fn check(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), String> {
+    fn check(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<usize, String> {
         let (count, lines) = self.differences(device, queue, &self.source());
         println!("{}::{}: {count} rows, {} differ", self.module, self.name, lines.len());
         if lines.is_empty() {
-            return Ok(());
+            return Ok(count);
         }
         let shown = &lines[..lines.len().min(8)];
         Err(format!("{}::{}: {} of {count} rows differ\n{}", self.module, self.name, lines.len(), shown.join("\n")))
     }
 }
 
-/// Checks every probe of `module`, on a fresh device.
-pub fn check_module(probes: &[Probe], module: &str) {
-    let Some((device, queue)) = gpu::device() else { return };
+/// The probe of that name.
+pub fn named<'a>(probes: &'a [Probe], name: &str) -> &'a Probe {
+    probes.iter().find(|p| p.name == name).unwrap()
+}
+
+/// Checks every probe of `module`, on a fresh device; how many rows agree, or `None` without an adapter.
+pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
+    let (device, queue) = gpu::device()?;
     let chosen: Vec<_> = probes.iter().filter(|p| p.module == module).collect();
     assert!(!chosen.is_empty());
-    let failures: Vec<_> = chosen.iter().filter_map(|p| p.check(&device, &queue).err()).collect();
+    let (counts, failures): (Vec<_>, Vec<_>) = chosen.iter().map(|p| p.check(&device, &queue)).partition(Result::is_ok);
+    let failures: Vec<_> = failures.into_iter().filter_map(Result::err).collect();
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+    Some(counts.into_iter().flatten().sum())
 }

@@ -72,7 +72,7 @@ impl Stream {
         let (resizes, steps, looks, changes) = (one_in(90), one_in(40), one_in(12), one_in(25));
         if resizes {
             let [w, h] = self.full;
-            let sizes = [[w, h], [w, h], [w - 1, h + 1], [w / 2, h / 2], [w / 3 | 1, h / 3 | 1], [1, 1], [7, 2]];
+            let sizes = [[w, h], [w, h], [w - 1, h + 1], [w / 2, h / 2], [(w / 3) | 1, (h / 3) | 1], [1, 1], [7, 2]];
             event.size = Some(sizes[self.draws.bits() as usize % sizes.len()]);
         } else if (frame + 1).is_multiple_of(STRETCH) {
             event.size = Some(self.full);

@@ -108,11 +108,11 @@ fn assert_sound(method: Method, found: &Found) {
     if method == Method::Wrs {
         assert!(found.stretches > 0 && found.drift < 1.0, "{found:?}");
     }
-    // A leak of a kilobyte a frame would be 8 MiB in 8,000 frames.
+    // A leak of a kilobyte a frame would be 1 MiB each time; what the driver makes late, it makes once.
     let late = &found.resident_mib[found.resident_mib.len().min(2)..];
     if found.frames >= 10_000 && late.len() > 2 {
-        let growth = late[late.len() - 1] - late[0];
-        assert!(growth < 8.0, "{growth} MiB in {} frames: {:?}", found.frames, found.resident_mib);
+        let growth = resident::least_growth_mib(late);
+        assert!(growth < 0.5, "{growth} MiB in {} frames: {:?}", found.frames / 10, found.resident_mib);
     }
 }
 

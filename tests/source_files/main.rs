@@ -1,6 +1,9 @@
 //! File sources: stills, EXR sequences, their vectors and cameras, and everything that can be wrong with a file.
 #![cfg(feature = "lab")]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod bad_input;
 mod data;
 mod formats;

@@ -1,5 +1,6 @@
 //! The convention detector on scenes whose convention is known.
 
+use crate::holds;
 use afterimage::convention::MotionConvention;
 use afterimage::image::Image;
 use afterimage::source::motion_check::{Verdict, conventions, detect};
@@ -78,6 +79,11 @@ fn h56_the_right_convention_is_found_in_random_scenes() {
     }
     eprintln!("{right} of 200 right, smallest margin {smallest_margin:.1} dB");
     assert!(right >= 198, "{right} of 200");
+    holds!(
+        "H56",
+        Cpu,
+        "{right} of 200 random textured scenes right, each of 12 conventions; smallest margin {smallest_margin:.1} dB"
+    );
 }
 
 #[test]

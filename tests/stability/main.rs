@@ -12,6 +12,7 @@ use common::hard_case::{Side, record};
 use rows::ROWS;
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use table::{Held, missing, parse, print};
 
@@ -68,7 +69,14 @@ fn the_table_is_what_the_tests_said() {
     };
     let (said, printed) = (names(&said), names(&parse(&fs::read_to_string(TABLE).unwrap())));
     let of = |a: &BTreeSet<_>, b: &BTreeSet<_>| a.difference(b).cloned().collect::<Vec<(String, String, String)>>();
-    assert_eq!(of(&printed, &said), [], "in the table, and not said by any test");
+    if Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").is_dir() {
+        assert_eq!(of(&printed, &said), [], "in the table, and not said by any test");
+    } else {
+        // Not eprintln: the harness would swallow it.
+        let without = of(&printed, &said).len();
+        let _ =
+            writeln!(std::io::stderr(), "SKIPPED: no ../shared/data; {without} lines of the table were not compared");
+    }
     assert_eq!(of(&said, &printed), [], "said by tests, and not in the table");
 }
 

@@ -151,27 +151,3 @@ fn h73_detail_of_bright_pictures_stays() {
         }
     }
 }
-
-#[test]
-fn h73_a_firefly_is_gone_with_the_frame_after() {
-    for method in METHODS {
-        let mut post = context(method);
-        let dark = Image::filled(SIZE, [0.01; 3]);
-        let mut firefly = dark.clone();
-        firefly.pixels_mut()[20 * 52 + 26] = [65504.0; 3];
-        step(&mut post, 0, &Input::at_lod(firefly, 2.0));
-        let made = step(&mut post, 1, &Input::at_lod(dark.clone(), 2.0));
-        let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
-        println!("{method:?}: at the most {brightest} a frame after 65504");
-        assert!(brightest < 0.011);
-    }
-}
-
-#[test]
-fn h75_black_and_white_in_turn_show_what_came() {
-    let mut post = context(Method::Smr);
-    for index in 0..20 {
-        let color = Image::filled(SIZE, [(index % 2) as f32; 3]);
-        assert_eq!(step(&mut post, index, &Input::at_lod(color.clone(), 2.0)).shown, color, "frame {index}");
-    }
-}

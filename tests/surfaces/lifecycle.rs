@@ -28,8 +28,17 @@ fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
         assert_eq!(run(&mut forgotten, 10..14), fresh, "{method:?}");
 
         let mut resized = used.clone();
-        resized.resize([3, 5]).unwrap();
-        resized.resize(SIZE).unwrap();
+        for size in [[3, 5], [64, 64], [1, 1], [53, 41], SIZE] {
+            resized.resize(size).unwrap();
+            if size != SIZE {
+                let input = Input::sharp(noise(size, "resized"));
+                assert_eq!(
+                    step(&mut resized, 0, &input).shown,
+                    input.color,
+                    "the first frame of a size is the candidate"
+                );
+            }
+        }
         assert_eq!(run(&mut resized, 10..14), fresh, "{method:?}");
 
         let mut changed = used.clone();
@@ -46,7 +55,27 @@ fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
             assert_eq!(made, fresh[0], "reset two frames running");
         }
         assert_eq!(run(&mut cut, 11..14), fresh[1..]);
+        let mut told = context(method);
+        step(&mut told, 0, &Input { reset: Reset::All, ..frame(0) });
+        let mut untold = context(method);
+        run(&mut untold, 0..1);
+        assert_eq!(run(&mut told, 1..4), run(&mut untold, 1..4), "{method:?}: a reset at frame 0");
     }
+    holds!(
+        "H76",
+        Cpu,
+        "smr and taa: 5 sizes, odd, even and 1x1, then back: 4 frames as of a fresh context, bit for bit"
+    );
+    holds!(
+        "H77",
+        Cpu,
+        "smr and taa: the first frame after a cut is the candidate, 3 more as of a fresh context, bit for bit"
+    );
+    holds!(
+        "H78",
+        Cpu,
+        "smr and taa: reset twice running, and at frame 0: 4 frames each as of a fresh context, bit for bit"
+    );
 }
 
 #[test]
@@ -179,24 +208,47 @@ fn a_camera_that_drives_keeps_what_it_drives_at() {
 
 #[test]
 fn h58_nothing_is_read_over_a_depth_edge() {
-    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colours show any that do.
+    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colours show any that do. smr accumulates
+    // what is coarse.
+    let mut widest = vec![];
     let near = |[x, _]: [u32; 2]| x < 26;
     let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };
-    for (depth, bleeds) in [(Some(Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 })), false), (None, true)] {
+    let depths = Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 });
+    for (method, depth, bleeds) in [
+        (Method::Taa, Some(depths.clone()), false),
+        (Method::Taa, None, true),
+        (Method::Smr, Some(depths), false),
+        (Method::Smr, None, true),
+    ] {
+        let lod = if method == Method::Smr { 1.0 } else { 0.0 };
         let input = Input {
             depth,
             motion: Some(Image::filled(SIZE, [-0.25, 0.0])),
-            ..Input::sharp(Image::from_fn(SIZE, |at| colors(near(at))))
+            ..Input::at_lod(Image::from_fn(SIZE, |at| colors(near(at))), lod)
         };
-        let mut post = context(Method::Taa);
+        let mut post = context(method);
         let mut worst = 0.0_f32;
+        let mut columns = std::collections::BTreeSet::new();
         for index in 0..20 {
             let made = step(&mut post, index, &input);
-            let pairs = made.shown.pixels().iter().flatten().zip(input.color.pixels().iter().flatten());
-            worst = pairs.fold(worst, |w, (a, b)| w.max((a - b).abs() / b));
+            for (i, (a, b)) in made.shown.pixels().iter().zip(input.color.pixels()).enumerate() {
+                let off = (0..3).fold(0.0_f32, |w, k| w.max((a[k] - b[k]).abs() / b[k]));
+                worst = worst.max(off);
+                // Storage alone is off by 1.5 * 2^-10, and by up to three times that before a share of 0.3 tells.
+                if off > 0.006 {
+                    columns.insert(i % 52);
+                }
+            }
         }
-        println!("off by {worst:.4}");
-        // Storage alone is off by 1.5 * 2^-10, and by up to three times that before a share of 0.3 tells.
-        assert_eq!(worst > 0.006, bleeds, "{worst}");
+        println!("{method:?}, bleeds {bleeds}: off by {worst:.4} in columns {columns:?}");
+        assert_eq!(!columns.is_empty(), bleeds, "{method:?}: {worst}");
+        widest.push(worst);
     }
+    holds!(
+        "H58",
+        Cpu,
+        "smr and taa, 1/4 px over an edge: off by {:.4}, rounding; without depth {:.2}",
+        widest[0].max(widest[2]),
+        widest[3]
+    );
 }

@@ -7,8 +7,10 @@ mod common;
 mod antialiasing;
 mod decision;
 mod formulas;
+mod geometry;
 mod hostile;
 mod lifecycle;
+mod light;
 mod noisy;
 mod properties;
 #[cfg(feature = "lab")]

@@ -167,22 +167,6 @@ fn s6_an_exposure_that_is_told_is_as_if_it_had_always_been() {
 }
 
 #[test]
-fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
-    let mut post = context(Method::Smr);
-    let made = step(&mut post, 0, &Input::sharp(noise(SIZE, "h72")));
-    let lods = Image::filled(SIZE, 2.0);
-    let coarse = LowPass::new(&made.stored(), 4).render(&lods);
-    let input = Input {
-        exposure: Exposure::Changed { ratio: 256.0 },
-        ..Input::at_lod(coarse.map(|c| c.map(|v| v * 256.0)), 2.0)
-    };
-    let bright = step(&mut post.clone(), 1, &input);
-    assert_eq!(bright.shown, made.stored().map(|c| c.map(|v| v * 256.0)));
-    let untold = step(&mut post, 1, &Input { exposure: Exposure::Same, ..input.clone() });
-    assert_eq!(untold.shown, input.color, "not told, it is another picture");
-}
-
-#[test]
 fn s8_the_index_of_a_frame_and_the_number_of_threads_do_not_matter() {
     for method in METHODS {
         let run = |from: u64, seed: u64, threads: usize| {

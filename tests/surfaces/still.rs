@@ -18,7 +18,9 @@ fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
         let first = step(&mut post, 0, &Input::sharp(picture));
         let stored = first.stored();
         let low_pass = LowPass::new(&stored, 4);
-        for index in 1..=120 {
+        // The roughest for a thousand frames.
+        let frames = if name == "rough" { 1000 } else { 120 };
+        for index in 1..=frames {
             let lods = coarse_lods(&format!("s3 {index}"));
             let input = Input { lod: Some(lods.clone()), ..Input::sharp(low_pass.render(&lods)) };
             let made = step(&mut post, index, &input);
@@ -27,6 +29,11 @@ fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
             assert!(made.trace.pixels().iter().all(|t| t.survival == 1.0 && t.gate == 1.0));
         }
     }
+    holds!(
+        "H51",
+        Cpu,
+        "smr: 1000 coarse frames of noise show frame 0 bit for bit in all 2132 pixels (smooth, dark: 120)"
+    );
 }
 
 #[test]
@@ -140,6 +147,7 @@ fn h52_a_whole_shift_moves_history_exactly_and_the_border_is_new() {
         });
         assert_eq!(as_expected, right, "the planted error: the other sign");
     }
+    holds!("H52", Cpu, "smr: {} samples moved bit for bit, {} of the border new", 49 * 39, 52 * 41 - 49 * 39);
 }
 
 #[test]
@@ -167,4 +175,38 @@ fn h53_half_a_pixel_is_read_between_texels() {
         // 0.3, storage 2^-10 of 0.8 each. Measured: 0.009 and 0.014.
         assert!(worst < 0.02 && coarse > 0.15);
     }
+}
+
+#[test]
+fn h53_200_steps_of_half_a_pixel_blur_no_more_than_stated() {
+    // Waves of 16 pixels in a wide picture that moves 100 pixels to the right. Read half-way between texels, a wave keeps
+    // 9/8 cos(pi f) - 1/8 cos(3 pi f) of itself, f being a wave a 16th of a pixel: 0.896 of it after 200 readings.
+    const WIDE: [u32; 2] = [224, 24];
+    let f = std::f64::consts::PI / 16.0;
+    let mtf = 1.125 * f.cos() - 0.125 * (3.0 * f).cos();
+    let wave = |x: f64| 0.5 + 0.3 * (2.0 * f * x).sin();
+    let picture = |shift: f64| Image::from_fn(WIDE, |[x, _]| [wave(f64::from(x) - shift) as f32; 3]);
+    let mut post = CpuAfterimage::new(ContextDesc::new(WIDE), settings(Method::Smr)).unwrap();
+    step(&mut post, 0, &Input::sharp(picture(0.0)));
+    let (mut kept, mut coarse) = (0.0, 0.0);
+    for index in 1..=200 {
+        let shift = 0.5 * index as f64;
+        let color = LowPass::new(&picture(shift), 3).render(&Image::filled(WIDE, 2.0));
+        let motion = Some(Image::filled(WIDE, [-0.5, 0.0]));
+        let made = step(&mut post, index, &Input { motion, ..Input::at_lod(color.clone(), 2.0) });
+        // Amplitudes, over four whole waves that were in view all the time.
+        let amplitude = |image: &Color| {
+            let at = |x: usize| f64::from(image.at(x, 12)[0]) * (2.0 * f * (x as f64 - shift)).sin();
+            (130..194).map(at).sum::<f64>() / 32.0 / 0.3
+        };
+        (kept, coarse) = (amplitude(&made.shown), amplitude(&color));
+    }
+    let stated = mtf.powi(200);
+    println!("{kept:.4} of the wave is left, {stated:.4} stated; the candidate has {coarse:.4}");
+    assert!(kept > stated - 0.01 && kept < 1.01 && coarse < stated - 0.05);
+    holds!(
+        "H53",
+        Cpu,
+        "smr, 0.5 px x 200: {kept:.3} of a wave of 16 px left, {stated:.3} by its MTF; the candidate has {coarse:.3}"
+    );
 }

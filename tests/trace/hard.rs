@@ -1,5 +1,6 @@
 //! Nothing that a scene may be makes the tracer panic or a pixel no number.
 
+use crate::holds;
 use crate::rig::{Rig, device, differing};
 use crate::scenes::{DARK, builtin, stage};
 use afterimage::image::Image;
@@ -136,7 +137,9 @@ fn scenes() -> Vec<Scene> {
 
 #[test]
 fn every_scene_gives_an_image_of_numbers_h81_h82_h83() {
-    for scene in scenes() {
+    let (scenes, variants) = (scenes(), 3 * 2 * 2);
+    let said = format!("{} scenes x {variants} variants of the tracer: no pixel but numbers >= 0", scenes.len());
+    for scene in scenes {
         let rig = Rig::new(scene, SIZE);
         for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
             for bsdf in [Bsdf::Principled, Bsdf::Phong] {
@@ -153,12 +156,17 @@ fn every_scene_gives_an_image_of_numbers_h81_h82_h83() {
         assert!(seen.depth.pixels().iter().all(|d| *d > 0.0), "{}", rig.name);
         assert!(seen.motion.pixels().iter().all(|m| m.iter().all(|x| x.is_finite())), "{}", rig.name);
     }
+    holds!("H81", Cpu, "{said}");
+    holds!("H82", Cpu, "{said}, scaled from 1e-3 to 1e7 and moved by up to 1e8 m among them");
+    holds!("H83", Cpu, "{said}");
 }
 
 #[test]
 fn every_scene_gives_the_same_image_on_the_gpu() {
     let Some(device) = device() else { return };
-    for scene in scenes() {
+    let scenes = scenes();
+    let said = format!("{} scenes: every pixel the CPU's bit for bit, all of them numbers", scenes.len());
+    for scene in scenes {
         let rig = Rig::new(scene, SIZE);
         let settings = TraceSettings::default();
         let (cpu, gpu) = (rig.cpu(settings, 4), rig.gpu(&device, settings, Storage::Texture, 4));
@@ -167,6 +175,9 @@ fn every_scene_gives_the_same_image_on_the_gpu() {
         assert!(gpu.moments.pixels().iter().all(|m| m.mean.is_finite()), "{}", rig.name);
         assert_eq!((count, cpu.nonfinite), (0, gpu.nonfinite), "{}", rig.name);
     }
+    holds!("H81", Gpu, "{said}");
+    holds!("H82", Gpu, "{said}");
+    holds!("H83", Gpu, "{said}");
 }
 
 #[test]

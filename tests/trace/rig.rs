@@ -83,9 +83,7 @@ pub fn device() -> Option<Arc<Headless>> {
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
             ..wgpu::Limits::default()
         };
-        let desc = wgpu::DeviceDescriptor { label: Some("test"), required_limits, ..Default::default() };
-        let (device, queue) = pollster::block_on(adapter.request_device(&desc)).expect("a device with these limits");
-        Arc::new(Headless { device, queue, info: adapter.get_info() })
+        Headless::on(adapter, required_limits).expect("a device with these limits")
     };
     Some(DEVICE.get_or_init(open).clone())
 }

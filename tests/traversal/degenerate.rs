@@ -1,6 +1,7 @@
 //! H81: whatever the triangles, a hierarchy is built and rays go through it.
 
 use crate::common::Draws;
+use crate::holds;
 use crate::scenes::{all, nearest, point, rays, soup};
 use afterimage::scene::Triangles;
 use afterimage::trace::{Bvh, Ray};
@@ -34,6 +35,12 @@ fn h81_triangles_that_no_ray_can_meet_are_dropped_and_counted() {
     }
     let only_broken = Triangles { positions: broken.to_vec(), ..Triangles::default() };
     assert_eq!(Bvh::build(&only_broken, None, &[]).node_count(), 0);
+    let kinds = broken.len();
+    holds!(
+        "H81",
+        Cpu,
+        "{kinds} kinds of broken triangles dropped and counted; 1000 rays through the rest hit what brute force hits"
+    );
 }
 
 #[test]

@@ -158,6 +158,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
                 None => shot.uniform(args, &setup, &bar),
                 Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
             };
+            setup.tracer.check()?;
             report.count(eye, &counts, &clock);
             write(args, &out, &setup, name, frame as usize, &picture, [&views[eye], &before[eye]])?;
         }

@@ -3,8 +3,8 @@
 use super::pass::{Pass, sampled, storage, uniform};
 use super::texture;
 use crate::frame::ContextDesc;
+use crate::gpu::filled;
 use crate::kernel::foveate::level_len;
-use wgpu::util::DeviceExt;
 use wgpu::{
     BindingResource, Buffer, ComputePass, Device, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
     TextureViewDimension,
@@ -44,11 +44,7 @@ impl MipChain {
         };
         let fine = (0..coarsest).map(|level| {
             let size = context.size_px.map(|s| level_len(s, level));
-            let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("afterimage mip level"),
-                contents: bytemuck::bytes_of(&size),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
+            let buffer = filled(device, "afterimage mip level", bytemuck::bytes_of(&size), wgpu::BufferUsages::UNIFORM);
             (size, buffer)
         });
         let types = [uniform(), sampled(), storage(FORMAT)];

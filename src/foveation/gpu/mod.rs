@@ -15,12 +15,11 @@ pub mod types;
 use super::Filter;
 use crate::error::{CreateError, FrameError};
 use crate::frame::ViewFrame;
-use crate::gpu::{GpuDesc, Timestamps, array_view, check_readable, check_texture, shader};
+use crate::gpu::{GpuDesc, Timestamps, array_view, check_readable, check_texture, filled, shader};
 use crate::kernel::foveate::block_sample_level;
 use mip_chain::MipChain;
 use pass::{Pass, sampled, storage, uniform};
 use types::{FoveationConstants, ViewConstants};
-use wgpu::util::DeviceExt;
 use wgpu::{
     BindingResource, CommandEncoder, ComputePassTimestampWrites, Device, Texture, TextureFormat, TextureUsages,
     TextureView,
@@ -134,11 +133,8 @@ impl GpuFoveation {
     ) -> Result<(), FrameError> {
         self.check(frame)?;
         let constants = self.constants(frame.views);
-        let constants = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("afterimage foveation constants"),
-            contents: bytemuck::bytes_of(&constants),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let (label, bytes) = ("afterimage foveation constants", bytemuck::bytes_of(&constants));
+        let constants = filled(device, label, bytes, wgpu::BufferUsages::UNIFORM);
         let constants = constants.as_entire_binding();
         let view = BindingResource::TextureView;
         let (full, output) = (array_view(frame.full), array_view(frame.output));

@@ -2,12 +2,12 @@
 
 use super::BATCH;
 use super::passes::WORKGROUP;
+use crate::gpu::filled;
 use crate::gpu::shader::compose;
 use crate::trace::work::{Spans, Work, WorkItem};
 use bytemuck::{Pod, Zeroable};
 use std::borrow::Cow;
 use wgpu::BufferUsages;
-use wgpu::util::DeviceExt;
 
 /// A part of the work that is in flight at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,13 +109,10 @@ impl Expand {
 
     /// The list of the work: uploaded, or a place that batches are expanded into.
     pub fn list(&self, device: &wgpu::Device, work: Work) -> (wgpu::Buffer, Option<Expansion>) {
-        let filled = |label, contents: &[u8]| {
-            let usage = BufferUsages::STORAGE;
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
+        let stored = |label, contents: &[u8]| filled(device, label, contents, BufferUsages::STORAGE);
         let spans = match work {
-            Work::List(items) => return (filled("work", bytemuck::cast_slice(items)), None),
-            Work::Spans(spans) => filled("spans", bytemuck::cast_slice(spans.spans())),
+            Work::List(items) => return (stored("work", bytemuck::cast_slice(items)), None),
+            Work::Spans(spans) => stored("spans", bytemuck::cast_slice(spans.spans())),
         };
         let buffer = |label, size, usage| {
             device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
@@ -145,9 +142,8 @@ impl Expand {
         batch: &Batch,
     ) {
         let Some((expansion, words)) = expansion.zip(batch.expansion) else { return };
-        let (contents, usage) = (bytemuck::bytes_of(&words), BufferUsages::COPY_SRC);
-        let staged =
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("batch"), contents, usage });
+        let contents = bytemuck::bytes_of(&words);
+        let staged = filled(device, "batch", contents, BufferUsages::COPY_SRC);
         encoder.copy_buffer_to_buffer(&staged, 0, &expansion.words, 0, contents.len() as u64);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&self.pipeline);

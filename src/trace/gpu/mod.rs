@@ -16,6 +16,7 @@ use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
 use super::work::Work;
 use super::world::World;
+use crate::error::FrameError;
 use crate::image::Image;
 use crate::pipeline::Headless;
 use clock::Clock;
@@ -50,6 +51,14 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
+    /// To be called after tracing: on a lost device the film gets black samples.
+    ///
+    /// # Errors
+    /// [`FrameError::DeviceLost`].
+    pub fn check(&self) -> Result<(), FrameError> {
+        self.device.check()
+    }
+
     /// Uploads `world` and compiles kernels for it.
     ///
     /// # Errors

@@ -1,11 +1,11 @@
 //! Buffers that paths live in, and a run of all kernels over a list of work.
 
 use super::passes::{Passes, WORKGROUP};
+use crate::gpu::filled;
 use crate::pipeline::Headless;
 use crate::trace::gpu::device_heap::GpuHeap;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
-use wgpu::util::DeviceExt;
 
 /// Twin of `TraceFrame` in `shaders/trace/frame.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -94,12 +94,9 @@ impl Paths {
         work: &wgpu::Buffer,
         film: &[[f32; 4]],
     ) -> Run<'a> {
-        let filled = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
         let to_read = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let film = filled("film", bytemuck::cast_slice(film), to_read);
-        let counters = filled("counters", &[0; COUNTER_BYTES as usize], to_read);
+        let film = filled(device, "film", bytemuck::cast_slice(film), to_read);
+        let counters = filled(device, "counters", &[0; COUNTER_BYTES as usize], to_read);
         let bind = |layout, resources: &[wgpu::BindingResource]| {
             let numbered = resources.iter().cloned().zip(0..);
             let entries: Vec<_> =
@@ -131,9 +128,7 @@ impl Run<'_> {
     ) {
         // Through the encoder: a write by the queue would give all batches of a submission the last words.
         let contents = bytemuck::bytes_of(words);
-        let usage = BufferUsages::COPY_SRC;
-        let staged =
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("frame"), contents, usage });
+        let staged = filled(device, "frame", contents, BufferUsages::COPY_SRC);
         encoder.copy_buffer_to_buffer(&staged, 0, &self.paths.frame, 0, contents.len() as u64);
 
         let plan = &self.paths.plan;

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::run::NO_ADAPTER;
 use afterimage::pipeline::Headless;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use winit::window::Window;
 
 /// Messages of validation in this process: any is a mistake in this package.
@@ -21,7 +21,6 @@ pub struct Device {
     pub surface: wgpu::Surface<'static>,
     pub capabilities: wgpu::SurfaceCapabilities,
     instance: wgpu::Instance,
-    lost: Arc<AtomicBool>,
 }
 
 impl Device {
@@ -44,18 +43,17 @@ impl Device {
         let found = adapters.iter().find_map(|a| Some((Headless::on(a, limits(a.limits())).ok()?, a)));
         let (gpu, adapter) =
             found.ok_or_else(|| Failure::Work(format!("a window cannot be drawn to: {NO_ADAPTER}")))?;
-        gpu.device.on_uncaptured_error(Arc::new(|error| {
-            // One mistake is followed by many that come of it.
-            if MESSAGES.fetch_add(1, Ordering::Relaxed) > 0 {
+        let watched = Arc::downgrade(&gpu);
+        gpu.device.on_uncaptured_error(Arc::new(move |error| {
+            // What a device says that is lost is no mistake, and of a mistake come many.
+            let is_lost = watched.upgrade().is_some_and(|gpu| gpu.check().is_err());
+            if is_lost || MESSAGES.fetch_add(1, Ordering::Relaxed) > 0 {
                 return;
             }
             eprintln!("afterimage: the device says: {}", error.to_string().replace('\n', " "));
         }));
-        let lost = Arc::new(AtomicBool::new(false));
-        let told = lost.clone();
-        gpu.device.set_device_lost_callback(move |_, _| told.store(true, Ordering::Release));
         let capabilities = surface.get_capabilities(adapter);
-        Ok(Self { gpu, surface, capabilities, instance, lost })
+        Ok(Self { gpu, surface, capabilities, instance })
     }
 
     /// Makes the surface anew, on the same device.
@@ -68,10 +66,23 @@ impl Device {
     pub fn is_lost(&self) -> bool {
         // The loss is told by a callback, and callbacks are run by polls.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
-        self.lost.load(Ordering::Acquire)
+        self.gpu.check().is_err()
     }
 }
 
 fn create_surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>, Failure> {
     instance.create_surface(window.clone()).map_err(|e| Failure::Work(format!("a window cannot be drawn to ({e})")))
+}
+
+/// Constants of a frame. Nothing that is mapped when it is made, which a lost device cannot do.
+pub fn constants<T: bytemuck::NoUninit>(gpu: &Headless, label: &'static str, value: &T) -> wgpu::Buffer {
+    let bytes = bytemuck::bytes_of(value);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
 }

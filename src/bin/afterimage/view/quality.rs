@@ -1,5 +1,6 @@
 //! The error of what is shown in the periphery, added up on the device and read back a few frames late.
 
+use super::device;
 use super::state::Side;
 use afterimage::display::ViewGeometry;
 use afterimage::gpu::shader;
@@ -8,7 +9,6 @@ use afterimage::pipeline::Headless;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::util::DeviceExt;
 use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
 
 /// Where the periphery begins, as of reports, degrees.
@@ -92,11 +92,7 @@ impl Quality {
             gain: viewing.gain,
             from_deg: PERIPHERY_DEG,
         };
-        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("view quality"),
-            contents: bytemuck::bytes_of(&constants),
-            usage: BufferUsages::UNIFORM,
-        });
+        let constants = device::constants(gpu, "view quality", &constants);
         let [full, shown] = [full, shown].map(|t| t.create_view(&Default::default()));
         let resources = [
             constants.as_entire_binding(),

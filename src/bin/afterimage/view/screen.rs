@@ -1,12 +1,12 @@
 //! What the window shows, drawn in one pass: pictures, divider, gaze, panel.
 
+use super::device;
 use super::layout::Layout;
 use afterimage::display::ViewGeometry;
 use afterimage::gpu::{Timestamps, shader};
 use afterimage::pipeline::Headless;
 use bytemuck::{Pod, Zeroable};
 use image::RgbImage;
-use wgpu::util::DeviceExt;
 use wgpu::{BindGroupEntry, CommandEncoder, RenderPipeline, Texture, TextureFormat, TextureUsages, TextureView};
 
 /// `ScreenConstants` in `shaders/view/view_screen.wgsl`.
@@ -120,11 +120,7 @@ impl Screen {
         scene: &Scene<'_>,
         timestamps: Option<Timestamps<'_>>,
     ) {
-        let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("view screen"),
-            contents: bytemuck::bytes_of(&self.constants(scene)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let constants = device::constants(gpu, "view screen", &self.constants(scene));
         let view = |t: &Texture| t.create_view(&Default::default());
         let views = [view(scene.pictures[0]), view(scene.pictures[1]), view(&self.panel)];
         let textures = (1..).zip(&views).map(|(binding, view)| {

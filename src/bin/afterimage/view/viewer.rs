@@ -152,8 +152,15 @@ impl Viewer {
         (self.window.scale_factor().round() as u32).max(1)
     }
 
-    /// One frame.
+    /// One frame. A device that is lost in it is found lost at the next.
     pub fn frame(&mut self) -> Result<Outcome, Failure> {
+        match self.try_frame() {
+            Err(_) if self.on.device.is_lost() => Ok(Outcome::Waiting),
+            outcome => outcome,
+        }
+    }
+
+    fn try_frame(&mut self) -> Result<Outcome, Failure> {
         if self.on.device.is_lost() {
             eprintln!("afterimage: the device is lost; another is opened");
             self.reopen()?;

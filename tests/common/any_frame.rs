@@ -1,0 +1,59 @@
+//! Small frames of any bit patterns, for properties of whole passes on either executor.
+
+use super::Draws;
+use afterimage::display::ViewGeometry;
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::image::Image;
+use afterimage::settings::{Bias, Method, Sampler, Settings};
+
+pub const SIZE: [u32; 2] = [8, 6];
+
+/// All images of a view of a frame.
+#[derive(Clone)]
+pub struct AnyFrame {
+    pub facts: ViewFrame,
+    pub color: Image<[f32; 3]>,
+    pub depth: Image<f32>,
+    pub motion: Image<[f32; 2]>,
+    pub trust: Image<f32>,
+    pub lod: Image<f32>,
+    pub noise: Image<[f32; 2]>,
+}
+
+/// Every method, sampler, bias and filter that has a path of its own; the last one is noisy.
+pub fn all_settings() -> Vec<Settings> {
+    let of = |method| Settings { method, ..Settings::paper() };
+    let blocks = Foveation { filter: Filter::Block, ..Foveation::default() };
+    vec![
+        of(Method::None),
+        of(Method::Wrs),
+        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..of(Method::Wrs) },
+        of(Method::Taa),
+        of(Method::Smr),
+        Settings { foveation: blocks, ..of(Method::Smr) },
+        Settings { noisy: true, ..of(Method::Smr) },
+    ]
+}
+
+/// Any bits with probability `wild`, else a number in [low, high).
+fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
+    if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
+}
+
+/// Numbers of an engine, of which a share `wild` is any bit pattern. Vectors are whole pixels, or those bits.
+pub fn any_frame(draws: &mut Draws, wild: f32) -> AnyFrame {
+    let d = draws;
+    let gaze = Gaze::At { px: [number(d, wild, 0.0, 8.0), number(d, wild, 0.0, 6.0)] };
+    let shift = [0; 2].map(|_| (d.bits() % 5) as f32 - 2.0);
+    let vector = |d: &mut Draws, v: f32| if d.uniform() < wild { f32::from_bits(d.bits()) } else { v };
+    AnyFrame {
+        facts: ViewFrame { geometry: ViewGeometry::flat(SIZE, 70.0).unwrap(), gaze, previous_from_current: None },
+        color: Image::from_fn(SIZE, |_| [0; 3].map(|_| number(d, wild, 0.0, 1.0))),
+        depth: Image::from_fn(SIZE, |_| number(d, wild, 3.0, 3.05)),
+        motion: Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v))),
+        trust: Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0)),
+        lod: Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0)),
+        noise: Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)]),
+    }
+}

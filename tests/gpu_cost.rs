@@ -1,0 +1,93 @@
+//! What a turn of the head costs on the device: hard case H60. Alone in its process, whose CPU time a software device spends; a real one
+//! takes none of it, and there the time until it is done counts.
+#![cfg(all(feature = "lab", unix))]
+
+mod common;
+#[path = "common/gpu.rs"]
+mod gpu;
+
+use afterimage::display::ViewGeometry;
+use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::image::Image;
+use afterimage::settings::{Method, Settings};
+use common::Draws;
+use rustix::time::{ClockId, clock_gettime};
+use wgpu::{TextureFormat, TextureUsages};
+
+const SIZE: [u32; 2] = [320, 180];
+
+fn clock_ns(is_software: bool) -> f64 {
+    let t = clock_gettime(if is_software { ClockId::ProcessCPUTime } else { ClockId::Monotonic });
+    t.tv_sec as f64 * 1e9 + t.tv_nsec as f64
+}
+
+#[test]
+fn h60_a_turn_costs_no_more_than_any_other_frame() {
+    let Some((device, queue)) = gpu::device() else { return };
+    let is_software = gpu::adapter().unwrap().get_info().device_type == wgpu::DeviceType::Cpu;
+    let texture = |format, usage| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    };
+    let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let [color, depth, motion] = [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float]
+        .map(|format| texture(format, read));
+    let output = texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING);
+    let z = Image::from_fn(SIZE, |[x, y]| 2.0 + (x + y) as f32 * 0.01);
+    gpu::write_layer(&queue, &depth, 0, bytemuck::cast_slice(z.pixels()));
+    let views = [ViewFrame {
+        geometry: ViewGeometry::flat(SIZE, 70.0).unwrap(),
+        gaze: Gaze::At { px: [160.0, 90.0] },
+        previous_from_current: None,
+    }];
+    let wait = || {
+        queue.submit([]);
+        device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    };
+    let mut ratios = vec![];
+    for method in [Method::Wrs, Method::Smr] {
+        let settings = Settings { method, ..Settings::paper() };
+        let desc = GpuDesc { settings, ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
+        let mut post = Afterimage::new(&device, &desc).unwrap();
+        let mut times = [vec![], vec![]];
+        let mut draws = Draws::new("cost on the device");
+        for index in 0..42 {
+            // A normal frame and a turn by turns, each of another picture.
+            let is_turn = index % 2 == 1;
+            let pixels: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(|_| [0; 4].map(|_| draws.uniform())).collect();
+            gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&pixels));
+            let vector = [if is_turn { 5000.0_f32 } else { 0.25 }, 0.25];
+            gpu::write_layer(&queue, &motion, 0, bytemuck::cast_slice(&vec![vector; pixels.len()]));
+            wait();
+            let from = clock_ns(is_software);
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let frame =
+                Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &output, &views, index) };
+            post.record(&device, &mut encoder, &frame).unwrap();
+            queue.submit([encoder.finish()]);
+            wait();
+            // The first of both make pipelines, and have no past.
+            if index > 1 {
+                times[usize::from(is_turn)].push(clock_ns(is_software) - from);
+            }
+        }
+        let [normal, turn] = times.map(|mut t| {
+            t.sort_by(f64::total_cmp);
+            t[t.len() / 2]
+        });
+        println!("{method:?}: {normal:.0} ns, a turn {turn:.0} ns");
+        ratios.push(turn / normal);
+    }
+    assert!(ratios.iter().all(|&r| r <= 1.1), "{ratios:?}");
+    let [wrs, smr] = ratios[..] else { unreachable!() };
+    holds!("H60", Gpu, "the same dispatches; a turn's time over a normal frame's: wrs {wrs:.2}, smr {smr:.2}");
+}
