@@ -110,7 +110,10 @@ impl App {
     fn frame(&mut self) -> Result<(), Box<dyn Error>> {
         let target = match self.surface.get_current_texture() {
             CurrentSurfaceTexture::Success(target) | CurrentSurfaceTexture::Suboptimal(target) => target,
-            CurrentSurfaceTexture::Outdated => return Ok(self.surface.configure(&self.device, &self.config)),
+            CurrentSurfaceTexture::Outdated => {
+                self.surface.configure(&self.device, &self.config);
+                return Ok(());
+            }
             CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => return Err("the surface is lost".into()),
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
         };

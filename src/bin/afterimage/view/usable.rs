@@ -37,8 +37,8 @@ impl Usable {
         }
         // The time goes with the pixels; where that is not enough, the next judgement goes on.
         let expected = |to: f32| median * f64::from(to / scale).powi(2);
-        let lower = SCALES.into_iter().filter(|s| *s < scale);
-        lower.clone().find(|s| expected(*s) <= budget).or(lower.last())
+        let mut lower = SCALES.into_iter().filter(|s| *s < scale);
+        lower.clone().find(|s| expected(*s) <= budget).or(lower.next_back())
     }
 
     /// Of the frames that are judged.
