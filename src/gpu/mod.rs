@@ -24,8 +24,8 @@ pub use desc::GpuDesc;
 pub use frame::{Frame, Recorded, Timestamps};
 pub use types::MAX_VIEWS;
 
-#[cfg(feature = "lab")]
 pub(crate) use buffer::filled;
+#[cfg(feature = "lab")]
 pub(crate) use history::array_view;
 #[cfg(feature = "lab")]
 pub(crate) use input::{check_readable, check_texture};

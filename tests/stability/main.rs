@@ -110,7 +110,7 @@ fn what_is_missing_is_noticed() {
         missing(&whole.iter().filter(|h| h.row != row || h.side != side).cloned().collect::<Vec<_>>())
     };
     assert_eq!(without("H08", "GPU"), ["H08 has no test on the GPU"]);
-    assert_eq!(without("H84", "CPU"), ["H84 has no test on the CPU"]);
+    assert_eq!(without("H84", "GPU"), ["H84 has no test on the GPU"]);
     let more = [whole, vec![Held::new("H85", "CPU", "a::b", "0")]].concat();
     assert_eq!(missing(&more), ["H85 is no row"]);
 }
