@@ -147,6 +147,24 @@ impl<'a> Viewer<'a> {
         }
     }
 
+    /// Moves the pointer and presses F12 at once: the next frame, whose picture is written, is already that of the new gaze.
+    fn looks_in_the_next_frame(&mut self, at_px: [f32; 2]) {
+        let words = at_px.map(|v| format!("{v:.0}"));
+        self.display.xdotool(&["mousemove", "--window", &self.window, &words[0], &words[1], "key", "F12"]);
+        wait_for("a picture", || (self.said() > self.pictures).then_some(()));
+        self.pictures = self.said();
+        let record = self.record();
+        let last: Vec<f32> = record.last().unwrap().split(',').skip(1).take(2).map(|v| v.parse().unwrap()).collect();
+        // The window is four times as large as the picture.
+        assert_eq!(last, at_px.map(|v| v / 4.0), "the picture after a move is for an earlier gaze");
+    }
+
+    /// Lines of the gaze of every frame.
+    fn record(&self) -> Vec<String> {
+        let record = fs::read_to_string(self.folder.join("gaze.csv")).unwrap();
+        record.lines().filter(|l| !l.starts_with('#')).skip(1).map(str::to_owned).collect()
+    }
+
     fn said(&self) -> usize {
         fs::read_to_string(self.folder.join("said.txt")).unwrap().lines().count()
     }
@@ -169,8 +187,7 @@ impl<'a> Viewer<'a> {
         // Keys that were pressed once more than needed are done with before the next.
         pause(500);
         self.pictures = self.said();
-        let record = fs::read_to_string(self.folder.join("gaze.csv")).unwrap();
-        record.lines().filter(|l| !l.starts_with('#')).count() - 1
+        self.record().len()
     }
 
     /// The shown picture is that of `run` with the recorded gaze.
@@ -222,6 +239,10 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     let mut viewer = Viewer::open(&display, folder.path(), &["--method", "wrs", "--no-panel"]);
     viewer.look_along(&[[0.2, 0.3], [0.4, 0.6], [0.8, 0.5], [0.6, 0.2], [0.3, 0.8]]);
     let before = viewer.is_as_of_run("wrs");
+
+    for at in [[200.0, 100.0], [1000.0, 600.0], [640.0, 360.0]] {
+        viewer.looks_in_the_next_frame(at);
+    }
 
     // Methods, decisions, filters, split and panel, there and back.
     for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {

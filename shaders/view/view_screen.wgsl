@@ -1,28 +1,33 @@
 //#use color
-// What the window shows: one or two pictures with a divider, where the eye looks, and the panel. One invocation a pixel of the window.
+// What the window shows: a picture, or that of one side of the divider, where the eye looks, and the panel. One invocation a pixel of the
+// window. What branches hang on is constant when the pipeline is made: software devices compute all branches of a shader, and lavapipe
+// compiles it anew at every bind if they hang on a uniform.
 
 // src/bin/afterimage/view/screen.rs: ScreenConstants, which explains them
 struct ScreenConstants {
+    gaze_direction: vec4<f32>,
     corner: vec2<f32>,
     size: vec2<f32>,
-    gain: vec2<f32>,
     ray_scale: vec2<f32>,
     ray_offset: vec2<f32>,
     gaze_px: vec2<f32>,
-    gaze_direction: vec4<f32>,
     ring_cosines: vec2<f32>,
     panel: vec2<f32>,
     scale: f32,
     divider: f32,
     panel_scale: f32,
     ring_reach_px: f32,
-    shader_encodes: u32,
+    gain: f32,
 }
 
+// Texels a side that are averaged for a pixel of the window; 0: the picture is enlarged, between texels.
+override TAPS: u32 = 1u;
+// Whether the target takes sRGB-encoded numbers as they are.
+override SHADER_ENCODES: bool = false;
+
 @group(0) @binding(0) var<uniform> screen: ScreenConstants;
-@group(0) @binding(1) var left: texture_2d<f32>;
-@group(0) @binding(2) var right: texture_2d<f32>;
-@group(0) @binding(3) var panel: texture_2d<f32>;
+@group(0) @binding(1) var picture: texture_2d<f32>;
+@group(0) @binding(2) var panel: texture_2d<f32>;
 
 // Linear.
 const MARK = vec3<f32>(1.0, 0.69, 0.01);
@@ -32,8 +37,6 @@ const PANEL_OPACITY: f32 = 0.86;
 // Half width of the divider, and radius of the gaze point, in pixels of the window.
 const DIVIDER_PX: f32 = 1.5;
 const POINT_PX: f32 = 3.0;
-// Most texels a side that are averaged where the picture is made smaller.
-const MOST_TAPS: f32 = 4.0;
 
 @vertex
 fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -41,28 +44,25 @@ fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-fn nearest(picture: texture_2d<f32>, at: vec2<f32>) -> vec3<f32> {
+fn nearest(at: vec2<f32>) -> vec3<f32> {
     return textureLoad(picture, vec2<u32>(clamp(at, vec2<f32>(0.0), screen.size - 1.0)), 0).xyz;
 }
 
 // The picture at a position from its top left corner, in its own pixels.
-fn picture_at(picture: texture_2d<f32>, at: vec2<f32>) -> vec3<f32> {
-    if screen.scale == 1.0 {
-        return nearest(picture, at);
-    }
-    if screen.scale > 1.0 {
+fn picture_at(at: vec2<f32>) -> vec3<f32> {
+    if TAPS == 0u {
         let base = floor(at - 0.5);
         let share = at - 0.5 - base;
-        let above = mix(nearest(picture, base), nearest(picture, base + vec2<f32>(1.0, 0.0)), share.x);
-        let below = mix(nearest(picture, base + vec2<f32>(0.0, 1.0)), nearest(picture, base + 1.0), share.x);
+        let above = mix(nearest(base), nearest(base + vec2<f32>(1.0, 0.0)), share.x);
+        let below = mix(nearest(base + vec2<f32>(0.0, 1.0)), nearest(base + 1.0), share.x);
         return mix(above, below, share.y);
     }
-    let taps = min(ceil(1.0 / screen.scale), MOST_TAPS);
+    let taps = f32(TAPS);
     let stride = 1.0 / (screen.scale * taps);
     var sum = vec3<f32>(0.0);
-    for (var y = 0.0; y < taps; y += 1.0) {
-        for (var x = 0.0; x < taps; x += 1.0) {
-            sum += nearest(picture, at + (vec2<f32>(x, y) - 0.5 * (taps - 1.0)) * stride);
+    for (var y = 0u; y < TAPS; y += 1u) {
+        for (var x = 0u; x < TAPS; x += 1u) {
+            sum += nearest(at + (vec2<f32>(f32(x), f32(y)) - 0.5 * (taps - 1.0)) * stride);
         }
     }
     return sum / (taps * taps);
@@ -94,12 +94,7 @@ fn composed(at_window: vec2<f32>) -> vec3<f32> {
         if abs(from_divider) < DIVIDER_PX {
             shown = vec3<f32>(1.0);
         } else {
-            if from_divider < 0.0 {
-                shown = picture_at(left, at) * screen.gain.x;
-            } else {
-                shown = picture_at(right, at) * screen.gain.y;
-            }
-            shown = marked(shown, at);
+            shown = marked(picture_at(at) * screen.gain, at);
         }
     }
     let on_panel = at_window / screen.panel_scale;
@@ -114,7 +109,7 @@ fn main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     // What a screen shows. NaN fails the comparison.
     let sum = composed(at.xy);
     let shown = select(vec3<f32>(0.0), min(sum, vec3<f32>(1.0)), sum > vec3<f32>(0.0));
-    if screen.shader_encodes == 0u {
+    if !SHADER_ENCODES {
         return vec4<f32>(shown, 1.0);
     }
     return vec4<f32>(srgb_encode(shown.x), srgb_encode(shown.y), srgb_encode(shown.z), 1.0);

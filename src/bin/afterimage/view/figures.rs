@@ -12,6 +12,12 @@ const EVERY: Duration = Duration::from_millis(250);
 /// Share of the newest frame in the mean of frames a second.
 const NEWEST: f64 = 0.1;
 
+/// Colours, the same in every graph.
+const FOVEATION: (&str, [u8; 3]) = ("foveation", [120, 200, 255]);
+const LEFT: (&str, [u8; 3]) = ("left", [250, 190, 80]);
+const RIGHT: (&str, [u8; 3]) = ("right", [235, 120, 160]);
+const SCREEN: (&str, [u8; 3]) = ("screen", [140, 220, 130]);
+
 /// Figures and the panel that shows them.
 pub struct Figures {
     begun: Instant,
@@ -31,8 +37,8 @@ impl Figures {
             begun: Instant::now(),
             last: None,
             seconds_a_frame: None,
-            milliseconds: Graph::new("milliseconds", &["foveation", "left", "right", "screen"]),
-            periphery_db: Graph::new("periphery, PSNR dB", &["left", "right"]),
+            milliseconds: Graph::new("milliseconds", &[FOVEATION, LEFT, RIGHT, SCREEN]),
+            periphery_db: Graph::new("periphery, PSNR dB", &[LEFT, RIGHT]),
             lines: vec![],
             panel: RgbImage::new(1, 1),
             drawn: None,

@@ -9,9 +9,6 @@ const PLOT_PX: u32 = 44;
 const TITLE_PX: u32 = 15;
 const BACKGROUND: [u8; 3] = [34, 37, 44];
 const TITLE: [u8; 3] = [150, 155, 165];
-/// Of the first series, the second ...
-const COLORS: [[u8; 3]; 4] = [[120, 200, 255], [250, 190, 80], [235, 120, 160], [140, 220, 130]];
-
 /// Values over time.
 pub struct Graph {
     title: &'static str,
@@ -20,13 +17,15 @@ pub struct Graph {
 
 struct Series {
     name: &'static str,
+    color: [u8; 3],
     /// Seconds and values.
     points: VecDeque<(f64, f64)>,
 }
 
 impl Graph {
-    pub fn new(title: &'static str, names: &[&'static str]) -> Self {
-        let series = names.iter().map(|name| Series { name, points: VecDeque::new() });
+    /// Of series with these names and colours.
+    pub fn new(title: &'static str, series: &[(&'static str, [u8; 3])]) -> Self {
+        let series = series.iter().map(|&(name, color)| Series { name, color, points: VecDeque::new() });
         Self { title, series: series.collect() }
     }
 
@@ -50,8 +49,8 @@ impl Graph {
     }
 
     /// Series with values.
-    fn shown(&self) -> impl Iterator<Item = (&Series, [u8; 3])> {
-        self.series.iter().zip(COLORS).filter(|(s, _)| !s.points.is_empty())
+    fn shown(&self) -> impl Iterator<Item = &Series> {
+        self.series.iter().filter(|s| !s.points.is_empty())
     }
 
     /// Draws it with its top left corner at `corner`.
@@ -70,7 +69,8 @@ impl Graph {
             let (w, h) = (f64::from(width - 3), f64::from(PLOT_PX - 4));
             [(f64::from(x) + 1.0 + along * w) as f32, (f64::from(top) + 1.0 + (1.0 - up) * h) as f32]
         };
-        for (i, (series, color)) in self.shown().enumerate() {
+        for (i, series) in self.shown().enumerate() {
+            let color = series.color;
             for (from, to) in series.points.iter().zip(series.points.iter().skip(1)) {
                 canvas.line(place(from), place(to), 1, color);
             }
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn what_is_old_leaves_and_the_axis_holds_the_rest() {
-        let mut graph = Graph::new("ms", &["a", "b"]);
+        let mut graph = Graph::new("ms", &[("a", [1; 3]), ("b", [2; 3])]);
         assert_eq!((graph.range(), graph.shown().count()), ([0.0, 10.0], 0));
         graph.push(0, 0.0, 99.0);
         graph.push(0, 1.0, 21.0);

@@ -32,6 +32,11 @@ impl Layout {
         ((x - self.corner[0]) / (self.scale * self.size[0] as f32)).clamp(0.02, 0.98)
     }
 
+    /// The first column of the window right of a divider at this share of the width.
+    pub fn divider_x(&self, divider: f32) -> u32 {
+        (self.corner[0] + self.scale * self.size[0] as f32 * divider).round() as u32
+    }
+
     /// Whether a position in the window takes hold of a divider at this share of the width.
     pub fn grips(&self, x: f32, divider: f32) -> bool {
         let at = self.corner[0] + self.scale * self.size[0] as f32 * divider;

@@ -32,7 +32,7 @@ pub fn window(gpu: &Headless, size: [u32; 2], panel: &RgbImage, scene: &Scene<'_
     let mut screen = Screen::new(gpu, format);
     screen.set_panel(gpu, panel);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    screen.record(gpu, &mut encoder, &target.create_view(&Default::default()), scene, None);
+    screen.record(gpu, &mut encoder, (&target.create_view(&Default::default()), size), scene, None);
     gpu.queue.submit([encoder.finish()]);
     to_rgb8(&metric::encode(&gpu.read_rgb(&target, 0), 0.0))
 }

@@ -7,24 +7,23 @@ use afterimage::gpu::{Timestamps, shader};
 use afterimage::pipeline::Headless;
 use bytemuck::{Pod, Zeroable};
 use image::RgbImage;
-use wgpu::{BindGroupEntry, CommandEncoder, RenderPipeline, Texture, TextureFormat, TextureUsages, TextureView};
+use wgpu::{BindGroup, BindGroupEntry, CommandEncoder, RenderPipeline, ShaderModule, Texture, TextureFormat, TextureUsages, TextureView};
 
 /// `ScreenConstants` in `shaders/view/view_screen.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct ScreenConstants {
+    /// In which direction the eye looks, of length 1.
+    gaze_direction: [f32; 4],
     /// Where the picture's top left corner lies in the window, pixels.
     corner: [f32; 2],
     /// Of the picture, in its own pixels.
     size: [f32; 2],
-    /// Factors of the exposure, left and right.
-    gain: [f32; 2],
     /// Slope of rays per pixel of the picture, and the ray through pixel (0, 0).
     ray_scale: [f32; 2],
     ray_offset: [f32; 2],
-    /// Where the eye looks, in pixels of the picture, and in which direction, of length 1.
+    /// Where the eye looks, in pixels of the picture.
     gaze_px: [f32; 2],
-    gaze_direction: [f32; 4],
     /// Cosines of the eccentricities between which the ring lies; the first above the second: no ring.
     ring_cosines: [f32; 2],
     /// Size of the panel in its own pixels; 0: none.
@@ -37,9 +36,9 @@ struct ScreenConstants {
     panel_scale: f32,
     /// No part of the ring is farther from the gaze, pixels of the window.
     ring_reach_px: f32,
-    /// Whether the target takes sRGB-encoded numbers as they are.
-    shader_encodes: u32,
-    unused: [u32; 3],
+    /// Factor of the exposure.
+    gain: f32,
+    unused: [u32; 1],
 }
 
 /// What is on screen.
@@ -62,10 +61,15 @@ pub struct Scene<'a> {
 /// Width of the ring around the fovea, pixels of the window.
 const RING_PX: f32 = 1.5;
 
+/// Most texels a side that are averaged where the picture is made smaller.
+const MOST_TAPS: f32 = 4.0;
+
 /// Draws scenes to targets of one format.
 pub struct Screen {
-    pipeline: RenderPipeline,
+    module: ShaderModule,
     format: TextureFormat,
+    /// For so many taps, which go with the sizes of window and picture.
+    pipeline: Option<(u32, RenderPipeline)>,
     panel: Texture,
 }
 
@@ -75,29 +79,7 @@ impl Screen {
             label: Some("view screen"),
             source: wgpu::ShaderSource::Wgsl(shader::compose("view_screen").source.into()),
         });
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("view screen"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("corner"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        let panel = panel_texture(gpu, [1, 1]);
-        Self { pipeline, format, panel }
+        Self { module, format, pipeline: None, panel: panel_texture(gpu, [1, 1]) }
     }
 
     /// Takes another panel.
@@ -111,29 +93,18 @@ impl Screen {
         gpu.queue.write_texture(self.panel.as_image_copy(), &rgba, layout, self.panel.size());
     }
 
-    /// Draws a scene to `target`.
+    /// Draws a scene to `target` of `size`.
     pub fn record(
-        &self,
+        &mut self,
         gpu: &Headless,
         encoder: &mut CommandEncoder,
-        target: &TextureView,
+        (target, size): (&TextureView, [u32; 2]),
         scene: &Scene<'_>,
         timestamps: Option<Timestamps<'_>>,
     ) {
-        let constants = device::constants(gpu, "view screen", &self.constants(scene));
-        let view = |t: &Texture| t.create_view(&Default::default());
-        let views = [view(scene.pictures[0]), view(scene.pictures[1]), view(&self.panel)];
-        let textures = (1..).zip(&views).map(|(binding, view)| {
-            let resource = wgpu::BindingResource::TextureView(view);
-            BindGroupEntry { binding, resource }
-        });
-        let constants = BindGroupEntry { binding: 0, resource: constants.as_entire_binding() };
-        let entries: Vec<_> = [constants].into_iter().chain(textures).collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view screen"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let pipeline = self.pipeline_for(gpu, scene.layout.scale);
+        let groups = [0, 1].map(|side| self.group(gpu, &pipeline, scene, side));
+        let divider_x = scene.divider.map_or(size[0], |share| scene.layout.divider_x(share).min(size[0]));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("view screen"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -149,12 +120,68 @@ impl Screen {
             }),
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
+        pass.set_pipeline(&pipeline);
+        for (group, [from, to]) in groups.iter().zip([[0, divider_x], [divider_x, size[0]]]) {
+            if from < to {
+                pass.set_bind_group(0, group, &[]);
+                pass.set_scissor_rect(from, 0, to - from, size[1]);
+                pass.draw(0..3, 0..1);
+            }
+        }
     }
 
-    fn constants(&self, scene: &Scene<'_>) -> ScreenConstants {
+    fn pipeline_for(&mut self, gpu: &Headless, scale: f32) -> RenderPipeline {
+        let taps = if scale > 1.0 { 0 } else { (1.0 / scale).ceil().min(MOST_TAPS) as u32 };
+        if let Some((_, pipeline)) = self.pipeline.as_ref().filter(|(made_for, _)| *made_for == taps) {
+            return pipeline.clone();
+        }
+        // Targets of floats stay linear.
+        let encodes = !self.format.is_srgb() && self.format != TextureFormat::Rgba32Float;
+        let constants = [("TAPS", f64::from(taps)), ("SHADER_ENCODES", f64::from(u8::from(encodes)))];
+        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("view screen"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some("corner"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some("main"),
+                compilation_options: options,
+                targets: &[Some(self.format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        self.pipeline.insert((taps, pipeline)).1.clone()
+    }
+
+    /// What is bound for a side.
+    fn group(&self, gpu: &Headless, pipeline: &RenderPipeline, scene: &Scene<'_>, side: usize) -> BindGroup {
+        let constants = device::constants(gpu, "view screen", &self.constants(scene, side));
+        let [picture, panel] = [scene.pictures[side], &self.panel].map(|t| t.create_view(&Default::default()));
+        let resources = [
+            constants.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&picture),
+            wgpu::BindingResource::TextureView(&panel),
+        ];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view screen"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+
+    fn constants(&self, scene: &Scene<'_>, side: usize) -> ScreenConstants {
         let geometry = scene.geometry;
         let size = geometry.size_px().map(|s| s as f32);
         let (ray_scale, ray_offset) = geometry.scale_offset();
@@ -165,22 +192,20 @@ impl Screen {
         let half_width = 0.5 * RING_PX * ray_scale[0] / scene.layout.scale;
         let ring = [radius + half_width, (radius - half_width).max(0.0)].map(f32::cos);
         ScreenConstants {
+            gaze_direction: direction.extend(0.0).to_array(),
             corner: scene.layout.corner,
             size,
-            gain: scene.gain,
             ray_scale,
             ray_offset,
             gaze_px,
-            gaze_direction: direction.extend(0.0).to_array(),
             ring_cosines: if scene.gaze_px.is_some() { ring } else { [2.0, -2.0] },
             panel: if scene.has_panel { [self.panel.width() as f32, self.panel.height() as f32] } else { [0.0; 2] },
             scale: scene.layout.scale,
             divider: scene.divider.map_or(2.0 * size[0] + 16.0, |share| share * size[0]),
             panel_scale: scene.panel_scale.max(1) as f32,
             ring_reach_px: ring_reach_px(geometry, gaze_px, scene),
-            // Targets of floats stay linear.
-            shader_encodes: u32::from(!self.format.is_srgb() && self.format != TextureFormat::Rgba32Float),
-            unused: [0; 3],
+            gain: scene.gain[side],
+            unused: [0; 1],
         }
     }
 }

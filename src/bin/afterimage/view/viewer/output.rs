@@ -37,10 +37,10 @@ impl Viewer {
             self.on.screen.set_panel(&self.on.device.gpu, &self.figures.panel);
         }
         let layout = self.on.layout();
-        let OnDevice { device, lanes, times, screen, .. } = &mut self.on;
+        let OnDevice { device, surface, lanes, times, screen, .. } = &mut self.on;
         let scene = scene(lanes, &layout, &self.state, self.gaze_px, self.setup.gain(), panel_scale);
         times.pass(&device.gpu, Pass::Screen, |encoder, timestamps| {
-            screen.record(&device.gpu, encoder, target, &scene, timestamps);
+            screen.record(&device.gpu, encoder, (target, surface.size()), &scene, timestamps);
             Ok(())
         })
     }
