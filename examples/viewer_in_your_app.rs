@@ -1,6 +1,8 @@
 //! What is the least that an application with a window needs? Its renderer makes a foveated frame, `record` writes what is shown into a
 //! texture, a blit takes that to the swapchain. The mouse is the gaze.
 //!
+//! What the post-process adds to an application are the fields `post`, `output` and `gaze` of `App` and the four lines marked (1) to (4).
+//!
 //! `cargo run --features view --example viewer_in_your_app` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
 use afterimage::display::ViewGeometry;
@@ -80,6 +82,7 @@ impl App {
         let config = surface.get_default_config(&adapter, size[0], size[1]).ok_or("no format for this window")?;
         surface.configure(&device, &config);
         Ok(Self {
+            // (1)
             post: Afterimage::new(&device, &GpuDesc::new(size, FORMAT))?,
             output: texture(&device, size, FORMAT),
             blitter: TextureBlitter::new(&device, config.format),
@@ -101,7 +104,7 @@ impl App {
             self.surface.configure(&self.device, &self.config);
             self.renderer = Renderer::new(&self.device, &self.queue, size)?;
             self.output = texture(&self.device, size, FORMAT);
-            // The history starts afresh.
+            // (2) The history starts afresh.
             self.post.resize(&self.device, size)?;
         }
         Ok(())
@@ -123,7 +126,7 @@ impl App {
         // Here your renderer draws the foveated frame.
         let Renderer { pattern, foveation, color } = &mut self.renderer;
         foveation.record(&self.device, &mut encoder, &FoveationFrame::new(pattern, color, &views))?;
-        // The post-process.
+        // (3) The post-process.
         let frame = Frame::new(color, &self.output, &views, self.index);
         self.post.record(&self.device, &mut encoder, &frame)?;
         // Here is your tone mapping.
@@ -150,7 +153,7 @@ impl Shell {
         match event {
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(size) => app.resize([size.width, size.height])?,
-            // Pixel centres are whole numbers.
+            // (4) Pixel centres are whole numbers.
             WindowEvent::CursorMoved { position, .. } => {
                 app.gaze = Gaze::At { px: [position.x as f32 - 0.5, position.y as f32 - 0.5] };
             }

@@ -33,9 +33,10 @@ override SHADER_ENCODES: bool = false;
 const MARK = vec3<f32>(1.0, 0.69, 0.01);
 const BESIDE = vec3<f32>(0.013, 0.013, 0.015);
 // Share of the panel in what is shown where it lies.
-const PANEL_OPACITY: f32 = 0.86;
-// Half width of the divider, and radius of the gaze point, in pixels of the window.
-const DIVIDER_PX: f32 = 1.5;
+const PANEL_OPACITY: f32 = 0.97;
+// Half width of the divider and of the light in its middle, and radius of the gaze point, in pixels of the window.
+const DIVIDER_PX: f32 = 2.0;
+const DIVIDER_LIGHT_PX: f32 = 1.0;
 const POINT_PX: f32 = 3.0;
 
 @vertex
@@ -92,7 +93,7 @@ fn composed(at_window: vec2<f32>) -> vec3<f32> {
     if all(at >= vec2<f32>(0.0)) && all(at < screen.size) {
         let from_divider = (at.x - screen.divider) * screen.scale;
         if abs(from_divider) < DIVIDER_PX {
-            shown = vec3<f32>(1.0);
+            shown = select(BESIDE, vec3<f32>(1.0), abs(from_divider) < DIVIDER_LIGHT_PX);
         } else {
             shown = marked(picture_at(at) * screen.gain, at);
         }

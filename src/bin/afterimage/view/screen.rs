@@ -7,7 +7,10 @@ use afterimage::gpu::{Timestamps, shader};
 use afterimage::pipeline::Headless;
 use bytemuck::{Pod, Zeroable};
 use image::RgbImage;
-use wgpu::{BindGroup, BindGroupEntry, CommandEncoder, RenderPipeline, ShaderModule, Texture, TextureFormat, TextureUsages, TextureView};
+use wgpu::{
+    BindGroup, BindGroupEntry, CommandEncoder, RenderPipeline, ShaderModule, Texture, TextureFormat, TextureUsages,
+    TextureView,
+};
 
 /// `ScreenConstants` in `shaders/view/view_screen.wgsl`.
 #[repr(C)]
