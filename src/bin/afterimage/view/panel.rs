@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn it_is_drawn_as_large_as_its_rows_and_graphs_need() {
-        let graphs = [&Graph::new("ms a frame", &["screen"])];
+        let graphs = [&Graph::new("ms a frame", &[("screen", [255; 3])])];
         let lines = ["input".to_owned()];
         let split = State { is_split: true, ..state() };
         let [one, two] = [&state(), &split].map(|s| draw(s, &Facts { lines: &lines, graphs: &graphs }).dimensions());
