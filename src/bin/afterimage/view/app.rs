@@ -202,6 +202,10 @@ impl App {
     }
 
     fn redraw(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        // The system may want a window drawn before it says that it is back.
+        if self.is_hidden() {
+            return Ok(());
+        }
         let Some(viewer) = &mut self.viewer else { return Ok(()) };
         let begun = Instant::now();
         match viewer.frame()? {
