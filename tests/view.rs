@@ -151,23 +151,41 @@ impl<'a> Viewer<'a> {
 
     /// Moves the pointer along points, shares of the window.
     fn look_along(&self, points: &[[f32; 2]]) {
+        let [width, height] = self.numbers(&["getwindowgeometry", "--shell", &self.window], ["WIDTH=", "HEIGHT="]);
         for [x, y] in points {
-            let at = [x * 100.0, y * 100.0].map(|v| format!("{v:.0}%"));
+            let at = [x * width as f32, y * height as f32].map(|v| format!("{v:.0}"));
             self.display.xdotool(&["mousemove", "--window", &self.window, &at[0], &at[1]]);
             pause(120);
         }
     }
 
-    /// Moves the pointer and presses F12 at once: the next frame, whose picture is written, is already that of the new gaze.
-    fn looks_in_the_next_frame(&mut self, at_px: [f32; 2]) {
-        let words = at_px.map(|v| format!("{v:.0}"));
-        self.display.xdotool(&["mousemove", "--window", &self.window, &words[0], &words[1], "key", "F12"]);
+    /// Moves the pointer from the middle of the window by some pixels and presses F12 at once: the next frame, whose picture is written, is
+    /// already that of the new gaze. (Relative moves go the way of keys, so that neither overtakes the other.)
+    fn looks_in_the_next_frame(&mut self, by_px: [i32; 2]) {
+        self.look_along(&[[0.5, 0.5]]);
+        let middle = self.pointer();
+        let [x, y] = by_px.map(|v| v.to_string());
+        self.display.xdotool(&["mousemove_relative", "--", &x, &y, "key", "F12"]);
         wait_for("a picture", || (self.said() > self.pictures).then_some(()));
         self.pictures = self.said();
         let record = self.record();
         let last: Vec<f32> = record.last().unwrap().split(',').skip(1).take(2).map(|v| v.parse().unwrap()).collect();
+        let now = self.pointer();
+        assert_ne!(middle, now);
         // The window is four times as large as the picture.
-        assert_eq!(last, at_px.map(|v| v / 4.0), "the picture after a move is for an earlier gaze");
+        let expected = [0, 1].map(|i| (2 * SIZE[i] as i32 + now[i] - middle[i]) as f32 / 4.0);
+        assert_eq!(last, expected, "the picture after a move is for an earlier gaze");
+    }
+
+    /// Where the pointer is on the screen.
+    fn pointer(&self) -> [i32; 2] {
+        self.numbers(&["getmouselocation", "--shell"], ["X=", "Y="])
+    }
+
+    /// Two numbers that xdotool says.
+    fn numbers(&self, words: &[&str], names: [&str; 2]) -> [i32; 2] {
+        let said = String::from_utf8(self.display.xdotool(words).stdout).unwrap();
+        names.map(|name| said.lines().find_map(|line| line.strip_prefix(name)?.parse().ok()).unwrap())
     }
 
     /// Lines of the gaze of every frame.
@@ -250,8 +268,8 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     viewer.look_along(&[[0.2, 0.3], [0.4, 0.6], [0.8, 0.5], [0.6, 0.2], [0.3, 0.8]]);
     viewer.is_as_of_run("wrs");
 
-    for at in [[200.0, 100.0], [1000.0, 600.0], [640.0, 360.0]] {
-        viewer.looks_in_the_next_frame(at);
+    for by in [[-440, -260], [360, 240], [90, -200]] {
+        viewer.looks_in_the_next_frame(by);
     }
 
     // Methods, decisions, filters, split and panel, there and back.
