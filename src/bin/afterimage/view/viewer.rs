@@ -274,7 +274,7 @@ impl Viewer {
         let ms = Pass::ALL.iter().filter_map(|pass| self.on.times.ms(*pass)).sum();
         let Some(scale) = self.usable.judge(ms, self.scale) else { return Ok(()) };
         let [w, h] = self.setup.geometry(scale)?.size_px();
-        let taken = self.usable.median_ms();
+        let taken = self.usable.usual_ms();
         eprintln!("afterimage: {} takes {taken:.0} ms a frame; internal resolution lowered to {w}x{h}", gpu.info.name);
         let ratio = scale / self.scale;
         self.gaze_px = self.gaze_px.map(|v| (v + 0.5) * ratio - 0.5);
