@@ -67,7 +67,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
         brightest = brightest_of(&view).max(if event.reset || event.size.is_some() { 0.0 } else { brightest });
         check(&mut found, method, &event, &view, &made, brightest);
         if method == Method::Wrs {
-            witness.step(&mut found, &event, &view, &made.words);
+            witness.step(&mut found, stream.moment().is_quiet, &event, &view, &made.words);
         }
         if frames >= 10 && index % (frames / 10) == frames / 20 {
             found.resident_mib.extend(resident::resident_mib());

@@ -20,14 +20,15 @@ pub struct Witness {
 const ROUNDING: f64 = 1.0 / (1 << 16) as f64 + 4.0 / (1 << 24) as f64;
 
 impl Witness {
-    /// After a frame.
-    pub fn step(&mut self, found: &mut Found, event: &Event, view: &View, words: &[[u32; 3]]) {
+    /// After a frame of a stretch that is quiet or not.
+    pub fn step(&mut self, found: &mut Found, is_quiet: bool, event: &Event, view: &View, words: &[[u32; 3]]) {
         if event.begins_quiet {
             found.stretches += 1;
             self.frames = 0;
             let n = words.len();
             self.followed = (0..32).map(|k| follow(k * (n - 1) / 31, view)).collect();
-        } else if *event != Event::default() {
+        } else if !is_quiet {
+            // Elsewhere the eye and the picture change without an event.
             self.followed.clear();
         } else {
             // Eqs. 5 and 7 with equal colours.
