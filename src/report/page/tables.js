@@ -81,14 +81,19 @@ function showConvergences() {
   byId("converging").hidden = !all.length;
   const bands = ["whole", "< 2.5°", "2.5° to 7.5°", "> 7.5°"];
   const number = (text) => el("td", { class: "number" }, text);
-  const body = all.map((c) => {
+  // Where another sample pays no more, time is better spent elsewhere: the highest of all numbers of samples.
+  const efficiencies = all.map((c) => bands.map((_, i) => Math.max(0, ...c.points.map((p) => p.efficiency[i] ?? 0))));
+  const highest = bands.map((_, i) => Math.max(...efficiencies.map((e) => e[i])));
+  const efficiency = (v, i) => number(v === 0 ? "—" : v === highest[i] ? el("b", {}, `★ ${threeDigits(v)}`) : threeDigits(v));
+  const body = all.map((c, row) => {
     const samples = c.points.map((p) => fixed(p.samples_per_pixel, 1));
     return el("tr", {}, el("th", { scope: "row" }, c.label), number(`${samples[0]} to ${samples.at(-1)} (${samples.length} points)`),
-      ...[c.slope_by_samples, c.slope_by_time].flatMap((slopes) => slopes.map((v) => number(fixed(v, 2)))));
+      ...[c.slope_by_samples, c.slope_by_time].flatMap((slopes) => slopes.map((v) => number(fixed(v, 2)))), ...efficiencies[row].map(efficiency));
   });
-  const groups = el("tr", {}, el("td"), el("td"), ...["by samples", "by time"].map((n) => el("th", { colspan: bands.length, class: "number" }, n)));
+  const titles = ["slope by samples", "slope by time", "highest efficiency"];
+  const groups = el("tr", {}, el("td"), el("td"), ...titles.map((n) => el("th", { colspan: bands.length, class: "number" }, n)));
   const head = el("tr", {}, el("th", {}, "Points"), el("th", { class: "number" }, "Samples a pixel"),
-    ...[...bands, ...bands].map((n) => el("th", { class: "number" }, n)));
+    ...titles.flatMap(() => bands).map((n) => el("th", { class: "number" }, n)));
   byId("convergences").replaceChildren(el("thead", {}, groups, head), el("tbody", {}, ...body));
 }
 
