@@ -302,3 +302,40 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     run(&out, &["--axis", "method=none", "--axis", "fovea=5"]);
     assert_eq!(figures(&out).len(), 1);
 }
+
+/// The rows of the paper's table 1: what stands in them is what the sweep found, beside what the paper says.
+#[test]
+fn the_papers_table_is_written_beside_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let (still, out, markdown) =
+        (folder.path().join("still.png"), folder.path().join("out"), folder.path().join("table.md"));
+    let stripes =
+        |x: u32, y: u32| image::Rgb([if (x / 3 + y / 2) % 2 == 0 { 220 } else { 30 }, (x * 5 % 256) as u8, 90]);
+    image::RgbImage::from_fn(96, 54, stripes).save(&still).unwrap();
+    let path = |path: &Path| path.to_str().unwrap().to_owned();
+    let (still, moving) = (path(&still), "fixtures/sequences/lateral_160x90");
+    let gaze = "fixtures/scanpath_viewing.csv";
+    let files = ["--gaze", gaze, "--out", &path(&out), "--markdown", &path(&markdown)];
+    let numbers = ["--frames", "38", "--seeds", "1", "--backend", "cpu"];
+    succeeds(&[&["bench", "wrs", &still, moving][..], &files, &numbers].concat());
+    let (text, table) = (fs::read_to_string(&markdown).unwrap(), table(&out));
+    let [of_still, of_moving] = [&still, moving].map(|input| {
+        let from = text.find(&format!("`{input}`, ")).unwrap();
+        text[from..].split("\nOver ").next().unwrap()
+    });
+    let mut rows = 0;
+    for row in table["rows"].as_array().unwrap() {
+        let (method, fovea) = (row["method"].as_str().unwrap(), row["options"]["fovea"].as_str().unwrap());
+        let psnr_db = row["values"]["psnr_db"].as_f64().unwrap();
+        let line = format!("| {method} | {fovea} | {psnr_db:.2} | ");
+        let ours = if row["input"] == still.as_str() { of_still } else { of_moving };
+        assert!(ours.contains(&line), "'{line}' is missing: {ours}");
+        rows += 1;
+    }
+    assert_eq!(rows, 2 * 3 * 4, "two clips, three foveae, four methods");
+    // Table 1 of Cantory et al.: stills against nothing, moving cameras against taa.
+    assert!(of_still.contains("| paper, Sponza: wrs | 5 | 26.52 | 0.720 |"), "{of_still}");
+    assert!(of_moving.contains("| paper, Corridor: taa | 5 | 22.27 | 0.736 |"), "{of_moving}");
+    assert!(text.contains("\nOver none, 5 degrees: wrs ") && text.contains("\nOver taa, 5 degrees: wrs "), "{text}");
+    assert!(text.contains("\nRun time, milliseconds a frame"), "{text}");
+}
