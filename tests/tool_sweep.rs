@@ -309,8 +309,9 @@ fn the_papers_table_is_written_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
     let (still, out, markdown) =
         (folder.path().join("still.png"), folder.path().join("out"), folder.path().join("table.md"));
-    let stripes =
-        |x: u32, y: u32| image::Rgb([if (x / 3 + y / 2) % 2 == 0 { 220 } else { 30 }, (x * 5 % 256) as u8, 90]);
+    let stripes = |x: u32, y: u32| {
+        image::Rgb([if (x / 3 + y / 2).is_multiple_of(2) { 220 } else { 30 }, (x * 5 % 256) as u8, 90])
+    };
     image::RgbImage::from_fn(96, 54, stripes).save(&still).unwrap();
     let path = |path: &Path| path.to_str().unwrap().to_owned();
     let (still, moving) = (path(&still), "fixtures/sequences/lateral_160x90");
