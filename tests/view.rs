@@ -105,6 +105,8 @@ impl<'a> Viewer<'a> {
             .current_dir(folder)
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
+            // A layer of Mesa's looks for Wayland, and says so.
+            .env("NODEVICE_SELECT", "1")
             .stdout(file("said.txt"))
             .stderr(file("complaints.txt"))
             .spawn()

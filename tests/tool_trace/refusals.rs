@@ -18,7 +18,7 @@ fn values_that_cannot_be_are_refused_in_one_line() {
         (&["--max-depth", "65"], &["--max-depth", "64"]),
         (&["--fps", "0"], &["--fps"]),
         (&["--fps", "NaN"], &["--fps"]),
-        (&["--hfov", "180"], &["hfov_deg"]),
+        (&["--hfov", "180"], &["--hfov", "below 180"]),
         (&["--hfov=-3"], &["hfov"]),
         (&["--exposure", "inf"], &["--exposure"]),
         (&["--integrator", "best"], &["--integrator"]),

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::run::{RunArgs, execute};
 use afterimage::report::tally::MethodReport;
-use clap::{Args, Parser};
+use clap::Args;
 use std::path::PathBuf;
 
 /// Show the method at work on a built-in scene; needs no file and no GPU
@@ -37,23 +37,16 @@ const DEMO: &[&str] = &[
     "cpu",
 ];
 
-#[derive(Parser)]
-struct Run {
-    #[command(flatten)]
-    args: RunArgs,
-}
-
 /// The subcommand.
 pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
     let out = args.out.to_string_lossy();
-    let command = ["run"].into_iter().chain(DEMO.iter().copied()).chain(["--out", &out]);
-    let run = Run::try_parse_from(command).map_err(|e| Failure::Work(e.to_string()))?;
+    let run = RunArgs::from_words(DEMO.iter().copied().chain(["--out", &out]))?;
     say!("afterimage demo: a built-in scene, looked at for 1.6 s by a synthetic eye.");
     say!(
         "It is shown at full rate only within 2.5 degrees of the gaze (the fovea), in 4-pixel blocks to 7.5 degrees and"
     );
     say!("in 8-pixel blocks beyond, as a foveating renderer would. Each method gets the same foveated frames.\n");
-    let report = execute(&run.args)?;
+    let report = execute(&run)?;
     let find = |name: &str| report.methods.iter().find(|m| m.0 == name).map(|m| &m.1);
     if let (Some(none), Some(wrs), Some(smr), Some(oracle)) = (find("none"), find("wrs"), find("smr"), find("oracle")) {
         explain([none, wrs, smr, oracle]);

@@ -9,12 +9,14 @@ macro_rules! say {
 }
 
 mod args;
+mod backend;
 mod bench;
 mod clip;
 mod demo;
 mod failure;
 mod gaze;
 mod info;
+mod input;
 mod output;
 mod progress;
 mod run;

@@ -1,23 +1,25 @@
 //! `afterimage run`: foveate a frame stream, enhance it, score it.
 
-pub mod input;
 pub mod plan;
 
-use crate::args::{DebugName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_size};
+use crate::args::{
+    DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
+};
+use crate::backend::{BackendName, BackendReport};
 use crate::clip::ClipReport;
 use crate::failure::Failure;
 use crate::gaze::GazeArgs;
+use crate::input::{InputArgs, SourceName, Tracing};
 use crate::output::Output;
-use crate::trace::paths::PathArgs;
 use crate::trace::pattern::{SamplingArgs, SamplingName};
 #[cfg(feature = "ablation")]
 use afterimage::gpu::ablation::{PARTS, Part};
-use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Quartiles;
 use afterimage::report::tally::MethodReport;
-use afterimage::source::ReadLimits;
-use clap::{Args, ValueEnum};
+use afterimage::trace::sampling::Sampling;
+use clap::{Args, Parser};
 use serde::Serialize;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Foveate a frame stream, enhance it, score it
@@ -27,47 +29,25 @@ use std::path::PathBuf;
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
-    /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with NAME one
-    /// of still, lateral, turn, occluder, light-step, scroll
-    pub input: String,
     /// Folder for everything that is written
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     #[command(flatten)]
     pub gaze: GazeArgs,
     /// Frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_parser = parse_frames, value_name = "N")]
     pub frames: Option<u64>,
-    /// Frames per second; default: the input's, else 60
-    #[arg(long, value_name = "F")]
-    pub fps: Option<f32>,
-    /// Horizontal field of view of the flat view, degrees; default: the input's, else 70
-    #[arg(long, value_name = "DEG")]
-    pub hfov: Option<f32>,
-    /// Size of scenes, pixels; default 640x360
-    #[arg(long, value_parser = parse_size, value_name = "WxH")]
-    pub size: Option<[u32; 2]>,
-    /// Samples a pixel of --source trace: of full-rate frames, or of the fovea with --sampling
-    #[arg(long, default_value_t = 32, value_name = "N")]
-    pub spp: u32,
+    #[command(flatten)]
+    pub input: InputArgs,
     /// Samples a pixel of the full-rate frames that frames traced with --sampling are held against
-    #[arg(long, default_value_t = 64, value_name = "N")]
+    #[arg(long, default_value_t = 64, value_parser = parse_samples, value_name = "N")]
     pub reference_spp: u32,
     #[command(flatten)]
     pub sampling: SamplingArgs,
-    #[command(flatten)]
-    pub paths: PathArgs,
     /// With --sampling and the method smr: trace more samples where its history knows little or nothing and fewer where it is sure, as
     /// many in all
     #[arg(long)]
     pub guided: bool,
-    /// What renders a scene; default: raster
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub source: Option<SourceName>,
-    /// Where a scene is seen from: one of its cameras, a .json file (a cameras.json, or a path of keyframes), or lateral, orbit,
-    /// framing; default: the scene's first camera, gliding sideways if nothing moves
-    #[arg(long, value_name = "NAME|FILE.json")]
-    pub camera: Option<String>,
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
@@ -88,7 +68,7 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value = "png")]
     pub format: FormatName,
     /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
     /// Also write the full-rate frames
     #[arg(long)]
@@ -102,9 +82,41 @@ pub struct RunArgs {
     /// Pixel decisions to write as images, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugName>,
-    /// Largest image that is read, million pixels
-    #[arg(long, default_value_t = 64, value_name = "N")]
-    pub max_megapixels: u32,
+}
+
+impl RunArgs {
+    /// From what could have been typed after `run`.
+    pub fn from_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Self, Failure> {
+        #[derive(Parser)]
+        #[command(name = "run", no_binary_name = true)]
+        struct Run {
+            #[command(flatten)]
+            args: RunArgs,
+        }
+        Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args)
+    }
+
+    /// How a scene is traced.
+    pub fn tracing(&self) -> Result<Tracing, Failure> {
+        let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
+        Ok(Tracing { backend: self.backend, seed: self.seed, foveated })
+    }
+
+    /// The pattern that frames are traced with, if they are not to be foveated by a simulator.
+    pub fn sampling(&self) -> Result<Option<Sampling>, Failure> {
+        let is_traced = self.input.source == Some(SourceName::Trace);
+        if self.sampling.sampling == SamplingName::Uniform {
+            // Nothing foveates these frames: what is wrong about them is their noise.
+            return Ok((is_traced && self.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
+        }
+        if !is_traced {
+            return Err(Failure::Input(format!(
+                "--sampling {}: only traced frames are sampled; add --source trace, or use --foveation",
+                self.sampling.sampling.name()
+            )));
+        }
+        self.sampling.sampling().map(Some)
+    }
 }
 
 /// Measurements of parts of the passes; in builds with the feature `ablation` alone.
@@ -125,29 +137,6 @@ fn parse_part(name: &str) -> Result<&'static Part, String> {
         let names: Vec<_> = PARTS.iter().map(|p| format!("{} ({})", p.name, p.instead)).collect();
         format!("expected one of {}", names.join("; "))
     })
-}
-
-/// What to do without an adapter.
-pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
-
-/// Names of backends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BackendName {
-    /// A GPU if there is one, else the CPU
-    Auto,
-    /// The CPU
-    Cpu,
-    /// Any adapter, a software one too
-    Gpu,
-}
-
-/// Names of what renders scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SourceName {
-    /// Render passes on a device, a software one if there is no other
-    Raster,
-    /// Path tracing with --spp samples a pixel
-    Trace,
 }
 
 #[derive(Serialize)]
@@ -171,13 +160,6 @@ struct Report<'a> {
     /// What FLIP takes the eye's distance from; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
     methods: Methods<'a>,
-}
-
-#[derive(Serialize)]
-pub struct BackendReport {
-    pub kind: &'static str,
-    pub name: String,
-    pub driver: String,
 }
 
 #[derive(Serialize)]
@@ -209,9 +191,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// Runs and writes, without a word.
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
-    plan::check(args)?;
-    let limits = ReadLimits::from_megapixels(args.max_megapixels);
-    let mut source = input::open(args, &limits)?;
+    let mut source = args.input.open(&args.tracing()?)?;
     let plan = plan::plan(args, source.info())?;
     // Proof that the input can be read, before anything is written.
     source.frame(0)?;
@@ -221,14 +201,14 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let json = Report {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
-        input: &args.input,
+        input: &args.input.name,
         size: plan.clip.geometry.size_px(),
         frames: report.gaze_px.len(),
         fps: plan.fps,
         hfov_deg: plan.clip.geometry.hfov_deg(),
         seed: args.seed,
         exposure_ev: args.exposure,
-        backend: backend_report(&plan.clip.backend),
+        backend: BackendReport::of(&plan.clip.backend),
         foveation: FoveationReport {
             simulator: simulator(args),
             fovea_deg: foveation.fovea_deg,
@@ -268,42 +248,6 @@ fn folders(args: &RunArgs) -> Vec<String> {
         folders.push("reference".into());
     }
     folders
-}
-
-/// Chooses what computes, and says so.
-pub fn backend(name: BackendName) -> Result<Backend, Failure> {
-    let found = match name {
-        BackendName::Cpu => None,
-        BackendName::Auto => Headless::find(false),
-        BackendName::Gpu => Some(
-            Headless::find(true)
-                .ok_or_else(|| Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")))?,
-        ),
-    };
-    Ok(found.map_or(Backend::Cpu, Backend::Gpu))
-}
-
-/// The same with textures and buffers as large as the adapter offers: scenes take larger ones than frames.
-pub fn backend_for_scenes(name: BackendName) -> Result<Backend, Failure> {
-    Ok(match backend(name)? {
-        Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
-        Backend::Cpu => Backend::Cpu,
-    })
-}
-
-pub fn backend_report(backend: &Backend) -> BackendReport {
-    match backend {
-        Backend::Cpu => BackendReport {
-            kind: "cpu",
-            name: format!("{} threads", rayon::current_num_threads()),
-            driver: "none".into(),
-        },
-        Backend::Gpu(gpu) => BackendReport {
-            kind: "gpu",
-            name: gpu.info.name.clone(),
-            driver: format!("{} {}", gpu.info.driver, gpu.info.driver_info),
-        },
-    }
 }
 
 fn print_summary(args: &RunArgs, report: &ClipReport) {

@@ -7,10 +7,10 @@ mod plan;
 mod report;
 
 use crate::failure::Failure;
+use crate::input::InputArgs;
 use crate::progress;
-use crate::run::RunArgs;
+use afterimage::source::is_scene;
 use afterimage::source::raster::DEFAULT_SIZE;
-use afterimage::source::{ReadLimits, SceneOptions, is_scene};
 use afterimage::sweep::plan::MAX_POINTS;
 use afterimage::sweep::{Measurement, Options, Store, Table};
 use batch::{Batch, batches, concerns, is_random};
@@ -159,7 +159,7 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
         .points(&args.input, plan.seeds, concerns, |method, options| is_random(method, options.iter().chain(&common)));
     // An input is opened once for all points that take it in the same size.
     let mut known: BTreeMap<(String, Option<[u32; 2]>), u64> = BTreeMap::new();
-    let batches = batches(points, &common, |args| match known.entry((args.input.clone(), args.size)) {
+    let batches = batches(points, &common, |args| match known.entry((args.name.clone(), args.size)) {
         Entry::Occupied(known) => Ok(*known.get()),
         Entry::Vacant(new) => Ok(*new.insert(pixels(args)?)),
     })?;
@@ -193,7 +193,7 @@ fn refuse_another_sweep(
     common: &Options,
 ) -> Result<(), Failure> {
     let Some(before) = done.first() else { return Ok(()) };
-    let machine = measure::machine(&crate::run::backend(batches[0].subjects[0].args.backend)?);
+    let machine = measure::machine(&batches[0].subjects[0].args.backend.open()?);
     let differs = if before.common != *common {
         format!("was made with {:?}, not {:?}", before.common, common)
     } else if before.version != env!("CARGO_PKG_VERSION") {
@@ -234,12 +234,10 @@ fn merge(args: &SweepArgs) -> Result<Store, Failure> {
 }
 
 /// Pixels of a frame. What cannot be opened is refused here, before anything is measured; scenes are read when their turn comes.
-fn pixels(args: &RunArgs) -> Result<u64, Failure> {
+fn pixels(args: &InputArgs) -> Result<u64, Failure> {
     let of = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
-    if is_scene(&args.input) {
+    if is_scene(&args.name) {
         return Ok(of(args.size.unwrap_or(DEFAULT_SIZE)));
     }
-    let limits = ReadLimits::from_megapixels(args.max_megapixels);
-    let options = SceneOptions { size: args.size, hfov_deg: args.hfov, fps: args.fps };
-    Ok(of(afterimage::source::open(&args.input, &limits, &options)?.info().size))
+    Ok(of(args.read()?.info().size))
 }

@@ -8,11 +8,11 @@ mod report;
 pub mod setup;
 mod shot;
 
-use crate::args::parse_size;
+use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size};
+use crate::backend::BackendName;
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
-use crate::run::BackendName;
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::sampling::Sampling;
 use afterimage::trace::view::View;
@@ -49,13 +49,13 @@ pub struct TraceArgs {
     #[arg(long, value_parser = parse_size, default_value = "640x360", value_name = "WxH")]
     pub size: [u32; 2],
     /// Frames
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_parser = parse_frames, value_name = "N")]
     pub frames: u64,
     /// Frames per second, for animated scenes and camera paths; default: the camera file's, else 60
-    #[arg(long, value_name = "F")]
+    #[arg(long, value_parser = parse_fps, value_name = "F")]
     pub fps: Option<f32>,
     /// Horizontal field of view, degrees; default: the camera's
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
     pub hfov: Option<f32>,
     /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit; or a file: a
     /// cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
@@ -65,7 +65,7 @@ pub struct TraceArgs {
     #[arg(long, value_name = "NAME")]
     pub clip: Option<String>,
     /// Samples per pixel (of the fovea, where foveated; regions have --region-spp)
-    #[arg(long, default_value_t = 32, value_name = "N")]
+    #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N")]
     pub spp: u32,
     #[command(flatten)]
     pub pattern: PatternArgs,
@@ -92,7 +92,7 @@ pub struct TraceArgs {
     #[arg(long, value_enum)]
     pub format: Option<crate::args::FormatName>,
     /// Exposure before tone mapping, stops
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
     /// Tone mapping; default: reinhard for png, none for exr
     #[arg(long, value_enum)]

@@ -21,11 +21,11 @@ mod times;
 mod usable;
 mod viewer;
 
-use crate::args::{FoveationArgs, WrsArgs, parse_size};
+use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
+use crate::backend::BackendName;
 use crate::failure::Failure;
 use crate::gaze::GazeMapName;
-use crate::run::SourceName;
-use crate::trace::paths::PathArgs;
+use crate::input::{InputArgs, Tracing};
 use app::App;
 use clap::Args;
 use feed::Feed;
@@ -44,8 +44,8 @@ use winit::event_loop::EventLoop;
     Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
 )]
 pub struct ViewArgs {
-    /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME, as of run
-    pub input: String,
+    #[command(flatten)]
+    pub input: InputArgs,
     /// What is shown
     #[arg(long, value_enum, default_value = "smr", value_name = "NAME")]
     pub method: Shows,
@@ -63,28 +63,8 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
     /// Quit after so many frames; default: never
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_parser = parse_frames, value_name = "N")]
     pub frames: Option<u64>,
-    /// Most frames per second; default: the input's, else 60
-    #[arg(long, value_name = "F")]
-    pub fps: Option<f32>,
-    /// Horizontal field of view of the flat view, degrees; default: the input's, else 70
-    #[arg(long, value_name = "DEG")]
-    pub hfov: Option<f32>,
-    /// Size of scenes, pixels; default 640x360
-    #[arg(long, value_parser = parse_size, value_name = "WxH")]
-    pub size: Option<[u32; 2]>,
-    /// What renders a scene; default: raster
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub source: Option<SourceName>,
-    /// Samples a pixel of --source trace
-    #[arg(long, default_value_t = 32, value_name = "N")]
-    pub spp: u32,
-    #[command(flatten)]
-    pub paths: PathArgs,
-    /// Where a scene is seen from, as of run; key C steers it
-    #[arg(long, value_name = "NAME|FILE.json")]
-    pub camera: Option<String>,
     #[command(flatten)]
     pub foveation: FoveationArgs,
     #[command(flatten)]
@@ -93,7 +73,7 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
     /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
     /// Resolution of everything as a share of the input's, above 0 and at most 1; default: 1, on a software device as much as is usable
     #[arg(long, value_name = "X")]
@@ -107,20 +87,17 @@ pub struct ViewArgs {
     /// Begin without the panel
     #[arg(long)]
     pub no_panel: bool,
-    /// Largest image that is read, million pixels
-    #[arg(long, default_value_t = 64, value_name = "N")]
-    pub max_megapixels: u32,
 }
 
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
-    let run = setup::run_args(args)?;
-    let (feed, info) = Feed::open(&run)?;
-    let setup = Setup::new(args, run, info)?;
+    let tracing = Tracing { backend: BackendName::Auto, seed: args.seed, foveated: None };
+    let source = args.input.open(&tracing)?;
+    let setup = Setup::new(args, source.info())?;
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
     })?;
-    let mut app = App::new(setup, feed);
+    let mut app = App::new(setup, Feed::new(source));
     events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's events broke off ({e})")))?;
     app.outcome?;
     match device::messages() {

@@ -8,8 +8,8 @@ mod table;
 
 use super::subject::{Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
+use crate::backend::BackendReport;
 use crate::failure::Failure;
-use crate::run::{BackendReport, backend_report};
 use afterimage::pipeline::Backend;
 use afterimage::report::clock::{Quartiles, Stopwatch};
 use afterimage::trace::Tracer;
@@ -98,7 +98,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
             }
             prices.push(priced(&lanes));
             if std::io::stderr().is_terminal() {
-                eprintln!("{name}: {} done", backend_report(backend).kind);
+                eprintln!("{name}: {} done", BackendReport::of(backend).kind);
             }
             drop(lanes);
             if args.removal && matches!(backend, Backend::Gpu(_)) {
@@ -121,7 +121,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         max_depth: TraceSettings::default().max_depth,
         machine: machine(),
         compiled_cold: std::env::var("MESA_SHADER_CACHE_DISABLE").is_ok_and(|v| v == "true" || v == "1"),
-        backends: backends.iter().map(backend_report).collect(),
+        backends: backends.iter().map(BackendReport::of).collect(),
         scenes,
     };
     let text = table::markdown(&report);

@@ -3,8 +3,8 @@
 use super::foveated::{Pattern, PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use super::subject::{Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
+use crate::backend::{BackendReport, NO_ADAPTER};
 use crate::failure::Failure;
-use crate::run::{BackendReport, NO_ADAPTER, backend_report};
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::Backend;
 use afterimage::trace::sampling::{Layers, Regions, Sampling};
@@ -101,7 +101,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         arithmetic: arithmetic()?,
         regions: regions_of_a_scene(args, &backend, size, frames)?,
         layers: SCENES.iter().map(layers).collect::<Result<_, _>>()?,
-        backend: backend_report(&backend),
+        backend: BackendReport::of(&backend),
     };
     print(&report);
     write_json(args, &report)

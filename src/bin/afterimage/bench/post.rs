@@ -1,8 +1,8 @@
 //! `afterimage bench post`: what the passes cost, off-screen, against a copy pass that moves the same bytes.
 
 use super::{BenchArgs, write_json};
+use crate::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use crate::run::NO_ADAPTER;
 use afterimage::display::ViewGeometry;
 use afterimage::error::{CreateError, FrameError};
 use afterimage::foveation::Filter;

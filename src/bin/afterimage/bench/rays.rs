@@ -3,8 +3,8 @@
 use super::foveated::{self, PatternReport};
 use super::subject::{Subject, Took, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
+use crate::backend::BackendReport;
 use crate::failure::Failure;
-use crate::run::{BackendReport, backend_report};
 use afterimage::report::clock::Quartiles;
 use afterimage::trace::settings::TraceSettings;
 use serde::Serialize;
@@ -74,7 +74,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
             let rate = |ms: &dyn Fn(&Took) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
             TracerReport {
-                backend: backend_report(backend),
+                backend: BackendReport::of(backend),
                 rays_per_frame: took.first().map_or(0, |t| t.rays),
                 cpu_ms: of(&|t| t.cpu_ms),
                 wall_ms: of(&|t| t.wall_ms),

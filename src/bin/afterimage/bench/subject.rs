@@ -1,8 +1,8 @@
 //! A scene to be timed, and what traces it.
 
 use super::{BenchArgs, Traces};
+use crate::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use crate::run::NO_ADAPTER;
 use afterimage::display::ViewGeometry;
 use afterimage::pipeline::{Backend, Headless};
 use afterimage::report::clock::Stopwatch;

@@ -1,18 +1,16 @@
 //! Everything about a run that is known before its first frame.
 
-use super::{BackendName, RunArgs, backend, input, simulator};
+use super::{RunArgs, simulator};
 use crate::args::MethodName;
+use crate::backend::BackendName;
 use crate::clip::Clip;
 use crate::failure::Failure;
+use crate::input;
 use crate::trace::pattern::SamplingName;
-use afterimage::display::ViewGeometry;
 use afterimage::foveation::Foveation;
 use afterimage::pipeline::{Backend, LaneKind};
 use afterimage::settings::Method;
 use afterimage::source::SourceInfo;
-
-/// Frames of the longest run: two days at 60 frames per second.
-const MAX_FRAMES: u64 = 10_000_000;
 
 /// What is to be done, and facts of it that a report needs.
 pub struct Plan {
@@ -21,32 +19,14 @@ pub struct Plan {
     pub gaze_map: &'static str,
 }
 
-/// What can be wrong before anything is opened.
-pub fn check(args: &RunArgs) -> Result<(), Failure> {
-    let refuse = |text: String| Err(Failure::Input(text));
-    if let Some(fps) = args.fps.filter(|f| !(*f > 0.0 && *f <= 10_000.0)) {
-        return refuse(format!("--fps {fps}: expected above 0 and at most 10000 frames per second"));
-    }
-    if let Some(hfov) = args.hfov.filter(|h| !(*h > 0.0 && *h < 180.0)) {
-        return refuse(format!("--hfov {hfov}: expected above 0 and below 180 degrees"));
-    }
-    if !(-32.0..=32.0).contains(&args.exposure) {
-        return refuse(format!("--exposure {}: expected -32 to 32 stops", args.exposure));
-    }
-    if let Some(frames) = args.frames.filter(|n| !(1..=MAX_FRAMES).contains(n)) {
-        return refuse(format!("--frames {frames}: expected at least 1 frame and at most {MAX_FRAMES}"));
-    }
-    Ok(())
-}
-
 /// Plans a run of an input with these facts.
 pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
-    let fps = args.fps.or(info.fps).unwrap_or(60.0);
-    let geometry = ViewGeometry::flat(info.size, args.hfov.or(info.hfov_deg).unwrap_or(70.0))?;
+    let fps = args.input.fps(info);
+    let geometry = args.input.geometry(info)?;
     let foveation = foveation(args)?;
     let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
@@ -55,10 +35,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
         }
         lanes.push((method.name(), lane(args, method, info.still)?));
     }
-    // Stills and endless scenes last as long as the eye looks.
-    let frames = args.frames.or(if info.still { None } else { info.frames });
-    let backend = backend(args.backend)?;
-    let track = args.gaze.resolve(&geometry, fps, frames)?;
+    let backend = args.backend.open()?;
+    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
     Ok(Plan {
         fps,
         gaze_map: track.map,
@@ -98,14 +76,14 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
 
 /// Where frames are how coarse.
 pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
-    let foveation = input::sampling(args)?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    let foveation = args.sampling()?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
     foveation.validate()?;
     Ok(foveation)
 }
 
 /// What a method does in a run with these options, of an input that is still or not.
 pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
-    let sampling = input::sampling(args)?;
+    let sampling = args.sampling()?;
     let method = match method {
         MethodName::None => Method::None,
         MethodName::Taa => Method::Taa,
@@ -119,7 +97,7 @@ pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKi
         MethodName::Oracle => {
             return Err(Failure::Input(format!(
                 "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
-                args.input
+                args.input.name
             )));
         }
     };

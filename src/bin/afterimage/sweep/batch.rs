@@ -2,10 +2,10 @@
 
 use crate::args::{FilterName, MethodName};
 use crate::failure::Failure;
-use crate::run::{RunArgs, SourceName};
+use crate::input::{InputArgs, SourceName};
+use crate::run::RunArgs;
 use crate::trace::pattern::SamplingName;
 use afterimage::sweep::{Options, Point};
-use clap::Parser;
 use std::collections::BTreeMap;
 
 /// Most points of a batch: what a sweep loses when it is stopped.
@@ -57,23 +57,15 @@ pub struct Batch {
     pub subjects: Vec<Subject>,
 }
 
-/// `run`, for its options.
-#[derive(Parser)]
-#[command(name = "run")]
-struct Run {
-    #[command(flatten)]
-    args: RunArgs,
-}
-
 impl Subject {
     fn new(point: Point, common: &Options) -> Result<Self, Failure> {
-        let mut words = vec!["run".to_owned(), "--out=unused".into(), format!("--seed={}", point.seed)];
+        let mut words = vec!["--out=unused".to_owned(), format!("--seed={}", point.seed)];
         words.push(format!("--method={}", point.method));
         for (name, value) in common.iter().chain(&point.options) {
             words.push(if value.is_empty() { format!("--{name}") } else { format!("--{name}={value}") });
         }
         words.extend(["--".into(), point.input.clone()]);
-        let args = Run::try_parse_from(&words).map_err(|e| Failure::usage(&e))?.args;
+        let args = RunArgs::from_words(&words)?;
         let &[method] = &args.method[..] else {
             return Err(Failure::Input(format!("method {}: expected one method a point", point.method)));
         };
@@ -84,7 +76,7 @@ impl Subject {
     fn key(&self) -> (String, Options, Option<u64>) {
         let mut options = self.point.options.clone();
         options.retain(|name, _| OF_METHODS.iter().all(|(of_method, _)| of_method != name));
-        let traced = self.args.source == Some(SourceName::Trace);
+        let traced = self.args.input.source == Some(SourceName::Trace);
         (self.point.input.clone(), options, traced.then_some(self.point.seed))
     }
 
@@ -92,7 +84,7 @@ impl Subject {
     pub fn full_rate_samples(&self) -> u32 {
         match self.args.sampling.sampling {
             SamplingName::Uniform if self.args.foveation.filter != FilterName::Off => 1,
-            _ => self.args.sampling.most_samples(self.args.spp),
+            _ => self.args.sampling.most_samples(self.args.input.spp),
         }
     }
 }
@@ -106,7 +98,7 @@ pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String
 pub fn batches(
     points: Vec<Point>,
     common: &Options,
-    mut pixels: impl FnMut(&RunArgs) -> Result<u64, Failure>,
+    mut pixels: impl FnMut(&InputArgs) -> Result<u64, Failure>,
 ) -> Result<Vec<Batch>, Failure> {
     let mut groups: BTreeMap<_, Vec<Subject>> = BTreeMap::new();
     for point in points {
@@ -115,7 +107,7 @@ pub fn batches(
     }
     let mut batches = vec![];
     for subjects in groups.into_values() {
-        let most = (MAX_PIXELS / pixels(&subjects[0].args)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
+        let most = (MAX_PIXELS / pixels(&subjects[0].args.input)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
         let mut rest = subjects.into_iter().peekable();
         while rest.peek().is_some() {
             batches.push(Batch { subjects: rest.by_ref().take(most).collect() });

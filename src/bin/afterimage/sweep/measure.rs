@@ -1,9 +1,10 @@
 //! A batch of points on the same frames: every frame all methods in turn, so that what the machine does else meets all alike.
 
 use super::batch::{Batch, Subject};
+use crate::backend::BackendReport;
 use crate::clip::{Clip, Moment};
 use crate::failure::Failure;
-use crate::run::{RunArgs, backend_report, input, plan};
+use crate::run::{RunArgs, plan};
 use afterimage::foveation::Filter;
 use afterimage::image::Image;
 use afterimage::kernel::debug_view::heat;
@@ -13,7 +14,7 @@ use afterimage::report::clock::Quartiles;
 use afterimage::report::picture::{to_rgb8, write_jpeg};
 use afterimage::report::tally::Tally;
 use afterimage::settings::{Method, Settings};
-use afterimage::source::{FrameSource, ReadLimits};
+use afterimage::source::FrameSource;
 use afterimage::sweep::measurement::{ClipFacts, Machine};
 use afterimage::sweep::paste::as_rust;
 use afterimage::sweep::store::{PICTURES, id};
@@ -40,7 +41,6 @@ struct Tallies {
 
 /// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
 pub fn check(subject: &Subject) -> Result<(), Failure> {
-    plan::check(&subject.args)?;
     plan::foveation(&subject.args)?;
     if let Some(frames) = subject.args.frames {
         check_frames(&subject.args, frames)?;
@@ -56,14 +56,14 @@ fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
     }
     Err(Failure::Input(format!(
         "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
-        args.input
+        args.input.name
     )))
 }
 
 /// Measures the points and keeps what was measured.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
-    let mut source = input::open(args, &ReadLimits::from_megapixels(args.max_megapixels))?;
+    let mut source = args.input.open(&args.tracing()?)?;
     let plan = plan::plan(args, source.info())?;
     let mut lanes = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
@@ -115,7 +115,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
 
 /// The same in every batch, whatever its points: by it, batches tell what the machine did else.
 fn control(subject: &Subject) -> LaneKind {
-    let noisy = matches!(input::sampling(&subject.args), Ok(Some(_)));
+    let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
     LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
 }
 
@@ -189,7 +189,7 @@ fn pictures(
 
 /// What measures on this backend.
 pub fn machine(backend: &Backend) -> Machine {
-    let report = backend_report(backend);
+    let report = BackendReport::of(backend);
     let clock = match backend {
         Backend::Gpu(gpu) => PassClock::new(gpu).name(),
         Backend::Cpu => "CPU time of the process",

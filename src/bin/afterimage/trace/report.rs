@@ -4,7 +4,7 @@ use super::TraceArgs;
 use super::eyes::{Eyes, below};
 use super::pattern::SamplingName;
 use super::setup::Setup;
-use crate::run::{BackendReport, backend_report};
+use crate::backend::BackendReport;
 use afterimage::report::clock::Stopwatch;
 use afterimage::trace::effects::Effects;
 use afterimage::trace::view::View;
@@ -205,7 +205,7 @@ impl Report {
             integrator: format!("{:?}", args.paths.integrator).to_lowercase(),
             bsdf: format!("{:?}", args.paths.bsdf).to_lowercase(),
             seed: args.seed,
-            backend: backend_report(&setup.backend),
+            backend: BackendReport::of(&setup.backend),
             triangles: setup.world.geometry.len(),
             load_ms: setup.load_ms,
             build_ms: setup.build_ms,
@@ -252,7 +252,7 @@ impl Report {
             args.spp,
             self.seconds,
             self.total().rays as f64 / self.seconds * 1e-6,
-            backend_report(&setup.backend).name,
+            BackendReport::of(&setup.backend).name,
         );
         say!("wrote {}", args.out.display());
     }

@@ -2,7 +2,6 @@
 
 use super::TraceArgs;
 use crate::failure::Failure;
-use crate::run::backend_for_scenes;
 use afterimage::pipeline::Backend;
 use afterimage::report::clock::Stopwatch;
 use afterimage::scene::{Environment, Scene, SceneLimits};
@@ -43,7 +42,7 @@ impl Setup {
         let load_ms = clock.wall_ms();
         let name = args.camera.as_deref().unwrap_or("still");
         let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
-        let backend = backend_for_scenes(args.backend)?;
+        let backend = args.backend.open_for_scenes()?;
         let clock = Stopwatch::start();
         let world = World::new(&scene);
         let build_ms = clock.wall_ms();
@@ -79,20 +78,6 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     let [w, h] = args.size;
     if w > MAX_SIDE || h > MAX_SIDE || u64::from(w) * u64::from(h) > ReadLimits::default().max_pixels {
         return refuse(format!("--size {w}x{h}: too large; expected at most 64 million pixels, {MAX_SIDE} a side"));
-    }
-    if args.spp == 0 || args.spp > 1 << 20 {
-        return refuse(format!("--spp {}: expected 1 to {}", args.spp, 1 << 20));
-    }
-    if args.frames == 0 || args.frames > 10_000_000 {
-        return refuse(format!("--frames {}: expected 1 to 10000000", args.frames));
-    }
-    if let Some(fps) = args.fps
-        && !(fps > 0.0 && fps <= 100_000.0)
-    {
-        return refuse(format!("--fps {fps}: expected a number above 0 and up to 100000"));
-    }
-    if !(-64.0..=64.0).contains(&args.exposure) {
-        return refuse(format!("--exposure {}: expected -64 to 64 stops", args.exposure));
     }
     if args.aov.contains(&super::AovName::Variance) && args.pattern.of.sampling != super::pattern::SamplingName::Uniform
     {

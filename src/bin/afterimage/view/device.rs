@@ -1,7 +1,7 @@
 //! The device that draws to a window: chosen, watched for messages and for its loss.
 
+use crate::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use crate::run::NO_ADAPTER;
 use afterimage::pipeline::Headless;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,9 +1,8 @@
 //! Frames of the input, read or rendered beside the window's thread, one ahead, at the resolution that is asked for.
 
 use crate::failure::Failure;
-use crate::run::{RunArgs, input};
 use afterimage::image::Image;
-use afterimage::source::{FrameSource, ReadLimits, SourceFrame, SourceInfo, Stance};
+use afterimage::source::{FrameSource, SourceFrame, Stance};
 use glam::DMat4;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
@@ -34,15 +33,12 @@ pub struct Feed {
 }
 
 impl Feed {
-    /// Opens the input of these options; gives its facts, too.
-    pub fn open(args: &RunArgs) -> Result<(Self, SourceInfo), Failure> {
-        let limits = ReadLimits::from_megapixels(args.max_megapixels);
-        let source = input::open(args, &limits)?;
-        let info = source.info().clone();
+    /// Reads from a source, from now on.
+    pub fn new(source: Box<dyn FrameSource + Send>) -> Self {
         let (asks, asked) = channel();
         let (answer, answers) = channel();
         thread::spawn(move || serve(source, &asked, &answer));
-        Ok((Self { asks, answers, generation: 0, is_waiting: false }, info))
+        Self { asks, answers, generation: 0, is_waiting: false }
     }
 
     /// Asks for a frame, unless one is on its way.

@@ -4,43 +4,10 @@ use super::ViewArgs;
 use super::state::{Shows, State};
 use crate::failure::Failure;
 use crate::gaze::GazeArgs;
-use crate::run::{RunArgs, plan};
+use crate::input;
 use afterimage::display::ViewGeometry;
 use afterimage::settings::Settings;
 use afterimage::source::SourceInfo;
-use clap::Parser;
-
-/// `run`, for its options: the input and the gaze are opened as it does.
-#[derive(Parser)]
-struct Run {
-    #[command(flatten)]
-    args: RunArgs,
-}
-
-/// The same of `run`.
-pub fn run_args(args: &ViewArgs) -> Result<RunArgs, Failure> {
-    let words = ["run", "--out=unused", "--", &args.input];
-    let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
-    let run = RunArgs {
-        gaze: GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start },
-        frames: args.frames,
-        fps: args.fps,
-        hfov: args.hfov,
-        size: args.size,
-        spp: args.spp,
-        paths: args.paths.clone(),
-        source: args.source,
-        camera: args.camera.clone(),
-        foveation: args.foveation.clone(),
-        wrs: args.wrs.clone(),
-        seed: args.seed,
-        exposure: args.exposure,
-        max_megapixels: args.max_megapixels,
-        ..Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args
-    };
-    plan::check(&run)?;
-    Ok(run)
-}
 
 /// Options and facts of the input.
 pub struct Setup {
@@ -54,7 +21,7 @@ pub struct Setup {
 
 impl Setup {
     /// Checks everything that can be checked without a device.
-    pub fn new(args: &ViewArgs, run: RunArgs, info: SourceInfo) -> Result<Self, Failure> {
+    pub fn new(args: &ViewArgs, info: &SourceInfo) -> Result<Self, Failure> {
         let refuse = |text: String| Err(Failure::Input(text));
         if !matches!(args.split.len(), 0 | 2) {
             return refuse(format!("--split: {} names, expected two, such as none,smr", args.split.len()));
@@ -62,12 +29,11 @@ impl Setup {
         if let Some(scale) = args.internal_scale.filter(|s| !(*s > 0.0 && *s <= 1.0)) {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
-        let fps = args.fps.or(info.fps).unwrap_or(60.0);
-        let hfov_deg = args.hfov.or(info.hfov_deg).unwrap_or(70.0);
-        let geometry = ViewGeometry::flat(info.size, hfov_deg)?;
-        let frames = args.frames.or(if info.still { None } else { info.frames });
-        let track = run.gaze.resolve(&geometry, fps, frames)?.px;
-        let setup = Self { args: args.clone(), info, fps, hfov_deg, track };
+        let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
+        let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
+        let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
+        let track = gaze.resolve(&geometry, fps, input::frames(args.frames, info))?.px;
+        let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
         let state = setup.state();
         for shows in [Shows::None, Shows::Taa, Shows::Wrs, Shows::Smr] {
             setup.settings(&state, shows).validate()?;
