@@ -97,7 +97,7 @@ impl InputArgs {
 
     /// By path tracing.
     fn traced(&self, tracing: &Tracing) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        let (foveated, full_rate_samples) = tracing.foveated.clone().map_or((None, self.spp), |(s, n)| (Some(s), n));
+        let (foveated, full_rate_samples) = tracing.foveated.map_or((None, self.spp), |(s, n)| (Some(s), n));
         let samples = TracedSamples { foveated, samples: self.spp, full_rate_samples };
         let backend = tracing.backend.open_for_scenes()?;
         let settings = self.paths.settings(tracing.seed)?;
