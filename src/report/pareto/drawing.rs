@@ -16,6 +16,8 @@ const HIGH_PX: [f64; 2] = [886.0, 500.0];
 /// Where the second column of notes begins.
 const MIDDLE_PX: f64 = 528.0;
 const LINE_PX: f64 = 20.0;
+/// Characters of a note for which there is room beside another.
+const MOST_OF_TWO: usize = 62;
 
 const INK: &str = "#1b1b1f";
 const FAINT: &str = "#5c5c66";
@@ -217,16 +219,21 @@ fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
 /// What the numbers are, and how to read the marks. With it the height of the whole.
 fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -> (Group, f64) {
     let top = HIGH_PX[1] + 68.0;
-    let lines = best.len().div_ceil(2);
-    let mut notes = Group::new();
-    for (i, spot) in best.iter().enumerate() {
+    let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
+    let what = |spot: &&Spot<'_>| {
         let (digits, value, ms) = (metric.digits, spot.value, spot.row.cost_ms);
-        let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
-        let line = format!("{value:.digits$}{unit} in {ms:.3} ms: {}", visible(&spot.row.label));
+        format!("{value:.digits$}{unit} in {ms:.3} ms: {}", visible(&spot.row.label))
+    };
+    let entries: Vec<String> = best.iter().map(what).collect();
+    // Labels that differ at their ends are not cut there.
+    let columns = if entries.iter().all(|e| e.chars().count() <= MOST_OF_TWO) { 2 } else { 1 };
+    let lines = best.len().div_ceil(columns);
+    let mut notes = Group::new();
+    for (i, entry) in entries.iter().enumerate() {
         let (x, y) = if i < lines { (LOW_PX[0], i) } else { (MIDDLE_PX, i - lines) };
         let y = top + LINE_PX * y as f64;
         let number = text(&(i + 1).to_string(), [x - 10.0, y], "end").set("fill", FAINT).set("class", "faint");
-        notes = notes.add(number).add(text(&shortened(&line), [x, y], "start").set("class", "ink"));
+        notes = notes.add(number).add(text(&shortened(entry), [x, y], "start").set("class", "ink"));
     }
     let mut reading = vec![
         "filled, with a number: no point costs less and is better (hollow: some point does); dashes: the best for a budget".into(),
@@ -272,7 +279,7 @@ fn visible(text: &str) -> String {
 
 /// To what a line has room for.
 fn shortened(label: &str) -> String {
-    const MOST: usize = 62;
+    const MOST: usize = 130;
     if label.chars().count() <= MOST {
         return label.to_owned();
     }
