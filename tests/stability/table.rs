@@ -12,7 +12,8 @@ const HEAD: &str = "# Hard cases\n\n\
     every bit, through 46,406 and 46,303 resets, resizes, lost gazes, broken pixels and steps of exposure, in any order. Not one \
     component was shown that is no number, none of wrs above what was presented, no pixel of smr's fovea but the candidate; in 250 \
     quiet stretches weight sums of wrs stayed within 0.94 of what storage may round; memory, of both at once, \
-    stood at 224 MiB from frame 35,000 to the end, give or take 0.4.\n\n\
+    stood at 224 MiB from frame 35,000 to the end, give or take 0.4. (Of one run, with 0.1.0; it takes hours and is not repeated when \
+    this page is written.)\n\n\
     | row | input | must hold | held by | figure |\n|---|---|---|---|---|\n";
 const LIMITS: &str = "\n## Rows that cannot hold as they stand\n\n";
 

@@ -84,6 +84,37 @@ fn numbers_lie_on_no_other_number() {
 }
 
 #[test]
+fn labels_that_differ_at_their_ends_are_whole() {
+    let mut all = measurements();
+    for m in &mut all {
+        let fovea = &m.point.options["fovea"];
+        let value = format!("with much to say before it comes to {fovea}");
+        m.point.options.insert("a-long-option".into(), value);
+    }
+    let table = of(&all, None);
+    let svg = pareto::svg(&table, INPUTS[0], flip());
+    let document = Document::parse(&svg).unwrap();
+    let best = table.rows.iter().filter(|r| r.point.input == INPUTS[0] && r.frontier.contains(&flip().key));
+    let mut places = vec![];
+    for row in best {
+        let whole = |n: &Node<'_, '_>| n.text().is_some_and(|t| t.trim().ends_with(&row.label));
+        let note = document.descendants().filter(Node::is_element).find(whole);
+        let note = note.unwrap_or_else(|| panic!("'{}' is cut", row.label));
+        places.push(note.attribute("y").unwrap().parse::<f64>().unwrap());
+    }
+    assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
+    // Even those that have no room are cut before the border.
+    for m in &mut all {
+        let fovea = &m.point.options["fovea"];
+        let value = format!("{fovea} {}", "a much longer value ".repeat(10));
+        m.point.options.insert("a-long-option".into(), value);
+    }
+    let picture = pareto::png(&of(&all, None), INPUTS[0], flip());
+    let paper = *picture.get_pixel(0, 0);
+    assert!((0..picture.height()).all(|y| *picture.get_pixel(picture.width() - 4, y) == paper), "ink at the border");
+}
+
+#[test]
 fn png_has_marks_and_letters_and_is_the_same_again() {
     let table = table(None);
     let picture = pareto::png(&table, INPUTS[1], flip());

@@ -16,8 +16,8 @@ const HIGH_PX: [f64; 2] = [886.0, 500.0];
 /// Where the second column of notes begins.
 const MIDDLE_PX: f64 = 528.0;
 const LINE_PX: f64 = 20.0;
-/// Characters of a note for which there is room beside another.
-const MOST_OF_TWO: usize = 62;
+/// What a letter of a note is given: a little more than the font's letters take on average.
+const LETTER_PX: f64 = 6.9;
 
 const INK: &str = "#1b1b1f";
 const FAINT: &str = "#5c5c66";
@@ -225,8 +225,9 @@ fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -
         format!("{value:.digits$}{unit} in {ms:.3} ms: {}", visible(&spot.row.label))
     };
     let entries: Vec<String> = best.iter().map(what).collect();
-    // Labels that differ at their ends are not cut there.
-    let columns = if entries.iter().all(|e| e.chars().count() <= MOST_OF_TWO) { 2 } else { 1 };
+    // One column where two have no room: what labels differ in may be at their ends.
+    let longest = entries.iter().map(|e| e.chars().count()).max().unwrap_or(0);
+    let columns = if longest <= letters_from(MIDDLE_PX) { 2 } else { 1 };
     let lines = best.len().div_ceil(columns);
     let mut notes = Group::new();
     for (i, entry) in entries.iter().enumerate() {
@@ -277,11 +278,16 @@ fn visible(text: &str) -> String {
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// Letters for which there is room from `x` to the border.
+fn letters_from(x: f64) -> usize {
+    ((WIDTH_PX - x) / LETTER_PX) as usize
+}
+
 /// To what a line has room for.
 fn shortened(label: &str) -> String {
-    const MOST: usize = 130;
-    if label.chars().count() <= MOST {
+    let most = letters_from(LOW_PX[0]);
+    if label.chars().count() <= most {
         return label.to_owned();
     }
-    label.chars().take(MOST - 1).chain(['…']).collect()
+    label.chars().take(most - 1).chain(['…']).collect()
 }
