@@ -1,37 +1,42 @@
-//! What is the least that I must write? Two frames in, one image out.
+//! What is the least that I must write? Two frames in, one image out, without a window.
 //!
-//! `cargo run --example 01_smallest`
+//! `cargo run --example 01_smallest` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
-use afterimage::Settings;
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::display::ViewGeometry;
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
-use afterimage::image::Image;
+mod headless;
+
+use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use headless::Headless;
+use wgpu::{TextureFormat, TextureUsages};
+
+const SIZE: [u32; 2] = [256, 64];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let size = [320, 180];
-    let mut post = CpuAfterimage::new(ContextDesc::new(size), Settings::default())?;
-    let mut output = [Image::filled(size, [0.0; 3])];
+    // Yours: a device, the frame that your renderer wrote, and what the user will see.
+    let gpu = Headless::new()?;
+    let (read, write) = (TextureUsages::TEXTURE_BINDING, TextureUsages::STORAGE_BINDING);
+    let color = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, read | TextureUsages::COPY_DST);
+    let output = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, write | TextureUsages::COPY_SRC);
 
-    // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the renderer saves work on the left.
-    let sharp = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
-    let blurred = Image::filled(size, [0.5; 3]);
-    for (index, (color, gaze_x)) in [(&sharp, 60.0), (&blurred, 260.0)].into_iter().enumerate() {
-        let facts = ViewFrame {
-            geometry: ViewGeometry::flat(size, 70.0)?,
-            gaze: Gaze::At { px: [gaze_x, 90.0] },
+    let mut post = Afterimage::new(&gpu.device, &GpuDesc::new(SIZE, output.format()))?;
+    // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the left is blurred.
+    for (index, gaze_x, sharp) in [(0, 50.0, true), (1, 200.0, false)] {
+        gpu.write(&color, 0, |x, _| [if sharp { (x % 2) as f32 } else { 0.5 }; 3]);
+        let views = [ViewFrame {
+            geometry: ViewGeometry::flat(SIZE, 70.0)?,
+            gaze: Gaze::At { px: [gaze_x, 32.0] },
             previous_from_current: None,
-        };
-        let views = [CpuView::new(facts, color)];
-        let frame = CpuFrame::new(&views, index as u64);
-        post.process(&frame, &mut output, None)?;
+        }];
+        let mut encoder = gpu.encoder();
+        post.record(&gpu.device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
+        gpu.submit(encoder);
     }
 
-    let stripes = |x: std::ops::Range<usize>| {
-        let kept = x.clone().filter(|&x| output[0].at(x, 90) == sharp.at(x, 90)).count();
-        100 * kept / x.len()
-    };
-    println!("stripes still seen on the left, where the eye was: {} %", stripes(40..80));
-    println!("and in the middle, where it never was: {} %", stripes(140..180));
+    let shown = gpu.read(&output, 0);
+    let row = &shown[32 * SIZE[0] as usize..][..SIZE[0] as usize];
+    let kept = |x: std::ops::Range<usize>| 100 * row[x.clone()].iter().filter(|c| c[0] != 0.5).count() / x.len();
+    println!("stripes still seen on the left, where the eye was: {} %", kept(40..60));
+    println!("and further out, where it never looked: {} %", kept(110..130));
     Ok(())
 }

@@ -14,8 +14,7 @@ pub struct SettingsError {
     pub expected: String,
 }
 
-/// A context that cannot be made on this device.
-#[cfg(feature = "gpu")]
+/// A context that cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum CreateError {
@@ -35,6 +34,7 @@ pub enum CreateError {
         needed: u32,
     },
     /// The output format cannot be written by a compute shader.
+    #[cfg(feature = "gpu")]
     #[error("output format {found:?}: expected one of {expected}")]
     OutputFormat {
         /// What was asked for.
@@ -123,25 +123,4 @@ pub enum FrameError {
         /// What is accepted.
         expected: &'static str,
     },
-}
-
-/// A file, folder or option that cannot be used. Reads as one line: `subject: problem; remedy`.
-#[cfg(feature = "lab")]
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{subject}: {problem}; {remedy}")]
-pub struct InputError {
-    /// The file, folder or option.
-    pub subject: String,
-    /// What is wrong with it.
-    pub problem: String,
-    /// What was expected or what to do.
-    pub remedy: String,
-}
-
-#[cfg(feature = "lab")]
-impl InputError {
-    /// `subject: problem; remedy`, each without a final full stop.
-    pub fn new(subject: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { subject: subject.into(), problem: problem.into(), remedy: remedy.into() }
-    }
 }

@@ -1,9 +1,10 @@
 //! Facts of a frame that CPU and GPU share: gaze, view, reset.
 
 use crate::convention::{DepthConvention, MotionConvention};
-use crate::display::ViewGeometry;
 use crate::error::{FrameError, SettingsError};
-use crate::kernel::rng::{self, Purpose};
+use crate::geometry::ViewGeometry;
+use crate::kernel::rng;
+use crate::kernel::rng::Purpose;
 use crate::settings::{Sampler, Settings};
 use glam::Vec3;
 
@@ -118,7 +119,7 @@ pub enum Reset {
     All,
 }
 
-/// How bright this frame's numbers are against the previous frame's. Engines that multiply an exposure into the colours they
+/// How bright this frame's numbers are against the previous frame's. Engines that multiply an exposure into the colors they
 /// hand over say so here, and history follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Exposure {
@@ -146,7 +147,7 @@ impl Exposure {
         }
     }
 
-    /// The factor on stored colours, if there is one. Limited to where halves can follow ([`expose`](crate::kernel::wrs::expose)).
+    /// The factor on stored colors, if there is one. Limited to where halves can follow ([`expose`](crate::kernel::wrs::expose)).
     pub(crate) fn factor(self) -> Option<f32> {
         const LIMIT: f32 = (1_u64 << 40) as f32;
         match self {

@@ -5,7 +5,7 @@
 //! ([`Method::Smr`](settings::Method::Smr)). To compare: weighted reservoirs (Cantory et al., MIG 2025) and temporal antialiasing.
 //!
 //! ```
-//! use afterimage::display::ViewGeometry;
+//! use afterimage::geometry::ViewGeometry;
 //! use afterimage::foveation::Foveation;
 //! use afterimage::frame::{Gaze, ViewFrame};
 //! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
@@ -46,7 +46,7 @@
 //! Where to look:
 //!
 //! - [`settings`]: what can be tuned, what more and less of it does.
-//! - [`frame`], [`convention`], [`display`]: what the caller says about a frame, and in which conventions.
+//! - [`frame`], [`convention`], [`geometry`]: what the caller says about a frame, and in which conventions.
 //! - [`stats`], [`warning`]: what a frame came to, and what was odd about it.
 //! - [`gpu`] and [`cpu`]: the two executors of the same passes, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
 //!   they share, one function a formula.
@@ -56,39 +56,30 @@
 //!
 //! Results do not depend on the number of threads: same seed, same frames, same bytes.
 
+#[cfg(not(any(feature = "cpu", feature = "gpu")))]
+compile_error!("afterimage without an executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");
+
 pub mod convention;
+#[cfg(feature = "cpu")]
 pub mod cpu;
-pub mod display;
 pub mod error;
 pub mod foveation;
 pub mod frame;
+pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+#[cfg(feature = "cpu")]
 pub mod image;
+// For this workspace's other crates and for research; promised to nobody.
+#[doc(hidden)]
 pub mod kernel;
-#[cfg(feature = "lab")]
-pub mod metric;
-#[cfg(feature = "lab")]
-pub mod pipeline;
-#[cfg(feature = "lab")]
-pub mod raster;
-#[cfg(feature = "lab")]
-pub mod report;
-#[cfg(feature = "lab")]
-pub mod scanpath;
-#[cfg(feature = "lab")]
-pub mod scene;
 pub mod settings;
-#[cfg(feature = "lab")]
-pub mod source;
+#[doc(hidden)]
+#[cfg(feature = "gpu")]
+pub mod shader;
+pub mod simulator;
 pub mod stats;
-#[cfg(feature = "lab")]
-pub mod sweep;
-#[cfg(feature = "lab")]
-pub mod trace;
 pub mod warning;
-#[cfg(feature = "lab")]
-pub mod whole_file;
 
 pub use kernel::debug_view::DebugView;
 pub use settings::Settings;

@@ -47,14 +47,14 @@ pub enum Bias {
 /// What the gate compares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GateMetric {
-    /// Delta E 94 of the whole colour.
+    /// Delta E 94 of the whole color.
     #[default]
     DeltaE94,
     /// L\* alone: blind to changes of hue.
     Lightness,
 }
 
-/// The luminance gate of eq. 7: history whose colour differs from the candidate's loses weight.
+/// The luminance gate of eq. 7: history whose color differs from the candidate's loses weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gate {
     /// What is compared.
@@ -122,7 +122,7 @@ pub struct Settings {
     pub sampler: Sampler,
     /// How history is forgotten.
     pub bias: Bias,
-    /// Colour gate; `None` never looks at colour: keeps more detail and ghosts under changing light.
+    /// Color gate; `None` never looks at color: keeps more detail and ghosts under changing light.
     pub gate: Option<Gate>,
     /// Depth test; `None` never looks at depth.
     pub depth_test: Option<DepthTest>,
@@ -243,7 +243,7 @@ impl Settings {
     }
 
     /// Bytes that the pass reads and writes a pixel, for which of depth, motion and trust are given, stored as engines store them.
-    pub(crate) fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
+    pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
         let (color, output) = (8, 8);
         let history = match self.method {
             Method::None => return color + output,
@@ -255,7 +255,7 @@ impl Settings {
         let inputs: u32 = given.iter().zip([4, 4, 1]).map(|(&given, bytes)| if given { bytes } else { 0 }).sum();
         let noise = match (self.noisy, self.method) {
             (true, Method::Wrs) => 4,
-            // The candidates' chain reads colour and noise, and is written, read for its own levels and read by the pass like the other
+            // The candidates' chain reads color and noise, and is written, read for its own levels and read by the pass like the other
             // one; noise itself, and 4 bytes of it remembered.
             (true, Method::Smr) => (8 + 4 + 8) + 4 + 2 * 4,
             _ => 0,

@@ -12,7 +12,7 @@ pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
 pub struct FrameStats {
     /// Pixels processed.
     pub pixels: u64,
-    /// Pixels whose colour was NaN or infinite.
+    /// Pixels whose color was NaN or infinite.
     pub nonfinite: u64,
     /// Pixels whose depth, if given, was NaN or a distance that is not positive.
     pub bad_depth: u64,
@@ -67,6 +67,7 @@ impl FrameStats {
         list.into_iter().filter(|(pixels, _)| *pixels > 0).map(|(_, warning)| warning)
     }
 
+    #[cfg(feature = "cpu")]
     pub(crate) fn add(mut self, other: Self) -> Self {
         self.pixels += other.pixels;
         self.nonfinite += other.nonfinite;

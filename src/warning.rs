@@ -21,7 +21,7 @@ pub enum Warning {
         /// Index of the view.
         view: usize,
     },
-    /// Colours that are NaN or infinite.
+    /// Colors that are NaN or infinite.
     NonfiniteColor {
         /// How many.
         pixels: u64,
@@ -50,7 +50,7 @@ impl fmt::Display for Warning {
             Self::GazeUnknown { view } => write!(f, "gaze of view {view} is not known yet: taken for the middle"),
             Self::GazeOffScreen { view } => write!(f, "gaze of view {view} is off screen"),
             Self::NonfiniteColor { pixels } => {
-                write!(f, "colour of {pixels} pixels is NaN or infinite: they show their history, or black")
+                write!(f, "color of {pixels} pixels is NaN or infinite: they show their history, or black")
             }
             Self::BadMotion { pixels } => {
                 write!(f, "motion of {pixels} pixels is NaN, infinite or absurd: their history is dropped")

@@ -1,17 +1,13 @@
 //! What a turn of the head costs on the device: hard case H60. Alone in its process, whose CPU time a software device spends; a real one
 //! takes none of it, and there the time until it is done counts.
-#![cfg(all(feature = "lab", unix))]
 
-mod common;
-#[path = "common/gpu.rs"]
-mod gpu;
-
-use afterimage::display::ViewGeometry;
 use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::image::Image;
 use afterimage::settings::{Method, Settings};
-use common::Draws;
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
 use rustix::time::{ClockId, clock_gettime};
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -24,8 +20,8 @@ fn clock_ns(is_software: bool) -> f64 {
 
 #[test]
 fn h60_a_turn_costs_no_more_than_any_other_frame() {
-    let Some((device, queue)) = gpu::device() else { return };
-    let is_software = gpu::adapter().unwrap().get_info().device_type == wgpu::DeviceType::Cpu;
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    let is_software = afterimage_testing::gpu::adapter().unwrap().get_info().device_type == wgpu::DeviceType::Cpu;
     let texture = |format, usage| {
         device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -43,7 +39,7 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
         .map(|format| texture(format, read));
     let output = texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING);
     let z = Image::from_fn(SIZE, |[x, y]| 2.0 + (x + y) as f32 * 0.01);
-    gpu::write_layer(&queue, &depth, 0, bytemuck::cast_slice(z.pixels()));
+    afterimage_testing::gpu::write_layer(&queue, &depth, 0, bytemuck::cast_slice(z.pixels()));
     let views = [ViewFrame {
         geometry: ViewGeometry::flat(SIZE, 70.0).unwrap(),
         gaze: Gaze::At { px: [160.0, 90.0] },
@@ -64,9 +60,9 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             // A normal frame and a turn by turns, each of another picture.
             let is_turn = index % 2 == 1;
             let pixels: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(|_| [0; 4].map(|_| draws.uniform())).collect();
-            gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&pixels));
+            afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&pixels));
             let vector = [if is_turn { 5000.0_f32 } else { 0.25 }, 0.25];
-            gpu::write_layer(&queue, &motion, 0, bytemuck::cast_slice(&vec![vector; pixels.len()]));
+            afterimage_testing::gpu::write_layer(&queue, &motion, 0, bytemuck::cast_slice(&vec![vector; pixels.len()]));
             wait();
             let from = clock_ns(is_software);
             let mut encoder = device.create_command_encoder(&Default::default());

@@ -1,19 +1,13 @@
 //! Ten thousand frames with resizes leak nothing. Alone in its file, for a process of its own.
-#![cfg(feature = "gpu")]
 
-#[path = "common/gpu.rs"]
-mod gpu;
-#[path = "common/resident.rs"]
-mod resident;
-
-use afterimage::display::ViewGeometry;
 use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use wgpu::{TextureFormat, TextureUsages};
 
 #[test]
 fn ten_thousand_frames_with_resizes_leak_nothing() {
-    let Some((device, queue)) = gpu::device() else { return };
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
     let desc = GpuDesc::new([24, 16], TextureFormat::Rgba16Float);
     let mut post = Afterimage::new(&device, &desc).unwrap();
     let mut resident = vec![];
@@ -47,11 +41,11 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
             device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
         }
         if index % 4_000 == 1_999 {
-            resident.extend(resident::resident_mib());
+            resident.extend(afterimage_testing::resident::resident_mib());
         }
     }
     println!("resident after 2,000, 6,000 and 10,000 frames: {resident:.1?} MiB");
     // A leak of a kilobyte a frame is 4 MiB each time.
-    let growth = resident::least_growth_mib(&resident);
+    let growth = afterimage_testing::resident::least_growth_mib(&resident);
     assert!(resident.is_empty() || growth < 2.0, "{growth} MiB");
 }

@@ -1,7 +1,7 @@
 //#use color
 //#use reproject
 //#use scrub
-// Twin of src/kernel/debug_view.rs: what was decided at a pixel, as a colour.
+// Twin of src/kernel/debug_view.rs: what was decided at a pixel, as a color.
 
 // debug_view::DebugView
 const VIEW_WEIGHT: u32 = 1u;

@@ -60,7 +60,7 @@ fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     return 1.0 - clamp((difference - offset) * inv_divisor, 0.0, 1.0);
 }
 
-// wrs::difference; exactly 0 for equal colours.
+// wrs::difference; exactly 0 for equal colors.
 fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
     if code == GATE_OFF || all(candidate == stored_color) {
         return 0.0;

@@ -92,7 +92,7 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
     return resolve(gathered, source.nearest);
 }
 
-// A stored colour under this frame's exposure.
+// A stored color under this frame's exposure.
 fn exposed(stored: vec3<f32>) -> vec3<f32> {
     if HAS_EXPOSURE == 0u {
         return stored;

@@ -108,7 +108,7 @@ fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
 }
 
 struct Around {
-    // Colour and variance at a level of detail.
+    // Color and variance at a level of detail.
     compared: vec4<f32>,
     // At the next whole level.
     coarser: vec4<f32>,
@@ -284,7 +284,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
         made.color,
         PixelTrace(exp2(-lod), sharpness, 0u, made.share, source.verdict, made.fit, made.share == 0.0, motion),
     );
-    // Colours of a moving silhouette mix two surfaces: shown, but not kept.
+    // Colors of a moving silhouette mix two surfaces: shown, but not kept.
     let stored_lod = select(MAX_LOD, made.lod, keep || made.lod < 0.0);
     let words = pack_surface(Surface(made.color, stored_lod, disparity_now));
     if VIEW == 0u {

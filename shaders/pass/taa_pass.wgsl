@@ -8,7 +8,7 @@ struct Neighbourhood {
     squares: vec3<f32>,
 }
 
-// Sums of colours and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose colour is `own`. A loop
+// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose color is `own`. A loop
 // of unknown length: a known one is unrolled, and Mesa reorders the sums of products that it then sees.
 fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neighbourhood {
     var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));

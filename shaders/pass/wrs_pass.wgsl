@@ -84,7 +84,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     let motion = motion_at(px, view);
     if PASS_THROUGH != 0u {
-        // Never a constant: compilers fold colours of constants with other roundings.
+        // Never a constant: compilers fold colors of constants with other roundings.
         let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
         count_if(!candidate.usable, COUNT_NONFINITE);
         count_if(true, COUNT_VERDICTS + verdict);

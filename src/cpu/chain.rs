@@ -9,8 +9,8 @@ use crate::kernel::surface::{chain_texel, round_chain};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Levels 1 to n of one view; level l at index l - 1. Texels are halves: of surfaces colours times coverage, and coverage; of candidates
-/// colours, and the variance of a pixel's luma.
+/// Levels 1 to n of one view; level l at index l - 1. Texels are halves: of surfaces colors times coverage, and coverage; of candidates
+/// colors, and the variance of a pixel's luma.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chain {
     size: [u32; 2],
@@ -85,7 +85,7 @@ impl Chain {
         candidate_bilinear([a, b], [c, d], fraction)
     }
 
-    /// Colour and variance of candidates at a level of detail from 1 on around a position in pixels, and at the next whole level.
+    /// Color and variance of candidates at a level of detail from 1 on around a position in pixels, and at the next whole level.
     pub fn read_candidates(&self, at: [f32; 2], lod: f32) -> [Vec4; 2] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);

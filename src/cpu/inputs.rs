@@ -2,7 +2,8 @@
 
 use super::{CpuFrame, CpuView};
 use crate::frame::{ContextDesc, Reset, ViewConstants};
-use crate::kernel::depth::{self, DisparityMap};
+use crate::kernel::depth;
+use crate::kernel::depth::DisparityMap;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::{acuity, scrub};
@@ -15,7 +16,7 @@ pub(super) struct Inputs<'a> {
     pub view: &'a CpuView<'a>,
     pub size: [u32; 2],
     pub gaze_ray: Vec3,
-    /// Factor on stored colours.
+    /// Factor on stored colors.
     pub exposure: Option<f32>,
     /// There is no past.
     pub reset: bool,

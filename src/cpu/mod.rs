@@ -29,7 +29,7 @@ use glam::Vec3;
 pub struct CpuView<'a> {
     /// Geometry, gaze and camera motion.
     pub facts: ViewFrame,
-    /// The foveated frame: linear colour in Rec. 709 primaries. Non-finite pixels are dropped and counted.
+    /// The foveated frame: linear color in Rec. 709 primaries. Non-finite pixels are dropped and counted.
     pub color: &'a Image<[f32; 3]>,
     /// Depth in the context's convention. `None` switches the depth test off.
     pub depth: Option<&'a Image<f32>>,
@@ -41,7 +41,7 @@ pub struct CpuView<'a> {
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it,
     /// whose `rate_far` must be the coarsest in either case: history is not matched at coarser levels.
     pub lod: Option<&'a Image<f32>>,
-    /// Noise of the colour: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
+    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
     /// detail. Where, and only where, [`Settings::noisy`] says so.
     pub noise: Option<&'a Image<[f32; 2]>>,
 }
@@ -147,7 +147,7 @@ impl CpuAfterimage {
         self.history.restore(words);
     }
 
-    /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float colour
+    /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float color
     /// (8), half-float motion (4), depth (4), trust (1). The depth test's extra taps are not counted: they are neighbours', and few.
     pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
         let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
@@ -204,7 +204,7 @@ impl CpuAfterimage {
         }
         for (i, view) in frame.views.iter().enumerate() {
             let sizes = [
-                ("colour", Some(view.color.size())),
+                ("color", Some(view.color.size())),
                 ("depth", view.depth.map(Image::size)),
                 ("motion", view.motion.map(Image::size)),
                 ("trust", view.trust.map(Image::size)),

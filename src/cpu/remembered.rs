@@ -4,8 +4,10 @@ use super::history::PastSurfaces;
 use super::inputs::Inputs;
 use crate::kernel::depth;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
-use crate::kernel::reproject::{self, Verdict};
-use crate::kernel::resample::{self, Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
+use crate::kernel::reproject;
+use crate::kernel::reproject::Verdict;
+use crate::kernel::resample;
+use crate::kernel::resample::{Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
 use crate::kernel::scrub;
 use crate::kernel::surface::{Surface, unpack_surface};
 use crate::kernel::wrs::expose;
@@ -104,7 +106,7 @@ impl Remembered<'_> {
         self.inputs.exposure.map_or(stored, |ratio| expose_noise(stored, ratio))
     }
 
-    /// A stored colour under this frame's exposure.
+    /// A stored color under this frame's exposure.
     #[inline(always)]
     pub fn expose(&self, color: Vec3) -> Vec3 {
         self.inputs.exposure.map_or(color, |ratio| expose(color, ratio))

@@ -1,9 +1,9 @@
 //! The scale-matched reservoir: scrub, reproject, flush, resample, match scales, relight, decide, store and show. `docs/method.md` has
 //! the equations.
 //!
-//! Each pixel reads its colour, depth, three motions, twelve remembered surfaces, eight texels of their coarser levels and, where
-//! something changed, four more colours (neighbours share most of them), and writes one surface, a third of a texel of the coarser
-//! levels and one colour: 48 bytes with half-float colour and motion. Where candidates are noisy it reads their noise, the noise of
+//! Each pixel reads its color, depth, three motions, twelve remembered surfaces, eight texels of their coarser levels and, where
+//! something changed, four more colors (neighbours share most of them), and writes one surface, a third of a texel of the coarser
+//! levels and one color: 48 bytes with half-float color and motion. Where candidates are noisy it reads their noise, the noise of
 //! one surface and eight texels of the candidates' coarser levels, and writes one word of noise: 80 bytes with the making of those.
 
 use super::remembered::{Remembered, Source};
@@ -12,8 +12,10 @@ use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
-use crate::kernel::matched::{self, Evidence, Matched, SmrParams};
-use crate::kernel::noise::{self, NOISY_LEVELS, Noise, pack_noise};
+use crate::kernel::matched;
+use crate::kernel::matched::{Evidence, Matched, SmrParams};
+use crate::kernel::noise;
+use crate::kernel::noise::{NOISY_LEVELS, Noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::scrub::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
@@ -66,7 +68,7 @@ impl Smr {
         // Gains, and the lobes of the resampling, reach beyond what halves hold.
         made.color = made.color.min(Vec3::splat(MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && made.share == 0.0);
-        // Colours of a moving silhouette mix two surfaces: shown, but not kept.
+        // Colors of a moving silhouette mix two surfaces: shown, but not kept.
         let stored_lod = if coherent || made.lod < 0.0 { made.lod } else { MAX_LOD };
         let trace = PixelTrace {
             weight: approx::exp2(-lod),

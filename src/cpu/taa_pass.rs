@@ -1,7 +1,7 @@
 //! Temporal antialiasing of the foveated frame: scrub, reproject, flush, resample, clip, blend, store and show.
 //!
-//! Each pixel reads its motion and depth, nine colours and twelve remembered surfaces (neighbours share most of them), and writes one
-//! surface and one colour: 40 bytes with half-float colour and motion.
+//! Each pixel reads its motion and depth, nine colors and twelve remembered surfaces (neighbours share most of them), and writes one
+//! surface and one color: 40 bytes with half-float color and motion.
 
 use super::remembered::Remembered;
 use super::surface_pass::Pixel;
@@ -53,7 +53,7 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
     Pixel { shown, surface, noise: 0, trace }
 }
 
-/// Sums of colours and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose colour is `own`.
+/// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose color is `own`.
 #[inline(always)]
 fn neighbourhood(at: &Remembered<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
     let [width, height] = at.inputs.size;

@@ -1,7 +1,7 @@
 //! The fused pass of weighted reservoirs: scrub, reproject, flush, expose, gate, bias, combine, store and show.
 //!
-//! Each pixel reads its colour, motion, depth and one reservoir (and four more depths where the depth test is close), and
-//! writes one reservoir and one colour: 48 bytes with half-float colour and motion.
+//! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test is close), and
+//! writes one reservoir and one color: 48 bytes with half-float color and motion.
 
 use super::CpuFrame;
 use super::history::{History, PastView};
@@ -12,10 +12,13 @@ use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::sample_difference;
-use crate::kernel::pack::{self, Stored};
-use crate::kernel::reproject::{self, Verdict};
+use crate::kernel::pack;
+use crate::kernel::pack::Stored;
+use crate::kernel::reproject;
+use crate::kernel::reproject::Verdict;
 use crate::kernel::rng;
-use crate::kernel::wrs::{self, Past, WrsParams};
+use crate::kernel::wrs;
+use crate::kernel::wrs::{Past, WrsParams};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use glam::Vec3;

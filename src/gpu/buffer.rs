@@ -4,7 +4,7 @@ use wgpu::{Buffer, BufferUsages, BufferViewMut, Device};
 
 /// A buffer that holds `bytes`, whose length is a multiple of 4; of 4 bytes at least. Not by wgpu's `create_buffer_init`, which panics on
 /// a lost device (H77).
-pub(crate) fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -> Buffer {
+pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -> Buffer {
     let bytes = if bytes.is_empty() { &[0; 4] } else { bytes };
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),

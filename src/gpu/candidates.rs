@@ -3,9 +3,10 @@
 use super::chain::{ChainKind, ChainLevel, ChainPass};
 use super::filled;
 use super::history::{array_view, chain_texture, levels_view};
-use super::{Frame, WORKGROUP_WIDTH, shader};
+use super::{Frame, WORKGROUP_WIDTH};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
+use crate::shader::SHADERS;
 use wgpu::{
     BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType,
     BufferBindingType, BufferUsages, ComputePass, ComputePipeline, Device, ShaderStages, StorageTextureAccess, Texture,
@@ -32,7 +33,7 @@ pub(super) struct Candidates {
 
 impl CandidatePass {
     pub fn new(device: &Device) -> Self {
-        // Not the layout that wgpu would derive: colours may be of a format that no sampler filters.
+        // Not the layout that wgpu would derive: colors may be of a format that no sampler filters.
         let texture = BindingType::Texture {
             sample_type: TextureSampleType::Float { filterable: false },
             view_dimension: TextureViewDimension::D2Array,
@@ -55,7 +56,7 @@ impl CandidatePass {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("afterimage candidates"),
-            source: wgpu::ShaderSource::Wgsl(shader::compose("candidate_pass").source.into()),
+            source: wgpu::ShaderSource::Wgsl(SHADERS.compose("candidate_pass").source.into()),
         });
         let first = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("afterimage candidates"),

@@ -3,8 +3,8 @@
 use super::WORKGROUP_WIDTH;
 use super::filled;
 use super::history::levels_view;
-use super::shader;
 use crate::kernel::foveate::level_len;
+use crate::shader::SHADERS;
 use wgpu::{BindGroup, BufferUsages, ComputePass, ComputePipeline, Device, Texture};
 
 /// What the levels are of.
@@ -33,7 +33,7 @@ impl ChainPass {
     pub fn new(device: &Device, kind: ChainKind) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("afterimage chain"),
-            source: wgpu::ShaderSource::Wgsl(shader::compose("chain_pass").source.into()),
+            source: wgpu::ShaderSource::Wgsl(SHADERS.compose("chain_pass").source.into()),
         });
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("afterimage chain"),

@@ -9,7 +9,7 @@ use wgpu::{Buffer, QuerySet, Texture};
 /// pixel, and the usage `TEXTURE_BINDING`.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// The foveated frame: linear colour, any float format.
+    /// The foveated frame: linear color, any float format.
     pub color: &'a Texture,
     /// Depth in the context's convention: a depth format or `R32Float`. `None` switches the depth test off.
     pub depth: Option<&'a Texture>,
@@ -22,7 +22,7 @@ pub struct Frame<'a> {
     /// [`Settings::foveation`](crate::Settings::foveation) has it, whose `rate_far` must be the coarsest in either case: history is not
     /// matched at coarser levels.
     pub lod: Option<&'a Texture>,
-    /// Noise of the colour: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
+    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
     /// detail; `Rg16Float`, `Rg32Float` or wider. Where, and only where, [`Settings::noisy`](crate::Settings::noisy) says so.
     pub noise: Option<&'a Texture>,
     /// What the user will see: the context's output format, usage `STORAGE_BINDING`.

@@ -140,7 +140,7 @@ fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u3
 }
 
 /// All layers of a texture's first level as an array, mono frames too: shaders know only arrays.
-pub(crate) fn array_view(texture: &Texture) -> TextureView {
+pub fn array_view(texture: &Texture) -> TextureView {
     levels_view(texture, 0, Some(1))
 }
 

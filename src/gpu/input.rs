@@ -15,8 +15,8 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
         view.check(i, &desc.context)?;
     }
     let read = TextureUsages::TEXTURE_BINDING;
-    check_texture(desc, "colour", frame.color, read)?;
-    check_readable("colour", frame.color, 3)?;
+    check_texture(desc, "color", frame.color, read)?;
+    check_readable("color", frame.color, 3)?;
     if let Some(depth) = frame.depth {
         check_texture(desc, "depth", depth, read)?;
         check_readable("depth", depth, 1)?;

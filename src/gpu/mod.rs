@@ -3,8 +3,6 @@
 //! The caller owns device, queue, encoder, every input and output texture, and submission; [`Afterimage`] owns nothing but
 //! history and constants. [`Afterimage::record`] never submits, polls, maps or waits.
 
-#[cfg(feature = "ablation")]
-pub mod ablation;
 mod bindings;
 mod buffer;
 mod candidates;
@@ -14,9 +12,7 @@ mod frame;
 mod history;
 mod input;
 mod pipeline;
-// Public for this package's own tests, which compose and validate every shader and compare struct layouts.
-#[doc(hidden)]
-pub mod shader;
+// Public for the tests, which compare struct layouts.
 #[doc(hidden)]
 pub mod types;
 
@@ -24,27 +20,31 @@ pub use desc::GpuDesc;
 pub use frame::{Frame, Recorded, Timestamps};
 pub use types::MAX_VIEWS;
 
-pub(crate) use buffer::filled;
-#[cfg(feature = "lab")]
-pub(crate) use history::array_view;
-#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub use buffer::filled;
+#[doc(hidden)]
+pub use history::array_view;
 pub(crate) use input::{check_readable, check_texture};
 
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{Reset, check_size};
 use crate::kernel::debug_view::DebugView;
 use crate::settings::{HistoryLayout, Method, Settings};
+use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
 use bindings::Bindings;
 use candidates::CandidatePass;
 use chain::{ChainKind, ChainPass};
 use history::History;
-use pipeline::{Pipelines, Variant, pass_name};
+#[doc(hidden)]
+pub use pipeline::pass_name;
+use pipeline::{Pipelines, Variant};
 use types::{FrameConstants, ViewConstants};
 use wgpu::{CommandEncoder, Device, Texture};
 
 /// Width of a workgroup: rows of 64 pixels. Also in the shaders.
-pub(crate) const WORKGROUP_WIDTH: u32 = 64;
+#[doc(hidden)]
+pub const WORKGROUP_WIDTH: u32 = 64;
 
 /// The post-process on the GPU.
 #[derive(Debug)]
@@ -99,7 +99,7 @@ impl Afterimage {
     /// # Errors
     /// If a setting or fact is out of range, or the device cannot do it.
     pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
-        Self::from_shader(device, desc, &shader::compose(pass_name(desc.settings.method)).source)
+        Self::from_shader(device, desc, &SHADERS.compose(pass_name(desc.settings.method)).source)
     }
 
     /// With another text of the pass: for this package's tests, which plant errors in it.
@@ -123,7 +123,7 @@ impl Afterimage {
         settings.validate()?;
         self.desc.settings = settings;
         if settings.method != self.passes.method {
-            let source = shader::compose(pass_name(settings.method)).source;
+            let source = SHADERS.compose(pass_name(settings.method)).source;
             self.passes = Passes::new(device, &self.desc, &source).expect("the output format was checked");
             self.history = self.passes.history(device, &self.desc);
         } else if settings.history_layout() != self.history.layout() {

@@ -116,7 +116,7 @@ impl Variant {
 }
 
 /// Name of the pass of a method.
-pub(super) fn pass_name(method: Method) -> &'static str {
+pub fn pass_name(method: Method) -> &'static str {
     match method {
         Method::None | Method::Wrs => "wrs_pass",
         Method::Taa => "taa_pass",

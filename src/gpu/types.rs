@@ -39,7 +39,7 @@ pub struct FrameConstants {
     pub inv_density_at_fovea: f32,
     /// Factor of the exponential bias.
     pub exponential_survival: f32,
-    /// Colour difference that costs nothing.
+    /// Color difference that costs nothing.
     pub gate_offset: f32,
     /// One over the difference at which the gate is shut.
     pub inv_gate_divisor: f32,
@@ -55,7 +55,7 @@ pub struct FrameConstants {
     pub disparity_b: f32,
     /// Bit 0: `DisparityMap::invert`; bit 1: `DisparityMap::clamp`.
     pub disparity_flags: u32,
-    /// Factor on stored colours.
+    /// Factor on stored colors.
     pub exposure: f32,
     /// Radius of the middle region in degrees.
     pub mid_radius_deg: f32,

@@ -1,4 +1,4 @@
-//! Colour: sRGB transfer, CIE Lab and the Delta E 94 difference, from linear Rec. 709.
+//! Color: sRGB transfer, CIE Lab and the Delta E 94 difference, from linear Rec. 709.
 
 use super::scrub::MAX_HALF;
 use glam::Vec3;
@@ -81,8 +81,8 @@ fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON { cbrt(t) } else { (LAB_KAPPA * t + 16.0) / 116.0 }
 }
 
-/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 colour, clamped to the half-float range. L\* passes 100 for
-/// colours above white and falls below 0 for negative ones; always finite for finite input.
+/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* passes 100 for
+/// colors above white and falls below 0 for negative ones; always finite for finite input.
 #[inline]
 pub fn lab(linear: Vec3) -> Vec3 {
     let c = linear.clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF));
@@ -94,8 +94,8 @@ pub fn lab(linear: Vec3) -> Vec3 {
     Vec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz))
 }
 
-/// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colours; `reference` sets the weights, so
-/// the function is not symmetric. At least 0, exactly 0 for equal colours, and beyond 100 for strong ones.
+/// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colors; `reference` sets the weights, so
+/// the function is not symmetric. At least 0, exactly 0 for equal colors, and beyond 100 for strong ones.
 #[inline]
 pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
     let d = reference - sample;

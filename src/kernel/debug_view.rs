@@ -1,4 +1,4 @@
-//! What was decided at a pixel, as a colour. Ramps and codes are made as they look on screen (sRGB-encoded) and handed out as
+//! What was decided at a pixel, as a color. Ramps and codes are made as they look on screen (sRGB-encoded) and handed out as
 //! linear light, like any frame.
 
 use super::color::srgb_decode;
@@ -22,7 +22,7 @@ pub enum DebugView {
     Flush = 4,
     /// Gate value, of smr how well history explains the candidate: white open, black shut. taa has none: white.
     Gate = 5,
-    /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full colour, green no number.
+    /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full color, green no number.
     Motion = 6,
 }
 
@@ -76,7 +76,7 @@ const STOPS: [Vec3; 6] = [
     Vec3::new(1.0, 1.0, 0.95),
 ];
 
-/// Colour of a value in \[0, 1\], sRGB-encoded: from black over violet and orange to white. Pure green for what is NaN or
+/// Color of a value in \[0, 1\], sRGB-encoded: from black over violet and orange to white. Pure green for what is NaN or
 /// infinite.
 #[inline]
 pub fn heat(value: f32) -> Vec3 {
@@ -89,7 +89,7 @@ pub fn heat(value: f32) -> Vec3 {
     STOPS[i] + (STOPS[i + 1] - STOPS[i]) * t
 }
 
-/// Colour of a verdict, sRGB-encoded.
+/// Color of a verdict, sRGB-encoded.
 #[inline]
 pub fn verdict_color(verdict: Verdict) -> Vec3 {
     match verdict {
@@ -103,7 +103,7 @@ pub fn verdict_color(verdict: Verdict) -> Vec3 {
     }
 }
 
-/// Colour of a motion vector in pixels, sRGB-encoded; as the surface moves, current minus previous.
+/// Color of a motion vector in pixels, sRGB-encoded; as the surface moves, current minus previous.
 #[inline]
 pub fn motion_color(motion: [f32; 2]) -> Vec3 {
     if !(is_finite(motion[0]) && is_finite(motion[1])) {
@@ -116,7 +116,7 @@ pub fn motion_color(motion: [f32; 2]) -> Vec3 {
     color.clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// Linear colour of a pixel in a view.
+/// Linear color of a pixel in a view.
 #[inline]
 pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {

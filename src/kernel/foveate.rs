@@ -6,7 +6,7 @@ use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
 /// Standard deviation in pixels below which a blur is none: the weight of the next pixel is e^-32, far below the last bit of
-/// any colour.
+/// any color.
 const SHARPEST_BLUR_PX: f32 = 0.125;
 /// Textures are filtered for the shading rate, but not quite: the sample of a block of level l sees level l - 2, as a renderer's
 /// anisotropic filter with its usual bias does. What remains is aliasing, which is the point of blocks.

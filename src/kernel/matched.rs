@@ -16,7 +16,7 @@ const RELIGHT: [f32; 2] = [1.5, 0.5];
 const RELIGHT_BLOCKS: [f32; 2] = [12.0, 2.0];
 /// Gains of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
-/// Keeps ratios of dark colours finite.
+/// Keeps ratios of dark colors finite.
 pub(super) const DARK: f32 = 0.002;
 /// Motion of neighbours that counts as the same: this many pixels, and this share of their length.
 const COHERENT: [f32; 2] = [0.5, 0.1];
@@ -45,8 +45,8 @@ pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
     (t * t) * (3.0 - 2.0 * t)
 }
 
-/// Difference of two linear colours, 100 between black and white: Euclidean in YCoCg of square roots, chroma with half the
-/// weight. Exactly 0 for equal colours; no cube roots.
+/// Difference of two linear colors, 100 between black and white: Euclidean in YCoCg of square roots, chroma with half the
+/// weight. Exactly 0 for equal colors; no cube roots.
 #[inline]
 pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
     let d = roots(x) - roots(y);
@@ -59,7 +59,7 @@ pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
     100.0 * (luma * luma + 0.5 * chroma).sqrt()
 }
 
-/// Square roots of a colour's channels; of negative ones 0.
+/// Square roots of a color's channels; of negative ones 0.
 #[inline]
 pub fn roots(c: Vec3) -> Vec3 {
     Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
@@ -94,7 +94,7 @@ pub fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, sure: [f
     Wanted { finer, share: finer + (alike * calm) * accumulate }
 }
 
-/// A colour channel's gain under changed light: the ratio of candidate and history at a coarse level, as far as light `changed`
+/// A color channel's gain under changed light: the ratio of candidate and history at a coarse level, as far as light `changed`
 /// (0 to 1) and by no less than a few percent.
 #[inline]
 pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
@@ -197,13 +197,13 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     Matched { color, lod, share, fit }
 }
 
-/// Mean of four texels of the chain of coarser levels: colours times coverage, and coverage.
+/// Mean of four texels of the chain of coarser levels: colors times coverage, and coverage.
 #[inline]
 pub fn chain_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     (a + b + c + d) * 0.25
 }
 
-/// Colour between four texels of the chain, rows first. Black where nothing is covered.
+/// Color between four texels of the chain, rows first. Black where nothing is covered.
 #[inline]
 pub fn chain_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec3 {
     let t = top[0] + (top[1] - top[0]) * fraction[0];

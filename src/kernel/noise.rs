@@ -28,7 +28,7 @@ const MAX_SAMPLES: f32 = 32768.0;
 /// Alpha of a texel of which nothing is known.
 const UNKNOWN: f32 = -1.0;
 
-/// How sure a colour is.
+/// How sure a color is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Samples it is a mean of, at least 1 (0 for a history that holds none).
@@ -64,7 +64,7 @@ pub fn unpack_noise(word: u32) -> Noise {
     Noise { samples: half_value(word & 0x7fff), variance: half_value((word >> 16) & 0x7fff) }
 }
 
-/// Texel of level 0 of the candidates' chain: colour, and variance of the pixel's luma; alpha below 0 where the candidate must not be
+/// Texel of level 0 of the candidates' chain: color, and variance of the pixel's luma; alpha below 0 where the candidate must not be
 /// used.
 #[inline]
 pub fn candidate_texel(color: Vec3, usable: bool, n: Noise) -> Vec4 {
@@ -83,7 +83,7 @@ pub fn candidate_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     (((a * wa + b * wb) + c * wc) + d * wd) * (1.0 / weight)
 }
 
-/// Colour and variance between four texels of the candidates' chain, rows first; of those of which something is known.
+/// Color and variance between four texels of the candidates' chain, rows first; of those of which something is known.
 #[inline]
 pub fn candidate_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec4 {
     let [fx, fy] = fraction;
@@ -146,7 +146,7 @@ pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
 }
 
-/// What is known of the shown colour: `share` is the history's in it, `finer` how far it was shown as the better sample, in which
+/// What is known of the shown color: `share` is the history's in it, `finer` how far it was shown as the better sample, in which
 /// case the candidate added nothing.
 #[inline]
 pub fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Noise {

@@ -22,7 +22,7 @@ pub const MAX_AGE: u32 = 255;
 /// What is remembered of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stored {
-    /// The sample: linear colour.
+    /// The sample: linear color.
     pub color: Vec3,
     /// Disparity of its surface in the frame it was stored; negative: unknown.
     pub disparity: f32,
@@ -90,7 +90,7 @@ pub fn disparity_value(code: u32) -> f32 {
     }
 }
 
-/// Packs a reservoir. The colour must be finite.
+/// Packs a reservoir. The color must be finite.
 #[inline]
 pub fn pack(s: Stored) -> [u32; 3] {
     // Not clamp(), which leaves the sign of -0 to the device.
@@ -104,7 +104,7 @@ pub fn pack(s: Stored) -> [u32; 3] {
     ]
 }
 
-/// Unpacks a reservoir. Whatever the words hold, the result is finite; a corrupt colour or weight sum makes it empty.
+/// Unpacks a reservoir. Whatever the words hold, the result is finite; a corrupt color or weight sum makes it empty.
 #[inline]
 pub fn unpack(words: [u32; 3]) -> Stored {
     let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;

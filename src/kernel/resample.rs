@@ -32,11 +32,11 @@ pub fn linear_weights(t: f32) -> [f32; 4] {
 /// What is read around a position, as it is gathered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gathered {
-    /// Colours by Catmull-Rom weights, and their sum.
+    /// Colors by Catmull-Rom weights, and their sum.
     pub sharp: Vec3,
     /// Sum of those weights.
     pub sharp_sum: f32,
-    /// Colours by bilinear weights.
+    /// Colors by bilinear weights.
     pub smooth: Vec3,
     /// Sum of those weights.
     pub smooth_sum: f32,

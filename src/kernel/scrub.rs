@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Largest finite half-float. Colours are kept within it.
+/// Largest finite half-float. Colors are kept within it.
 pub const MAX_HALF: f32 = 65504.0;
 
 /// Neither NaN nor infinite.
@@ -11,7 +11,7 @@ pub fn is_finite(x: f32) -> bool {
     x.to_bits() & 0x7f80_0000 != 0x7f80_0000
 }
 
-/// A colour clamped to +-65504, and whether it may be used: false, and black, if any component is NaN or infinite.
+/// A color clamped to +-65504, and whether it may be used: false, and black, if any component is NaN or infinite.
 #[inline]
 pub fn color(c: Vec3) -> (Vec3, bool) {
     if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {

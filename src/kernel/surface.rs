@@ -26,7 +26,7 @@ pub const MAX_LOD: f32 = 62.0 / LOD_STEPS;
 /// What is remembered of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear colour, at least 0.
+    /// Linear color, at least 0.
     pub color: Vec3,
     /// Level of detail it was shaded at: log2 of the block edge in pixels. Negative: nothing is stored.
     pub lod: f32,
@@ -54,7 +54,7 @@ pub fn half14_value(bits: u32) -> f32 {
     half_value((bits & 0x3fff) << 1)
 }
 
-/// Packs a sample. The colour must be finite.
+/// Packs a sample. The color must be finite.
 #[inline]
 pub fn pack_surface(s: Surface) -> [u32; 2] {
     let lod = if s.lod < 0.0 { EMPTY } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32 };
@@ -79,7 +79,7 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
     }
 }
 
-/// Texel of level 0 of the chain of coarser levels: the colour and a coverage of 1, or nothing.
+/// Texel of level 0 of the chain of coarser levels: the color and a coverage of 1, or nothing.
 #[inline]
 pub fn chain_texel(words: [u32; 2]) -> Vec4 {
     let s = unpack_surface(words);

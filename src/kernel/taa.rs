@@ -10,7 +10,7 @@ const ALPHA: [f32; 2] = [0.1, 0.4];
 /// foveated neighbourhood is smooth.
 const BOX_SIGMAS: f32 = 2.0;
 
-/// YCoCg of the square roots of a linear colour.
+/// YCoCg of the square roots of a linear color.
 #[inline]
 pub fn to_ycocg(c: Vec3) -> Vec3 {
     let r = roots(c);

@@ -49,7 +49,7 @@ pub struct WrsParams {
     pub exponential_survival: f32,
     /// Gate metric.
     pub gate: GateCode,
-    /// Colour difference below which the gate stays open, in Delta E.
+    /// Color difference below which the gate stays open, in Delta E.
     pub gate_offset: f32,
     /// One over the difference, above the offset, at which the gate is shut.
     pub inv_gate_divisor: f32,
@@ -98,7 +98,7 @@ pub fn believe(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     Past { color: past.color, w_sum: scrub::weight(past.w_sum * share), log_key }
 }
 
-/// A stored colour under this frame's exposure: times `ratio`, kept within halves. `ratio` from 2^-40 to 2^40, beyond which
+/// A stored color under this frame's exposure: times `ratio`, kept within halves. `ratio` from 2^-40 to 2^40, beyond which
 /// every half leaves the halves, so that no product leaves the normal floats.
 #[inline]
 pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
@@ -111,10 +111,10 @@ pub fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     1.0 - ((difference - offset) * inv_divisor).clamp(0.0, 1.0)
 }
 
-/// Colour difference that the gate sees. The candidate is the reference colour.
+/// Color difference that the gate sees. The candidate is the reference color.
 #[inline]
 pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
-    // Equal colours are the common case of a still view, and must give exactly 0.
+    // Equal colors are the common case of a still view, and must give exactly 0.
     if code == GateCode::Off || candidate == sample {
         return 0.0;
     }

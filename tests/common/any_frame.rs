@@ -1,11 +1,11 @@
 //! Small frames of any bit patterns, for properties of whole passes on either executor.
 
-use super::Draws;
-use afterimage::display::ViewGeometry;
 use afterimage::foveation::{Filter, Foveation};
 use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
 use afterimage::image::Image;
 use afterimage::settings::{Bias, Method, Sampler, Settings};
+use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [8, 6];
 

@@ -1,6 +1,6 @@
 //! What happens to a stream: drawn anew for every frame, the same on every machine.
 
-use super::common::Draws;
+use afterimage_testing::Draws;
 
 /// Length of a stretch, in frames.
 const STRETCH: u64 = 100;
@@ -13,7 +13,7 @@ pub struct Event {
     pub reset: bool,
     pub size: Option<[u32; 2]>,
     pub exposure: Option<f32>,
-    /// Pixels of colour, depth or motion are broken.
+    /// Pixels of color, depth or motion are broken.
     pub is_broken: bool,
     /// The eye is not tracked.
     pub is_lost: bool,
@@ -57,7 +57,7 @@ impl Stream {
         self.moment.is_quiet = is_quiet;
         if is_quiet {
             let begins_quiet = frame.is_multiple_of(STRETCH);
-            // Colours that a factor has moved off halves would not equal what is stored of them.
+            // Colors that a factor has moved off halves would not equal what is stored of them.
             self.moment.exposure = 1.0;
             return Event { reset: begins_quiet, begins_quiet, ..Event::default() };
         }

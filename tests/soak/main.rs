@@ -1,17 +1,10 @@
 //! Frames without end, on both executors in lockstep: whatever happens to a stream, nothing drifts, leaks, or shows what is no number.
 //!
 //! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a process of its own.
-#![cfg(feature = "gpu")]
 
-#[path = "../common/mod.rs"]
-mod common;
 mod events;
-#[path = "../common/gpu.rs"]
-mod gpu;
 mod pictures;
-#[path = "../common/resident.rs"]
-mod resident;
-#[path = "../gpu_pass/rig.rs"]
+#[path = "../gpu/pass/rig.rs"]
 #[allow(dead_code, reason = "the passes' tests use all of it")]
 mod rig;
 mod witness;
@@ -70,7 +63,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
             witness.step(&mut found, stream.moment().is_quiet, &event, &view, &made.words);
         }
         if frames >= 10 && index % (frames / 10) == frames / 20 {
-            found.resident_mib.extend(resident::resident_mib());
+            found.resident_mib.extend(afterimage_testing::resident::resident_mib());
             if frames > 5000 {
                 println!("{method:?}: frame {index}, {found:?}");
             }
@@ -79,7 +72,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
     Some(found)
 }
 
-/// The brightest finite component of the colour.
+/// The brightest finite component of the color.
 fn brightest_of(view: &View) -> f32 {
     view.color.pixels().iter().flatten().filter(|v| v.is_finite()).fold(0.0, |a, &b| a.max(b))
 }
@@ -111,7 +104,7 @@ fn assert_sound(method: Method, found: &Found) {
     // A leak of a kilobyte a frame would be 1 MiB each time; what the driver makes late, it makes once.
     let late = &found.resident_mib[found.resident_mib.len().min(2)..];
     if found.frames >= 10_000 && late.len() > 2 {
-        let growth = resident::least_growth_mib(late);
+        let growth = afterimage_testing::resident::least_growth_mib(late);
         assert!(growth < 0.5, "{growth} MiB in {} frames: {:?}", found.frames / 10, found.resident_mib);
     }
 }

@@ -2,11 +2,12 @@
 
 use super::events::{Event, Moment};
 use super::rig::View;
-use afterimage::display::ViewGeometry;
-use afterimage::foveation::{Foveation, Pyramid};
+use afterimage::foveation::Foveation;
 use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
 use afterimage::image::Image;
 use afterimage::kernel::pack::{half_bits, half_value};
+use afterimage::simulator::Pyramid;
 use std::collections::HashMap;
 
 pub const FOVEATION: Foveation = Foveation {

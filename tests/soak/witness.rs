@@ -31,7 +31,7 @@ impl Witness {
             // Elsewhere the eye and the picture change without an event.
             self.followed.clear();
         } else {
-            // Eqs. 5 and 7 with equal colours.
+            // Eqs. 5 and 7 with equal colors.
             for (_, weight, sum) in &mut self.followed {
                 *sum = *sum * (*sum / (*sum + *weight)) + *weight;
             }

@@ -1,0 +1,56 @@
+//! How do I hand over motion and depth in my engine's conventions, and tell of cuts?
+//!
+//! `cargo run -p afterimage-lab --example 01_moving_camera`
+
+use afterimage::Settings;
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
+use afterimage::image::Image;
+use afterimage::kernel::reproject::Verdict;
+use afterimage_lab::source::{AnalyticSource, FrameSource};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let size = [320, 180];
+    let mut source = AnalyticSource::new("lateral", size, 70.0, 60.0)?;
+
+    // An engine with reversed infinite depth, and motion in normalised device coordinates: current minus previous, y up.
+    let near = 0.1;
+    let desc = ContextDesc {
+        motion: MotionConvention {
+            unit: MotionUnit::Ndc,
+            direction: MotionDirection::CurrentMinusPrevious,
+            y_axis: YAxis::Up,
+        },
+        depth: DepthConvention::Reversed { near, far: f32::INFINITY },
+        ..ContextDesc::new(size)
+    };
+    let mut post = CpuAfterimage::new(desc, Settings::default())?;
+    let mut output = [Image::filled(size, [0.0; 3])];
+
+    for index in 0..30 {
+        let frame = source.frame(index)?;
+        // What that engine's G-buffer would hold.
+        let scale = desc.motion.to_internal(size);
+        let motion = frame.motion.map(|m| m.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
+        let depth = frame.depth.map(|d| d.map(|z| near / z));
+        let facts = ViewFrame {
+            geometry: *source.view(),
+            gaze: Gaze::At { px: [160.0, 90.0] },
+            previous_from_current: frame.previous_from_current,
+        };
+        let view = CpuView { depth: depth.as_ref(), motion: motion.as_ref(), ..CpuView::new(facts, &frame.color) };
+        // A cut at frame 20: nothing of the frames before is true any more.
+        let reset = if index == 20 { Reset::All } else { Reset::None };
+        let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&[view], index) }, &mut output, None)?;
+        let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
+        println!(
+            "frame {index:2}: history valid {:5.1} %, disoccluded {:4.1} %, from outside {:4.1} %, reset {:5.1} %",
+            share(Verdict::Valid),
+            share(Verdict::Disoccluded),
+            share(Verdict::OffScreen),
+            share(Verdict::Reset)
+        );
+    }
+    Ok(())
+}

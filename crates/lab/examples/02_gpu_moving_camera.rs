@@ -1,0 +1,77 @@
+//! How do I hand over motion, depth and camera of a moving view on a GPU, and see that the conventions are right?
+//!
+//! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
+
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::kernel::reproject::Verdict;
+use afterimage_lab::device::Headless;
+use afterimage_lab::source::{AnalyticSource, FrameSource};
+use wgpu::{TextureFormat, TextureUsages};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Headless::find(true).ok_or("no adapter")?;
+    println!("on {}", gpu.info.name);
+    let size = [320, 180];
+    let near = 0.1;
+    // Reversed infinite depth, and motion in normalised device coordinates: current minus previous, y up.
+    let right = ContextDesc {
+        motion: MotionConvention {
+            unit: MotionUnit::Ndc,
+            direction: MotionDirection::CurrentMinusPrevious,
+            y_axis: YAxis::Up,
+        },
+        depth: DepthConvention::Reversed { near, far: f32::INFINITY },
+        ..ContextDesc::new(size)
+    };
+    // The commonest mistake: the vectors point the other way.
+    let wrong = MotionConvention { direction: MotionDirection::PreviousMinusCurrent, ..right.motion };
+    let wrong = ContextDesc { motion: wrong, ..right };
+
+    let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let color = gpu.texture(size, 1, TextureFormat::Rgba32Float, read);
+    let depth = gpu.texture(size, 1, TextureFormat::R32Float, read);
+    let motion = gpu.texture(size, 1, TextureFormat::Rg32Float, read);
+    let output = gpu.texture(size, 1, TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING);
+    let counters = gpu.counters();
+    for (name, context) in [("as it is", right), ("with the wrong sign", wrong)] {
+        let mut source = AnalyticSource::new("occluder", size, 70.0, 60.0)?;
+        let desc = GpuDesc { context, ..GpuDesc::new(size, output.format()) };
+        let mut post = Afterimage::new(&gpu.device, &desc)?;
+        println!("motion {name}");
+        for index in 0..20 {
+            let frame = source.frame(index)?;
+            // What that engine's G-buffer would hold.
+            let scale = right.motion.to_internal(size);
+            gpu.write_rgb(&color, 0, &frame.color);
+            gpu.write(&depth, 0, &frame.depth.ok_or("no depth")?.map(|z| near / z));
+            gpu.write(&motion, 0, &frame.motion.ok_or("no motion")?.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
+            let views = [ViewFrame {
+                geometry: *source.view(),
+                gaze: Gaze::At { px: [160.0, 90.0] },
+                previous_from_current: frame.previous_from_current,
+            }];
+            let frame = Frame {
+                depth: Some(&depth),
+                motion: Some(&motion),
+                counters: Some(&counters),
+                ..Frame::new(&color, &output, &views, index)
+            };
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            post.record(&gpu.device, &mut encoder, &frame)?;
+            gpu.queue.submit([encoder.finish()]);
+            if index % 6 == 1 {
+                let stats = gpu.read_counters(&counters);
+                let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
+                println!(
+                    "  frame {index:2}: history valid {:5.1} %, disoccluded {:4.1} %, from outside {:4.1} %",
+                    share(Verdict::Valid),
+                    share(Verdict::Disoccluded),
+                    share(Verdict::OffScreen)
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! How do I run where there may be no GPU? A GPU if there is one, else the CPU: the same picture.
+//!
+//! `cargo run -p afterimage-lab --example 05_cpu_fallback`; writes `out/05_cpu_fallback.png`
+
+use afterimage::Settings;
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::error::FrameError;
+use afterimage::foveation::Foveation;
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::image::Image;
+use afterimage::simulator::Pyramid;
+use afterimage_lab::device::Headless;
+use afterimage_lab::metric::encode;
+use afterimage_lab::picture::{to_rgb8, write_png};
+use afterimage_lab::source::{AnalyticSource, FrameSource};
+use std::sync::Arc;
+use wgpu::{Texture, TextureFormat, TextureUsages};
+
+const SIZE: [u32; 2] = [320, 180];
+
+/// The post-process, wherever it runs.
+enum Post {
+    Gpu { gpu: Arc<Headless>, post: Box<Afterimage>, color: Texture, output: Texture },
+    Cpu(Box<CpuAfterimage>),
+}
+
+impl Post {
+    fn new(gpu: Option<Arc<Headless>>, settings: Settings) -> Result<Self, Box<dyn std::error::Error>> {
+        let Some(gpu) = gpu else {
+            return Ok(Self::Cpu(Box::new(CpuAfterimage::new(ContextDesc::new(SIZE), settings)?)));
+        };
+        let desc = GpuDesc { settings, ..GpuDesc::new(SIZE, TextureFormat::Rgba32Float) };
+        let texture = |usage| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage);
+        Ok(Self::Gpu {
+            post: Box::new(Afterimage::new(&gpu.device, &desc)?),
+            color: texture(TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST),
+            output: texture(TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            gpu,
+        })
+    }
+
+    fn show(&mut self, index: u64, color: &Image<[f32; 3]>, facts: ViewFrame) -> Result<Image<[f32; 3]>, FrameError> {
+        match self {
+            Self::Cpu(post) => {
+                let mut shown = [Image::filled(SIZE, [0.0; 3])];
+                post.process(&CpuFrame::new(&[CpuView::new(facts, color)], index), &mut shown, None)?;
+                let [shown] = shown;
+                Ok(shown)
+            }
+            Self::Gpu { gpu, post, color: input, output } => {
+                gpu.write_rgb(input, 0, color);
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                post.record(&gpu.device, &mut encoder, &Frame::new(input, output, &[facts], index))?;
+                gpu.queue.submit([encoder.finish()]);
+                Ok(gpu.read_rgb(output, 0))
+            }
+        }
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Software adapters do not count: the CPU executor needs no driver.
+    let gpu = Headless::find(false);
+    println!("chosen: {}", gpu.as_ref().map_or("the CPU", |g| &g.info.name));
+    let settings = Settings::default();
+    let mut chosen = Post::new(gpu, settings)?;
+    // To compare: the other one, if there is any adapter at all.
+    let mut other = match &chosen {
+        Post::Cpu(_) => Headless::find(true).map(|any| Post::new(Some(any), settings)).transpose()?,
+        Post::Gpu { .. } => Some(Post::new(None, settings)?),
+    };
+
+    let color = AnalyticSource::new("still", SIZE, 70.0, 60.0)?.frame(0)?.color;
+    let geometry = ViewGeometry::flat(SIZE, 70.0)?;
+    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    let pyramid = Pyramid::new(color, foveation.max_level());
+    let mut shown = Image::filled(SIZE, [0.0; 3]);
+    for index in 0..30 {
+        let px = if index < 20 { [80.0, 90.0] } else { [240.0, 90.0] };
+        let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
+        let foveated = foveation.render(&pyramid, &lods);
+        let facts = ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None };
+        shown = chosen.show(index, &foveated, facts)?;
+        if let Some(other) = &mut other {
+            let theirs = other.show(index, &foveated, facts)?;
+            let differ = shown.pixels().iter().zip(theirs.pixels()).filter(|(a, b)| a != b).count();
+            if index == 29 {
+                println!("pixels that differ from the other executor after {} frames: {differ}", index + 1);
+            }
+        }
+    }
+    std::fs::create_dir_all("out")?;
+    write_png("out/05_cpu_fallback.png".as_ref(), &to_rgb8(&encode(&shown, 0.0)))?;
+    println!("sharp where the eye is (right) and was (left): out/05_cpu_fallback.png");
+    Ok(())
+}

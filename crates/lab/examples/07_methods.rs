@@ -1,0 +1,89 @@
+//! Which method, and which preset, on my clip? All of them on the same foveated frames, with the figures that the documents quote:
+//! PSNR, SSIM, what was retained, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
+//!
+//! `cargo run --release -p afterimage-lab --example 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
+
+use afterimage::Settings;
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::geometry::ViewGeometry;
+use afterimage::settings::Method;
+use afterimage_lab::device::Backend;
+use afterimage_lab::metric::{References, Scorer, encode};
+use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
+use afterimage_lab::source;
+use afterimage_lab::source::{AnalyticSource, ReadLimits, SceneOptions};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [input, scanpath, ..] = &args[..] else {
+        return Err("usage: 13_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]".into());
+    };
+    let number = |i: usize, absent: u64| args.get(i).map_or(Ok(absent), |n| n.parse());
+    let filter = match args.get(3).map(String::as_str) {
+        None | Some("mip") => Filter::Mip,
+        Some("gauss") => Filter::Gauss,
+        Some("block") => Filter::Block,
+        Some(other) => return Err(format!("filter '{other}': expected mip, gauss or block").into()),
+    };
+    let (rate_mid, rate_far) = (number(4, 8)? as u32, number(5, 16)? as u32);
+    let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
+
+    let mut source = source::open(input, &ReadLimits::default(), &SceneOptions::default())?;
+    let info = source.info().clone();
+    let (hfov, fps) = (info.hfov_deg.unwrap_or(70.0), info.fps.unwrap_or(60.0));
+    let geometry = ViewGeometry::flat(info.size, hfov)?;
+    let gaze = FrameGaze::new(&read_csv(scanpath)?, &geometry, GazeMap::Angle, 1.0, fps.into())?;
+    let lanes = [
+        ("none", Settings { method: Method::None, ..Settings::default() }),
+        ("taa", Settings { method: Method::Taa, ..Settings::default() }),
+        ("wrs", Settings::paper()),
+        ("smr steady", Settings::steady()),
+        ("smr responsive", Settings::responsive()),
+    ];
+    let kinds = lanes.map(|lane| LaneKind::PostProcess(lane.1));
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
+    let scene = input.strip_prefix("analytic:").map(|n| AnalyticSource::new(n, info.size, hfov, fps)).transpose()?;
+    let mut scorers = lanes.map(|_| Scorer::default());
+    let mut references = References::default();
+    let mut worst = [f64::INFINITY; 5];
+    let mut panel = [(0.0, 0.0); 5];
+    for index in 0..number(2, 90)? {
+        let frame = source.frame(index)?;
+        let step = pipeline.step(index, &frame, gaze.px(index))?;
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
+        let mask = scene.as_ref().and_then(|s| s.panel_mask(index));
+        let mut foveated = None;
+        for (i, shown) in step.shown.iter().enumerate() {
+            let shown = encode(&shown.image, 0.0);
+            let mse = scorers[i].push(&reference, &shown, &step.tracked, &step.ecc_deg).mse;
+            let gain = 10.0 * (*foveated.get_or_insert(mse) / mse).log10();
+            // The first two frames have next to no past.
+            if index > 1 {
+                worst[i] = gain.min(worst[i]);
+            }
+            for (k, _) in mask.iter().flat_map(|m| m.pixels()).enumerate().filter(|(_, on)| **on) {
+                let (a, b) = (shown.pixels()[k], full.pixels()[k]);
+                let squared: f32 = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum();
+                panel[i] = (panel[i].0 + f64::from(squared) / 3.0, panel[i].1 + 1.0);
+            }
+        }
+    }
+    println!("{input}, {filter:?} {rate_mid}/{rate_far}");
+    println!("method             PSNR dB    SSIM  retained  flicker  least gain  panel dB");
+    for (i, (name, _)) in lanes.iter().enumerate() {
+        let s = scorers[i].scores();
+        let or = |v: Option<f64>| v.unwrap_or(f64::NAN);
+        println!(
+            "{name:16} {:9.2} {:7.4} {:9.2} {:8.2} {:11.3} {:9.2}",
+            or(s.whole.psnr_db),
+            or(s.whole.ssim),
+            or(s.retained_psnr_db),
+            or(s.flicker),
+            worst[i],
+            -10.0 * (panel[i].0 / panel[i].1).log10()
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! What does each part of the reservoir method buy? The gate, the bias, the sampler, one by one, on one clip.
+//!
+//! `cargo run --release -p afterimage-lab --example 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
+//!
+//! Prints PSNR over none at several lengths of the clip: whole picture, and where the eye has already seen sharp.
+
+use afterimage::Settings;
+use afterimage::foveation::Foveation;
+use afterimage::geometry::ViewGeometry;
+use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler};
+use afterimage_lab::device::Backend;
+use afterimage_lab::metric::{References, Scorer, encode};
+use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
+use afterimage_lab::source;
+use afterimage_lab::source::{ReadLimits, SceneOptions};
+
+fn variants() -> Vec<(&'static str, LaneKind)> {
+    let paper = Settings::paper();
+    let gate = |divisor, offset| Some(Gate { divisor, offset, ..Gate::default() });
+    let ungated = Settings { gate: None, ..paper };
+    let list = [
+        ("none", Settings { method: Method::None, ..paper }),
+        ("paper: gate dE/100, Bernoulli, A-Chao", paper),
+        ("gate dE/20", Settings { gate: gate(20.0, 0.0), ..paper }),
+        ("gate dE/500", Settings { gate: gate(500.0, 0.0), ..paper }),
+        ("gate (dE - 5)/30", Settings { gate: gate(30.0, 5.0), ..paper }),
+        ("gate L*/100", Settings { gate: Some(Gate { metric: GateMetric::Lightness, ..Gate::default() }), ..paper }),
+        ("no gate", ungated),
+        ("no gate, exponential 0.02", Settings { bias: Bias::Exponential { lambda: 0.02 }, ..ungated }),
+        ("no gate, exponential 0.005", Settings { bias: Bias::Exponential { lambda: 0.005 }, ..ungated }),
+        ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
+        ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
+    ];
+    let mut lanes: Vec<_> = list.map(|(name, s)| (name, LaneKind::PostProcess(s))).into();
+    lanes.push(("oracle: upper bound of any reuse", LaneKind::Oracle));
+    lanes
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [input, scanpath, ..] = &args[..] else {
+        return Err("usage: 05_ablation INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
+    };
+    let frames: u64 = args.get(3).map_or(Ok(300), |n| n.parse())?;
+    let fovea_deg: f32 = args.get(4).map_or(Ok(5.0), |n| n.parse())?;
+
+    let mut source = source::open(input, &ReadLimits::default(), &SceneOptions::default())?;
+    let info = source.info().clone();
+    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
+    let map = if args.get(2).is_some_and(|m| m == "fit") { GazeMap::Fit } else { GazeMap::Angle };
+    let gaze = FrameGaze::new(&read_csv(scanpath)?, &geometry, map, 1.0, 60.0)?;
+    let foveation = Foveation { fovea_deg, ..Foveation::default() };
+
+    let mut lanes = variants();
+    if !info.still {
+        lanes.pop();
+    }
+    let kinds: Vec<_> = lanes.iter().map(|l| l.1).collect();
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
+    let mut scorers = vec![Scorer::without_ssim(); lanes.len()];
+    let mut references = References::default();
+    println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
+    for index in 0..frames {
+        let frame = source.frame(index)?;
+        let step = pipeline.step(index, &frame, gaze.px(index))?;
+        let full = encode(&frame.color, 0.0);
+        let reference = references.next(&full, &step.tracked);
+        let mut last = vec![];
+        for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
+            let errors = scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
+            last.push(-10.0 * errors.mse.log10());
+        }
+        if [60, 150, 300, 540].contains(&(index + 1)) || index + 1 == frames {
+            println!("\nafter {} frames            PSNR dB   gain  last frame's gain  retained dB", index + 1);
+            let base = scorers[0].scores().whole.psnr_db.unwrap_or(f64::NAN);
+            for (i, (name, _)) in lanes.iter().enumerate() {
+                let s = scorers[i].scores();
+                let psnr = s.whole.psnr_db.unwrap_or(f64::NAN);
+                println!(
+                    "{name:40} {psnr:7.2} {:+6.2} {:+6.2} {:8.2}",
+                    psnr - base,
+                    last[i] - last[0],
+                    s.retained_psnr_db.unwrap_or(f64::NAN)
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,127 @@
+//! What does it cost to find out what a ray hits? Build times, rates on the CPU (`obvhs` beside it) and on the GPU, from 2.6
+//! thousand to 2.6 million triangles.
+//!
+//! `cargo run --release -p afterimage-lab --example 12_traversal`; numbers of triangles may follow.
+
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::device::Headless;
+use afterimage_lab::scene::Triangles;
+use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage};
+use afterimage_lab::trace::gpu::ray_lists::{GpuRays, Question};
+use afterimage_lab::trace::heap::{Heap, HeapBuilder};
+use afterimage_lab::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
+use afterimage_lab::trace::{Bvh, Geometry, Ray};
+use glam::{Vec3, vec3};
+use obvhs::BvhBuildParams;
+use std::f32::consts::TAU;
+
+const SIZE: [u32; 2] = [640, 360];
+
+/// A grid of `n` by `m` quadrilaterals over a surface, parameters from 0 to 1.
+fn surface(triangles: &mut Triangles, n: usize, m: usize, at: impl Fn(f32, f32) -> Vec3) {
+    let at = |i: usize, j: usize| at(i as f32 / n as f32, j as f32 / m as f32);
+    for i in 0..n {
+        for j in 0..m {
+            triangles.push_quad([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], 0);
+        }
+    }
+}
+
+/// A paved yard of 20 m with walls of rough stone and 24 columns.
+fn courtyard(count: usize) -> Triangles {
+    let mut triangles = Triangles::default();
+    let rough = |x: f32, y: f32| 0.03 * ((37.0 * x).sin() * (41.0 * y).cos() + (113.0 * x + 71.0 * y).sin());
+    let side = (count as f32 * 0.2 / 2.0).sqrt() as usize;
+    surface(&mut triangles, side, side, |u, v| vec3(20.0 * u - 10.0, rough(u, v), 10.0 - 20.0 * v));
+    let side = (count as f32 * 0.08 / 2.0).sqrt() as usize;
+    for wall in 0..4 {
+        let (sin, cos) = (wall as f32 * TAU / 4.0).sin_cos();
+        let at = |x: f32, y: f32, z: f32| vec3(x * cos - z * sin, y, x * sin + z * cos);
+        surface(&mut triangles, side, side, |u, v| at(20.0 * u - 10.0, 8.0 * v, -10.0 + rough(v, u)));
+    }
+    let side = (count as f32 * 0.48 / 24.0 / 2.0).sqrt() as usize;
+    for column in 0..24 {
+        let (sin, cos) = (column as f32 * TAU / 24.0).sin_cos();
+        surface(&mut triangles, side, side, |u, v| {
+            let radius = 0.35 + 0.05 * (TAU * 2.0 * v).cos() + 0.02 * (TAU * 12.0 * u).cos();
+            let (s, c) = (-u * TAU).sin_cos();
+            vec3(7.0 * cos + radius * c, 6.0 * v, 7.0 * sin + radius * s)
+        });
+    }
+    triangles
+}
+
+/// Million rays per second: of CPU time where the device is a program, else of wall time.
+fn gpu_mrays(
+    gpu: &Headless,
+    heap: &Heap,
+    geometry: &Geometry,
+    storage: Storage,
+    question: Question,
+    rays: &[Ray],
+) -> f64 {
+    let tracer = GpuRays::new(&gpu.device, &gpu.queue, heap, geometry, storage, question, None);
+    let batch = tracer.batch(&GpuHeap::new(&gpu.device, &gpu.queue, heap, storage), rays);
+    tracer.run(&batch);
+    let run = |_| {
+        let watch = Stopwatch::start();
+        tracer.run(&batch);
+        if gpu.is_software() { watch.cpu_ms().unwrap_or(watch.wall_ms()) } else { watch.wall_ms() }
+    };
+    let ms = (0..5).map(run).fold(f64::INFINITY, f64::min);
+    rays.len() as f64 / ms * 1e-3
+}
+
+fn main() {
+    let gpu = Headless::find_roomy(true);
+    println!(
+        "| triangles | build ms | nodes | CPU primary | bounce | shadow | obvhs, same nodes | bounce | obvhs medium | bounce | build ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    let asked: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
+    let counts = if asked.is_empty() { vec![2_600, 26_000, 262_000, 2_600_000] } else { asked };
+    for count in counts {
+        let triangles = courtyard(count);
+        let (still, build_ms) = cpu_ms(|| Bvh::build(&triangles, None, &[]));
+        let geometry = Geometry { still, moving: Bvh::default() };
+        let primary = primary_rays(SIZE, vec3(6.0, 3.0, 8.0), vec3(-2.0, 1.5, -4.0), 60.0);
+        let (hits, _) = closest(&geometry, &primary);
+        let bounce = bounce_rays(&geometry, &primary, &hits);
+        let shared = Obvhs::sharing(&geometry.still);
+        let medium = Obvhs::build(&triangles, BvhBuildParams::medium_build());
+        let best = |rate: &dyn Fn() -> f64| (0..5).map(|_| rate()).fold(0.0, f64::max);
+        println!(
+            "| {} | {build_ms:.0} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.0} |",
+            triangles.len(),
+            geometry.still.node_count(),
+            best(&|| closest(&geometry, &primary).1.mrays()),
+            best(&|| closest(&geometry, &bounce).1.mrays()),
+            best(&|| occluded(&geometry, &bounce).mrays()),
+            best(&|| shared.closest(&primary).mrays()),
+            best(&|| shared.closest(&bounce).mrays()),
+            best(&|| medium.closest(&primary).mrays()),
+            best(&|| medium.closest(&bounce).mrays()),
+            medium.build_ms,
+        );
+        let Some(gpu) = &gpu else { continue };
+        for storage in [Storage::Texture, Storage::Buffer] {
+            let heap = HeapBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
+            let heap = match heap {
+                Ok(heap) => heap,
+                Err(error) => {
+                    println!("{storage:?}: {error}");
+                    continue;
+                }
+            };
+            let rate = |question, rays: &[Ray]| gpu_mrays(gpu, &heap, &geometry, storage, question, rays);
+            println!(
+                "{}, {storage:?}: primary {:.2}, bounce {:.2}, shadow {:.2}; {:.0} bytes a triangle",
+                gpu.info.name,
+                rate(Question::Closest, &primary),
+                rate(Question::Closest, &bounce),
+                rate(Question::Any, &bounce),
+                heap.bytes() as f64 / triangles.len() as f64,
+            );
+        }
+    }
+}

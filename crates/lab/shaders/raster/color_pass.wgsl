@@ -1,0 +1,195 @@
+//#use bsdf
+//#use direction
+//#use light
+//#use raster_frame
+//#use raster_material
+//#use scenery
+//#use shading
+// Color of surfaces in the light of punctual lights, panels, the sun and the sky. Scattering is the tracer's; what light other
+// surfaces send is only guessed (`bounced`). Premultiplied by opacity.
+
+override SURFACE_TEXTURE: bool = true;
+override NORMAL_MAP: bool = true;
+override EMISSIVE_TEXTURE: bool = true;
+override HAS_SUN: bool = true;
+
+struct Shaded {
+    @builtin(position) position: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    // From the eye.
+    @location(1) relative: vec3<f32>,
+    @location(2) normal: vec3<f32>,
+    @location(3) tangent: vec4<f32>,
+    @location(4) uv: vec2<f32>,
+    @location(5) color: vec4<f32>,
+}
+
+@vertex
+fn stand(corner: Corner) -> Shaded {
+    let relative = from_eye(frame.now, corner.position);
+    let position = clip(homogeneous_px(frame.now, relative));
+    return Shaded(position, corner.position, relative, corner.normal, corner.tangent, corner.uv, corner.color);
+}
+
+// Parameters with their textures and tints, as in trace/surface_point.wgsl.
+fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
+    var s: BsdfSurface;
+    s.base_color = base;
+    s.metallic = material.metallic;
+    s.roughness = material.roughness;
+    s.specular = material.specular;
+    s.specular_color = material.specular_color;
+    s.ior = material.ior;
+    s.anisotropy = material.anisotropy;
+    s.clearcoat = material.clearcoat;
+    s.clearcoat_roughness = material.clearcoat_roughness;
+    s.sheen_color = material.sheen_color;
+    s.sheen_roughness = material.sheen_roughness;
+    s.transmission = material.transmission;
+    s.thin = (material.flags & FLAG_VOLUME) == 0u;
+    s.entering = front;
+    if SURFACE_TEXTURE {
+        let surface = textureSample(metallic_roughness_map, metallic_roughness_sampler, uv);
+        s.roughness *= surface.y;
+        s.metallic *= surface.z;
+        s.specular *= textureSample(specular_map, base_color_sampler, uv).w;
+        s.specular_color *= textureSample(specular_color_map, base_color_sampler, uv).xyz;
+    }
+    if SURFACE_TEXTURE && LOBE_CLEARCOAT {
+        s.clearcoat *= textureSample(clearcoat_map, base_color_sampler, uv).x;
+        s.clearcoat_roughness *= textureSample(clearcoat_roughness_map, base_color_sampler, uv).y;
+    }
+    if SURFACE_TEXTURE && LOBE_SHEEN {
+        s.sheen_color *= textureSample(sheen_color_map, base_color_sampler, uv).xyz;
+        s.sheen_roughness *= textureSample(sheen_roughness_map, base_color_sampler, uv).w;
+    }
+    if SURFACE_TEXTURE && LOBE_TRANSMISSION {
+        s.transmission *= textureSample(transmission_map, base_color_sampler, uv).x;
+    }
+    s.specular_color *= tint(base, material.specular_tint);
+    s.sheen_color *= tint(base, material.sheen_tint);
+    return s;
+}
+
+// Irradiance from all around, by the faces of a cube, weighted by the squares of the normal's coordinates, whose sum is 1.
+fn ambient_at(normal: vec3<f32>) -> vec3<f32> {
+    let share = normal * normal;
+    let x = select(lights.ambient[1], lights.ambient[0], normal.x >= 0.0).xyz;
+    let y = select(lights.ambient[3], lights.ambient[2], normal.y >= 0.0).xyz;
+    let z = select(lights.ambient[5], lights.ambient[4], normal.z >= 0.0).xyz;
+    return (x * share.x + y * share.y) + z * share.z;
+}
+
+struct Incoming {
+    direction: vec3<f32>,
+    // On a surface that faces it.
+    irradiance: vec3<f32>,
+}
+
+fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
+    if light.kind == 0u {
+        return Incoming(-light.direction, light.intensity);
+    }
+    let to = light.position - position;
+    let distance = sqrt(dot(to, to));
+    let direction = unit(to);
+    let cosine = -dot(direction, light.direction);
+    if light.kind >= 3u {
+        // A disk of that area as seen from its axis, by the cosine beside it.
+        let seen = select(max(cosine, 0.0), abs(cosine), light.kind == 4u);
+        return Incoming(direction, light.intensity * (seen * light.area / (distance * distance + light.area * FRAC_1_PI)));
+    }
+    var irradiance = light.intensity * distance_falloff(distance, light.range);
+    if light.kind == 2u {
+        irradiance *= cone_falloff(cosine, light.cos_inner, light.cos_outer);
+    }
+    return Incoming(direction, irradiance);
+}
+
+@fragment
+fn shade(in: Shaded, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let base = base_at(in.uv, in.color);
+    let across = cross(dpdx(in.relative), dpdy(in.relative));
+    // A masked edge becomes as wide as a pixel, and is told to the multisampler.
+    let edge = max(fwidth(base.w), 1e-4);
+    var opacity = 1.0;
+    if (material.flags & FLAG_MASK) != 0u {
+        opacity = clamp((base.w - material.cutoff) / edge + 0.5, 0.0, 1.0);
+    } else if (material.flags & FLAG_BLEND) != 0u {
+        opacity = clamp(base.w, 0.0, 1.0);
+    }
+    let surface = surface_of(base.xyz, in.uv, front);
+    var mapped = vec3<f32>(0.5, 0.5, 1.0);
+    if NORMAL_MAP {
+        mapped = textureSample(normal_map, normal_sampler, in.uv).xyz;
+    }
+    var emitted = material.emissive;
+    if EMISSIVE_TEXTURE {
+        emitted *= textureSample(emissive_map, emissive_sampler, in.uv).xyz;
+    }
+    if !front && (material.flags & FLAG_DOUBLE_SIDED) == 0u {
+        emitted = vec3<f32>(0.0);
+    }
+
+    let toward = unit(-in.relative);
+    var geometric = unit(across);
+    geometric = select(geometric, -geometric, dot(geometric, toward) < 0.0);
+    let side = select(-1.0, 1.0, front);
+    let face = geometric * side;
+    var normal = unit(in.normal);
+    normal = select(face, normal, dot(normal, face) > 0.0);
+    if NORMAL_MAP && material.normal_texture != NO_TEXTURE {
+        normal = mapped_normal(normal, in.tangent.xyz, in.tangent.w, mapped, material.normal_scale);
+    }
+    normal = visible_normal(normal * side, geometric, toward);
+    var x = basis(normal)[0];
+    if LOBE_ANISOTROPY && material.anisotropy > 0.0 {
+        let along = in.tangent.xyz - normal * dot(normal, in.tangent.xyz);
+        if dot(along, along) > 1e-12 {
+            x = unit(along);
+        }
+    }
+    let y = cross(normal, x);
+
+    let wo = to_local(toward, x, y, normal);
+    let l = layers(surface, wo, 0u);
+    var color = emitted;
+    for (var i = 0u; i < lights.count; i++) {
+        let light = lights.lights[i];
+        let arriving = incoming(light, in.world);
+        var share = select(0.0, 1.0, dot(arriving.direction, geometric) > 0.0 || LOBE_TRANSMISSION);
+        if HAS_SUN && light.has_shadow > 0.0 && share > 0.0 {
+            share *= sunlit(in.world, geometric);
+        }
+        let value = eval(l, wo, to_local(arriving.direction, x, y, normal)).value;
+        color += value * arriving.irradiance * share;
+    }
+
+    // From all around: what scatters is lit by the mean over the hemisphere, highlights show what they mirror.
+    let reflected = unit(normal * (2.0 * wo.z) - toward);
+    color += l.diffuse * (ambient_at(normal) + lights.bounced * PI);
+    if LOBE_SPECULAR || LOBE_METAL || LOBE_TRANSMISSION {
+        let e = ggx_albedo(0u, wo.z, ggx_mean_width(l.widths));
+        let around = sky_radiance(reflected, surface.roughness) + lights.bounced;
+        color += (l.reflect * e.x + l.reflect_rise * e.y) * around;
+        if LOBE_TRANSMISSION {
+            color += l.glass * l.glass_reflect * fresnel_dielectric(wo.z, l.eta) * around;
+        }
+    }
+    if LOBE_CLEARCOAT {
+        let e = ggx_albedo(0u, wo.z, l.coat_width);
+        color += (l.coat * e.x + l.coat_rise * e.y) * (sky_radiance(reflected, surface.clearcoat_roughness) + lights.bounced);
+    }
+
+    // What shines through is what is behind, without refraction, dimmed by the base color's luminance.
+    var through = 0.0;
+    if LOBE_TRANSMISSION {
+        let passed = clamp(surface.transmission * (1.0 - surface.metallic), 0.0, 1.0);
+        through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3<f32>(0.0), vec3<f32>(1.0)));
+    }
+    color = clamp(color, vec3<f32>(0.0), vec3<f32>(BRIGHTEST));
+    if (material.flags & FLAG_BLEND) != 0u {
+        color *= opacity;
+    }
+    return vec4<f32>(color, opacity * (1.0 - through));
+}

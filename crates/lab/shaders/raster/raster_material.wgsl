@@ -1,0 +1,82 @@
+// A material of the rasteriser: the tracer's record, and its textures, white where there is none.
+
+override BASE_COLOR_TEXTURE: bool = true;
+
+const NO_TEXTURE: u32 = 0xffffffffu;
+const FLAG_MASK: u32 = 1u;
+const FLAG_BLEND: u32 = 2u;
+const FLAG_DOUBLE_SIDED: u32 = 4u;
+const FLAG_VOLUME: u32 = 8u;
+
+// Twin of MaterialRecord in src/trace/shading_records.rs.
+struct RasterMaterial {
+    base_color: vec3<f32>,
+    opacity: f32,
+    emissive: vec3<f32>,
+    cutoff: f32,
+    metallic: f32,
+    roughness: f32,
+    specular: f32,
+    ior: f32,
+    specular_color: vec3<f32>,
+    specular_tint: f32,
+    sheen_color: vec3<f32>,
+    sheen_roughness: f32,
+    anisotropy: f32,
+    clearcoat: f32,
+    clearcoat_roughness: f32,
+    transmission: f32,
+    absorption: vec3<f32>,
+    normal_scale: f32,
+    phong_specular: vec3<f32>,
+    phong_exponent: f32,
+    flags: u32,
+    sheen_tint: f32,
+    base_color_texture: u32,
+    metallic_roughness_texture: u32,
+    normal_texture: u32,
+    emissive_texture: u32,
+    specular_texture: u32,
+    specular_color_texture: u32,
+    clearcoat_texture: u32,
+    clearcoat_roughness_texture: u32,
+    sheen_color_texture: u32,
+    sheen_roughness_texture: u32,
+    transmission_texture: u32,
+    phong_diffuse: f32,
+    unused: vec2<f32>,
+}
+
+@group(1) @binding(0) var<storage, read> material: RasterMaterial;
+@group(1) @binding(1) var base_color_map: texture_2d<f32>;
+@group(1) @binding(2) var base_color_sampler: sampler;
+@group(1) @binding(3) var metallic_roughness_map: texture_2d<f32>;
+@group(1) @binding(4) var metallic_roughness_sampler: sampler;
+@group(1) @binding(5) var normal_map: texture_2d<f32>;
+@group(1) @binding(6) var normal_sampler: sampler;
+@group(1) @binding(7) var emissive_map: texture_2d<f32>;
+@group(1) @binding(8) var emissive_sampler: sampler;
+@group(1) @binding(9) var specular_map: texture_2d<f32>;
+@group(1) @binding(10) var specular_color_map: texture_2d<f32>;
+@group(1) @binding(11) var clearcoat_map: texture_2d<f32>;
+@group(1) @binding(12) var clearcoat_roughness_map: texture_2d<f32>;
+@group(1) @binding(13) var sheen_color_map: texture_2d<f32>;
+@group(1) @binding(14) var sheen_roughness_map: texture_2d<f32>;
+@group(1) @binding(15) var transmission_map: texture_2d<f32>;
+
+// Base color and opacity.
+fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
+    var base = vec4<f32>(material.base_color, material.opacity) * color;
+    if BASE_COLOR_TEXTURE {
+        base *= textureSample(base_color_map, base_color_sampler, uv);
+    }
+    return base;
+}
+
+// Whether a surface counts as being there: behind less than half a surface is another.
+fn is_there(opacity: f32) -> bool {
+    if (material.flags & FLAG_MASK) != 0u {
+        return opacity >= material.cutoff;
+    }
+    return (material.flags & FLAG_BLEND) == 0u || opacity > 0.5;
+}

@@ -1,0 +1,46 @@
+//! How fast memory is where the post-process runs: no pass that moves as many bytes can be faster.
+
+use super::Backend;
+use crate::clock::{Quartiles, Stopwatch};
+use rayon::prelude::*;
+use wgpu::BufferUsages;
+
+/// Bytes that a copy reads, and as many that it writes: more than any cache holds.
+const BYTES: usize = 1 << 26;
+/// Copies that the median is of.
+const COPIES: usize = 7;
+
+/// Milliseconds that one byte takes to be read or written by a copy, by the clock that passes are timed with
+/// ([`Shown::cost_ms`](super::Shown::cost_ms)); on a GPU by wall time, which over 64 MiB is as good.
+pub fn copy_ms_per_byte(backend: &Backend) -> f64 {
+    let mut times = vec![];
+    match backend {
+        Backend::Cpu => {
+            let from = vec![1_u64; BYTES / 8];
+            let mut to = vec![0_u64; BYTES / 8];
+            for _ in 0..=COPIES {
+                let watch = Stopwatch::start();
+                to.par_chunks_mut(1 << 16)
+                    .zip(from.par_chunks(1 << 16))
+                    .for_each(|(to, from)| to.copy_from_slice(from));
+                times.push(watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()));
+                std::hint::black_box(&to);
+            }
+        }
+        Backend::Gpu(gpu) => {
+            let buffer = || gpu.buffer(BYTES as u64, BufferUsages::COPY_SRC | BufferUsages::COPY_DST);
+            let (from, to) = (buffer(), buffer());
+            for _ in 0..=COPIES {
+                let watch = Stopwatch::start();
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                encoder.copy_buffer_to_buffer(&from, 0, &to, 0, BYTES as u64);
+                gpu.queue.submit([encoder.finish()]);
+                gpu.wait();
+                let cpu_ms = watch.cpu_ms().filter(|_| gpu.is_software());
+                times.push(cpu_ms.unwrap_or_else(|| watch.wall_ms()));
+            }
+        }
+    }
+    // The first one finds fresh memory.
+    Quartiles::of(&times[1..]).map_or(0.0, |q| q.median) / (2 * BYTES) as f64
+}

@@ -1,0 +1,194 @@
+//! A device without a window, and frames between it and memory. For experiments; an engine keeps its frames on its device and
+//! calls [`Afterimage`](afterimage::gpu::Afterimage) itself.
+
+use afterimage::error::FrameError;
+use afterimage::image::Image;
+use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
+
+/// A device without a window.
+#[derive(Debug)]
+pub struct Headless {
+    /// With default limits unless others were asked for, and timestamp queries where the adapter has them.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Adapter, driver, version and kind of device.
+    pub info: wgpu::AdapterInfo,
+    is_lost: Arc<AtomicBool>,
+}
+
+impl Headless {
+    /// All adapters of this machine.
+    pub fn adapters() -> Vec<wgpu::Adapter> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
+    }
+
+    /// The first real GPU; with `software`, a software adapter if there is none. `None` if there is nothing of the kind or it
+    /// gives no device with default limits.
+    pub fn find(software: bool) -> Option<Arc<Self>> {
+        Self::find_with(software, |_| wgpu::Limits::default())
+    }
+
+    /// As [`find`](Self::find), with textures and buffers as large as the adapter offers: for scenes.
+    pub fn find_roomy(software: bool) -> Option<Arc<Self>> {
+        Self::find_with(software, |offered| wgpu::Limits {
+            max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            max_buffer_size: offered.max_buffer_size,
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        })
+    }
+
+    fn find_with(software: bool, limits: impl Fn(&wgpu::Limits) -> wgpu::Limits) -> Option<Arc<Self>> {
+        let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
+            wgpu::DeviceType::Cpu => 3,
+        };
+        let mut adapters = Self::adapters();
+        adapters.sort_by_key(rank);
+        adapters.retain(|a| software || rank(a) < 3);
+        adapters.iter().find_map(|adapter| Self::on(adapter, limits(&adapter.limits())).ok())
+    }
+
+    /// A device of this adapter.
+    ///
+    /// # Errors
+    /// If the adapter gives none with these limits.
+    pub fn on(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Arc<Self>, wgpu::RequestDeviceError> {
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("afterimage"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(request)?;
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let told = is_lost.clone();
+        device.set_device_lost_callback(move |_, _| told.store(true, Ordering::Relaxed));
+        Ok(Arc::new(Self { device, queue, info: adapter.get_info(), is_lost }))
+    }
+
+    /// Whether the device is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// To be called after reading: what is read from a lost device is zeros.
+    ///
+    /// # Errors
+    /// [`FrameError::DeviceLost`], from then on.
+    pub fn check(&self) -> Result<(), FrameError> {
+        if self.is_lost.load(Ordering::Relaxed) { Err(FrameError::DeviceLost) } else { Ok(()) }
+    }
+
+    /// Waits until the device has done all that was submitted.
+    pub fn wait(&self) {
+        // A lost device shows at the next map.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
+    /// A texture of `layers` layers.
+    pub fn texture(&self, size: [u32; 2], layers: u32, format: TextureFormat, usage: TextureUsages) -> Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("afterimage frame"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// A buffer for [`Frame::counters`](afterimage::gpu::Frame::counters).
+    pub fn counters(&self) -> Buffer {
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        self.buffer(COUNTERS_BYTES, usage)
+    }
+
+    /// Writes a layer of a texture whose texels are laid out like the image's pixels.
+    pub fn write<T: bytemuck::NoUninit>(&self, texture: &Texture, layer: u32, image: &Image<T>) {
+        let mut to = texture.as_image_copy();
+        to.origin.z = layer;
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(image.size()[0] * size_of::<T>() as u32),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+        self.queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, size);
+    }
+
+    /// Writes a layer of an `Rgba32Float` texture.
+    pub fn write_rgb(&self, texture: &Texture, layer: u32, image: &Image<[f32; 3]>) {
+        self.write(texture, layer, &image.map(|[r, g, b]| [r, g, b, 1.0]));
+    }
+
+    /// Waits for all that was submitted, and reads a layer of an `Rgba32Float` texture.
+    pub fn read_rgb(&self, texture: &Texture, layer: u32) -> Image<[f32; 3]> {
+        self.read::<[f32; 4]>(texture, layer).map(|[r, g, b, _]| [r, g, b])
+    }
+
+    /// Waits for all that was submitted, and reads a layer of a texture whose texels are laid out like `T`.
+    pub(crate) fn read<T: bytemuck::Pod>(&self, texture: &Texture, layer: u32) -> Image<T> {
+        let [width, height] = [texture.width(), texture.height()];
+        let padded = (width * size_of::<T>() as u32).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };
+        let bytes = self.read_back(u64::from(padded) * u64::from(height), |encoder, buffer| {
+            let mut from = texture.as_image_copy();
+            from.origin.z = layer;
+            let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+            encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer, layout }, size);
+        });
+        let mut image = Image::filled([width, height], T::zeroed());
+        let rows = image.pixels_mut().chunks_mut(width as usize);
+        for (to, from) in rows.zip(bytes.chunks_exact(padded as usize)) {
+            let to: &mut [u8] = bytemuck::cast_slice_mut(to);
+            to.copy_from_slice(&from[..to.len()]);
+        }
+        image
+    }
+
+    /// Waits for all that was submitted, and reads what was counted.
+    pub fn read_counters(&self, counters: &Buffer) -> FrameStats {
+        let bytes = self.read_back(COUNTERS_BYTES, |encoder, buffer| {
+            encoder.copy_buffer_to_buffer(counters, 0, buffer, 0, COUNTERS_BYTES);
+        });
+        FrameStats::from_counters(&bytes).expect("as many bytes as counters have")
+    }
+
+    /// Waits for all that was submitted, and reads a buffer that can be copied from.
+    pub(crate) fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
+        self.read_back(from.size(), |encoder, to| encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size()))
+    }
+
+    pub(crate) fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
+        let label = Some("afterimage");
+        self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
+    }
+
+    fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {
+        // A buffer of a lost device is none, and mapping it an error that nobody else would catch.
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let buffer = self.buffer(size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        copy(&mut encoder, &buffer);
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+        self.wait();
+        let error = pollster::block_on(scope.pop());
+        let bytes = buffer.slice(..).get_mapped_range().map(|bytes| bytes.to_vec());
+        bytes.unwrap_or_else(|missing| {
+            let is_lost = self.is_lost.load(Ordering::Relaxed);
+            assert!(is_lost, "{missing}, {error:?}: a mistake in this package");
+            vec![0; size as usize]
+        })
+    }
+}

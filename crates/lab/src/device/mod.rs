@@ -1,0 +1,29 @@
+//! What computes: the CPU, or a device without a window.
+
+#[cfg(feature = "full")]
+mod bandwidth;
+#[cfg(feature = "full")]
+mod clock;
+#[cfg(feature = "full")]
+mod headless;
+
+#[cfg(feature = "full")]
+pub use bandwidth::copy_ms_per_byte;
+#[cfg(feature = "full")]
+pub use clock::PassClock;
+#[cfg(feature = "full")]
+pub use headless::Headless;
+
+#[cfg(feature = "full")]
+use std::sync::Arc;
+
+/// What the post-process runs on.
+#[derive(Clone, Debug, Default)]
+pub enum Backend {
+    /// The CPU executor.
+    #[default]
+    Cpu,
+    /// The wgpu executor on this device. Frames are uploaded and read back; times are of the pass alone.
+    #[cfg(feature = "full")]
+    Gpu(Arc<Headless>),
+}

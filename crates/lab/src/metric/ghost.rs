@@ -1,0 +1,111 @@
+//! Ghosts: how much of what a pixel showed before a change is still in it, and for how long.
+
+use super::{NO_PAST, Tracked};
+use afterimage::image::Image;
+use glam::Vec3;
+
+/// Frames after a change that are looked at.
+pub const GHOST_FRAMES: usize = 32;
+
+/// By how much, on a scale of 1, a channel must leave what the 3x3 pixels around its past held, to count as changed: more than
+/// resampling and noise explain.
+const CHANGE: f32 = 0.1;
+
+/// What a pixel's surface looked like before it last changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ghost {
+    /// sRGB-encoded color.
+    pub old: [f32; 3],
+    /// Frames since, 0 for the first frame that shows the new; [`GHOST_FRAMES`] or more: too long ago, or never.
+    pub age: u8,
+}
+
+/// No ghost.
+const NONE: Ghost = Ghost { old: [0.0; 3], age: GHOST_FRAMES as u8 };
+
+/// Follows what changes in the full-rate frames.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ghosts {
+    previous: Option<(Image<[f32; 3]>, Image<Ghost>)>,
+}
+
+impl Ghosts {
+    /// Takes the next full-rate frame, sRGB-encoded.
+    pub fn advance(&mut self, encoded: &Image<[f32; 3]>, tracked: &Tracked) -> Image<Ghost> {
+        let ghosts = match &self.previous {
+            None => Image::filled(encoded.size(), NONE),
+            Some((before, ghosts)) => Image::from_fn_parallel(encoded.size(), |[x, y]| {
+                let (x, y) = (x as usize, y as usize);
+                let from = tracked.fetched.at(x, y);
+                if from == NO_PAST {
+                    return NONE;
+                }
+                if leaves(encoded.at(x, y), before, from as usize) {
+                    return Ghost { old: before.pixels()[from as usize], age: 0 };
+                }
+                if tracked.past.at(x, y) == NO_PAST {
+                    return NONE;
+                }
+                let ghost = ghosts.pixels()[from as usize];
+                Ghost { age: ghost.age.saturating_add(1), ..ghost }
+            }),
+        };
+        self.previous = Some((encoded.clone(), ghosts.clone()));
+        ghosts
+    }
+}
+
+/// Whether a color lies outside of what the 3x3 pixels around pixel `index` hold.
+fn leaves(color: [f32; 3], before: &Image<[f32; 3]>, index: usize) -> bool {
+    let (width, height) = (before.width(), before.height());
+    let (x, y) = (index % width, index / width);
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for y in y.saturating_sub(1)..(y + 2).min(height) {
+        for x in x.saturating_sub(1)..(x + 2).min(width) {
+            let c = Vec3::from(before.at(x, y));
+            (low, high) = (low.min(c), high.max(c));
+        }
+    }
+    let color = Vec3::from(color);
+    (low - color).max(color - high).max_element() > CHANGE
+}
+
+/// The shares of old pictures that a method shows, by frames since the change.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GhostShares {
+    /// For each age, sums of (shown - new) (old - new) and (old - new)^2.
+    sums: [(f64, f64); GHOST_FRAMES],
+}
+
+impl Default for GhostShares {
+    fn default() -> Self {
+        Self { sums: [(0.0, 0.0); GHOST_FRAMES] }
+    }
+}
+
+impl GhostShares {
+    pub fn add(&mut self, ghost: Ghost, new: Vec3, shown: Vec3) {
+        if let Some((along, whole)) = self.sums.get_mut(usize::from(ghost.age)) {
+            let old = Vec3::from(ghost.old) - new;
+            *along += f64::from((shown - new).dot(old));
+            *whole += f64::from(old.length_squared());
+        }
+    }
+
+    /// The share of the old picture in what is shown, by least squares: 1 all, 0 none, for the ages that occurred.
+    fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(age, s)| (age, s.0 / s.1))
+    }
+
+    /// The squared shares added up, in frames: a picture that stays as it was for n frames has n. `None` if nothing changed.
+    pub fn energy(&self) -> Option<f64> {
+        self.shares().next()?;
+        Some(self.shares().map(|(_, share)| share.max(0.0).powi(2)).sum())
+    }
+
+    /// Frames until the share is half of that in the first frame; `None` if it never is, or there was none.
+    pub fn half_frames(&self) -> Option<u32> {
+        let first = self.shares().next().filter(|&(age, share)| age == 0 && share > 0.0)?.1;
+        self.shares().find(|&(_, share)| share <= 0.5 * first).map(|(age, _)| age as u32)
+    }
+}

@@ -1,0 +1,47 @@
+//! Full-rate frames made ready for comparison: what is the same for all methods is done once.
+
+use super::flip::{Flip, Seen};
+use super::ghost::{Ghost, Ghosts};
+use super::{Tracked, lab_map};
+use afterimage::image::Image;
+use glam::Vec3;
+
+/// Makes the references of a clip, frame after frame.
+#[derive(Clone, Debug, Default)]
+pub struct References {
+    flip: Option<Flip>,
+    ghosts: Ghosts,
+}
+
+/// A full-rate frame.
+#[derive(Clone, Debug)]
+pub struct Reference<'a> {
+    pub(super) encoded: &'a Image<[f32; 3]>,
+    pub(super) lab: Image<Vec3>,
+    pub(super) flip: Option<(&'a Flip, Seen)>,
+    pub(super) ghosts: Image<Ghost>,
+}
+
+impl References {
+    /// For scores with FLIP, which takes time.
+    pub fn with_flip(flip: Flip) -> Self {
+        Self { flip: Some(flip), ..Self::default() }
+    }
+
+    /// Takes the next frame, sRGB-encoded, and what is known of it.
+    pub fn next<'a>(&'a mut self, encoded: &'a Image<[f32; 3]>, tracked: &Tracked) -> Reference<'a> {
+        Reference {
+            lab: lab_map(encoded),
+            ghosts: self.ghosts.advance(encoded, tracked),
+            flip: self.flip.as_ref().map(|flip| (flip, flip.see(encoded))),
+            encoded,
+        }
+    }
+}
+
+impl Reference<'_> {
+    /// The frame itself, sRGB-encoded.
+    pub fn encoded(&self) -> &Image<[f32; 3]> {
+        self.encoded
+    }
+}

@@ -1,0 +1,220 @@
+//! Sums over a clip, and the figures made of them.
+
+use super::ghost::GhostShares;
+use super::mean::{Histogram, Mean};
+use super::track::RETAINED_FROM_DEG;
+use super::{Band, NO_PAST, Reference, Tracked, error_weight, lab_map, psnr_db, ssim_map};
+use afterimage::image::Image;
+use afterimage::kernel::color;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Share of the pixels that `delta_e94_p99` leaves above it.
+const WORST: f64 = 0.01;
+
+/// Collects the scores of one method over a clip.
+#[derive(Clone, Debug, Default)]
+pub struct Scorer {
+    squared: [Mean; 3],
+    weighted: Mean,
+    retained: Mean,
+    ssim: [Mean; 3],
+    flip: [Mean; 3],
+    delta_e94: Mean,
+    delta_e94_counts: Histogram,
+    ghosts: GhostShares,
+    flicker: Mean,
+    luma_error: Option<Image<f32>>,
+    skip_ssim: bool,
+}
+
+/// Figures of one eccentricity band. `None` where no pixel fell into it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BandScores {
+    /// PSNR in dB over pooled squared error; also `None` where the error is 0 (then `mse` is 0).
+    pub psnr_db: Option<f64>,
+    /// Mean squared error on a scale of 1.
+    pub mse: Option<f64>,
+    /// Mean SSIM.
+    pub ssim: Option<f64>,
+    /// Mean FLIP, 0 to 1; `None` where the references are without.
+    pub flip: Option<f64>,
+}
+
+/// Figures of one method over a clip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Scores {
+    /// All pixels of all frames.
+    #[serde(flatten)]
+    pub whole: BandScores,
+    /// By eccentricity, from the gaze outwards.
+    #[serde(with = "named_bands")]
+    pub bands: [BandScores; 3],
+    /// PSNR in dB over squared error weighted by [`error_weight`]; `None` where it is 0.
+    pub weighted_psnr_db: Option<f64>,
+    /// Mean Delta E 94.
+    pub delta_e94_mean: Option<f64>,
+    /// Delta E 94 that 99 % of the pixels do not pass, to 1/32.
+    pub delta_e94_p99: Option<f64>,
+    /// PSNR in dB over pixels beyond 3.5 degrees that were shown at full rate earlier and have stayed visible.
+    pub retained_psnr_db: Option<f64>,
+    /// Share of pixels that the retained figure is about.
+    pub retained_share: Option<f64>,
+    /// 1000 x mean absolute change of the luma error from a frame to the next, along the motion.
+    pub flicker: Option<f64>,
+    /// Squared share of the old picture in what is shown beyond 3.5 degrees after a change, added up over 32 frames.
+    pub ghost_energy: Option<f64>,
+    /// Frames until that share is half of what it is in the first frame after the change; `None`: not within 32 frames.
+    pub ghost_half_frames: Option<u32>,
+}
+
+/// Bands by name.
+mod named_bands {
+    use super::BandScores;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Serialize, Deserialize)]
+    struct Named {
+        fovea: BandScores,
+        mid: BandScores,
+        periphery: BandScores,
+    }
+
+    pub fn serialize<S: Serializer>(&[fovea, mid, periphery]: &[BandScores; 3], s: S) -> Result<S::Ok, S::Error> {
+        Named { fovea, mid, periphery }.serialize(s)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<[BandScores; 3], D::Error> {
+        Named::deserialize(d).map(|Named { fovea, mid, periphery }| [fovea, mid, periphery])
+    }
+}
+
+/// Mean squared errors of one frame, on a scale of 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameErrors {
+    /// Over all pixels.
+    pub mse: f64,
+    /// By eccentricity, from the gaze outwards; `None` where there is no pixel.
+    pub band_mse: [Option<f64>; 3],
+    /// Over retained pixels; `None` if there are none.
+    pub retained_mse: Option<f64>,
+}
+
+impl Scorer {
+    /// A scorer that leaves SSIM out, which is much of the work.
+    pub fn without_ssim() -> Self {
+        Self { skip_ssim: true, ..Self::default() }
+    }
+
+    /// Takes one frame: its reference, the sRGB-encoded image shown, what is known of the frame, eccentricities in degrees. Gives
+    /// the frame's own errors.
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    pub fn push(
+        &mut self,
+        reference: &Reference<'_>,
+        shown: &Image<[f32; 3]>,
+        tracked: &Tracked,
+        ecc_deg: &Image<f32>,
+    ) -> FrameErrors {
+        assert_eq!(reference.encoded.size(), shown.size());
+        let errors = self.push_errors(reference, shown, tracked, ecc_deg);
+        self.push_flicker(reference.encoded, shown, tracked);
+        for (r, s) in reference.lab.pixels().iter().zip(lab_map(shown).pixels()) {
+            let difference = color::delta_e94(*r, *s);
+            self.delta_e94.add(f64::from(difference));
+            self.delta_e94_counts.add(difference);
+        }
+        if let Some((flip, seen)) = &reference.flip {
+            add_by_band(&mut self.flip, &flip.difference(seen, &flip.see(shown)), ecc_deg);
+        }
+        if !self.skip_ssim
+            && let Some(map) = ssim_map(reference.encoded, shown)
+        {
+            add_by_band(&mut self.ssim, &map, ecc_deg);
+        }
+        errors
+    }
+
+    /// Squared errors and ghosts.
+    fn push_errors(
+        &mut self,
+        reference: &Reference<'_>,
+        shown: &Image<[f32; 3]>,
+        tracked: &Tracked,
+        ecc_deg: &Image<f32>,
+    ) -> FrameErrors {
+        let mut squared = [Mean::default(); 3];
+        let mut retained = Mean::default();
+        for (i, (r, s)) in reference.encoded.pixels().iter().zip(shown.pixels()).enumerate() {
+            let (r, s, e_deg) = (Vec3::from(*r), Vec3::from(*s), ecc_deg.pixels()[i]);
+            let error = f64::from((s - r).length_squared()) / 3.0;
+            squared[Band::of(e_deg) as usize].add(error);
+            self.weighted.add_weighted(error, f64::from(error_weight(e_deg)));
+            if tracked.retained.pixels()[i] {
+                retained.add(error);
+            }
+            if e_deg > RETAINED_FROM_DEG {
+                self.ghosts.add(reference.ghosts.pixels()[i], r, s);
+            }
+        }
+        for (sum, &frame) in self.squared.iter_mut().zip(&squared) {
+            sum.merge(frame);
+        }
+        self.retained.merge(retained);
+        FrameErrors {
+            mse: Mean::total(squared).value().unwrap_or(0.0),
+            band_mse: squared.map(Mean::value),
+            retained_mse: retained.value(),
+        }
+    }
+
+    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, tracked: &Tracked) {
+        let error = |i: usize| color::luma(Vec3::from(shown.pixels()[i]) - Vec3::from(reference.pixels()[i]));
+        let mut index = 0..shown.pixels().len();
+        let luma_error = shown.map(|_| index.next().map_or(0.0, error));
+        if let Some(before) = &self.luma_error {
+            for (now, &from) in luma_error.pixels().iter().zip(tracked.past.pixels()) {
+                if from != NO_PAST {
+                    let change = now - before.pixels()[from as usize];
+                    self.flicker.add(f64::from(change.abs()));
+                }
+            }
+        }
+        self.luma_error = Some(luma_error);
+    }
+
+    /// The figures so far.
+    pub fn scores(&self) -> Scores {
+        let figures = |squared: Mean, ssim: Mean, flip: Mean| BandScores {
+            psnr_db: squared.value().and_then(psnr_db),
+            mse: squared.value(),
+            ssim: ssim.value(),
+            flip: flip.value(),
+        };
+        let all = Mean::total(self.squared);
+        Scores {
+            whole: figures(all, Mean::total(self.ssim), Mean::total(self.flip)),
+            bands: [0, 1, 2].map(|i| figures(self.squared[i], self.ssim[i], self.flip[i])),
+            weighted_psnr_db: self.weighted.value().and_then(psnr_db),
+            delta_e94_mean: self.delta_e94.value(),
+            delta_e94_p99: self.delta_e94_counts.quantile(1.0 - WORST),
+            retained_psnr_db: self.retained.value().and_then(psnr_db),
+            retained_share: (all.weight() > 0.0).then(|| self.retained.weight() / all.weight()),
+            flicker: self.flicker.value().map(|v| 1000.0 * v),
+            ghost_energy: self.ghosts.energy(),
+            ghost_half_frames: self.ghosts.half_frames(),
+        }
+    }
+}
+
+/// Adds a map, which may lack the same border on all sides.
+fn add_by_band(sums: &mut [Mean; 3], map: &Image<f32>, ecc_deg: &Image<f32>) {
+    let margin = (ecc_deg.width() - map.width()) / 2;
+    for y in 0..map.height() {
+        for (&value, &e_deg) in map.row(y).iter().zip(&ecc_deg.row(y + margin)[margin..]) {
+            sums[Band::of(e_deg) as usize].add(f64::from(value));
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! SSIM (Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, on Rec. 709 luma) by the `blazediff-ssim` crate.
+
+use afterimage::image::Image;
+use afterimage::kernel::color;
+use blazediff_ssim::{Plane, SsimOptions, ssim};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Side of the window.
+const WINDOW: usize = 11;
+
+/// Rows of the map computed at a time. The crate shrinks images whose shorter side passes 384 pixels, as the authors' script
+/// does; strips stay below, so that every figure is at full resolution, and strips run in parallel.
+const STRIP_ROWS: usize = 128;
+
+/// SSIM at every pixel whose window lies inside the image: a map smaller by 10 pixels a side, pixel (0, 0) of which belongs to
+/// (5, 5). `None` for images smaller than the window.
+///
+/// # Panics
+/// If the sizes differ.
+pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<Image<f32>> {
+    assert_eq!(reference.size(), shown.size());
+    let (width, height) = (reference.width(), reference.height());
+    if width < WINDOW || height < WINDOW {
+        return None;
+    }
+    let map_height = height + 1 - WINDOW;
+    let map_width = width + 1 - WINDOW;
+    let strips: Vec<Vec<f32>> = (0..map_height.div_ceil(STRIP_ROWS))
+        .into_par_iter()
+        .map(|strip| {
+            let first = strip * STRIP_ROWS;
+            let rows = STRIP_ROWS.min(map_height - first);
+            let range = first * width..(first + rows + WINDOW - 1) * width;
+            let plane = |image: &Image<[f32; 3]>| Plane {
+                samples: image.pixels()[range.clone()].iter().map(|&c| 255.0 * color::luma(Vec3::from(c))).collect(),
+                width,
+                height: rows + WINDOW - 1,
+            };
+            let outcome = ssim(&plane(reference), &plane(shown), &SsimOptions::default())
+                .expect("strips have one size, at least that of the window");
+            assert_eq!([outcome.map_width, outcome.map_height], [map_width, rows], "strips must not be shrunk");
+            outcome.map
+        })
+        .collect();
+    Image::from_pixels([map_width as u32, map_height as u32], strips.concat()).ok()
+}

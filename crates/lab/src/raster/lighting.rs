@@ -1,0 +1,276 @@
+//! Light as the rasteriser has it: a list of lights without extent, panels, a sun with a shadow map, and what comes from all around.
+
+use super::bounce;
+use crate::scene::{Environment, Material, PunctualKind, PunctualLight, Scene, Triangles};
+use crate::trace::effects::{Effect, Effects};
+use crate::trace::shading_records::PunctualRecord;
+use afterimage::image::Image;
+use afterimage::kernel::color::luma;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+use std::f32::consts::PI;
+
+/// Lights that are looked at; of more, the strongest.
+pub(super) const MAX_LIGHTS: usize = 64;
+
+/// Sky of scenes without any light: radiance.
+pub const DEFAULT_SKY: [f32; 3] = [0.35, 0.42, 0.5];
+/// Their sun's irradiance.
+pub const DEFAULT_SUN: [f32; 3] = [3.6, 3.3, 2.9];
+/// Where it shines to.
+pub const DEFAULT_SUN_DIRECTION: [f32; 3] = [-0.35, -0.87, -0.35];
+
+/// A light, as the shader reads it.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct LightWords {
+    position: [f32; 3],
+    kind: u32,
+    direction: [f32; 3],
+    range: f32,
+    intensity: [f32; 3],
+    cos_inner: f32,
+    cos_outer: f32,
+    area: f32,
+    has_shadow: f32,
+    unused: f32,
+}
+
+impl LightWords {
+    /// What a panel sends, W.
+    pub fn power(&self) -> Vec3 {
+        let sides = if self.kind == TWO_SIDED { 2.0 } else { 1.0 };
+        Vec3::from(self.intensity) * (sides * PI * self.area)
+    }
+}
+
+/// Kinds of panels.
+const ONE_SIDED: u32 = 3;
+const TWO_SIDED: u32 = 4;
+
+/// All of them.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct LightsWords {
+    ambient: [[f32; 4]; 6],
+    sun: [[f32; 4]; 3],
+    bounced: [f32; 3],
+    count: u32,
+    texel: f32,
+    last_level: f32,
+    unused: [f32; 2],
+    lights: [LightWords; MAX_LIGHTS],
+}
+
+/// Light of a scene that does not change.
+#[derive(Clone, Debug)]
+pub(super) struct Lighting {
+    /// What surrounds the scene; that of the file, or the default.
+    pub environment: Environment,
+    /// Whether a sun was added, as the scene has no light of its own.
+    added_sun: bool,
+    panels: Vec<LightWords>,
+    ambient: [Vec3; 6],
+    bounced: Vec3,
+    center: Vec3,
+    /// Of the sphere around the scene, metres.
+    pub radius: f32,
+}
+
+impl Lighting {
+    pub fn new(scene: &Scene) -> Self {
+        let needs = Effects::needed(scene);
+        let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
+        let added_sun = !own.iter().any(|&e| needs.has(e));
+        let environment = if added_sun { Environment::Constant(DEFAULT_SKY) } else { scene.environment.clone() };
+        let rest = scene.pose(0.0);
+        let panels = panels(&[scene.still(), &rest.moving], &scene.materials);
+        let (low, high) = scene.bounds().map_or((Vec3::NEG_ONE, Vec3::ONE), |b| (b.min, b.max));
+        let radius = (0.5 * (high - low).length()).clamp(1e-6, 1e9);
+        let bounced = if needs.has(Effect::Environment) || added_sun {
+            Vec3::ZERO
+        } else {
+            bounce::radiance(scene, &rest.moving, &rest.lights, &panels, high - low)
+        };
+        Self {
+            ambient: ambient(&environment),
+            environment,
+            added_sun,
+            panels,
+            bounced,
+            center: 0.5 * (low + high),
+            radius,
+        }
+    }
+
+    /// Which of `lights` is the sun: the strongest from infinitely far.
+    pub fn sun(&self, lights: &[PunctualLight]) -> Option<PunctualLight> {
+        if self.added_sun {
+            return Some(PunctualLight {
+                kind: PunctualKind::Directional,
+                position: Vec3::ZERO,
+                direction: Vec3::from(DEFAULT_SUN_DIRECTION).normalize(),
+                intensity: DEFAULT_SUN,
+                range: f32::INFINITY,
+            });
+        }
+        let far = lights.iter().filter(|l| l.kind == PunctualKind::Directional);
+        far.copied().max_by(|a, b| strength(a).total_cmp(&strength(b)))
+    }
+
+    /// The uniform, with the punctual lights at a time; `last_level` is the sky map's, `shadow_side` the shadow map's.
+    pub fn words(&self, lights: &[PunctualLight], last_level: f32, shadow_side: u32) -> LightsWords {
+        let sun = self.sun(lights);
+        let mut all = lights.to_vec();
+        all.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        if let Some(sun) = sun {
+            all.retain(|l| *l != sun);
+            all.insert(0, sun);
+        }
+        let mut words: Vec<LightWords> = all.iter().map(punctual).chain(self.panels.iter().copied()).collect();
+        words.truncate(MAX_LIGHTS);
+        if let (Some(_), Some(first)) = (sun, words.first_mut()) {
+            first.has_shadow = 1.0;
+        }
+        let count = words.len() as u32;
+        words.resize(MAX_LIGHTS, LightWords::default());
+        LightsWords {
+            ambient: self.ambient.map(|c| c.extend(0.0).to_array()),
+            sun: self.sun_rows(sun.map_or(Vec3::NEG_Y, |s| s.direction)),
+            bounced: self.bounced.to_array(),
+            count,
+            texel: 2.0 * self.radius / shadow_side as f32,
+            last_level,
+            unused: [0.0; 2],
+            lights: words.try_into().expect("as many as there may be"),
+        }
+    }
+
+    /// From world space to the shadow map, which holds the sphere around the scene; depth is 1 next to the sun.
+    fn sun_rows(&self, direction: Vec3) -> [[f32; 4]; 3] {
+        let along = direction.normalize_or(Vec3::NEG_Y);
+        let right = along.any_orthonormal_vector();
+        let up = right.cross(along);
+        // A little more than the sphere, so that rounding leaves nothing out.
+        let scale = 1.0 / (1.01 * self.radius);
+        let row = |axis: Vec3, scale: f32, middle: f32| {
+            (axis * scale).extend(middle - axis.dot(self.center) * scale).to_array()
+        };
+        [row(right, scale, 0.0), row(up, scale, 0.0), row(-along, 0.5 * scale, 0.5)]
+    }
+}
+
+fn strength(light: &PunctualLight) -> f32 {
+    luma(Vec3::from(light.intensity))
+}
+
+/// As the tracer has it.
+fn punctual(l: &PunctualLight) -> LightWords {
+    let PunctualRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, .. } =
+        PunctualRecord::new(l);
+    LightWords { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightWords::default() }
+}
+
+/// Triangles that emit, those of one material and about one direction as one disk of their area at their middle. Where they are
+/// at time 0, as bright as the material says: emissive textures are not looked at.
+fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
+    struct Sum {
+        material: u32,
+        facing: Vec3,
+        area: f64,
+        middle: DVec3,
+        normal: DVec3,
+    }
+    let mut sums: Vec<Sum> = vec![];
+    for triangles in parts {
+        for (corners, &m) in triangles.positions.iter().zip(&triangles.materials) {
+            let Some(material) = materials.get(m as usize).filter(|m| luma(Vec3::from(m.emissive)) > 0.0) else {
+                continue;
+            };
+            let [a, b, c] = corners.map(|p| p.as_dvec3());
+            let across = 0.5 * (b - a).cross(c - a);
+            let (area, middle) = (across.length(), (a + b + c) / 3.0);
+            let facing = across.normalize_or_zero().as_vec3();
+            let alike = |s: &&mut Sum| s.material == m && s.facing.dot(facing) > 0.7;
+            match sums.iter_mut().find(alike) {
+                Some(sum) => {
+                    sum.area += area;
+                    sum.middle += middle * area;
+                    sum.normal += across;
+                }
+                None if material.emissive.iter().all(|v| v.is_finite()) && area > 0.0 => {
+                    sums.push(Sum { material: m, facing, area, middle: middle * area, normal: across });
+                }
+                None => {}
+            }
+        }
+    }
+    let words = |s: &Sum| {
+        let material = &materials[s.material as usize];
+        LightWords {
+            position: (s.middle / s.area).as_vec3().to_array(),
+            kind: if material.double_sided { TWO_SIDED } else { ONE_SIDED },
+            direction: s.normal.normalize_or(DVec3::NEG_Y).as_vec3().to_array(),
+            intensity: material.emissive,
+            area: s.area as f32,
+            ..LightWords::default()
+        }
+    };
+    let mut panels: Vec<LightWords> = sums.iter().map(words).collect();
+    panels.sort_by(|a, b| luma(b.power()).total_cmp(&luma(a.power())));
+    panels.truncate(MAX_LIGHTS / 2);
+    panels
+}
+
+/// Irradiance from the environment on faces towards +x, -x, +y, -y, +z, -z.
+fn ambient(environment: &Environment) -> [Vec3; 6] {
+    match environment {
+        Environment::Constant(radiance) => [Vec3::from(*radiance) * PI; 6],
+        Environment::Map(map) => irradiance(map),
+    }
+}
+
+fn irradiance(map: &Image<[f32; 3]>) -> [Vec3; 6] {
+    let [w, h] = [map.width(), map.height()];
+    let mut sums = [DVec3::ZERO; 6];
+    for y in 0..h {
+        let v = (y as f64 + 0.5) / h as f64 * std::f64::consts::PI;
+        let solid = v.sin() * (std::f64::consts::PI / h as f64) * (std::f64::consts::TAU / w as f64);
+        for x in 0..w {
+            let u = ((x as f64 + 0.5) / w as f64 - 0.5) * std::f64::consts::TAU;
+            let direction = DVec3::new(u.sin() * v.sin(), v.cos(), -u.cos() * v.sin());
+            let radiance = Vec3::from(map.at(x, y)).as_dvec3();
+            for axis in 0..3 {
+                let cosine = direction[axis];
+                sums[2 * axis + usize::from(cosine < 0.0)] += radiance * (cosine.abs() * solid);
+            }
+        }
+    }
+    sums.map(|s| s.as_vec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_map_lights_like_a_constant() {
+        let map = Image::filled([64, 32], [0.5, 1.0, 2.0]);
+        for face in irradiance(&map) {
+            // The midpoint rule on 32 rows is off by (pi / 32)^2 / 12 of the whole, and by as much again at the horizon.
+            assert!((face / PI - Vec3::new(0.5, 1.0, 2.0)).abs().max_element() < 0.005, "{face}");
+        }
+    }
+
+    #[test]
+    fn the_middle_of_a_sunlit_scene_is_in_the_middle_of_the_map() {
+        let scene = crate::scene::builtin::courtyard();
+        let lighting = Lighting::new(&scene);
+        let rows = lighting.sun_rows(Vec3::new(0.3, -1.0, 0.2).normalize());
+        let at = |p: Vec3| rows.map(|r| Vec3::new(r[0], r[1], r[2]).dot(p) + r[3]);
+        let [x, y, z] = at(lighting.center);
+        assert!(x.abs() < 1e-5 && y.abs() < 1e-5 && (z - 0.5).abs() < 1e-5);
+        // Nearer to the sun is larger.
+        assert!(at(lighting.center + Vec3::Y * 0.1)[2] > z);
+    }
+}

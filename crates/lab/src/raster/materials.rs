@@ -1,0 +1,155 @@
+//! Materials and their textures on the device.
+
+use super::mipmaps::levels;
+use super::pipelines::{Layouts, SLOTS, slot_binding};
+use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
+use crate::trace::shading_records::MaterialRecord;
+use afterimage::image::Image;
+use std::collections::HashMap;
+use wgpu::{
+    AddressMode, BindGroup, BindGroupEntry, BindingResource, Device, FilterMode, Queue, Sampler, TextureFormat,
+    TextureUsages, TextureView,
+};
+
+/// Bind groups of all materials of a scene, at least one.
+pub(super) fn bind_groups(
+    device: &Device,
+    queue: &Queue,
+    layouts: &Layouts,
+    scene: &Scene,
+    anisotropy: u16,
+) -> Vec<BindGroup> {
+    let fallback = [Material::default()];
+    let materials = if scene.materials.is_empty() { &fallback } else { &scene.materials[..] };
+    let white = upload(device, queue, "white", &[Image::filled([1, 1], [255; 4])], false);
+    let max_side = device.limits().max_texture_dimension_2d;
+    let mut textures = HashMap::new();
+    let mut samplers = HashMap::new();
+    // Only what a material shows: a texture for colors and for data has a copy of each kind.
+    for m in materials {
+        for (slot, is_color) in slots(m) {
+            if let Some((r, t)) = slot.and_then(|r| Some((r.texture, scene.textures.get(r.texture as usize)?))) {
+                textures
+                    .entry((r, is_color))
+                    .or_insert_with(|| upload(device, queue, "texture", &levels(t, is_color, max_side), is_color));
+            }
+        }
+    }
+    let stride = 256_u64.max(u64::from(device.limits().min_storage_buffer_offset_alignment));
+    let bytes = size_of::<MaterialRecord>() as u64;
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("materials"),
+        size: stride * materials.len() as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let groups = materials.iter().enumerate().map(|(i, m)| {
+        let record = MaterialRecord::new(m);
+        queue.write_buffer(&buffer, stride * i as u64, bytemuck::bytes_of(&record));
+        let slots = slots(m);
+        for (slot, _) in slots {
+            let (key, description) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
+            samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
+        }
+        let mut entries = vec![BindGroupEntry {
+            binding: 0,
+            resource: BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &buffer,
+                offset: stride * i as u64,
+                size: wgpu::BufferSize::new(bytes),
+            }),
+        }];
+        for (k, (slot, is_color)) in slots.into_iter().enumerate() {
+            let binding = slot_binding(k);
+            let view = slot.and_then(|r| textures.get(&(r.texture, is_color))).unwrap_or(&white);
+            entries.push(BindGroupEntry { binding, resource: BindingResource::TextureView(view) });
+            if k < 4 {
+                let (key, _) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
+                let sampler: &Sampler = &samplers[&key];
+                entries.push(BindGroupEntry { binding: binding + 1, resource: BindingResource::Sampler(sampler) });
+            }
+        }
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&m.name),
+            layout: &layouts.material,
+            entries: &entries,
+        })
+    });
+    groups.collect()
+}
+
+/// Textures in the order of their bindings, and whether they hold colors.
+fn slots(m: &Material) -> [(Option<TextureRef>, bool); SLOTS] {
+    [
+        (m.base_color_texture, true),
+        (m.metallic_roughness_texture, false),
+        (m.normal_texture, false),
+        (m.emissive_texture, true),
+        (m.specular_texture, false),
+        (m.specular_color_texture, true),
+        (m.clearcoat_texture, false),
+        (m.clearcoat_roughness_texture, false),
+        (m.sheen_color_texture, true),
+        (m.sheen_roughness_texture, false),
+        (m.transmission_texture, false),
+    ]
+}
+
+/// How a texture is sampled, and a key for it.
+fn addressing(texture: Option<&Texture>, anisotropy: u16) -> ([u8; 3], wgpu::SamplerDescriptor<'static>) {
+    let (wrap, nearest) = texture.map_or(([Wrap::Repeat; 2], false), |t| (t.wrap, t.nearest));
+    let mode = |wrap| match wrap {
+        Wrap::Repeat => AddressMode::Repeat,
+        Wrap::Mirror => AddressMode::MirrorRepeat,
+        Wrap::Clamp => AddressMode::ClampToEdge,
+    };
+    let filter = if nearest { FilterMode::Nearest } else { FilterMode::Linear };
+    let description = wgpu::SamplerDescriptor {
+        label: Some("texture"),
+        address_mode_u: mode(wrap[0]),
+        address_mode_v: mode(wrap[1]),
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: if nearest { wgpu::MipmapFilterMode::Nearest } else { wgpu::MipmapFilterMode::Linear },
+        anisotropy_clamp: if nearest { 1 } else { anisotropy },
+        ..Default::default()
+    };
+    ([wrap[0] as u8, wrap[1] as u8, u8::from(nearest)], description)
+}
+
+/// A texture with all its levels.
+fn upload(device: &Device, queue: &Queue, label: &str, levels: &[Image<[u8; 4]>], is_color: bool) -> TextureView {
+    let format = if is_color { TextureFormat::Rgba8UnormSrgb } else { TextureFormat::Rgba8Unorm };
+    upload_levels(device, queue, label, levels, format)
+}
+
+/// Levels of any kind of texel of four numbers, largest first.
+pub(super) fn upload_levels<T: bytemuck::NoUninit>(
+    device: &Device,
+    queue: &Queue,
+    label: &str,
+    levels: &[Image<T>],
+    format: TextureFormat,
+) -> TextureView {
+    let extent = |[width, height]: [u32; 2]| wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: extent(levels[0].size()),
+        mip_level_count: levels.len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (level, image) in levels.iter().enumerate() {
+        let to = wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..texture.as_image_copy() };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(image.size()[0] * size_of::<T>() as u32),
+            rows_per_image: None,
+        };
+        queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, extent(image.size()));
+    }
+    texture.create_view(&Default::default())
+}

@@ -1,0 +1,120 @@
+//! Smaller and smaller copies of images, each texel the mean of those it covers.
+
+use crate::scene::Texture;
+use afterimage::image::Image;
+use afterimage::kernel::color::{srgb_decode, srgb_encode};
+use rayon::prelude::*;
+use std::sync::LazyLock;
+
+/// A texture's levels, largest first, the last 1x1; those larger than `max_side` are left out.
+///
+/// Colors are averaged as light and by their alpha, so that what is transparent does not tint its neighbours; data as numbers.
+pub(super) fn levels(texture: &Texture, is_color: bool, max_side: u32) -> Vec<Image<[u8; 4]>> {
+    let [w, h] = texture.size;
+    let first = Image::from_fn([w, h], |[x, y]| texture.texels.get((y * w + x) as usize).copied().unwrap_or([255; 4]));
+    let mut levels = vec![first];
+    while let Some(last) = levels.last()
+        && last.size() != [1, 1]
+    {
+        let next = halved(last, is_color);
+        if last.size().iter().any(|&s| s > max_side) {
+            levels.pop();
+        }
+        levels.push(next);
+    }
+    levels
+}
+
+/// Linear values of sRGB bytes.
+static DECODED: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| srgb_decode(i as f32 / 255.0)));
+
+/// sRGB bytes of linear values: a step of 1/8192 is below half a byte's everywhere but in the darkest 7.
+static ENCODED: LazyLock<Vec<u8>> =
+    LazyLock::new(|| (0..=8192).map(|i| (srgb_encode(i as f32 / 8192.0) * 255.0).round() as u8).collect());
+
+fn halved(image: &Image<[u8; 4]>, is_color: bool) -> Image<[u8; 4]> {
+    let size = image.size().map(|s| (s / 2).max(1));
+    let [w, h] = [image.width(), image.height()];
+    let rows: Vec<Vec<[u8; 4]>> = (0..size[1] as usize)
+        .into_par_iter()
+        .map(|y| {
+            // A side of one texel has no second.
+            let at = |x: usize, y: usize| image.at(x.min(w - 1), y.min(h - 1));
+            let row = |x: usize| {
+                let (x, y) = (2 * x, 2 * y);
+                mean([at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)], is_color)
+            };
+            (0..size[0] as usize).map(row).collect()
+        })
+        .collect();
+    Image::from_pixels(size, rows.concat()).expect("rows of the size")
+}
+
+fn mean(four: [[u8; 4]; 4], is_color: bool) -> [u8; 4] {
+    let sum = |c: usize| four.iter().map(|t| u32::from(t[c])).sum::<u32>();
+    if !is_color {
+        return [0, 1, 2, 3].map(|c| ((sum(c) + 2) / 4) as u8);
+    }
+    let alpha = sum(3);
+    let color = |c: usize| {
+        let share = |t: &[u8; 4]| if alpha == 0 { 1.0 } else { f32::from(t[3]) };
+        let (light, total) = four
+            .iter()
+            .fold((0.0, 0.0), |(light, total), t| (light + DECODED[usize::from(t[c])] * share(t), total + share(t)));
+        ENCODED[((light / total) * 8192.0 + 0.5) as usize]
+    };
+    [color(0), color(1), color(2), ((alpha + 2) / 4) as u8]
+}
+
+/// The same for the sky: colors of half floats.
+pub(super) fn sky_levels(map: &Image<[f32; 3]>, max_side: u32) -> Vec<Image<[f32; 3]>> {
+    let mut levels = vec![map.clone()];
+    while let Some(last) = levels.last()
+        && last.size() != [1, 1]
+    {
+        let [w, h] = [last.width(), last.height()];
+        let next = Image::from_fn(last.size().map(|s| (s / 2).max(1)), |[x, y]| {
+            let at = |dx: usize, dy: usize| last.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
+            let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+            [0, 1, 2].map(|c| four.iter().map(|t| t[c]).sum::<f32>() * 0.25)
+        });
+        if last.size().iter().any(|&s| s > max_side) {
+            levels.pop();
+        }
+        levels.push(next);
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Wrap;
+
+    fn texture(size: [u32; 2], texels: Vec<[u8; 4]>) -> Texture {
+        Texture { size, texels, wrap: [Wrap::Repeat; 2], nearest: false }
+    }
+
+    #[test]
+    fn colors_are_averaged_as_light_and_data_as_numbers() {
+        let t = texture([2, 1], vec![[255, 0, 0, 255], [0, 0, 0, 255]]);
+        // Half the light of 255 is sRGB 188.
+        assert_eq!(levels(&t, true, 8192)[1].at(0, 0), [188, 0, 0, 255]);
+        assert_eq!(levels(&t, false, 8192)[1].at(0, 0), [128, 0, 0, 255]);
+    }
+
+    #[test]
+    fn what_is_transparent_gives_no_color() {
+        let t = texture([2, 1], vec![[200, 100, 50, 255], [0, 0, 0, 0]]);
+        assert_eq!(levels(&t, true, 8192)[1].at(0, 0), [200, 100, 50, 128]);
+    }
+
+    #[test]
+    fn any_size_ends_at_one_texel_and_large_levels_are_left_out() {
+        let t = texture([5, 3], vec![[7; 4]; 15]);
+        let sizes: Vec<_> = levels(&t, true, 8192).iter().map(Image::size).collect();
+        assert_eq!(sizes, [[5, 3], [2, 1], [1, 1]]);
+        assert_eq!(levels(&t, true, 4)[0].size(), [2, 1]);
+        assert!(levels(&t, true, 8192).iter().all(|l| l.pixels().iter().all(|p| p[3] == 7)));
+    }
+}

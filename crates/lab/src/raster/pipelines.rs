@@ -1,0 +1,265 @@
+//! Render pipelines and the layouts of what is bound.
+
+use super::corners::{Kind, LAYOUTS};
+use crate::shader::SHADERS;
+use crate::trace::effects::{Effect, Effects};
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutEntry, BindingType, BlendState, ColorTargetState, ColorWrites, CompareFunction,
+    DepthBiasState, DepthStencilState, Device, RenderPipeline, ShaderModule, ShaderStages, TextureFormat,
+    TextureSampleType, TextureViewDimension,
+};
+
+/// Linear color.
+pub const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Reversed, without a far plane.
+pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
+/// Pixels.
+pub const MOTION_FORMAT: TextureFormat = TextureFormat::Rg32Float;
+
+/// Samples of a pixel's color, which every device has.
+pub(super) const SAMPLES: u32 = 4;
+
+/// What groups 0 to 2 hold.
+#[derive(Debug)]
+pub(super) struct Layouts {
+    pub frame: BindGroupLayout,
+    pub material: BindGroupLayout,
+    pub scenery: BindGroupLayout,
+}
+
+#[derive(Debug)]
+pub(super) struct Pipelines {
+    motion: [RenderPipeline; 2],
+    pub motion_far: RenderPipeline,
+    sun: [RenderPipeline; 2],
+    color: [RenderPipeline; 3],
+    pub sky: RenderPipeline,
+}
+
+impl Pipelines {
+    /// Depth and motion of surfaces of a kind.
+    pub fn motion(&self, kind: Kind) -> &RenderPipeline {
+        &self.motion[usize::from(kind != Kind::Opaque)]
+    }
+
+    /// Their shadow.
+    pub fn sun(&self, kind: Kind) -> &RenderPipeline {
+        &self.sun[usize::from(kind != Kind::Opaque)]
+    }
+
+    /// Their color.
+    pub fn color(&self, kind: Kind) -> &RenderPipeline {
+        &self.color[kind as usize]
+    }
+
+    pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool) -> Self {
+        let module = |name: &str| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(SHADERS.compose(name).source.into()),
+            })
+        };
+        let [surface, sun, color, sky] = ["surface_pass", "sun_pass", "color_pass", "sky_pass"].map(module);
+        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
+        let mut shading = constants(
+            effects,
+            &[
+                ("BASE_COLOR_TEXTURE", Effect::BaseColor),
+                ("SURFACE_TEXTURE", Effect::SurfaceTexture),
+                ("NORMAL_MAP", Effect::NormalMap),
+                ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
+                ("LOBE_RETRO", Effect::Dielectric),
+                ("LOBE_SPECULAR", Effect::Dielectric),
+                ("LOBE_METAL", Effect::Metal),
+                ("LOBE_ANISOTROPY", Effect::Anisotropy),
+                ("LOBE_CLEARCOAT", Effect::Clearcoat),
+                ("LOBE_SHEEN", Effect::Sheen),
+                ("LOBE_TRANSMISSION", Effect::Transmission),
+            ],
+        );
+        shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
+        let two = [Some(&layouts.frame), Some(&layouts.material)];
+        let three = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.scenery)];
+        let make = |recipe: Recipe<'_>| recipe.make(device, if recipe.samples > 1 { &three } else { &two });
+        let motion = |fragment, depth| {
+            make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "follow", fragment, MOTION_FORMAT) })
+        };
+        let shadow = |fragment| {
+            make(Recipe {
+                constants: &base,
+                format: None,
+                // Away from the sun, more where the surface is steep in it.
+                bias: DepthBiasState { constant: -2, slope_scale: -2.0, clamp: 0.0 },
+                ..Recipe::new(&sun, "from_sun", fragment, COLOR_FORMAT)
+            })
+        };
+        let shade = |depth, blend, coverage| {
+            make(Recipe {
+                constants: &shading,
+                depth,
+                blend,
+                coverage,
+                samples: SAMPLES,
+                ..Recipe::new(&color, "stand", Some("shade"), COLOR_FORMAT)
+            })
+        };
+        Self {
+            motion: [motion(Some("motion_opaque"), true), motion(Some("motion"), true)],
+            motion_far: make(Recipe {
+                depth: false,
+                corners: false,
+                ..Recipe::new(&surface, "far", Some("motion_far"), MOTION_FORMAT)
+            }),
+            sun: [shadow(None), shadow(Some("holes"))],
+            color: [
+                shade(true, None, false),
+                shade(true, None, true),
+                shade(false, Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), false),
+            ],
+            sky: make(Recipe {
+                depth: false,
+                corners: false,
+                samples: SAMPLES,
+                ..Recipe::new(&sky, "far", Some("sky"), COLOR_FORMAT)
+            }),
+        }
+    }
+}
+
+fn constants(effects: Effects, list: &[(&'static str, Effect)]) -> Vec<(&'static str, f64)> {
+    list.iter().map(|&(name, effect)| (name, f64::from(u8::from(effects.has(effect))))).collect()
+}
+
+/// What pipelines differ in.
+#[derive(Clone, Copy)]
+struct Recipe<'a> {
+    module: &'a ShaderModule,
+    vertex: &'a str,
+    fragment: Option<&'a str>,
+    constants: &'a [(&'static str, f64)],
+    /// `None`: depth only.
+    format: Option<TextureFormat>,
+    /// Whether depth is written.
+    depth: bool,
+    bias: DepthBiasState,
+    blend: Option<BlendState>,
+    /// Whether alpha says how many of a pixel's samples are covered.
+    coverage: bool,
+    samples: u32,
+    /// Whether vertices are read.
+    corners: bool,
+}
+
+impl<'a> Recipe<'a> {
+    fn new(module: &'a ShaderModule, vertex: &'a str, fragment: Option<&'a str>, format: TextureFormat) -> Self {
+        Self {
+            module,
+            vertex,
+            fragment,
+            constants: &[],
+            format: Some(format),
+            depth: true,
+            bias: DepthBiasState::default(),
+            blend: None,
+            coverage: false,
+            samples: 1,
+            corners: true,
+        }
+    }
+
+    fn make(&self, device: &Device, groups: &[Option<&BindGroupLayout>]) -> RenderPipeline {
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.vertex),
+            bind_group_layouts: groups,
+            ..Default::default()
+        });
+        let options = || wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        let targets = self
+            .format
+            .map(|format| [Some(ColorTargetState { format, blend: self.blend, write_mask: ColorWrites::ALL })]);
+        let buffers = LAYOUTS.map(Into::into);
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: self.fragment.or(Some(self.vertex)),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(self.vertex),
+                compilation_options: if self.fragment.is_some() { options() } else { Default::default() },
+                buffers: if self.corners { &buffers } else { &[] },
+            },
+            // Counter-clockwise is the front; backs are seen, too.
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(self.depth),
+                depth_compare: Some(CompareFunction::GreaterEqual),
+                stencil: Default::default(),
+                bias: self.bias,
+            }),
+            multisample: wgpu::MultisampleState {
+                count: self.samples,
+                mask: !0,
+                alpha_to_coverage_enabled: self.coverage,
+            },
+            fragment: self.fragment.map(|entry| wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(entry),
+                compilation_options: options(),
+                targets: targets.as_ref().map_or(&[], |t| &t[..]),
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// Textures of a material, in the order of their bindings; the first four have samplers of their own.
+pub(super) const SLOTS: usize = 11;
+
+/// Binding of the texture of slot `i`.
+pub(super) fn slot_binding(i: usize) -> u32 {
+    if i < 4 { 2 * i as u32 + 1 } else { i as u32 + 5 }
+}
+
+impl Layouts {
+    pub fn new(device: &Device) -> Self {
+        let entry = |binding, visibility, ty| BindGroupLayoutEntry { binding, visibility, ty, count: None };
+        let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        let uniform = buffer(wgpu::BufferBindingType::Uniform);
+        let storage = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+        let texture = |sample_type| BindingType::Texture {
+            sample_type,
+            view_dimension: TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let filtered = texture(TextureSampleType::Float { filterable: true });
+        let sampler = BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let make = |label, entries: &[BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let fragment = ShaderStages::FRAGMENT;
+        let mut material = vec![entry(0, fragment, storage)];
+        for i in 0..SLOTS {
+            let binding = slot_binding(i);
+            material.push(entry(binding, fragment, filtered));
+            if i < 4 {
+                material.push(entry(binding + 1, fragment, sampler));
+            }
+        }
+        Self {
+            frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
+            material: make("material", &material),
+            scenery: make(
+                "scenery",
+                &[
+                    entry(0, fragment, texture(TextureSampleType::Depth)),
+                    entry(1, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                    entry(2, fragment, filtered),
+                    entry(3, fragment, sampler),
+                    entry(4, fragment, texture(TextureSampleType::Uint)),
+                ],
+            ),
+        }
+    }
+}

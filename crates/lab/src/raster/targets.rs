@@ -1,0 +1,63 @@
+//! What frames are drawn to, and how they come back to memory.
+
+use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT, SAMPLES};
+use crate::device::Headless;
+use afterimage::image::Image;
+use afterimage::kernel::pack::half_value;
+use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
+
+/// The textures of a frame. They can be bound by what comes after, and copied from.
+#[derive(Debug)]
+pub struct Targets {
+    /// Linear color.
+    pub color: Texture,
+    /// Near plane over distance; 0 where there is nothing.
+    pub depth: Texture,
+    /// Pixels, y down, previous minus current.
+    pub motion: Texture,
+    pub(super) views: [TextureView; 3],
+    /// Color and depth of all samples.
+    pub(super) samples: [TextureView; 2],
+}
+
+impl Targets {
+    pub(super) fn new(device: &Device, size: [u32; 2]) -> Self {
+        let [color, depth, motion] =
+            [COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT].map(|format| attachment(device, size, format, 1));
+        let view = |t: &Texture| t.create_view(&Default::default());
+        let views = [&color, &depth, &motion].map(view);
+        let samples = [COLOR_FORMAT, DEPTH_FORMAT].map(|format| view(&attachment(device, size, format, SAMPLES)));
+        Self { color, depth, motion, views, samples }
+    }
+
+    /// Waits for all that was submitted; the color.
+    pub fn read_color(&self, device: &Headless) -> Image<[f32; 3]> {
+        device.read::<[u16; 4]>(&self.color, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
+    }
+
+    /// Waits for all that was submitted; distance along the view axis in metres, infinity where there is nothing. `near` is
+    /// [`Raster::near`](super::Raster::near).
+    pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
+        device.read::<f32>(&self.depth, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
+    }
+
+    /// Waits for all that was submitted; the motion vectors.
+    pub fn read_motion(&self, device: &Headless) -> Image<[f32; 2]> {
+        device.read::<[f32; 2]>(&self.motion, 0)
+    }
+}
+
+/// A texture to draw to; of one sample, one that can be bound and copied.
+pub(super) fn attachment(device: &Device, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
+    let one = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("raster target"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | if samples == 1 { one } else { TextureUsages::empty() },
+        view_formats: &[],
+    })
+}

@@ -1,0 +1,142 @@
+//! From a recording on a screen to one gaze point per frame.
+
+use super::{Scanpath, Screen};
+use crate::error::InputError;
+use afterimage::geometry::ViewGeometry;
+use glam::Vec3;
+
+/// Slack in seconds when sample and frame times are compared: covers the rounding of `start_s + i / fps` over hours, and is
+/// far below the spacing of any recording.
+const TIME_SLACK_S: f64 = 1e-9;
+
+/// How screen positions become frame positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GazeMap {
+    /// Keep visual angles: the middle of the screen is the view's straight ahead, and an eye turned by 5 degrees then is turned
+    /// by 5 degrees now. Needs the screen's size in centimetres and its distance.
+    Angle,
+    /// Stretch the screen to the frame, edge on edge.
+    Fit,
+}
+
+impl GazeMap {
+    /// [`GazeMap::Angle`] where the screen's geometry is known, else [`GazeMap::Fit`].
+    pub fn default_for(screen: &Screen) -> Self {
+        if screen.tangent_per_px().is_some() { Self::Angle } else { Self::Fit }
+    }
+}
+
+/// The gaze of each frame: the last valid sample at or before the frame's time. Never interpolated, never predicted.
+///
+/// Frame `i` is shown `start_s + i / fps` seconds after the recording's first sample. A lookup takes O(log samples).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameGaze {
+    /// Times (the recording's clock) of the valid samples, and where they fall in the frame.
+    valid: Vec<(f64, [f32; 2])>,
+    map: GazeMap,
+    first_s: f64,
+    fps: f64,
+    frames: u64,
+}
+
+impl FrameGaze {
+    /// Resamples `path` for frames of `view` at `fps` frames per second, from `start_s` seconds after its first sample.
+    ///
+    /// Samples so far off the screen that their pixel overflows an `f32` count as lost.
+    ///
+    /// # Errors
+    /// If `fps` is not a positive number, `start_s` is negative, not finite or beyond the recording's end, or
+    /// [`GazeMap::Angle`] is asked for and the screen's geometry is not known.
+    pub fn new(path: &Scanpath, view: &ViewGeometry, map: GazeMap, start_s: f64, fps: f64) -> Result<Self, InputError> {
+        if !(fps.is_finite() && fps > 0.0) {
+            return Err(InputError::new("fps", format!("{fps} frames per second"), "expected a number above 0"));
+        }
+        let left_s = path.duration_s() - start_s;
+        if !(start_s >= 0.0 && left_s >= -TIME_SLACK_S) {
+            return Err(InputError::new(
+                "start",
+                format!("{start_s} s is not within {}", path.name()),
+                format!("expected 0 to {} s", path.duration_s()),
+            ));
+        }
+        let to_frame = mapping(path, view, map)?;
+        let valid = path.samples().iter().filter_map(|sample| {
+            let px = to_frame(sample.px?)?;
+            px.iter().all(|v| v.is_finite()).then_some((sample.t_s, px))
+        });
+        Ok(Self {
+            valid: valid.collect(),
+            map,
+            first_s: path.begin_s() + start_s,
+            fps,
+            // A float to integer cast saturates.
+            frames: ((left_s + TIME_SLACK_S) * fps).floor().max(0.0) as u64 + 1,
+        })
+    }
+
+    /// Frames that are shown no later than the recording's last sample: `floor((duration - start) * fps) + 1`.
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// The map in use.
+    pub fn map(&self) -> GazeMap {
+        self.map
+    }
+
+    /// Gaze in frame `index` in pixels, (0, 0) being the **centre** of the top left pixel, y down; finite, but not always
+    /// inside the frame. `None` before the first valid sample, where the caller decides what a lost gaze means. Past
+    /// [`FrameGaze::frames`] the last valid sample is held.
+    pub fn px(&self, index: u64) -> Option<[f32; 2]> {
+        self.held(index).map(|(_, px)| px)
+    }
+
+    /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]: how long ago the eye was last seen there. More than a
+    /// few sample intervals mean that the gaze is lost and held, which a caller may answer with a wider fovea.
+    pub fn age_s(&self, index: u64) -> Option<f64> {
+        self.held(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
+    }
+
+    fn held(&self, index: u64) -> Option<(f64, [f32; 2])> {
+        let now = self.time_s(index) + TIME_SLACK_S;
+        let after = self.valid.partition_point(|(t_s, _)| *t_s <= now);
+        after.checked_sub(1).map(|last| self.valid[last])
+    }
+
+    /// When frame `index` is shown, on the recording's clock.
+    fn time_s(&self, index: u64) -> f64 {
+        self.first_s + index as f64 / self.fps
+    }
+}
+
+/// The function from corner-based screen pixels to centre-based frame pixels.
+fn mapping(
+    path: &Scanpath,
+    view: &ViewGeometry,
+    map: GazeMap,
+) -> Result<impl Fn([f32; 2]) -> Option<[f32; 2]>, InputError> {
+    let screen = path.screen();
+    let tangent_per_px = match map {
+        GazeMap::Fit => None,
+        GazeMap::Angle => Some(screen.tangent_per_px().ok_or_else(|| {
+            InputError::new(
+                path.name(),
+                "the screen's size in cm or its distance is not known, so visual angles are not either",
+                "use the gaze map `fit`, or add `# screen_cm: WxH` and `# distance_cm: D` to the file",
+            )
+        })?),
+    };
+    let size = screen.size_px.map(f64::from);
+    let frame = view.size_px().map(f64::from);
+    let view = *view;
+    Ok(move |px: [f32; 2]| {
+        let px = px.map(f64::from);
+        match tangent_per_px {
+            Some(slope) => {
+                let tangent = [0, 1].map(|i| ((px[i] - 0.5 * size[i]) * slope[i]) as f32);
+                view.project(Vec3::new(tangent[0], tangent[1], 1.0))
+            }
+            None => Some([0, 1].map(|i| (px[i] / size[i] * frame[i] - 0.5) as f32)),
+        }
+    })
+}

@@ -1,0 +1,271 @@
+//! `cameras.json`: frame rate, field of view and camera poses of a sequence.
+
+use crate::error::InputError;
+use crate::error::{io_error, one_line};
+use glam::{DMat3, DMat4, DVec3};
+use serde::Deserialize;
+use std::fs;
+use std::path::Path;
+
+/// Name of the file, beside the frames.
+pub const FILE_NAME: &str = "cameras.json";
+
+/// Largest file that is read: 100,000 frames with every field take less.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// How far the rotation part may be from orthonormal, and a pair of matrices from inverse. Eight printed digits are off by
+/// 1e-8; a scaled or sheared camera by far more than this.
+const RIGID_TOLERANCE: f64 = 1e-3;
+
+#[derive(Deserialize)]
+struct FileForm {
+    width: Option<u32>,
+    height: Option<u32>,
+    fps: Option<f64>,
+    horizontal_fov_deg: Option<f64>,
+    #[serde(default)]
+    frames: Vec<FrameForm>,
+}
+
+#[derive(Deserialize)]
+struct FrameForm {
+    frame: Option<u64>,
+    camera_to_world: Option<[[f64; 4]; 4]>,
+    world_to_camera: Option<[[f64; 4]; 4]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pose {
+    world_from_camera: DMat4,
+    camera_from_world: DMat4,
+}
+
+/// What `cameras.json` says. Fields that it does not have are `None`.
+#[derive(Clone, Debug)]
+pub struct Cameras {
+    /// Frames per second, above 0.
+    pub fps: Option<f32>,
+    /// Horizontal field of view in degrees, above 0 and below 180.
+    pub hfov_deg: Option<f32>,
+    subject: String,
+    size: Option<[u32; 2]>,
+    numbers: Vec<Option<u64>>,
+    poses: Vec<Pose>,
+}
+
+impl Cameras {
+    /// Reads `folder/cameras.json`; `None` if there is no such file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not JSON of the expected form, or holds numbers that no camera has.
+    pub fn beside(folder: &Path) -> Result<Option<Self>, InputError> {
+        let path = folder.join(FILE_NAME);
+        match fs::metadata(&path) {
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            _ => {
+                let subject = path.display().to_string();
+                Self::parse(&subject, &read(&path)?).map(Some)
+            }
+        }
+    }
+
+    pub(crate) fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
+        let form: FileForm = serde_json::from_slice(text).map_err(|e| {
+            InputError::new(
+                subject,
+                one_line(&format!("is not the expected JSON ({e})")),
+                "expected {fps, horizontal_fov_deg, width, height, frames: [{frame, camera_to_world, world_to_camera}]}, all optional",
+            )
+        })?;
+        let in_range = |name: &str, value: Option<f64>, max: f64| match value {
+            Some(v) if !(v > 0.0 && v < max) => Err(InputError::new(
+                subject,
+                format!("its {name} is {v}"),
+                format!("expected a number above 0 and below {max}; correct or remove it"),
+            )),
+            other => Ok(other.map(|v| v as f32)),
+        };
+        let mut poses = Vec::new();
+        for (i, frame) in form.frames.iter().enumerate() {
+            let number = frame.frame.unwrap_or(i as u64);
+            poses.extend(pose(subject, number, frame)?);
+        }
+        if !poses.is_empty() && poses.len() != form.frames.len() {
+            return Err(InputError::new(
+                subject,
+                format!("has matrices for {} of its {} frames", poses.len(), form.frames.len()),
+                "expected camera_to_world for every frame, or for none",
+            ));
+        }
+        Ok(Self {
+            fps: in_range("fps", form.fps, 100_000.0)?,
+            hfov_deg: in_range("horizontal_fov_deg", form.horizontal_fov_deg, 180.0)?,
+            subject: subject.to_owned(),
+            size: form.width.zip(form.height).map(|(w, h)| [w, h]),
+            numbers: form.frames.iter().map(|f| f.frame).collect(),
+            poses,
+        })
+    }
+
+    /// Camera-to-world of every frame, in the file's axes.
+    pub(crate) fn world_from_camera(&self) -> impl ExactSizeIterator<Item = DMat4> {
+        self.poses.iter().map(|p| p.world_from_camera)
+    }
+
+    /// Checks that the images have the size that the cameras were made for.
+    pub(crate) fn check_size(&self, size: [u32; 2]) -> Result<(), InputError> {
+        match self.size {
+            Some(s) if s != size => Err(InputError::new(
+                &self.subject,
+                format!("says {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
+                "use the file that belongs to these frames, or remove width and height from it",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// The pose of every file, by the number in its name, or in order where either side has no numbers. `None` if there are
+    /// no matrices at all.
+    pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
+        if self.poses.is_empty() {
+            return Ok(None);
+        }
+        if self.numbers.iter().chain(file_numbers).all(Option::is_some) {
+            let find = |n: &Option<u64>| {
+                self.numbers.iter().position(|m| m == n).ok_or_else(|| {
+                    InputError::new(
+                        &self.subject,
+                        format!("has no camera for frame {}", n.unwrap_or_default()),
+                        "expected one for every file; use the file that belongs to these frames, or remove it",
+                    )
+                })
+            };
+            return file_numbers.iter().map(find).collect::<Result<_, _>>().map(Some);
+        }
+        if self.poses.len() == file_numbers.len() {
+            return Ok(Some((0..self.poses.len()).collect()));
+        }
+        Err(InputError::new(
+            &self.subject,
+            format!("has {} cameras for {} files", self.poses.len(), file_numbers.len()),
+            "expected one for every file, or numbers in both the file names and `frame`",
+        ))
+    }
+
+    /// From the view space of pose `current` to that of `previous`, row-major, x right, y down, z forward.
+    pub(crate) fn previous_from_current(&self, previous: usize, current: usize) -> [[f32; 4]; 4] {
+        // The file's cameras have y up and look along -z; the flip is its own inverse.
+        let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
+        let matrix = flip * self.poses[previous].camera_from_world * self.poses[current].world_from_camera * flip;
+        matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
+    }
+}
+
+/// The bytes of a file of cameras, if there are not too many.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
+    let subject = path.display().to_string();
+    let bytes = fs::metadata(path).map_err(|e| io_error(&subject, &e))?.len();
+    if bytes > MAX_BYTES {
+        return Err(InputError::new(
+            &subject,
+            format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
+            "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
+        ));
+    }
+    fs::read(path).map_err(|e| io_error(&subject, &e))
+}
+
+fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, InputError> {
+    let load = |name: &str, rows: Option<[[f64; 4]; 4]>| {
+        rows.map(|rows| {
+            let matrix = DMat4::from_cols_array_2d(&rows).transpose();
+            match why_not_rigid(matrix) {
+                None => Ok(matrix),
+                Some(why) => Err(InputError::new(
+                    subject,
+                    format!("{name} of frame {number} {why}"),
+                    "expected a rotation and a translation, row-major, for column vectors",
+                )),
+            }
+        })
+        .transpose()
+    };
+    let world_from_camera = load("camera_to_world", frame.camera_to_world)?;
+    let camera_from_world = load("world_to_camera", frame.world_to_camera)?;
+    let (world_from_camera, camera_from_world) = match (world_from_camera, camera_from_world) {
+        (None, None) => return Ok(None),
+        (Some(m), None) => (m, m.inverse()),
+        (None, Some(m)) => (m.inverse(), m),
+        (Some(a), Some(b)) => (a, b),
+    };
+    let distance = world_from_camera.w_axis.truncate().length();
+    if !(world_from_camera * camera_from_world).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
+        return Err(InputError::new(
+            subject,
+            format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
+            "correct one of them, or remove it",
+        ));
+    }
+    Ok(Some(Pose { world_from_camera, camera_from_world }))
+}
+
+fn why_not_rigid(m: DMat4) -> Option<&'static str> {
+    let rotation = DMat3::from_mat4(m);
+    if !m.is_finite() {
+        Some("is not finite")
+    } else if m.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
+        Some("has a last row other than 0 0 0 1")
+    } else if !(rotation.transpose() * rotation).abs_diff_eq(DMat3::IDENTITY, RIGID_TOLERANCE) {
+        Some("scales or shears")
+    } else if rotation.determinant() < 0.0 {
+        Some("mirrors")
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TURN: &str = "[[0,-1,0,2],[1,0,0,3],[0,0,1,4],[0,0,0,1]]";
+
+    fn parse(frames: &str) -> Result<Cameras, InputError> {
+        Cameras::parse("c.json", format!(r#"{{"frames":[{frames}]}}"#).as_bytes())
+    }
+
+    #[test]
+    fn one_matrix_is_enough_and_none_is_fine() {
+        let c = parse(&format!(r#"{{"camera_to_world":{TURN}}}"#)).unwrap();
+        let d = parse(&format!(r#"{{"world_to_camera":{TURN}}}"#)).unwrap();
+        let product = c.poses[0].world_from_camera * d.poses[0].world_from_camera;
+        assert!(product.abs_diff_eq(DMat4::IDENTITY, 1e-12));
+        assert!(parse("{}").unwrap().assign(&[None]).unwrap().is_none());
+    }
+
+    #[test]
+    fn matrices_that_no_camera_has_are_refused() {
+        for (bad, word) in [
+            ("[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]", "scales"),
+            ("[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", "mirrors"),
+            ("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,0]]", "last row"),
+            ("[[1,0,0,1e308],[0,1,0,0],[0,0,1,0],[0,0,0,1e400]]", "JSON"),
+        ] {
+            let e = parse(&format!(r#"{{"camera_to_world":{bad}}}"#)).unwrap_err();
+            assert!(e.to_string().contains(word), "{e}");
+        }
+        let both = format!(r#"{{"camera_to_world":{TURN},"world_to_camera":{TURN}}}"#);
+        let e = parse(&both).unwrap_err().to_string();
+        assert!(e.contains("not inverse"), "{e}");
+    }
+
+    #[test]
+    fn moving_forward_in_blender_axes_moves_the_scene_towards_the_eye() {
+        // The camera looks along -z: at z = -1 it is one unit further on. A point 5 ahead of it was 6 ahead before.
+        let at = |z: f64| format!(r#"{{"camera_to_world":[[1,0,0,0],[0,1,0,0],[0,0,1,{z}],[0,0,0,1]]}}"#);
+        let c = parse(&format!("{},{}", at(0.0), at(-1.0))).unwrap();
+        let m = c.previous_from_current(0, 1);
+        assert_eq!(m[2], [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(m[1], [0.0, 1.0, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,334 @@
+//! What an adapter's arithmetic does, and whether the passes compute there what they compute on the CPU.
+//!
+//! WGSL leaves much open: NaN may be assumed away, denormals flushed, products and sums fused. Nothing here depends on the answers but the
+//! twins; the rest tells why they differ where they do.
+
+use crate::device::{Backend, Headless};
+use crate::error::InputError;
+use crate::pipeline::{LaneKind, Pipeline};
+use crate::source::{AnalyticSource, FrameSource};
+use afterimage::error::CreateError;
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::image::Image;
+use afterimage::kernel::pack::{half_bits, half_value};
+use afterimage::settings::{Method, Settings};
+use std::sync::Arc;
+use wgpu::{BufferUsages, TextureFormat, TextureUsages};
+
+const SHADER: &str = include_str!("../shaders/self_test.wgsl");
+/// Rows of questions that are answered by a largest error.
+const ROWS: u32 = 4096;
+const SIZE: [u32; 2] = [96, 54];
+const FRAMES: u64 = 6;
+
+/// A question and its answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// What was looked at.
+    pub what: &'static str,
+    /// What was found.
+    pub found: String,
+    /// Whether it is as this library needs it; `None` where it needs nothing.
+    pub holds: Option<bool>,
+}
+
+impl Finding {
+    fn fact(what: &'static str, found: impl Into<String>) -> Self {
+        Self { what, found: found.into(), holds: None }
+    }
+
+    fn need(what: &'static str, found: impl Into<String>, holds: bool) -> Self {
+        Self { what, found: found.into(), holds: Some(holds) }
+    }
+}
+
+/// Numbers as in `shaders/self_test.wgsl`.
+#[derive(Clone, Copy)]
+enum Question {
+    IsNanEqual,
+    MaxOfNan,
+    Bits,
+    Denormal,
+    Fused,
+    TwoSum,
+    SquaredRoot,
+    Quotient,
+    Root,
+    Exp2,
+    Log2,
+    Power,
+    Sine,
+    ToHalf,
+    FromHalf,
+}
+
+/// Takes rows of three numbers and gives a word for each.
+type Ask<'a> = &'a dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>;
+
+/// Asks everything of an adapter. Takes seconds on software devices.
+///
+/// # Errors
+/// If the twins cannot be made on the device.
+pub fn self_test(gpu: &Arc<Headless>) -> Result<Vec<Finding>, SelfTestError> {
+    let mut findings = arithmetic(&|question, rows| ask(gpu, question, rows));
+    findings.push(formats(gpu));
+    for method in [Method::Wrs, Method::Smr, Method::Taa] {
+        findings.push(twins(gpu, method)?);
+    }
+    Ok(findings)
+}
+
+/// The twins could not be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum SelfTestError {
+    /// The passes cannot be made on the device.
+    #[error(transparent)]
+    Create(#[from] CreateError),
+    /// The scene cannot be made.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A frame was refused.
+    #[error(transparent)]
+    Frame(#[from] afterimage::error::FrameError),
+}
+
+/// What the answers say.
+fn arithmetic(ask: Ask<'_>) -> Vec<Finding> {
+    let one = |question, row: [f32; 3]| ask(question, &[row])[0];
+    let value = |question, row| f32::from_bits(one(question, row));
+    let payload = f32::from_bits(0x7fc1_2345);
+    let denormal = f32::from_bits(100);
+    let (near_one, below) = (1.0 + 2.0_f32.powi(-12), -(1.0 + 2.0_f32.powi(-11)));
+    let tiny = 2.0_f32.powi(-30);
+    let is_kept = one(Question::Bits, [payload, 0.0, 0.0]) == payload.to_bits();
+    vec![
+        Finding::need("bits of NaN through a variable", yes(is_kept, "kept", "changed"), is_kept),
+        Finding::fact(
+            "NaN == NaN",
+            yes(one(Question::IsNanEqual, [payload; 3]) == 1, "true: NaN is assumed away", "false"),
+        ),
+        Finding::fact("max(NaN, 1)", format!("{}", value(Question::MaxOfNan, [payload, 1.0, 0.0]))),
+        Finding::fact(
+            "denormals",
+            yes(value(Question::Denormal, [denormal, denormal, 0.0]) == 0.0, "flushed to zero", "kept"),
+        ),
+        Finding::fact(
+            "a * b + c",
+            yes(value(Question::Fused, [near_one, near_one, below]) == 0.0, "rounded twice", "fused"),
+        ),
+        Finding::fact(
+            "two-sum",
+            yes(value(Question::TwoSum, [1.0, tiny, 0.0]) == tiny, "exact", "simplified: its error term is lost"),
+        ),
+        Finding::fact(
+            "sqrt(2) * sqrt(2)",
+            yes(value(Question::SquaredRoot, [2.0; 3]) == 2.0, "simplified to 2", "as computed"),
+        ),
+        error_of(ask, "a / b", Question::Quotient, |[a, b]| a / b),
+        error_of(ask, "sqrt", Question::Root, |[a, _]| a.sqrt()),
+        error_of(ask, "exp2", Question::Exp2, |[a, _]| a.exp2()),
+        error_of(ask, "log2", Question::Log2, |[a, _]| a.log2()),
+        error_of(ask, "pow", Question::Power, |[a, b]| a.powf(b)),
+        error_of(ask, "sin", Question::Sine, |[a, _]| a.sin()),
+        halves(ask),
+    ]
+}
+
+/// Largest error in units of the last place over rows in (0, 8).
+fn error_of(ask: Ask<'_>, what: &'static str, question: Question, exact: fn([f64; 2]) -> f64) -> Finding {
+    let rows: Vec<[f32; 3]> =
+        (0..ROWS).map(|i| [(i + 1) as f32 * (8.0 / ROWS as f32), 0.1 + (i * 37 % ROWS) as f32 * 1e-3, 0.0]).collect();
+    let worst = ask(question, &rows).iter().zip(&rows).fold(0.0_f64, |worst, (&word, row)| {
+        let exact = exact([f64::from(row[0]), f64::from(row[1])]);
+        // Of the logarithm near 1 and the sine near pi, the place is that of 1.
+        let place = f64::from(f32::EPSILON) * 2.0_f64.powi(exact.abs().max(1.0).log2().floor() as i32);
+        worst.max((f64::from(f32::from_bits(word)) - exact).abs() / place)
+    });
+    Finding::fact(what, format!("within {worst:.1} units of the last place"))
+}
+
+/// Whether halves are made and read as on the CPU, which rounds to the nearest even.
+fn halves(ask: Ask<'_>) -> Finding {
+    let rows: Vec<[f32; 3]> = (0..ROWS)
+        .map(|i| {
+            let magnitude = 2.0_f32.powf((i % 40) as f32 - 24.0) * (1.0 + i as f32 / ROWS as f32);
+            [if i % 2 == 0 { magnitude } else { -magnitude }, 0.0, 0.0]
+        })
+        .filter(|row| row[0].abs() < 65504.0)
+        .collect();
+    let made = ask(Question::ToHalf, &rows);
+    let wrong = made.iter().zip(&rows).filter(|(word, row)| (*word & 0xffff) != half_bits(row[0])).count();
+    let codes: Vec<u32> = (0..0x7c00).collect();
+    let given: Vec<[f32; 3]> = codes.iter().map(|&c| [f32::from_bits(c), 0.0, 0.0]).collect();
+    let read = ask(Question::FromHalf, &given);
+    let misread = codes.iter().zip(&read).filter(|(code, word)| half_value(**code).to_bits() != **word).count();
+    let found = format!("{wrong} of {} made otherwise, {misread} of {} read otherwise", rows.len(), codes.len());
+    Finding::fact("halves against the CPU's", found)
+}
+
+/// Texture formats that engines hand over or ask for.
+fn formats(gpu: &Headless) -> Finding {
+    let able = |format: TextureFormat, usage: TextureUsages| {
+        format.guaranteed_format_features(gpu.device.features()).allowed_usages.contains(usage)
+    };
+    let output = [TextureFormat::Rgba8Unorm, TextureFormat::Rgba16Float, TextureFormat::Rgba32Float];
+    let missing: Vec<_> = output.iter().filter(|f| !able(**f, TextureUsages::STORAGE_BINDING)).collect();
+    Finding::need(
+        "outputs",
+        if missing.is_empty() { "rgba8, rgba16f, rgba32f".to_owned() } else { format!("not {missing:?}") },
+        missing.is_empty(),
+    )
+}
+
+/// Some frames of a moving scene through a method, here and on the CPU.
+fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> {
+    let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0)?;
+    let foveation = Foveation { rate_mid: 4, rate_far: 8, filter: Filter::Mip, ..Foveation::default() };
+    let settings = Settings { method, ..Settings::default() };
+    let pipeline = |backend: &Backend| {
+        Pipeline::new(*source.view(), foveation, &[LaneKind::PostProcess(settings)], false, &[], backend)
+    };
+    let mut lanes = [pipeline(&Backend::Cpu)?, pipeline(&Backend::Gpu(gpu.clone()))?];
+    let (mut differ, mut largest) = (0, 0.0_f32);
+    for index in 0..FRAMES {
+        let frame = source.frame(index)?;
+        let gaze = Some([20.0 + 10.0 * index as f32, 27.0]);
+        let mut shown = Vec::new();
+        for lane in &mut lanes {
+            shown.push(lane.step(index, &frame, gaze)?.shown.swap_remove(0).image);
+        }
+        let (pixels, most) = difference(&shown[0], &shown[1]);
+        (differ, largest) = (differ + pixels, largest.max(most));
+    }
+    let what = match method {
+        Method::Wrs => "wrs against its twin",
+        Method::Smr => "smr against its twin",
+        _ => "taa against its twin",
+    };
+    let all = u64::from(SIZE[0] * SIZE[1]) * FRAMES;
+    let found = match differ {
+        0 => format!("equal bits in all {all} pixels"),
+        _ => format!("{differ} of {all} pixels differ, by up to {largest:.1e}"),
+    };
+    Ok(Finding::need(what, found, differ == 0))
+}
+
+/// Pixels that differ in any bit, and the largest difference.
+fn difference(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> (u64, f32) {
+    let pairs = a.pixels().iter().zip(b.pixels());
+    pairs.fold((0, 0.0), |(count, most), (a, b)| {
+        let differs = a.map(f32::to_bits) != b.map(f32::to_bits);
+        let off = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
+        (count + u64::from(differs), most.max(off))
+    })
+}
+
+fn yes(is: bool, so: &str, otherwise: &str) -> String {
+    if is { so } else { otherwise }.to_owned()
+}
+
+/// One word for each row.
+fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("self-test"),
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("self-test"),
+        layout: None,
+        module: &module,
+        entry_point: Some("ask"),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants: &[("QUESTION", f64::from(question as u32))],
+            ..Default::default()
+        },
+        cache: None,
+    });
+    let given = gpu.buffer(size_of_val(rows) as u64, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+    gpu.queue.write_buffer(&given, 0, bytemuck::cast_slice(rows));
+    let answered = gpu.buffer(4 * rows.len() as u64, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("self-test"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: given.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: answered.as_entire_binding() },
+        ],
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups((rows.len() as u32).div_ceil(64), 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    bytemuck::pod_collect_to_vec(&gpu.read_buffer(&answered))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Question, arithmetic, difference};
+    use afterimage::image::Image;
+    use afterimage::kernel::pack::{half_bits, half_value};
+
+    /// An adapter that computes as IEEE 754 says, or in the ways that WGSL admits besides.
+    fn adapter(is_strict: bool) -> impl Fn(Question, &[[f32; 3]]) -> Vec<u32> {
+        let loosely = move |question, [a, b, c]: [f32; 3]| match (question, is_strict) {
+            (Question::IsNanEqual, strict) => u32::from(!strict),
+            (Question::MaxOfNan, true) => 1.0_f32.to_bits(),
+            (Question::Denormal | Question::TwoSum, false) => 0,
+            (Question::Denormal, true) => (a + b).to_bits(),
+            (Question::Fused, true) => (a * b + c).to_bits(),
+            (Question::Fused, false) => a.mul_add(b, c).to_bits(),
+            (Question::TwoSum, true) => b.to_bits(),
+            (Question::SquaredRoot, true) => (a.sqrt() * a.sqrt()).to_bits(),
+            (Question::Quotient, true) => (a / b).to_bits(),
+            (Question::Quotient, false) => (a / b * 1.000_001).to_bits(),
+            (Question::Root, _) => a.sqrt().to_bits(),
+            (Question::Exp2, _) => a.exp2().to_bits(),
+            (Question::Log2, _) => a.log2().to_bits(),
+            (Question::Power, _) => a.powf(b).to_bits(),
+            (Question::Sine, _) => a.sin().to_bits(),
+            (Question::ToHalf, true) => half_bits(a),
+            // Rounded towards zero.
+            (Question::ToHalf, false) => half_bits(f32::from_bits(a.to_bits() & !0x1fff)),
+            (Question::FromHalf, _) => half_value(a.to_bits()).to_bits(),
+            (Question::Bits, false) => 0x7fc0_0000,
+            _ => a.to_bits(),
+        };
+        move |question, rows| rows.iter().map(|&row| loosely(question, row)).collect()
+    }
+
+    #[test]
+    fn adapters_that_compute_otherwise_are_told_apart() {
+        let said =
+            |is_strict| arithmetic(&adapter(is_strict)).into_iter().map(|f| (f.what, f.found)).collect::<Vec<_>>();
+        let (strict, loose) = (said(true), said(false));
+        let of = |said: &[(&str, String)], what: &str| said.iter().find(|f| f.0.contains(what)).unwrap().1.clone();
+        for (what, one, other) in [
+            ("bits of NaN", "kept", "changed"),
+            ("NaN == NaN", "false", "assumed away"),
+            ("denormals", "kept", "flushed"),
+            ("a * b + c", "twice", "fused"),
+            ("two-sum", "exact", "lost"),
+            ("sqrt(2)", "computed", "simplified"),
+        ] {
+            assert!(of(&strict, what).contains(one) && of(&loose, what).contains(other), "{what}");
+        }
+        assert!(of(&strict, "a / b").contains(" 0.5 units") && !of(&loose, "a / b").contains(" 0.5 units"));
+        assert!(of(&strict, "halves").starts_with("0 of") && !of(&loose, "halves").starts_with("0 of"));
+        let kept: Vec<_> = arithmetic(&adapter(false)).into_iter().filter_map(|f| f.holds).collect();
+        assert_eq!(kept, [false], "NaN has to keep its bits: the scrub tests them");
+    }
+
+    #[test]
+    fn one_bit_is_a_difference() {
+        let a = Image::filled([2, 2], [1.0_f32; 3]);
+        let mut b = a.clone();
+        assert_eq!(difference(&a, &b), (0, 0.0));
+        b.pixels_mut()[3][1] = 1.0_f32.next_up();
+        assert_eq!(difference(&a, &b).0, 1);
+    }
+}

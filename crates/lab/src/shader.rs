@@ -1,0 +1,52 @@
+//! The shaders of this crate, put together with the drop-in's.
+
+use afterimage::module;
+use afterimage::shader::{Composer, Module};
+
+/// Modules of this crate.
+static MODULES: &[Module] = &[
+    module!("lib", "albedo"),
+    module!("lib", "bsdf"),
+    module!("lib", "direction"),
+    module!("lib", "layers"),
+    module!("lib", "light"),
+    module!("lib", "microfacet"),
+    module!("lib", "octahedral"),
+    module!("lib", "phong"),
+    module!("lib", "sampling"),
+    module!("lib", "shading"),
+    module!("lib", "texel"),
+    module!("lib", "triangle"),
+    module!("raster", "color_pass"),
+    module!("raster", "raster_frame"),
+    module!("raster", "raster_material"),
+    module!("raster", "scenery"),
+    module!("raster", "sky_pass"),
+    module!("raster", "sun_pass"),
+    module!("raster", "surface_pass"),
+    module!("trace", "accept_all"),
+    module!("trace", "count_pass"),
+    module!("trace", "effects"),
+    module!("trace", "expand_pass"),
+    module!("trace", "extend_pass"),
+    module!("trace", "frame"),
+    module!("trace", "generate_pass"),
+    module!("trace", "geometry"),
+    module!("trace", "heap_buffer"),
+    module!("trace", "heap_texture"),
+    module!("trace", "hit"),
+    module!("trace", "hits_pass"),
+    module!("trace", "holes"),
+    module!("trace", "lights"),
+    module!("trace", "plan"),
+    module!("trace", "records"),
+    module!("trace", "resolve_pass"),
+    module!("trace", "shade_pass"),
+    module!("trace", "shadow_pass"),
+    module!("trace", "surface_point"),
+    module!("trace", "texture"),
+    module!("trace", "traverse"),
+];
+
+/// This crate's shaders, which may use the drop-in's modules.
+pub static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]);

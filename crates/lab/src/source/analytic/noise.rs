@@ -1,0 +1,147 @@
+//! Building blocks of the textures: integer hashes, value noise, and step functions averaged over a sample's footprint.
+//!
+//! Everything takes the footprint `w`, the width in texture units that one color sample covers, and returns the mean over
+//! it. A picture that is filtered here does not shimmer where the texture is finer than the pixels.
+
+use glam::{Vec2, Vec3};
+
+/// A 32-bit hash of a lattice point.
+#[inline]
+pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
+    let mut h = (x as u32)
+        .wrapping_mul(0x9e37_79b1)
+        .wrapping_add((y as u32).wrapping_mul(0x85eb_ca77))
+        .wrapping_add(seed.wrapping_mul(0xc2b2_ae3d));
+    h ^= h >> 15;
+    h = h.wrapping_mul(0x2c1b_3c6d);
+    h ^= h >> 12;
+    h = h.wrapping_mul(0x297a_2d39);
+    h ^ (h >> 15)
+}
+
+/// The hash as a number in [0, 1).
+#[inline]
+pub(super) fn unit(x: i32, y: i32, seed: u32) -> f32 {
+    (hash(x, y, seed) >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// The integer below `x` and what remains. Without a call into the C library, which baseline x86 needs for a floor.
+#[inline]
+pub(super) fn split(x: f32) -> (i32, f32) {
+    let truncated = x as i32;
+    let whole = truncated - i32::from((truncated as f32) > x);
+    (whole, x - whole as f32)
+}
+
+/// The integers below both coordinates.
+#[inline]
+pub(super) fn floor2(p: Vec2) -> Vec2 {
+    Vec2::new(split(p.x).0 as f32, split(p.y).0 as f32)
+}
+
+#[inline]
+fn lerp(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+/// 0 below `a`, 1 above `b`, smooth in between.
+#[inline]
+pub(super) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
+    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Values in [0, 1) at the four lattice points around a cell, top row first. Neighbours share most of their arithmetic, and
+/// one round less than [`hash`] is enough where the values are interpolated.
+#[inline]
+fn corners(x: i32, y: i32, seed: u32) -> [f32; 4] {
+    const X: u32 = 0x9e37_79b1;
+    const Y: u32 = 0x85eb_ca77;
+    let base = (x as u32)
+        .wrapping_mul(X)
+        .wrapping_add((y as u32).wrapping_mul(Y))
+        .wrapping_add(seed.wrapping_mul(0xc2b2_ae3d));
+    [0, X, Y, X.wrapping_add(Y)].map(|step| {
+        let mut h = base.wrapping_add(step);
+        h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
+        h ^= h >> 13;
+        // A signed conversion: the only one baseline x86 has.
+        (h >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
+    })
+}
+
+/// Value noise in [0, 1] with one lattice point per unit.
+#[inline]
+pub(super) fn noise(p: Vec2, seed: u32) -> f32 {
+    let ((x, fx), (y, fy)) = (split(p.x), split(p.y));
+    let f = Vec2::new(fx, fy);
+    let s = f * f * (Vec2::splat(3.0) - 2.0 * f);
+    let [a, b, c, d] = corners(x, y, seed);
+    lerp(lerp(a, b, s.x), lerp(c, d, s.x), s.y)
+}
+
+/// Value noise in [0, 1] in three dimensions.
+pub(super) fn noise3(p: Vec3, seed: u32) -> f32 {
+    let ((x, fx), (y, fy), (z, fz)) = (split(p.x), split(p.y), split(p.z));
+    let f = Vec3::new(fx, fy, fz);
+    let s = f * f * (Vec3::splat(3.0) - 2.0 * f);
+    let plane = |z: i32| {
+        let seed = seed.wrapping_add((z as u32).wrapping_mul(0x27d4_eb2f));
+        let [a, b, c, d] = corners(x, y, seed);
+        lerp(lerp(a, b, s.x), lerp(c, d, s.x), s.y)
+    };
+    lerp(plane(z), plane(z + 1), s.z)
+}
+
+/// How much of a feature of period 1 survives a footprint of `w`: 1 below a third, 0 from one on.
+#[inline]
+pub(super) fn surviving(w: f32) -> f32 {
+    1.0 - smoothstep(0.35, 1.0, w)
+}
+
+/// Sum of `octaves` noises, each twice as fine and half as strong; in [0, 1] around 0.5. Octaves finer than `w` fade out.
+pub(super) fn fbm(p: Vec2, w: f32, octaves: u32, seed: u32) -> f32 {
+    let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
+    for octave in 0..octaves {
+        let kept = surviving(0.5 * w * frequency);
+        if kept <= 0.0 {
+            break;
+        }
+        sum += amplitude * kept * (noise(p * frequency, seed + octave) - 0.5);
+        amplitude *= 0.5;
+        frequency *= 2.0;
+    }
+    sum
+}
+
+/// As [`fbm`] in three dimensions.
+pub(super) fn fbm3(p: Vec3, w: f32, octaves: u32, seed: u32) -> f32 {
+    let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
+    for octave in 0..octaves {
+        let kept = surviving(0.5 * w * frequency);
+        if kept <= 0.0 {
+            break;
+        }
+        sum += amplitude * kept * (noise3(p * frequency, seed + octave) - 0.5);
+        amplitude *= 0.5;
+        frequency *= 2.0;
+    }
+    sum
+}
+
+/// Share of [x - w/2, x + w/2] covered by the pulses [n, n + duty] for all integers n. Exact for any `w`.
+#[inline]
+pub(super) fn pulse(x: f32, duty: f32, w: f32) -> f32 {
+    let w = w.max(1e-4);
+    let integral = |x: f32| {
+        let (cell, rest) = split(x);
+        cell as f32 * duty + rest.min(duty)
+    };
+    ((integral(x + 0.5 * w) - integral(x - 0.5 * w)) / w).clamp(0.0, 1.0)
+}
+
+/// Share of the footprint on the inner side of an edge `d` away; `d` is negative inside.
+#[inline]
+pub(super) fn inside(d: f32, w: f32) -> f32 {
+    (0.5 - d / w.max(1e-5)).clamp(0.0, 1.0)
+}

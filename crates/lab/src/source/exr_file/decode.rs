@@ -1,0 +1,316 @@
+//! From the chunks of a checked EXR file to a frame.
+
+use super::channels::{ChannelId, VectorForm};
+use super::header::{ExrHeader, Vectors, chunk_header_bytes, full_resolution_chunks};
+use super::{exr_error, guarded};
+use crate::error::InputError;
+use crate::error::io_error;
+use afterimage::error::FrameError;
+use afterimage::image::Image;
+use exr::block::UncompressedBlock;
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
+use exr::math::Vec2;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{ChannelList, Compression, SampleType};
+use exr::meta::header::Header;
+use exr::prelude::f16;
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+
+/// Decoded bytes that may wait at a time. More keeps more cores busy, and takes as much memory.
+const BATCH_BYTES: usize = 64 << 20;
+
+/// A decoded EXR frame.
+#[derive(Clone, Debug)]
+pub struct ExrFrame {
+    /// Linear color; pixels with a NaN or an infinity are black.
+    pub color: Image<[f32; 3]>,
+    /// Distance along the view axis; NaN where the file has NaN, zero or less.
+    pub depth: Option<Image<f32>>,
+    /// Pixels, y down: where a point is in the other frame, minus where it is in this one. NaN stays.
+    pub motion: Option<Image<[f32; 2]>>,
+    /// Color pixels that were NaN or infinite.
+    pub nonfinite: u64,
+}
+
+impl ExrHeader {
+    /// Decodes the frame with the vectors asked for. Memory: the frame, its compressed chunks a batch at a time, and the
+    /// decoded batch.
+    ///
+    /// # Errors
+    /// If the file does not have these vectors, has changed, or its compressed data are damaged.
+    pub fn read(&self, vectors: Vectors) -> Result<ExrFrame, InputError> {
+        guarded(&self.subject, || self.read_unguarded(vectors))
+    }
+
+    fn read_unguarded(&self, vectors: Vectors) -> Result<ExrFrame, InputError> {
+        let mut planes = Planes::new(self, vectors)?;
+        let mut file = File::open(&self.path).map_err(|e| io_error(&self.subject, &e))?;
+        for part in planes.parts() {
+            self.read_part(&mut file, part, &mut planes)?;
+        }
+        planes.finish(self.size).map_err(|e| InputError::new(&self.subject, e.to_string(), "export it again"))
+    }
+
+    fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
+        let header = &self.meta.headers[part];
+        let (columns, rows) = full_resolution_chunks(header);
+        let block = header.max_block_pixel_size();
+        let block_bytes =
+            block.0.min(header.layer_size.0) * block.1.min(header.layer_size.1) * header.channels.bytes_per_pixel;
+        let batch = (BATCH_BYTES / block_bytes.max(1)).max(1);
+        for start in (0..columns * rows).step_by(batch) {
+            let end = (start + batch).min(columns * rows);
+            let chunks = (start..end)
+                .map(|i| self.read_chunk(file, part, i, Vec2(i % columns, i / columns)))
+                .collect::<Result<Vec<_>, _>>()?;
+            let blocks = chunks
+                .into_par_iter()
+                .map(|chunk| UncompressedBlock::decompress_chunk(chunk, &self.meta, false))
+                .collect::<Result<Vec<_>, _>>()
+                .map_err(|e| exr_error(&self.subject, e))?;
+            for block in &blocks {
+                planes.scatter(part, block, &header.channels, self.size[0] as usize);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads chunk `index` of a part, which must say that it is the block `tile`: so every pixel is written once.
+    fn read_chunk(&self, file: &mut File, part: usize, index: usize, tile: Vec2<usize>) -> Result<Chunk, InputError> {
+        let io = |e: std::io::Error| io_error(&self.subject, &e);
+        let header = &self.meta.headers[part];
+        let offset = self.chunk_offsets[part][index];
+        let head_bytes = chunk_header_bytes(&self.meta, part);
+        let mut head = [0u8; 24];
+        let head = &mut head[..head_bytes as usize];
+        file.seek(SeekFrom::Start(offset)).map_err(io)?;
+        file.read_exact(head).map_err(io)?;
+        let fields: Vec<i32> =
+            head.chunks_exact(4).map(|b| i32::from_le_bytes(b.try_into().unwrap_or_default())).collect();
+
+        let (&bytes, place) = fields.split_last().unwrap_or((&-1, &[]));
+        let rest = self.file_bytes.saturating_sub(offset + head_bytes);
+        let bytes = u64::try_from(bytes).ok().filter(|&b| b <= rest);
+        let (Some(bytes), true) = (bytes, place == self.chunk_place(part, tile)) else {
+            return Err(self.damaged(index));
+        };
+        let mut data = vec![0u8; bytes as usize];
+        file.read_exact(&mut data).map_err(io)?;
+        if !dwa_counters_are_sane(header, tile, &data) {
+            return Err(self.damaged(index));
+        }
+        let compressed_block = match header.blocks {
+            BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {
+                // Counted from the window's corner, as the header in memory says.
+                y_coordinate: (tile.1 * header.compression.scan_lines_per_block()) as i32,
+                compressed_pixels_le: data,
+            }),
+            BlockDescription::Tiles(_) => CompressedBlock::Tile(CompressedTileBlock {
+                coordinates: TileCoordinates { tile_index: tile, level_index: Vec2(0, 0) },
+                compressed_pixels_le: data,
+            }),
+        };
+        Ok(Chunk { layer_index: part, compressed_block })
+    }
+
+    /// What precedes the size in the head of a chunk.
+    fn chunk_place(&self, part: usize, tile: Vec2<usize>) -> Vec<i32> {
+        let header = &self.meta.headers[part];
+        let mut place = Vec::with_capacity(5);
+        if self.meta.requirements.is_multilayer() {
+            place.push(part as i32);
+        }
+        match header.blocks {
+            BlockDescription::ScanLines => {
+                let line = tile.1 * header.compression.scan_lines_per_block();
+                place.push(self.first_lines[part].wrapping_add(line as i32));
+            }
+            BlockDescription::Tiles(_) => place.extend([tile.0 as i32, tile.1 as i32, 0, 0]),
+        }
+        place
+    }
+
+    fn damaged(&self, index: usize) -> InputError {
+        InputError::new(
+            &self.subject,
+            format!("is truncated or damaged: chunk {} is not what the table of chunks says", index + 1),
+            "copy or export it again",
+        )
+    }
+}
+
+/// Whether a DWA chunk promises no more than its block can hold. The `exr` crate sets aside what the counters at its start
+/// ask for, whatever that is, and a failed allocation ends the process.
+fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> bool {
+    if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+        return true;
+    }
+    let block = header.max_block_pixel_size();
+    let w = block.0.min(header.layer_size.0 - tile.0 * block.0);
+    let h = block.1.min(header.layer_size.1 - tile.1 * block.1);
+    let pixel_bytes = header.channels.bytes_per_pixel;
+    if data.len() == w * h * pixel_bytes {
+        // Stored as it is, because compression did not make it smaller.
+        return true;
+    }
+    // Coefficients come in blocks of 8x8; run lengths can double what they hold.
+    let most = (2 * w.next_multiple_of(8) * h.next_multiple_of(8) * pixel_bytes) as u64;
+    // The first counter is the version.
+    let mut counters = data.chunks_exact(8).skip(1).take(9);
+    counters.all(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()) <= most)
+}
+
+/// Where a channel's samples go.
+#[derive(Clone, Copy)]
+enum Slot {
+    Color(usize),
+    Depth,
+    Motion(usize, f32),
+}
+
+/// The frame while it is filled.
+struct Planes {
+    slots: Vec<(ChannelId, Slot)>,
+    color: Vec<[f32; 3]>,
+    depth: Option<Vec<f32>>,
+    motion: Option<Vec<[f32; 2]>>,
+}
+
+impl Planes {
+    fn new(header: &ExrHeader, vectors: Vectors) -> Result<Self, InputError> {
+        let roles = &header.roles;
+        let mut slots: Vec<_> = (0..3).map(|i| (roles.color[i], Slot::Color(i))).collect();
+        slots.extend(roles.depth.map(|id| (id, Slot::Depth)));
+        if vectors != Vectors::Skip {
+            let missing = || missing_vectors(header, vectors);
+            let motion = roles.motion.ok_or_else(missing)?;
+            let (ids, signs) = match (vectors, motion.form) {
+                (Vectors::ToNext, form) => {
+                    let ids = motion.to_next.ok_or_else(missing)?;
+                    // Blender's are current minus next with y up; next minus current with y down negates x alone.
+                    let signs = if form == VectorForm::Blender { [-1.0, 1.0] } else { [1.0, 1.0] };
+                    (ids, signs)
+                }
+                (_, VectorForm::Blender) => (motion.to_previous, [1.0, -1.0]),
+                (_, VectorForm::Plain) => (motion.to_previous, [1.0, 1.0]),
+            };
+            slots.extend((0..2).map(|i| (ids[i], Slot::Motion(i, signs[i]))));
+        }
+        let pixels = header.size[0] as usize * header.size[1] as usize;
+        Ok(Self {
+            slots,
+            color: vec![[0.0; 3]; pixels],
+            depth: roles.depth.map(|_| vec![0.0; pixels]),
+            motion: (vectors != Vectors::Skip).then(|| vec![[0.0; 2]; pixels]),
+        })
+    }
+
+    /// Parts with a wanted channel.
+    fn parts(&self) -> Vec<usize> {
+        let mut parts: Vec<usize> = self.slots.iter().map(|(id, _)| id.0).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        parts
+    }
+
+    /// Copies the wanted channels of a decoded block. In it, each row holds the samples of one channel after another.
+    fn scatter(&mut self, part: usize, block: &UncompressedBlock, channels: &ChannelList, width: usize) {
+        let Vec2(x0, y0) = block.index.pixel_position;
+        let Vec2(w, h) = block.index.pixel_size;
+        let mut first = 0;
+        for (index, channel) in channels.list.iter().enumerate() {
+            let bytes = w * channel.sample_type.bytes_per_sample();
+            let wanted = self.slots.iter().filter(|(id, _)| *id == (part, index));
+            for slot in wanted.map(|(_, slot)| *slot).collect::<Vec<_>>() {
+                for y in 0..h {
+                    let at = y * w * channels.bytes_per_pixel + first;
+                    let samples = &block.data[at..at + bytes];
+                    let start = (y0 + y) * width + x0;
+                    self.store(slot, start..start + w, samples, channel.sample_type);
+                }
+            }
+            first += bytes;
+        }
+    }
+
+    fn store(&mut self, slot: Slot, pixels: std::ops::Range<usize>, samples: &[u8], kind: SampleType) {
+        match slot {
+            Slot::Color(i) => {
+                let out = self.color[pixels].iter_mut().map(|p| &mut p[i]);
+                convert(samples, kind, 1.0, out);
+            }
+            Slot::Depth => {
+                if let Some(depth) = &mut self.depth {
+                    convert(samples, kind, 1.0, depth[pixels].iter_mut());
+                }
+            }
+            Slot::Motion(i, sign) => {
+                if let Some(motion) = &mut self.motion {
+                    let out = motion[pixels].iter_mut().map(|m| &mut m[i]);
+                    convert(samples, kind, sign, out);
+                }
+            }
+        }
+    }
+
+    fn finish(mut self, size: [u32; 2]) -> Result<ExrFrame, FrameError> {
+        let nonfinite = blacken_nonfinite(&mut self.color);
+        for d in self.depth.iter_mut().flatten() {
+            if d.is_nan() || *d <= 0.0 {
+                *d = f32::NAN;
+            }
+        }
+        Ok(ExrFrame {
+            color: Image::from_pixels(size, self.color)?,
+            depth: self.depth.map(|d| Image::from_pixels(size, d)).transpose()?,
+            motion: self.motion.map(|m| Image::from_pixels(size, m)).transpose()?,
+            nonfinite,
+        })
+    }
+}
+
+/// Sets pixels with a NaN or an infinity to black and counts them.
+fn blacken_nonfinite(color: &mut [[f32; 3]]) -> u64 {
+    let mut count = 0;
+    for pixel in color {
+        if !pixel.iter().all(|c| c.is_finite()) {
+            *pixel = [0.0; 3];
+            count += 1;
+        }
+    }
+    count
+}
+
+fn convert<'a>(samples: &[u8], kind: SampleType, sign: f32, out: impl Iterator<Item = &'a mut f32>) {
+    let quad = |b: &[u8]| <[u8; 4]>::try_from(b).unwrap_or_default();
+    match kind {
+        SampleType::F16 => {
+            for (b, o) in samples.chunks_exact(2).zip(out) {
+                *o = sign * f16::from_ne_bytes([b[0], b[1]]).to_f32();
+            }
+        }
+        SampleType::F32 => {
+            for (b, o) in samples.chunks_exact(4).zip(out) {
+                *o = sign * f32::from_ne_bytes(quad(b));
+            }
+        }
+        SampleType::U32 => {
+            for (b, o) in samples.chunks_exact(4).zip(out) {
+                *o = sign * u32::from_ne_bytes(quad(b)) as f32;
+            }
+        }
+    }
+}
+
+fn missing_vectors(header: &ExrHeader, vectors: Vectors) -> InputError {
+    let (which, needed) = match vectors {
+        Vectors::ToNext => (
+            "to the next frame, which playing backwards needs",
+            "<layer>.Vector.Z/W or motion.Z/W; add them, or ask for no more frames than there are",
+        ),
+        _ => ("to the previous frame", "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still"),
+    };
+    InputError::new(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
+}

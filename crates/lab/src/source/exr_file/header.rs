@@ -1,0 +1,321 @@
+//! The header of an EXR file, and the checks that need no pixel: sizes, channels, and whether the file is all there.
+
+use super::channels::{ChannelName, Roles};
+use super::{exr_error, guarded};
+use crate::error::InputError;
+use crate::error::io_error;
+use crate::source::limits::ReadLimits;
+use exr::math::Vec2;
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// Which motion vectors to read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// None.
+    Skip,
+    /// Where each point was in the frame with the lower number, minus where it is.
+    ToPrevious,
+    /// Where each point will be in the frame with the higher number, minus where it is.
+    ToNext,
+}
+
+/// A checked EXR header: the frame can be decoded unless its compressed data are damaged.
+#[derive(Debug)]
+pub struct ExrHeader {
+    pub(super) path: PathBuf,
+    pub(super) subject: String,
+    pub(super) size: [u32; 2],
+    pub(super) meta: MetaData,
+    pub(super) roles: Roles,
+    /// Positions of the full-resolution chunks of each part, row by row.
+    pub(super) chunk_offsets: Vec<Vec<u64>>,
+    /// Number of each part's first scan line in the file.
+    pub(super) first_lines: Vec<i32>,
+    pub(super) file_bytes: u64,
+    channel_names: Vec<String>,
+}
+
+impl ExrHeader {
+    /// Reads and checks the header of `path`. Memory stays in proportion to the header, whatever it claims.
+    ///
+    /// # Errors
+    /// If the file is missing, not EXR, truncated, larger than the limits, cropped, subsampled, or without color.
+    pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+        let subject = path.display().to_string();
+        guarded(&subject, || Self::open_unguarded(path, &subject, limits))
+    }
+
+    fn open_unguarded(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Self, InputError> {
+        let io = |e: std::io::Error| io_error(subject, &e);
+        let file = File::open(path).map_err(io)?;
+        let file_bytes = file.metadata().map_err(io)?.len();
+        if file_bytes == 0 {
+            return Err(InputError::new(subject, "is empty", "copy or export it again"));
+        }
+        let mut reader = Counting::new(BufReader::new(file));
+        let invalid = |e| exr_error(subject, e);
+        let mut meta = MetaData::read_from_buffered(&mut reader, false).map_err(invalid)?;
+        let header_end = reader.position;
+
+        let names = channel_names(&meta);
+        let shown: Vec<String> = names.iter().map(|n| n.shown.clone()).collect();
+        let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &shown))?;
+        let size = checked_size(subject, &meta, &roles, limits)?;
+        MetaData::validate(&meta.headers, false).map_err(invalid)?;
+        let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
+        let windows = meta.headers.iter();
+        let first_lines = windows.map(|h| h.own_attributes.layer_position.1).collect();
+        for header in &mut meta.headers {
+            // Blocks are then counted from the window's corner, wherever that lies.
+            header.own_attributes.layer_position = Vec2(0, 0);
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            subject: subject.to_owned(),
+            size,
+            chunk_offsets: tables,
+            first_lines,
+            meta,
+            roles,
+            file_bytes,
+            channel_names: shown,
+        })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Names of all channels, in file order.
+    pub fn channel_names(&self) -> &[String] {
+        &self.channel_names
+    }
+
+    /// Whether there is a depth channel.
+    pub fn has_depth(&self) -> bool {
+        self.roles.depth.is_some()
+    }
+
+    /// Whether there are these vectors.
+    pub fn has(&self, vectors: Vectors) -> bool {
+        let motion = self.roles.motion.as_ref();
+        match vectors {
+            Vectors::Skip => true,
+            Vectors::ToPrevious => motion.is_some(),
+            Vectors::ToNext => motion.is_some_and(|m| m.to_next.is_some()),
+        }
+    }
+}
+
+fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
+    let mut names = Vec::new();
+    for (part, header) in meta.headers.iter().enumerate() {
+        // A single part's name is decoration: some writers put the file's name there.
+        let several = meta.headers.len() > 1;
+        let part_name = header.own_attributes.layer_name.as_ref();
+        let part_name = part_name.filter(|_| several).map(|n| n.to_string());
+        for (index, channel) in header.channels.list.iter().enumerate() {
+            let name = channel.name.to_string();
+            names.push(ChannelName::new(part, part_name.as_deref(), index, &name));
+        }
+    }
+    names
+}
+
+fn missing_color(subject: &str, shown: &[String]) -> InputError {
+    const LISTED: usize = 40;
+    let mut list = shown.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    if shown.len() > LISTED {
+        list += &format!(" and {} more", shown.len() - LISTED);
+    }
+    InputError::new(
+        subject,
+        format!("has no color channels; it has {}", crate::error::one_line(&list)),
+        "expected <layer>.Combined.R/G/B, R/G/B, <layer>.R/G/B or Y",
+    )
+}
+
+/// The size that all used parts share, after every check of what the header claims.
+fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimits) -> Result<[u32; 2], InputError> {
+    let mut size = None;
+    for part in used_parts(roles) {
+        let header = &meta.headers[part];
+        let Vec2(w, h) = header.layer_size;
+        let this = limits.check(subject, w as u64, h as u64)?;
+        check_window(subject, header)?;
+        check_blocks(subject, header, limits)?;
+        if *size.get_or_insert(this) != this {
+            return Err(InputError::new(
+                subject,
+                "has parts of different sizes",
+                "expected color, depth and motion of one size; export them again",
+            ));
+        }
+    }
+    size.ok_or_else(|| missing_color(subject, &[]))
+}
+
+/// Parts that hold a used channel, in file order.
+pub(super) fn used_parts(roles: &Roles) -> Vec<usize> {
+    let mut parts: Vec<usize> = roles.color.iter().chain(&roles.depth).map(|c| c.0).collect();
+    parts.extend(roles.motion.iter().map(|m| m.to_previous[0].0));
+    parts.sort_unstable();
+    parts.dedup();
+    parts
+}
+
+fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
+    let data = header.data_window();
+    let display = header.shared_attributes.display_window;
+    if data == display {
+        return Ok(());
+    }
+    let text = |b: exr::meta::attribute::IntegerBounds| {
+        format!("{}x{} at ({}, {})", b.size.0, b.size.1, b.position.0, b.position.1)
+    };
+    Err(InputError::new(
+        subject,
+        format!("its data window is {} but its display window is {}", text(data), text(display)),
+        "expected the whole frame; export it without crop or overscan",
+    ))
+}
+
+/// Refuses subsampled channels, and blocks whose decoding would take far more memory than the frame.
+fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(), InputError> {
+    if let Some(c) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
+        return Err(InputError::new(
+            subject,
+            crate::error::one_line(&format!("its channel {} is subsampled", c.name)),
+            "expected a sample for every pixel; export it as RGB instead of luminance and chroma",
+        ));
+    }
+    let block = header.max_block_pixel_size();
+    let pixels = block.0.min(header.layer_size.0) as u64 * block.1.min(header.layer_size.1) as u64;
+    let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
+    if bytes > limits.max_block_bytes() {
+        return Err(InputError::new(
+            subject,
+            format!(
+                "a block of it decodes to {} MB, above the limit of {} MB that follows from {} million pixels",
+                bytes / 1_000_000,
+                limits.max_block_bytes() / 1_000_000,
+                limits.max_pixels as f64 / 1e6
+            ),
+            "write it with smaller tiles or fewer channels, or raise the limit with --max-megapixels N",
+        ));
+    }
+    Ok(())
+}
+
+/// Reads the tables of chunk positions and checks that every chunk lies in the file, the last one with its data.
+fn read_tables(
+    reader: &mut Counting<BufReader<File>>,
+    subject: &str,
+    meta: &MetaData,
+    header_end: u64,
+    file_bytes: u64,
+) -> Result<Vec<Vec<u64>>, InputError> {
+    let entries = meta.headers.iter().try_fold(0u64, |sum, h| sum.checked_add(h.chunk_count as u64));
+    let tables_end = entries
+        .and_then(|n| n.checked_mul(8))
+        .and_then(|bytes| bytes.checked_add(header_end))
+        .filter(|&end| end <= file_bytes)
+        .ok_or_else(|| truncated(subject, "its table of chunks does not fit in the file"))?;
+
+    reader.seek(SeekFrom::Start(header_end)).map_err(|e| io_error(subject, &e))?;
+    let mut tables = Vec::with_capacity(meta.headers.len());
+    let mut last = (0, 0);
+    for (part, header) in meta.headers.iter().enumerate() {
+        let mut bytes = vec![0u8; header.chunk_count * 8];
+        reader.read_exact(&mut bytes).map_err(|e| io_error(subject, &e))?;
+        let mut table: Vec<u64> =
+            bytes.chunks_exact(8).map(|b| u64::from_le_bytes(b.try_into().unwrap_or_default())).collect();
+        let chunk_header = chunk_header_bytes(meta, part);
+        let in_file = |&o: &u64| o >= tables_end && o.saturating_add(chunk_header) <= file_bytes;
+        if let Some(bad) = table.iter().position(|o| !in_file(o)) {
+            let n = table.len();
+            return Err(truncated(
+                subject,
+                &format!("chunk {} of {n} lies outside the file of {file_bytes} bytes", bad + 1),
+            ));
+        }
+        last = last.max((table.iter().copied().max().unwrap_or(0), part));
+        let (columns, rows) = full_resolution_chunks(header);
+        table.truncate(columns * rows);
+        tables.push(table);
+    }
+    let data_at = last.0 + chunk_header_bytes(meta, last.1);
+    check_chunk_is_whole(reader, subject, data_at, file_bytes)?;
+    Ok(tables)
+}
+
+/// Checks that the chunk whose data begin at `data_at`, after their size, does not run past the end of the file.
+fn check_chunk_is_whole(
+    reader: &mut Counting<BufReader<File>>,
+    subject: &str,
+    data_at: u64,
+    file_bytes: u64,
+) -> Result<(), InputError> {
+    let mut size = [0u8; 4];
+    reader
+        .seek(SeekFrom::Start(data_at - 4))
+        .and_then(|_| reader.read_exact(&mut size))
+        .map_err(|e| io_error(subject, &e))?;
+    let size = u64::try_from(i32::from_le_bytes(size)).unwrap_or(u64::MAX);
+    if data_at.saturating_add(size) > file_bytes {
+        return Err(truncated(subject, "its last chunk is cut off"));
+    }
+    Ok(())
+}
+
+fn truncated(subject: &str, what: &str) -> InputError {
+    InputError::new(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
+}
+
+/// Bytes before a chunk's data: the part's number in a file of several, the position, the size.
+pub(super) fn chunk_header_bytes(meta: &MetaData, part: usize) -> u64 {
+    let part_number = if meta.requirements.is_multilayer() { 4 } else { 0 };
+    let position = match meta.headers[part].blocks {
+        BlockDescription::ScanLines => 4,
+        BlockDescription::Tiles(_) => 16,
+    };
+    part_number + position + 4
+}
+
+/// Columns and rows of blocks at full resolution. They come first in the table.
+pub(super) fn full_resolution_chunks(header: &Header) -> (usize, usize) {
+    let block = header.max_block_pixel_size();
+    (header.layer_size.0.div_ceil(block.0), header.layer_size.1.div_ceil(block.1))
+}
+
+/// Counts what is read, because the `exr` crate does not say where its header ended.
+struct Counting<R> {
+    inner: R,
+    position: u64,
+}
+
+impl<R> Counting<R> {
+    fn new(inner: R) -> Self {
+        Self { inner, position: 0 }
+    }
+}
+
+impl<R: Read> Read for Counting<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let n = self.inner.read(buffer)?;
+        self.position += n as u64;
+        Ok(n)
+    }
+}
+
+impl<R: Seek> Seek for Counting<R> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.position = self.inner.seek(to)?;
+        Ok(self.position)
+    }
+}

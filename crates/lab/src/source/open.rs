@@ -1,0 +1,91 @@
+//! From what the user named to a source.
+
+use super::analytic::{self, AnalyticSource};
+use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
+use crate::error::InputError;
+use afterimage::error::FrameError;
+use std::path::Path;
+
+/// Whether what the user named is a scene, which a renderer makes frames of ([`RasterSource`]), and not frames.
+pub fn is_scene(input: &str) -> bool {
+    input.starts_with("builtin:") || matches!(extension(Path::new(input)).as_str(), "gltf" | "glb")
+}
+
+/// Opens what the user named: a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
+///
+/// # Errors
+/// If it does not exist, cannot be read, or is of a kind that is not read.
+pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
+    // A scheme in front names a source that is no file. Checked first, so that no file hides it.
+    match input.split_once(':') {
+        Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
+        _ if is_scene(input) => return Err(scene_error(input)),
+        _ => {}
+    }
+    if let Some([w, h]) = scene.size {
+        return Err(InputError::new(
+            input,
+            format!("has a size of its own, and {w}x{h} was asked for"),
+            "give a size for scenes only",
+        ));
+    }
+    let path = Path::new(input);
+    if path.is_dir() {
+        return Ok(Box::new(SequenceSource::open(path, limits)?));
+    }
+    match extension(path).as_str() {
+        "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
+        _ if !path.exists() => Err(InputError::new(
+            input,
+            "does not exist",
+            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
+        )),
+        _ => Err(InputError::new(
+            input,
+            "is not of a kind that is read",
+            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
+        )),
+    }
+}
+
+fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<AnalyticSource, InputError> {
+    let size = scene.size.unwrap_or(analytic::DEFAULT_SIZE);
+    check_size(&format!("analytic:{name}"), size, limits)?;
+    AnalyticSource::new(
+        name,
+        size,
+        scene.hfov_deg.unwrap_or(analytic::DEFAULT_HFOV_DEG),
+        scene.fps.unwrap_or(analytic::DEFAULT_FPS),
+    )
+}
+
+/// Refuses frames to be rendered that are larger than those that may be read.
+pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<(), InputError> {
+    let pixels = u64::from(w) * u64::from(h);
+    if pixels <= limits.max_pixels {
+        return Ok(());
+    }
+    Err(InputError::new(
+        subject,
+        format!("{w}x{h} pixels are above the limit of {} million", limits.max_pixels / 1_000_000),
+        format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
+    ))
+}
+
+/// What a renderer says that has lost its device.
+pub(super) fn device_lost(name: &str, lost: &FrameError) -> InputError {
+    InputError::new(name, lost.to_string(), "start again, or use --backend cpu where that is possible")
+}
+
+fn scene_error(input: &str) -> InputError {
+    InputError::new(
+        input,
+        "is a scene, and scenes need a renderer",
+        "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
+    )
+}
+
+/// The ending of a file name in lower case, without the dot; empty if there is none.
+pub(super) fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}

@@ -1,0 +1,151 @@
+//! Frames of a scene by the rasteriser.
+
+use super::Stance;
+use super::open::{check_size, device_lost};
+use super::scene_camera::SceneCamera;
+use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use crate::device::Headless;
+use crate::error::InputError;
+use crate::frame::SourceFrame;
+use crate::raster::{Raster, RasterSettings};
+use crate::scene::{Scene, SceneLimits};
+use crate::trace::view::View;
+use glam::DMat4;
+use std::sync::Arc;
+
+/// Width and height in pixels where nothing else is asked for.
+pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
+/// Frames per second where nothing else is asked for.
+pub const DEFAULT_FPS: f32 = 60.0;
+
+/// A scene seen by a camera, rendered frame by frame and read back to memory.
+///
+/// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from `(index - 1) / fps`.
+/// Frame 0 is a cut, in which nothing has moved. `previous_from_current` is always given, and so are depth and motion, which are
+/// those at the pixels' centres; the color is the mean of four samples.
+pub struct RasterSource {
+    info: SourceInfo,
+    device: Arc<Headless>,
+    scene: Scene,
+    camera: SceneCamera,
+    raster: Raster,
+    fps: f64,
+}
+
+impl RasterSource {
+    /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that
+    /// [`SceneCamera::choose`] finds by `camera`. Textures are filtered anisotropically except on software devices.
+    ///
+    /// # Errors
+    /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
+    pub fn open(
+        input: &str,
+        limits: &ReadLimits,
+        options: &SceneOptions,
+        camera: Option<&str>,
+        device: Arc<Headless>,
+    ) -> Result<Self, InputError> {
+        let size = options.size.unwrap_or(DEFAULT_SIZE);
+        check_size(input, size, limits)?;
+        let scene = Scene::open(input, &SceneLimits::default())?;
+        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
+        let defaults = RasterSettings::default();
+        // A software device takes ten times as long for a frame of Sponza with 16.
+        let anisotropy = if device.is_software() { 1 } else { defaults.anisotropy };
+        Self::new(device, scene, camera, options.fps, RasterSettings { anisotropy, ..defaults })
+    }
+
+    /// `scene` as `camera` sees it, at `fps` frames per second (default: the camera file's, else 60).
+    ///
+    /// # Errors
+    /// If the frame rate is not above 0, or the scene or the frame is more than the device takes.
+    pub fn new(
+        device: Arc<Headless>,
+        scene: Scene,
+        camera: SceneCamera,
+        fps: Option<f32>,
+        settings: RasterSettings,
+    ) -> Result<Self, InputError> {
+        let fps = fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
+        if !(fps.is_finite() && fps > 0.0) {
+            let problem = format!("the frame rate is {fps}");
+            return Err(InputError::new(&scene.name, problem, "expected frames per second above 0"));
+        }
+        let size = camera.geometry().size_px();
+        let raster = Raster::new(&device.device, &device.queue, &scene, size, settings)?;
+        let info = SourceInfo {
+            name: scene.name.clone(),
+            size,
+            frames: camera.frames(),
+            fps: Some(fps),
+            hfov_deg: Some(camera.geometry().hfov_deg()),
+            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
+        };
+        Ok(Self { info, device, scene, camera, raster, fps: f64::from(fps) })
+    }
+
+    /// What the file asks for and is not done.
+    pub fn warnings(&self) -> &[String] {
+        &self.scene.warnings
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The views of frame `index` and of the one before, and the times of both in seconds.
+    pub fn views(&self, index: u64) -> ([View; 2], [f64; 2]) {
+        let before = index.saturating_sub(1);
+        let times = [index, before].map(|i| i as f64 / self.fps);
+        ([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])], times)
+    }
+
+    /// Renders frame `index` and leaves it on the device.
+    pub fn render(&mut self, index: u64) -> &Raster {
+        let ([view, previous], times) = self.views(index);
+        self.raster.pose(&self.scene, times[0], times[1]);
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        self.raster.record(&self.device.device, &mut encoder, &view, &previous);
+        self.device.queue.submit([encoder.finish()]);
+        &self.raster
+    }
+}
+
+impl FrameSource for RasterSource {
+    fn info(&self) -> &SourceInfo {
+        &self.info
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        let ([view, previous], _) = self.views(index);
+        self.render(index);
+        let targets = self.raster.targets();
+        let mut nonfinite = 0;
+        let color = targets.read_color(&self.device).map(|c| {
+            let usable = c.iter().all(|v| v.is_finite());
+            nonfinite += u64::from(!usable);
+            if usable { c } else { [0.0; 3] }
+        });
+        let (depth, motion) =
+            (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
+        self.device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
+        Ok(SourceFrame {
+            color,
+            depth: Some(depth),
+            motion: Some(motion),
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&previous)),
+            cut: index == 0,
+            nonfinite,
+        })
+    }
+
+    fn stance(&self, index: u64) -> Option<Stance> {
+        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    }
+
+    fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.camera.steer(index, before_and_now);
+    }
+}

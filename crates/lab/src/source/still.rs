@@ -1,0 +1,213 @@
+//! Still images: the same frame for ever.
+
+use super::exr_file::{ExrHeader, Vectors, guarded};
+use super::limits::ReadLimits;
+use super::{FrameSource, SourceInfo};
+use crate::error::InputError;
+use crate::error::io_error;
+use crate::error::one_line;
+use crate::frame::SourceFrame;
+use crate::scene::cameras::Cameras;
+use afterimage::image::Image;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use std::fs;
+use std::io::{Cursor, ErrorKind};
+use std::path::Path;
+
+/// A still image, decoded once.
+///
+/// PNG and JPEG are taken as sRGB (gamma and color profiles in the file are ignored, and so is its orientation tag), grey
+/// counts for all three channels, alpha is ignored. EXR is linear; its depth is used, its motion is not, and a `cameras.json`
+/// beside it gives the field of view.
+#[derive(Clone, Debug)]
+pub struct StillSource {
+    info: SourceInfo,
+    frame: SourceFrame,
+}
+
+impl StillSource {
+    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
+    ///
+    /// # Errors
+    /// If the file is missing, damaged, larger than the limits, of another kind, or an EXR without color.
+    pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+        let subject = path.display().to_string();
+        if path.is_dir() {
+            return Err(InputError::new(subject, "is a folder", "expected an image file"));
+        }
+        match super::open::extension(path).as_str() {
+            "exr" => Self::open_exr(path, subject, limits),
+            "png" | "jpg" | "jpeg" => {
+                let color = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
+                let frame = SourceFrame {
+                    color,
+                    depth: None,
+                    motion: None,
+                    trust: None,
+                    previous_from_current: None,
+                    cut: false,
+                    nonfinite: 0,
+                };
+                Ok(Self::new(subject, frame, None))
+            }
+            _ => Err(InputError::new(
+                subject,
+                "is not of a kind that is read as a still",
+                "expected .png, .jpg, .jpeg or .exr",
+            )),
+        }
+    }
+
+    fn open_exr(path: &Path, name: String, limits: &ReadLimits) -> Result<Self, InputError> {
+        let header = ExrHeader::open(path, limits)?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let cameras = Cameras::beside(folder)?;
+        if let Some(c) = &cameras {
+            c.check_size(header.size())?;
+        }
+        let exr = header.read(Vectors::Skip)?;
+        let frame = SourceFrame {
+            color: exr.color,
+            depth: exr.depth,
+            motion: None,
+            trust: None,
+            previous_from_current: None,
+            cut: false,
+            nonfinite: exr.nonfinite,
+        };
+        Ok(Self::new(name, frame, cameras))
+    }
+
+    fn new(name: String, frame: SourceFrame, cameras: Option<Cameras>) -> Self {
+        let info = SourceInfo {
+            name,
+            size: frame.color.size(),
+            frames: Some(1),
+            fps: cameras.as_ref().and_then(|c| c.fps),
+            hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
+            still: true,
+        };
+        Self { info, frame }
+    }
+
+    /// The same still under the name that the user gave.
+    pub(super) fn named(mut self, name: String) -> Self {
+        self.info.name = name;
+        self
+    }
+}
+
+impl FrameSource for StillSource {
+    fn info(&self) -> &SourceInfo {
+        &self.info
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        Ok(SourceFrame { cut: index == 0, ..self.frame.clone() })
+    }
+}
+
+fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Image<[f32; 3]>, InputError> {
+    let io = |e: std::io::Error| io_error(subject, &e);
+    // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
+    let most_bytes = limits.max_pixels.saturating_mul(24).saturating_add(1 << 24);
+    let mut allowed = Limits::no_limits();
+    allowed.max_alloc = Some(most_bytes);
+    let file_bytes = fs::metadata(path).map_err(io)?.len();
+    if file_bytes > most_bytes {
+        return Err(InputError::new(
+            subject,
+            format!("has {} MB, more than the largest allowed image", file_bytes >> 20),
+            "use a smaller image, or raise the limit with --max-megapixels N",
+        ));
+    }
+    let bytes = fs::read(path).map_err(io)?;
+    let mut reader = ImageReader::new(Cursor::new(bytes.as_slice())).with_guessed_format().map_err(io)?;
+    match reader.format() {
+        Some(ImageFormat::Png) => {}
+        Some(ImageFormat::Jpeg) if jpeg_is_whole(&bytes) => {}
+        Some(ImageFormat::Jpeg) => return Err(io_error(subject, &ErrorKind::UnexpectedEof.into())),
+        _ => {
+            return Err(InputError::new(
+                subject,
+                "holds neither a PNG nor a JPEG image",
+                "export it again as PNG, JPEG or EXR",
+            ));
+        }
+    }
+    reader.limits(allowed.clone());
+    let error = |e: ImageError| image_error(subject, e);
+    let mut decoder = reader.into_decoder().map_err(error)?;
+    let (w, h) = decoder.dimensions();
+    let size = limits.check(subject, u64::from(w), u64::from(h))?;
+    decoder.set_limits(allowed).map_err(error)?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
+    Image::from_pixels(size, linear(decoded)).map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+}
+
+/// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
+fn jpeg_is_whole(bytes: &[u8]) -> bool {
+    const START_OF_SCAN: u8 = 0xDA;
+    const END: [u8; 2] = [0xFF, 0xD9];
+    let mut at = 2;
+    // Segments state their length. A thumbnail in one of them has an end marker of its own.
+    while let Some(&[0xFF, marker, high, low]) = bytes.get(at..at + 4) {
+        if marker == START_OF_SCAN {
+            // In a scan, 0xFF is never followed by a marker's second byte.
+            return bytes[at..].windows(2).any(|w| w == END);
+        }
+        // Before a marker there may be more 0xFF.
+        at += match marker {
+            0xFF => 1,
+            _ => 2 + usize::from(u16::from_be_bytes([high, low])),
+        };
+    }
+    false
+}
+
+/// Linear pixels of a decoded sRGB image.
+fn linear(decoded: DynamicImage) -> Vec<[f32; 3]> {
+    let deep = matches!(
+        decoded,
+        DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageRgba16(_)
+    );
+    if deep {
+        linear_pixels(decoded.into_rgb16().as_raw(), u32::from(u16::MAX))
+    } else {
+        linear_pixels(decoded.into_rgb8().as_raw(), u32::from(u8::MAX))
+    }
+}
+
+/// Linear values of encoded RGB samples from 0 to `max`.
+fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32) -> Vec<[f32; 3]> {
+    let table: Vec<f32> = (0..=max).map(|i| srgb_to_linear(f64::from(i) / f64::from(max)) as f32).collect();
+    let pixels = encoded.chunks_exact(3);
+    pixels.map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize])).collect()
+}
+
+/// IEC 61966-2-1, for values from 0 to 1.
+fn srgb_to_linear(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+fn image_error(subject: &str, error: ImageError) -> InputError {
+    match error {
+        ImageError::IoError(e) => io_error(subject, &e),
+        ImageError::Limits(e) => InputError::new(
+            subject,
+            one_line(&format!("needs more memory than allowed ({e})")),
+            "use a smaller image, or raise the limit with --max-megapixels N",
+        ),
+        ImageError::Unsupported(e) => InputError::new(
+            subject,
+            one_line(&format!("uses a feature that is not supported ({e})")),
+            "export it again as 8 or 16 bit PNG",
+        ),
+        other => {
+            InputError::new(subject, one_line(&format!("is damaged or truncated ({other})")), "copy or export it again")
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Frames of a scene by path tracing.
+
+use super::Stance;
+use super::open::{check_size, device_lost};
+use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
+use super::scene_camera::SceneCamera;
+use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use crate::device::Backend;
+use crate::error::InputError;
+use crate::frame::SourceFrame;
+use crate::frame::{FoveatedFrame, Guide};
+use crate::scene::{Scene, SceneLimits};
+use crate::trace::Tracer;
+use crate::trace::film::Film;
+use crate::trace::sampling::Sampling;
+use crate::trace::settings::TraceSettings;
+use crate::trace::surfaces::Surfaces;
+use crate::trace::view::View;
+use crate::trace::work::Spans;
+use crate::trace::world::{World, light_if_dark};
+use glam::DMat4;
+
+/// Samples that are traced at once: their paths' film stays small.
+const STEP: u32 = 1 << 20;
+/// Where the frame numbers of full-rate frames begin, so that their noise is not that of the foveated ones.
+const FULL_RATE_FRAMES: u64 = 1 << 31;
+
+/// How many samples frames have, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TracedSamples {
+    /// How the foveated frame is sampled; `None` leaves foveation to a simulator.
+    pub foveated: Option<Sampling>,
+    /// Samples of a pixel of the foveated frame where it has most, unless the pattern states its own.
+    pub samples: u32,
+    /// Samples of every pixel of the full-rate frame.
+    pub full_rate_samples: u32,
+}
+
+/// A scene seen by a camera, path-traced frame by frame: at full rate with the same number of samples everywhere, and foveated.
+///
+/// As of [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and motion are
+/// those at the pixels' centres, without noise.
+pub struct TracedSource {
+    info: SourceInfo,
+    scene: Scene,
+    world: World,
+    tracer: Tracer,
+    camera: SceneCamera,
+    fps: f64,
+    samples: TracedSamples,
+    seed: u64,
+    /// The full-rate frame of a scene where nothing moves.
+    still: Option<SourceFrame>,
+}
+
+impl TracedSource {
+    /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that [`SceneCamera::choose`] finds by
+    /// `camera`. A scene without light stands under a soft white sky.
+    ///
+    /// # Errors
+    /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
+    pub fn open(
+        input: &str,
+        limits: &ReadLimits,
+        options: &SceneOptions,
+        camera: Option<&str>,
+        backend: &Backend,
+        settings: TraceSettings,
+        samples: TracedSamples,
+    ) -> Result<Self, InputError> {
+        let size = options.size.unwrap_or(DEFAULT_SIZE);
+        check_size(input, size, limits)?;
+        let mut scene = Scene::open(input, &SceneLimits::default())?;
+        light_if_dark(&mut scene);
+        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
+        let world = World::new(&scene);
+        let tracer = Tracer::new(backend, &world, settings)
+            .map_err(|e| InputError::new(input, e.to_string(), "trace it on the CPU"))?;
+        let fps = options.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
+        if !(fps.is_finite() && fps > 0.0) {
+            let problem = format!("the frame rate is {fps}");
+            return Err(InputError::new(input, problem, "expected frames per second above 0"));
+        }
+        let info = SourceInfo {
+            name: scene.name.clone(),
+            size,
+            frames: camera.frames(),
+            fps: Some(fps),
+            hfov_deg: Some(camera.geometry().hfov_deg()),
+            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
+        };
+        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, seed: settings.seed, still: None })
+    }
+
+    /// What the file asks for and is not done.
+    pub fn warnings(&self) -> &[String] {
+        &self.scene.warnings
+    }
+}
+
+impl TracedSource {
+    /// Poses the scene for a frame. Gives its view and the one before.
+    fn pose(&mut self, index: u64) -> Result<[View; 2], InputError> {
+        let before = index.saturating_sub(1);
+        let times = [index, before].map(|i| i as f64 / self.fps);
+        if self.scene.duration_s() > 0.0 {
+            self.world.pose(&self.scene, times[0], times[1]);
+            self.tracer
+                .update(&self.world)
+                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "trace it on the CPU"))?;
+        }
+        Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
+    }
+
+    /// Whether what was traced is worth anything.
+    fn check(&self) -> Result<(), InputError> {
+        self.tracer.check().map_err(|lost| device_lost(&self.info.name, &lost))
+    }
+
+    fn full_rate(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        let [view, previous] = self.pose(index)?;
+        let [width, height] = self.info.size;
+        let mut film = Film::new(self.info.size);
+        let samples = self.samples.full_rate_samples.max(1);
+        let rows = (STEP / width.saturating_mul(samples).max(1)).max(1);
+        for first in (0..height).step_by(rows as usize) {
+            let spans = Spans::uniform(width, first..(first + rows).min(height), 0..samples);
+            self.tracer.trace(&self.world, &view, FULL_RATE_FRAMES + index, &spans, &mut film);
+        }
+        self.check()?;
+        let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
+        Ok(SourceFrame {
+            color: film.color(),
+            depth: Some(seen.depth),
+            motion: Some(seen.motion),
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&previous)),
+            cut: index == 0,
+            nonfinite: film.nonfinite,
+        })
+    }
+}
+
+impl FrameSource for TracedSource {
+    fn info(&self) -> &SourceInfo {
+        &self.info
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        if !self.info.still || self.camera.is_steered() {
+            return self.full_rate(index);
+        }
+        let frame = match self.still.take() {
+            Some(frame) => frame,
+            None => self.full_rate(0)?,
+        };
+        self.still = Some(frame.clone());
+        Ok(SourceFrame { cut: index == 0, ..frame })
+    }
+
+    fn foveated(
+        &mut self,
+        index: u64,
+        gaze_px: [f32; 2],
+        guide: Option<&Guide>,
+    ) -> Result<Option<FoveatedFrame>, InputError> {
+        let Some(sampling) = self.samples.foveated else { return Ok(None) };
+        let [view, _] = self.pose(index)?;
+        let plan = sampling.plan(view.geometry(), gaze_px, self.samples.samples.max(1), index);
+        let plan = match guide {
+            None => plan,
+            Some(guide) => plan
+                .guided(guide, index, self.seed)
+                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
+        };
+        let frame = plan.trace(&self.tracer, &self.world, &view, index);
+        self.check()?;
+        Ok(Some(frame))
+    }
+
+    fn stance(&self, index: u64) -> Option<Stance> {
+        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    }
+
+    fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.camera.steer(index, before_and_now);
+    }
+}

@@ -1,0 +1,97 @@
+//! The tracer on the CPU: the oracle, and the tracer of machines without a GPU.
+
+mod lights;
+mod path;
+mod surface;
+mod texture;
+
+use super::effects::Effects;
+use super::film::{Film, Moments};
+use super::settings::TraceSettings;
+use super::view::View;
+use super::work::Work;
+use super::world::World;
+use crate::kernel::direction::unit;
+use afterimage::kernel::rng::{Purpose, path_draws, stream_key};
+use glam::Vec3;
+use path::{DRAWS_CAMERA, Paths};
+use rayon::prelude::*;
+
+/// Traces with all threads of the machine. The image does not depend on their number.
+#[derive(Clone, Copy, Debug)]
+pub struct CpuTracer {
+    settings: TraceSettings,
+}
+
+impl CpuTracer {
+    /// A tracer.
+    pub fn new(settings: TraceSettings) -> Self {
+        Self { settings }
+    }
+
+    /// What it simulates in `world`.
+    pub fn effects(&self, world: &World) -> Effects {
+        self.settings.effects.unwrap_or(world.needs)
+    }
+
+    /// Adds the samples of `work`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
+        let paths = Paths {
+            world,
+            integrator: self.settings.integrator,
+            bsdf: self.settings.bsdf,
+            max_depth: self.settings.max_depth,
+            effects: self.effects(world),
+            key: path_key(self.settings.seed, frame),
+        };
+        let rays = view.rays();
+        let (width, base) = (film.moments.size()[0], film.base());
+        let moments = &film.moments;
+        let pixels = work.into().by_pixel();
+        let done: Vec<Done> = pixels
+            .par_iter()
+            .with_min_len(32)
+            .map(|(id, samples)| {
+                let [x, y] = [id & 0xffff, id >> 16];
+                let index = (y * width + x - base) as usize;
+                let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
+                for sample in samples.numbers() {
+                    let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);
+                    let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
+                    let py = y as f32 + (draws[1] - 0.5) * rays.jitter;
+                    let direction = unit(rays.corner + rays.right * px + rays.down * py);
+                    let (radiance, traced) = paths.radiance(rays.origin, direction, *id, sample);
+                    let sound = radiance.is_finite();
+                    done.moments.add(if sound { radiance } else { Vec3::ZERO });
+                    done.nonfinite += u64::from(!sound);
+                    done.rays += traced;
+                }
+                done
+            })
+            .collect();
+        for pixel in done {
+            film.moments.pixels_mut()[pixel.index] = pixel.moments;
+            film.rays += pixel.rays;
+            film.nonfinite += pixel.nonfinite;
+        }
+    }
+}
+
+/// A pixel with its samples.
+struct Done {
+    index: usize,
+    moments: Moments,
+    rays: u64,
+    nonfinite: u64,
+}
+
+/// Key of a frame's draws.
+pub(in crate::trace) fn path_key(seed: u64, frame: u64) -> u32 {
+    // The counter's low word is no argument of a path's draws: it goes into the key.
+    stream_key(seed, frame as u32, Purpose::Path, frame)
+}
+
+/// Whether a surface with holes is at least half there.
+pub(super) fn is_mostly_there(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
+    surface::is_there(world, triangle, u, v, 0.5, effects)
+}

@@ -1,0 +1,234 @@
+//! One path of light. `shaders/trace/shade.wgsl` and its companions do the same a step at a time.
+
+use super::lights::{Arriving, look, sky, sky_pdf, triangle_pdf};
+use super::surface::{Point, is_there, lobes, point};
+use crate::kernel::bsdf::{Layers, Lobes, Sampled, Scatter, eval, layers, sample};
+use crate::kernel::direction::{to_local, to_world, unit};
+use crate::kernel::phong::{phong_eval, phong_sample};
+use crate::kernel::sampling::power_heuristic;
+use crate::kernel::triangle::offset_ray;
+use crate::trace::effects::{Effect, Effects};
+use crate::trace::settings::{Bsdf, Integrator};
+use crate::trace::world::World;
+use crate::trace::{Hit, Ray};
+use afterimage::kernel::approx::exp;
+use afterimage::kernel::rng::path_draws;
+use glam::Vec3;
+
+/// What all paths of a frame have in common.
+pub(super) struct Paths<'a> {
+    pub world: &'a World,
+    pub integrator: Integrator,
+    pub bsdf: Bsdf,
+    pub max_depth: u32,
+    pub effects: Effects,
+    pub key: u32,
+}
+
+/// Every decision of a path has draws of its own: where in the pixel it starts ...
+pub(super) const DRAWS_CAMERA: u32 = 0;
+/// ... and at each bounce where it goes,
+const DRAWS_SCATTER: u32 = 1;
+/// which light it looks for and where on it,
+const DRAWS_LIGHT: u32 = 2;
+/// and where in the environment map.
+const DRAWS_MAP: u32 = 3;
+/// From one bounce to the next.
+const DRAWS_STRIDE: u32 = 4;
+/// Whether it meets a surface with holes: apart from all others, and by triangle.
+const DRAWS_HOLES: u32 = 0x8000_0000;
+
+/// Where a path is.
+struct State {
+    ray: Ray,
+    throughput: Vec3,
+    /// Density of the ray's direction; 0 for the camera's.
+    pdf: f32,
+    /// Density with which the sky in the ray's direction could have been looked for instead.
+    sky_pdf: f32,
+}
+
+impl Paths<'_> {
+    /// Radiance that arrives along `direction` (of length 1), and rays traced for it.
+    pub fn radiance(&self, origin: Vec3, direction: Vec3, pixel: u32, sample: u32) -> (Vec3, u64) {
+        let mut radiance = Vec3::ZERO;
+        let mut rays = 0;
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let mut state = State { ray, throughput: Vec3::ONE, pdf: 0.0, sky_pdf: 0.0 };
+        for bounce in 0..=self.max_depth {
+            rays += 1;
+            let Some(hit) = self.closest(&state.ray, pixel, sample, 2 * bounce) else {
+                radiance += state.throughput * self.sky_light(&state);
+                break;
+            };
+            let p = point(self.world, &hit, state.ray.direction, self.effects);
+            if self.effects.has(Effect::Transmission) && !p.front {
+                state.throughput *= (p.absorption * -hit.t).map(exp);
+            }
+            radiance += state.throughput * self.surface_light(&state, &p, &hit);
+            if bounce == self.max_depth {
+                break;
+            }
+            let [x, y, z] = p.frame;
+            let scattering = Scattering::new(self, &p, to_local(-state.ray.direction, x, y, z));
+            let first = bounce * DRAWS_STRIDE;
+            if self.integrator != Integrator::Naive {
+                let draws = path_draws(pixel, sample, first + DRAWS_LIGHT, self.key);
+                let more = path_draws(pixel, sample, first + DRAWS_MAP, self.key);
+                if let Some((ray, light)) = self.light(&p, &scattering, draws, more) {
+                    rays += 1;
+                    if !self.occluded(&ray, pixel, sample, 2 * bounce + 1) {
+                        radiance += state.throughput * light;
+                    }
+                }
+            }
+            let sampled = scattering.sample(path_draws(pixel, sample, first + DRAWS_SCATTER, self.key));
+            if sampled.scatter.pdf <= 0.0 {
+                break;
+            }
+            let direction = unit(to_world(sampled.wi, x, y, z));
+            let Some(origin) = leaving(&p, direction, sampled.wi.z) else { break };
+            state.throughput *= sampled.scatter.value / sampled.scatter.pdf;
+            if !brings_light(state.throughput) {
+                break;
+            }
+            state.ray = Ray { origin, direction, t_max: f32::INFINITY };
+            state.pdf = sampled.scatter.pdf;
+            state.sky_pdf = sky_pdf(self.world, direction, sampled.wi.z, self.effects);
+        }
+        (radiance, rays)
+    }
+
+    /// The nearest surface; `number` tells a path's rays apart.
+    fn closest(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> Option<Hit> {
+        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let geometry = &self.world.geometry;
+        if self.effects.has(Effect::MovingObjects) {
+            geometry.closest(ray, accept)
+        } else {
+            geometry.still.closest(ray, accept)
+        }
+    }
+
+    fn occluded(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> bool {
+        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let geometry = &self.world.geometry;
+        if self.effects.has(Effect::MovingObjects) {
+            geometry.occluded(ray, accept)
+        } else {
+            geometry.still.occluded(ray, accept)
+        }
+    }
+
+    fn meets(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {
+        if !self.effects.has(Effect::Alpha) {
+            return true;
+        }
+        let draws = path_draws(pixel, sample, DRAWS_HOLES | number, self.key ^ triangle);
+        is_there(self.world, triangle, u, v, draws[0], self.effects)
+    }
+
+    /// Share of what a scattered ray finds that is not counted where it was looked for.
+    fn share(&self, state: &State, light_pdf: f32) -> f32 {
+        match self.integrator {
+            _ if state.pdf <= 0.0 => 1.0,
+            Integrator::Naive => 1.0,
+            Integrator::Nee => 0.0,
+            Integrator::Mis => power_heuristic(state.pdf, light_pdf),
+        }
+    }
+
+    fn sky_light(&self, state: &State) -> Vec3 {
+        if !self.effects.has(Effect::Environment) {
+            return Vec3::ZERO;
+        }
+        sky(self.world, state.ray.direction, self.effects) * self.share(state, state.sky_pdf)
+    }
+
+    fn surface_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
+        if !self.effects.has(Effect::EmissiveTriangles) || !brings_light(p.emitted) {
+            return Vec3::ZERO;
+        }
+        let cosine = p.geometric.dot(state.ray.direction);
+        p.emitted * self.share(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
+    }
+
+    /// A ray towards a light, and what arrives if nothing is in between.
+    fn light(&self, p: &Point, scattering: &Scattering, draws: [f32; 4], more: [f32; 4]) -> Option<(Ray, Vec3)> {
+        let arriving = look(self.world, p.position, &p.frame, draws, more, self.effects)?;
+        let [x, y, z] = p.frame;
+        let wi = to_local(arriving.direction, x, y, z);
+        let scatter = scattering.eval(wi);
+        let mut weight = 1.0;
+        if arriving.can_be_hit && self.integrator == Integrator::Mis {
+            weight = power_heuristic(arriving.pdf, scatter.pdf);
+        }
+        let light = scatter.value * arriving.radiance * (weight / arriving.pdf);
+        if !brings_light(light) {
+            return None;
+        }
+        let origin = leaving(p, arriving.direction, wi.z)?;
+        Some((shadow_ray(origin, p.position, &arriving), light))
+    }
+}
+
+/// Whether any channel is above 0; not if it is no number.
+fn brings_light(light: Vec3) -> bool {
+    light.x.max(light.y.max(light.z)) > 0.0
+}
+
+/// Where a ray starts that leaves `p` along `direction`, whose cosine to the shading normal is `cosine`; `None` where the shading
+/// normal and the surface disagree about the side: light would leak through.
+fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
+    let side = p.geometric.dot(direction);
+    if side * cosine <= 0.0 {
+        return None;
+    }
+    let normal = if side > 0.0 { p.geometric } else { -p.geometric };
+    Some(offset_ray(p.position, normal, p.magnitude))
+}
+
+/// From `origin`, off the surface point at `position`, to what was found from there. Both ends being off their surfaces, the
+/// segment between them meets neither; it ends a little early for what rounding adds over its length.
+fn shadow_ray(origin: Vec3, position: Vec3, arriving: &Arriving) -> Ray {
+    if arriving.distance == f32::INFINITY {
+        return Ray { origin, direction: arriving.direction, t_max: f32::INFINITY };
+    }
+    let to = arriving.direction * arriving.distance + (position - origin);
+    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * BEFORE_LIGHT }
+}
+
+/// Share of the way to a light that is looked at.
+const BEFORE_LIGHT: f32 = 1.0 - 1.0 / 1_048_576.0;
+
+/// How light scatters at a point, seen along `wo`.
+struct Scattering<'a> {
+    point: &'a Point,
+    wo: Vec3,
+    lobes: Lobes,
+    /// `None`: Phong's model.
+    layers: Option<Layers>,
+}
+
+impl<'a> Scattering<'a> {
+    fn new(paths: &Paths, point: &'a Point, wo: Vec3) -> Self {
+        let lobes = lobes(paths.effects);
+        let principled = paths.bsdf == Bsdf::Principled;
+        let layers = principled.then(|| layers(&point.surface, wo, &paths.world.tables, lobes));
+        Self { point, wo, lobes, layers }
+    }
+
+    fn eval(&self, wi: Vec3) -> Scatter {
+        match &self.layers {
+            Some(layers) => eval(layers, self.wo, wi, self.lobes),
+            None => phong_eval(&self.point.phong, self.wo, wi),
+        }
+    }
+
+    fn sample(&self, draws: [f32; 4]) -> Sampled {
+        match &self.layers {
+            Some(layers) => sample(layers, self.wo, draws, self.lobes),
+            None => phong_sample(&self.point.phong, self.wo, [draws[0], draws[1], draws[2]]),
+        }
+    }
+}

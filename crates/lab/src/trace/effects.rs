@@ -1,0 +1,155 @@
+//! What a scene calls for, so that only that is simulated.
+//!
+//! An effect that is left out costs nothing: its code is not compiled into the kernels. The law that makes this safe: a kernel
+//! with more effects than a scene needs gives the same image, bit for bit. Unused parameters are exact zeros and ones, and every
+//! random number belongs to a purpose, not to a place in a sequence.
+
+use crate::scene::{Alpha, Environment, Material, PunctualLight, Scene};
+
+macro_rules! effects {
+    ($($name:ident $text:literal $reason:literal,)*) => {
+        /// Something that rays may meet.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u32)]
+        pub enum Effect {
+            $(#[doc = concat!("`", $text, "`: ", $reason, ".")] $name,)*
+        }
+
+        impl Effect {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+
+            /// As `--effects` spells it.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+
+            /// What in a scene calls for it.
+            pub fn reason(self) -> &'static str {
+                match self { $(Self::$name => $reason,)* }
+            }
+        }
+    };
+}
+
+effects! {
+    Dielectric "dielectric" "a material that is not all metal reflects at its surface",
+    Metal "metal" "a metallic material",
+    Anisotropy "anisotropy" "a highlight that is stretched",
+    Clearcoat "clearcoat" "a coated material",
+    Sheen "sheen" "a material with sheen",
+    Transmission "transmission" "a material that light passes through, and that may absorb it",
+    BaseColor "base-color" "a base color from an image or on vertices",
+    SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from an image",
+    NormalMap "normal-map" "a normal map",
+    EmissiveTexture "emissive-texture" "an emissive color from an image",
+    Alpha "alpha" "a surface with holes or partly transparent",
+    EmissiveTriangles "emissive-triangles" "a surface that emits light",
+    PunctualLights "punctual-lights" "a point, spot or directional light",
+    Environment "environment" "light from all around",
+    EnvironmentMap "environment-map" "light from all around that differs by direction",
+    MovingObjects "moving-objects" "triangles that move",
+}
+
+/// A set of effects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Effects(u32);
+
+impl Effects {
+    /// None of them.
+    pub const NONE: Self = Self(0);
+
+    /// All of them.
+    pub fn all() -> Self {
+        Effect::ALL.iter().copied().collect()
+    }
+
+    /// Whether `effect` is in the set.
+    pub fn has(self, effect: Effect) -> bool {
+        self.0 >> effect as u32 & 1 != 0
+    }
+
+    /// Whether all of `other` are in the set.
+    pub fn covers(self, other: Self) -> bool {
+        other.0 & !self.0 == 0
+    }
+
+    /// Those in either set.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those of this set that `other` lacks.
+    pub fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// With or without `effect`.
+    pub fn set(self, effect: Effect, on: bool) -> Self {
+        let bit = 1 << effect as u32;
+        Self(if on { self.0 | bit } else { self.0 & !bit })
+    }
+
+    /// Those in the set, in the order of [`Effect::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Effect> {
+        Effect::ALL.iter().copied().filter(move |e| self.has(*e))
+    }
+
+    /// What `scene` calls for, whatever its pose.
+    pub fn needed(scene: &Scene) -> Self {
+        let rest = scene.pose(0.0);
+        let mut used = vec![false; scene.materials.len()];
+        for &m in scene.still().materials.iter().chain(&rest.moving.materials) {
+            used[m as usize] = true;
+        }
+        let materials = scene.materials.iter().zip(&used).filter(|(_, used)| **used);
+        let colored = scene.still().colors.iter().chain(&rest.moving.colors).flatten().any(|c| *c != glam::Vec4::ONE);
+        materials
+            .map(|(m, _)| Self::of_material(m))
+            .fold(Self::NONE, Self::union)
+            .union(if colored { Self::NONE.set(Effect::BaseColor, true) } else { Self::NONE })
+            .union(Self::of_light(&rest.lights, &scene.environment))
+            .set(Effect::MovingObjects, !rest.moving.is_empty())
+    }
+
+    fn of_material(m: &Material) -> Self {
+        let surface_textures = [
+            m.metallic_roughness_texture,
+            m.specular_texture,
+            m.specular_color_texture,
+            m.clearcoat_texture,
+            m.clearcoat_roughness_texture,
+            m.sheen_color_texture,
+            m.sheen_roughness_texture,
+            m.transmission_texture,
+        ];
+        let glows = m.emissive != [0.0; 3];
+        Self::NONE
+            .set(Effect::Dielectric, m.metallic < 1.0 && m.specular > 0.0 || m.metallic_roughness_texture.is_some())
+            .set(Effect::Metal, m.metallic > 0.0)
+            .set(Effect::Anisotropy, m.anisotropy > 0.0)
+            .set(Effect::Clearcoat, m.clearcoat > 0.0)
+            .set(Effect::Sheen, m.sheen_color != [0.0; 3])
+            .set(Effect::Transmission, m.transmission > 0.0)
+            .set(Effect::BaseColor, m.base_color_texture.is_some())
+            .set(Effect::SurfaceTexture, surface_textures.iter().any(Option::is_some))
+            .set(Effect::NormalMap, m.normal_texture.is_some())
+            .set(Effect::EmissiveTexture, glows && m.emissive_texture.is_some())
+            .set(Effect::Alpha, m.alpha != Alpha::Opaque)
+            .set(Effect::EmissiveTriangles, glows)
+    }
+
+    fn of_light(lights: &[PunctualLight], environment: &Environment) -> Self {
+        let map = matches!(environment, Environment::Map(_));
+        Self::NONE
+            .set(Effect::PunctualLights, !lights.is_empty())
+            .set(Effect::EnvironmentMap, map)
+            .set(Effect::Environment, map || *environment != Environment::Constant([0.0; 3]))
+    }
+}
+
+impl FromIterator<Effect> for Effects {
+    fn from_iter<I: IntoIterator<Item = Effect>>(effects: I) -> Self {
+        effects.into_iter().fold(Self::NONE, |set, e| set.set(e, true))
+    }
+}

@@ -1,0 +1,287 @@
+//! The tracer on a GPU: a wavefront (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013). Paths are advanced
+//! together, one step of one kind at a time: `generate`, then for each bounce `extend`, `shade`, `shadow`; how many are left is
+//! known on the device only.
+
+mod clock;
+pub mod device_heap;
+mod expand;
+mod passes;
+mod paths;
+pub mod ray_lists;
+
+use super::effects::{Effect, Effects};
+use super::film::{Film, Moments};
+use super::heap::{Heap, HeapBuilder, HeapError, Section};
+use super::settings::{Bsdf, Integrator, TraceSettings};
+use super::view::View;
+use super::work::Work;
+use super::world::World;
+use crate::device::Headless;
+use afterimage::error::FrameError;
+use afterimage::image::Image;
+use clock::Clock;
+use device_heap::{GpuHeap, Storage, traversal_constants};
+use expand::{Expand, batches};
+use glam::Vec3;
+use passes::Passes;
+use paths::{FrameWords, Paths};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Paths in flight at once.
+pub const BATCH: u32 = 1 << 17;
+
+/// Work items on the device at once.
+const MOST_ITEMS: usize = 1 << 22;
+
+/// A scene's tracer on a device. Same seed, same device, same image: appending to lists is unordered, but no result depends on
+/// the order.
+#[derive(Debug)]
+pub struct GpuTracer {
+    device: Arc<Headless>,
+    settings: TraceSettings,
+    effects: Effects,
+    heap: Heap,
+    on_device: GpuHeap,
+    passes: Passes,
+    expand: Expand,
+    paths: Paths,
+    /// Time that compiling the kernels took, as far as the driver does it now.
+    pub compile_time: Duration,
+}
+
+impl GpuTracer {
+    /// To be called after tracing: on a lost device the film gets black samples.
+    ///
+    /// # Errors
+    /// [`FrameError::DeviceLost`].
+    pub fn check(&self) -> Result<(), FrameError> {
+        self.device.check()
+    }
+
+    /// Uploads `world` and compiles kernels for it.
+    ///
+    /// # Errors
+    /// If the scene is too large for the device.
+    pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, HeapError> {
+        let storage = Storage::of(device.info.device_type);
+        Self::with_storage(device, world, settings, storage)
+    }
+
+    /// As [`new`](Self::new), with the scene kept as `storage`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_storage(
+        device: Arc<Headless>,
+        world: &World,
+        settings: TraceSettings,
+        storage: Storage,
+    ) -> Result<Self, HeapError> {
+        Self::with_text(device, world, settings, storage, |text| text)
+    }
+
+    /// As [`with_storage`](Self::with_storage), with each kernel's text as `edit` returns it: for measurements of what text costs.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_text(
+        device: Arc<Headless>,
+        world: &World,
+        settings: TraceSettings,
+        storage: Storage,
+        edit: impl Fn(String) -> String,
+    ) -> Result<Self, HeapError> {
+        let effects = settings.effects.unwrap_or(world.needs);
+        let heap = heap(world, effects, storage.limits(&device.device.limits()))?;
+        let on_device = GpuHeap::new(&device.device, &device.queue, &heap, storage);
+        let started = Instant::now();
+        let constants = constants(world, &heap, &settings, effects, storage);
+        let passes = Passes::new(&device.device, &on_device, storage, &constants, edit);
+        let expand = Expand::new(&device.device);
+        let compile_time = started.elapsed();
+        let paths = Paths::new(&device.device, &passes, BATCH);
+        Ok(Self { device, settings, effects, heap, on_device, passes, expand, paths, compile_time })
+    }
+
+    /// What is compiled in.
+    pub fn effects(&self) -> Effects {
+        self.effects
+    }
+
+    /// Bytes of the scene on the device.
+    pub fn scene_bytes(&self) -> u64 {
+        self.heap.bytes()
+    }
+
+    /// Uploads what moved since the last frame: to be called after [`World::pose`].
+    ///
+    /// # Errors
+    /// If there is more of it than at first.
+    pub fn update(&mut self, world: &World) -> Result<(), HeapError> {
+        self.heap.rewrite_moving(&world.geometry)?;
+        self.heap.rewrite(Section::Picks, &world.picks)?;
+        self.heap.rewrite(Section::Punctual, &world.punctual)?;
+        self.on_device.write_moving(&self.device.queue, &self.heap);
+        Ok(())
+    }
+
+    /// Adds the samples of `work`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
+    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
+        match work.into() {
+            // Longer lists would not fit a binding of default limits.
+            Work::List(items) => {
+                for items in items.chunks(MOST_ITEMS) {
+                    self.work_off(world, view, frame, items.into(), film, None);
+                }
+            }
+            spans => self.work_off(world, view, frame, spans, film, None),
+        }
+    }
+
+    /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
+    /// none, or for more than 2048 batches.
+    pub fn trace_timed<'w>(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        work: impl Into<Work<'w>>,
+        film: &mut Film,
+    ) -> Option<Duration> {
+        let work = work.into();
+        let clock = Clock::new(&self.device, batches(work).len() as u32);
+        self.work_off(world, view, frame, work, film, clock.as_ref());
+        Some(clock?.read(&self.device))
+    }
+
+    fn work_off(&self, world: &World, view: &View, frame: u64, work: Work, film: &mut Film, clock: Option<&Clock>) {
+        if batches(work).is_empty() {
+            return;
+        }
+        let rays = view.rays();
+        let size = film.moments.size();
+        let mut words = FrameWords {
+            origin: rays.origin.to_array(),
+            key: super::cpu::path_key(self.settings.seed, frame),
+            corner: rays.corner.to_array(),
+            lights: world.picks.len() as u32,
+            right: rays.right.to_array(),
+            sky_chosen: world.sky_chosen,
+            down: rays.down.to_array(),
+            width: size[0],
+            sky: world.sky.to_array(),
+            first_item: 0,
+            map_size: world.map_size,
+            items: 0,
+            capacity: BATCH,
+            jitter: rays.jitter,
+            film_base: film.base(),
+            unused: [0; 2],
+        };
+        let device = &self.device.device;
+        let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();
+        let (list, expansion) = self.expand.list(device, work);
+        let run = self.paths.run(device, &self.passes, &self.on_device, &list, &before);
+        for (batch, index) in batches(work).into_iter().zip(0..) {
+            words.first_item = batch.first_item;
+            words.items = batch.items;
+            let mut encoder = device.create_command_encoder(&Default::default());
+            self.expand.record(device, &mut encoder, expansion.as_ref(), &batch);
+            let timestamps = clock.map(|c| c.around(index));
+            run.record(device, &mut encoder, &self.passes, &words, self.settings.max_depth, timestamps);
+            self.device.queue.submit([encoder.finish()]);
+            // A software device would otherwise hold all batches at once.
+            self.device.wait();
+        }
+        let (rows, counters) = run.read(&self.device);
+        let moments = rows.as_chunks::<2>().0.iter().map(moments_of).collect();
+        film.moments = Image::from_pixels(size, moments).expect("as many pixels as before");
+        film.rays += counters.rays;
+        film.nonfinite += counters.nonfinite;
+    }
+}
+
+fn rows_of(m: &Moments) -> [[f32; 4]; 2] {
+    [m.mean.extend(m.count as f32).to_array(), m.squares.extend(0.0).to_array()]
+}
+
+fn moments_of(rows: &[[f32; 4]; 2]) -> Moments {
+    let [[x, y, z, count], [a, b, c, _]] = *rows;
+    Moments { mean: Vec3::new(x, y, z), squares: Vec3::new(a, b, c), count: count as u32 }
+}
+
+/// Everything that the kernels read.
+fn heap(world: &World, effects: Effects, limits: super::heap::HeapLimits) -> Result<Heap, HeapError> {
+    let tables: Vec<[u32; 4]> = world.tables.words().collect();
+    // Room for one where nothing moves: a node of zeros has no children.
+    let most_moving = if effects.has(Effect::MovingObjects) { world.most_moving.max(1) } else { 0 };
+    let mut builder = HeapBuilder::default();
+    builder
+        .geometry(&world.geometry, most_moving)
+        .fill(Section::Materials, &world.materials)
+        .fill(Section::Textures, &world.textures)
+        .fill(Section::Texels, &world.texels)
+        .fill(Section::Map, &world.map)
+        .fill(Section::Albedos, &tables)
+        .reserve(Section::Picks, &world.picks, world.most_lights)
+        .fill(Section::Punctual, &world.punctual);
+    builder.finish(limits)
+}
+
+/// Values of all overrides.
+fn constants(
+    world: &World,
+    heap: &Heap,
+    settings: &TraceSettings,
+    effects: Effects,
+    storage: Storage,
+) -> Vec<(&'static str, f64)> {
+    let mut constants = traversal_constants(heap, &world.geometry, effects.has(Effect::Alpha), storage);
+    for (name, section) in [
+        ("MATERIALS", Section::Materials),
+        ("TEXTURES", Section::Textures),
+        ("TEXELS", Section::Texels),
+        ("MAP", Section::Map),
+        ("ALBEDOS", Section::Albedos),
+        ("PICKS", Section::Picks),
+        ("PUNCTUAL", Section::Punctual),
+        ("ATTRIBUTES", Section::Attributes),
+        ("MOVING_ATTRIBUTES", Section::MovingAttributes),
+    ] {
+        constants.push((name, f64::from(heap.base(section))));
+    }
+    for (name, effect) in [
+        ("EFFECT_ANISOTROPY", Effect::Anisotropy),
+        ("EFFECT_CLEARCOAT", Effect::Clearcoat),
+        ("EFFECT_SHEEN", Effect::Sheen),
+        ("EFFECT_DIELECTRIC", Effect::Dielectric),
+        ("EFFECT_TRANSMISSION", Effect::Transmission),
+        ("EFFECT_BASE_COLOR", Effect::BaseColor),
+        ("EFFECT_SURFACE_TEXTURE", Effect::SurfaceTexture),
+        ("EFFECT_NORMAL_MAP", Effect::NormalMap),
+        ("EFFECT_EMISSIVE_TEXTURE", Effect::EmissiveTexture),
+        ("EFFECT_EMISSIVE_TRIANGLES", Effect::EmissiveTriangles),
+        ("EFFECT_PUNCTUAL_LIGHTS", Effect::PunctualLights),
+        ("EFFECT_ENVIRONMENT", Effect::Environment),
+        ("EFFECT_ENVIRONMENT_MAP", Effect::EnvironmentMap),
+        ("LOBE_RETRO", Effect::Dielectric),
+        ("LOBE_SPECULAR", Effect::Dielectric),
+        ("LOBE_METAL", Effect::Metal),
+        ("LOBE_ANISOTROPY", Effect::Anisotropy),
+        ("LOBE_CLEARCOAT", Effect::Clearcoat),
+        ("LOBE_SHEEN", Effect::Sheen),
+        ("LOBE_TRANSMISSION", Effect::Transmission),
+    ] {
+        constants.push((name, f64::from(u8::from(effects.has(effect)))));
+    }
+    let integrator = match settings.integrator {
+        Integrator::Mis => 0.0,
+        Integrator::Nee => 1.0,
+        Integrator::Naive => 2.0,
+    };
+    constants.push(("INTEGRATOR", integrator));
+    constants.push(("PHONG", f64::from(u8::from(settings.bsdf == Bsdf::Phong))));
+    constants.push(("MAX_DEPTH", f64::from(settings.max_depth)));
+    constants
+}

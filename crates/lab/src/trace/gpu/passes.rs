@@ -1,0 +1,101 @@
+//! Kernels and the layouts of what they are bound to.
+
+use crate::shader::SHADERS;
+use crate::trace::gpu::device_heap::{GpuHeap, Storage};
+use std::borrow::Cow;
+
+/// Invocations of a workgroup.
+pub(super) const WORKGROUP: u32 = 64;
+
+/// The kernels, specialised to a scene.
+#[derive(Debug)]
+pub(super) struct Passes {
+    pub generate: wgpu::ComputePipeline,
+    pub start: wgpu::ComputePipeline,
+    pub extend: wgpu::ComputePipeline,
+    pub shade: wgpu::ComputePipeline,
+    pub count_shadows: wgpu::ComputePipeline,
+    pub shadow: wgpu::ComputePipeline,
+    pub count_paths: wgpu::ComputePipeline,
+    pub resolve: wgpu::ComputePipeline,
+    pub heap_layout: wgpu::BindGroupLayout,
+    pub frame_layout: wgpu::BindGroupLayout,
+    /// A storage buffer to write: the plan of `count_pass`, the film of `resolve_pass`.
+    pub written_layout: wgpu::BindGroupLayout,
+    /// The plan, to read.
+    pub plan_layout: wgpu::BindGroupLayout,
+}
+
+impl Passes {
+    pub fn new(
+        device: &wgpu::Device,
+        heap: &GpuHeap,
+        storage: Storage,
+        constants: &[(&'static str, f64)],
+        edit: impl Fn(String) -> String,
+    ) -> Self {
+        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("trace"), entries })
+        };
+        let heap_layout = layout(&[heap.layout_entry(0)]);
+        let frame_layout = layout(&[
+            buffer(0, wgpu::BufferBindingType::Uniform),
+            buffer(1, wgpu::BufferBindingType::Storage { read_only: true }),
+            buffer(2, wgpu::BufferBindingType::Storage { read_only: false }),
+            buffer(3, wgpu::BufferBindingType::Storage { read_only: false }),
+            buffer(4, wgpu::BufferBindingType::Storage { read_only: false }),
+        ]);
+        let written_layout = layout(&[buffer(0, wgpu::BufferBindingType::Storage { read_only: false })]);
+        let plan_layout = layout(&[buffer(0, wgpu::BufferBindingType::Storage { read_only: true })]);
+
+        let pipeline = |module: &str, entry: &str, third: Option<&wgpu::BindGroupLayout>| {
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(entry),
+                bind_group_layouts: &[Some(&heap_layout), Some(&frame_layout), third],
+                immediate_size: 0,
+            });
+            let source = edit(SHADERS.compose_with(&[storage.module(), module], "").source);
+            // A kernel is told of the overrides that it has.
+            let has = |name: &str| source.contains(&format!("override {name}:"));
+            let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| has(name)).collect();
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(module),
+                source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            })
+        };
+        Self {
+            generate: pipeline("generate_pass", "generate", None),
+            start: pipeline("count_pass", "start", Some(&written_layout)),
+            extend: pipeline("extend_pass", "extend", Some(&plan_layout)),
+            shade: pipeline("shade_pass", "shade", Some(&plan_layout)),
+            count_shadows: pipeline("count_pass", "count_shadows", Some(&written_layout)),
+            shadow: pipeline("shadow_pass", "shadow", Some(&plan_layout)),
+            count_paths: pipeline("count_pass", "count_paths", Some(&written_layout)),
+            resolve: pipeline("resolve_pass", "resolve", Some(&written_layout)),
+            heap_layout,
+            frame_layout,
+            written_layout,
+            plan_layout,
+        }
+    }
+}
+
+fn buffer(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}

@@ -1,0 +1,149 @@
+//! Hits of a list of rays on a device: for tests and measurements.
+
+use super::device_heap::{GpuHeap, Storage, traversal_constants};
+use crate::shader::SHADERS;
+use crate::trace::heap::Heap;
+use crate::trace::{Geometry, Hit, Ray};
+use std::borrow::Cow;
+use wgpu::BufferUsages;
+
+/// What is asked about each ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// The nearest hit.
+    Closest,
+    /// Whether anything is hit.
+    Any,
+}
+
+/// Traversal as a pipeline of its own.
+#[derive(Debug)]
+pub struct GpuRays {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    pipeline: wgpu::ComputePipeline,
+    question: Question,
+}
+
+/// Rays on the device, and room for their hits.
+#[derive(Debug)]
+pub struct Batch {
+    group: wgpu::BindGroup,
+    hits: wgpu::Buffer,
+    count: u32,
+}
+
+/// Invocations of a workgroup.
+const WORKGROUP: u32 = 64;
+
+impl GpuRays {
+    /// Largest number of rays of a batch: a dispatch has no more workgroups along an axis, and a binding no more bytes.
+    pub const MAX_RAYS: usize = 4_000_000;
+
+    /// For a scene's heap, as it was finished. `source` is the text of the shader; `None` for the package's own, where every hit
+    /// is accepted.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        heap: &Heap,
+        geometry: &Geometry,
+        storage: Storage,
+        question: Question,
+        source: Option<&str>,
+    ) -> Self {
+        let source = source.map_or_else(|| Self::source(storage), str::to_owned);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("hits"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("hits"),
+            layout: None,
+            module: &module,
+            entry_point: Some(match question {
+                Question::Closest => "closest_hits",
+                Question::Any => "any_hits",
+            }),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &traversal_constants(heap, geometry, false, storage),
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        });
+        Self { device: device.clone(), queue: queue.clone(), pipeline, question }
+    }
+
+    /// The package's own shader.
+    pub fn source(storage: Storage) -> String {
+        SHADERS.compose_with(&[storage.module(), "accept_all", "hits_pass"], "").source
+    }
+
+    /// Uploads rays.
+    pub fn batch(&self, heap: &GpuHeap, rays: &[Ray]) -> Batch {
+        let rays = &rays[..rays.len().min(Self::MAX_RAYS)];
+        let floats: Vec<[f32; 8]> = rays
+            .iter()
+            .map(|r| {
+                let (o, d) = (r.origin, r.direction);
+                [o.x, o.y, o.z, r.t_max, d.x, d.y, d.z, 0.0]
+            })
+            .collect();
+        let buffer = |size: usize, usage| {
+            let size = size.max(32) as u64;
+            self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let input = buffer(rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        self.queue.write_buffer(&input, 0, bytemuck::cast_slice(&floats));
+        let hits = buffer(rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: heap.binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: hits.as_entire_binding() },
+            ],
+        });
+        Batch { group, hits, count: rays.len() as u32 }
+    }
+
+    /// Traces a batch and waits for it.
+    pub fn run(&self, batch: &Batch) {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &batch.group, &[]);
+        pass.dispatch_workgroups(batch.count.div_ceil(WORKGROUP), 1, 1);
+        drop(pass);
+        self.queue.submit([encoder.finish()]);
+        // A lost device shows at the next map.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
+    /// The hits of a batch that ran; where anything is asked, those of triangle 0 at distance 0.
+    ///
+    /// # Panics
+    /// If the device was lost.
+    pub fn hits(&self, batch: &Batch) -> Vec<Option<Hit>> {
+        let size = batch.hits.size();
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let readback = self.device.create_buffer(&desc);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&batch.hits, 0, &readback, 0, size);
+        self.queue.submit([encoder.finish()]);
+        readback.map_async(wgpu::MapMode::Read, .., |_| ());
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let mapped = readback.get_mapped_range(..).expect("the buffer was mapped and waited for");
+        let words: &[[u32; 4]] = bytemuck::cast_slice(&mapped);
+        let hit = |&[triangle, t, u, v]: &[u32; 4]| {
+            let found = match self.question {
+                Question::Closest => triangle != u32::MAX,
+                Question::Any => triangle == 1,
+            };
+            let triangle = if self.question == Question::Any { 0 } else { triangle };
+            found.then(|| Hit { triangle, t: f32::from_bits(t), u: f32::from_bits(u), v: f32::from_bits(v) })
+        };
+        words[..batch.count as usize].iter().map(hit).collect()
+    }
+}

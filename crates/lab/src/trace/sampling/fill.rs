@@ -1,0 +1,133 @@
+//! Values between samples.
+
+use super::lattice::Lattice;
+use crate::trace::film::{Film, Moments};
+use afterimage::image::Image;
+use afterimage::kernel::resample::catmull_rom;
+use glam::Vec3;
+
+/// Between the points of a lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Filter {
+    /// Of the four nearest points.
+    Linear,
+    /// Catmull-Rom's cubic, of sixteen.
+    Bicubic,
+}
+
+impl Filter {
+    /// How far from a pixel the points lie that it looks at, at most, in pixels.
+    pub fn reach_px(self, lattice: &Lattice) -> f32 {
+        // Pixels lie on points or off them by no less than this along an axis: by 1, by a half from the middles of even blocks. A
+        // tap a whole step away has the weight 0.
+        let least = 1.0 - lattice.first_px[0].fract();
+        let farther = match self {
+            Self::Linear => 0.0,
+            Self::Bicubic => lattice.step as f32,
+        };
+        std::f32::consts::SQRT_2 * (lattice.step as f32 - least + farther)
+    }
+}
+
+/// The film's value at a pixel. Points without samples are left out, where a cubic lacks one the linear blend stands in.
+pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Filter) -> Vec3 {
+    let at = lattice.coordinate(px);
+    let base = at.map(|v| v.floor());
+    let part = [at[0] - base[0], at[1] - base[1]];
+    // Columns and rows of points around it; those at 1 and 2 are its neighbours.
+    let around = |axis: usize| {
+        let last = lattice.points[axis] as i32 - 1;
+        [-1, 0, 1, 2].map(|d| (base[axis] as i32 + d).clamp(0, last) as u32)
+    };
+    let (xs, ys) = (around(0), around(1));
+    let tap = |i: usize, j: usize| {
+        let moments = film.at([xs[i], ys[j]]);
+        (moments.count > 0).then_some(moments.mean)
+    };
+    // On a point: its own value, whoever its neighbours are.
+    if part == [0.0; 2]
+        && let Some(value) = tap(1, 1)
+    {
+        return value;
+    }
+    if filter == Filter::Bicubic {
+        let (wx, wy) = (catmull_rom(part[0]), catmull_rom(part[1]));
+        let mut sum = Some(Vec3::ZERO);
+        for (j, wy) in wy.iter().enumerate() {
+            for (i, wx) in wx.iter().enumerate() {
+                // On a row or column of points the others have no weight, and may have no samples.
+                if wx * wy != 0.0 {
+                    sum = sum.zip(tap(i, j)).map(|(sum, value)| sum + value * (wx * wy));
+                }
+            }
+        }
+        if let Some(sum) = sum {
+            // The cubic overshoots at edges; radiance has no negative values.
+            return sum.max(Vec3::ZERO);
+        }
+    }
+    let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let weight = (if dx == 0 { 1.0 - part[0] } else { part[0] }) * (if dy == 0 { 1.0 - part[1] } else { part[1] });
+        if let Some(value) = tap(1 + dx, 1 + dy) {
+            sum += value * weight;
+            weights += weight;
+        }
+    }
+    if weights > 0.0 { sum / weights } else { Vec3::ZERO }
+}
+
+/// A frame from scattered samples by pull and push (Gortler et al., "The Lumigraph", 1996, section 3.4): means of 2x2 pixels upwards until
+/// all is covered, then each level fills what the one below it lacks.
+pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
+    let mut levels: Vec<Image<(Vec3, f32)>> = vec![film.moments.map(|m| (m.mean, if m.count > 0 { 1.0 } else { 0.0 }))];
+    while let Some(last) = levels.last()
+        && last.size() != [1, 1]
+    {
+        let size = last.size().map(|s| s.div_ceil(2));
+        levels.push(Image::from_fn_parallel(size, |[x, y]| {
+            let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let (x, y) = ((2 * x + dx) as usize, (2 * y + dy) as usize);
+                if x < last.width() && y < last.height() {
+                    let (value, w) = last.at(x, y);
+                    sum += value * w;
+                    weight += w;
+                }
+            }
+            // A covered pixel is covered, however many samples it has.
+            (if weight > 0.0 { sum / weight } else { Vec3::ZERO }, weight.min(1.0))
+        }));
+    }
+    let mut coarse = levels.pop().expect("there is the frame itself").map(|(value, _)| value);
+    while let Some(fine) = levels.pop() {
+        coarse = Image::from_fn_parallel(fine.size(), |[x, y]| {
+            let (value, weight) = fine.at(x as usize, y as usize);
+            if weight >= 1.0 { value } else { value * weight + upsampled(&coarse, x, y) * (1.0 - weight) }
+        });
+    }
+    coarse.map(|c| c.to_array())
+}
+
+/// Noise of scattered samples: of a pixel without any, the mean of those around it.
+pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
+    let mut as_means = Film::new(film.moments.size());
+    as_means.moments = Image::from_fn_parallel(film.moments.size(), |pixel| {
+        let [error, samples] = film.noise_at(pixel);
+        Moments { mean: Vec3::new(error, samples, 0.0), squares: Vec3::ZERO, count: u32::from(samples > 0.0) }
+    });
+    pull_push(&as_means).map(|[error, samples, _]| [error, samples])
+}
+
+/// The coarser level at a pixel of the finer one, between its nearest four.
+fn upsampled(coarse: &Image<Vec3>, x: u32, y: u32) -> Vec3 {
+    let axis = |v: u32, len: usize| {
+        let near = (v / 2) as i32;
+        let far = near + if v.is_multiple_of(2) { -1 } else { 1 };
+        [near, far].map(|i| i.clamp(0, len as i32 - 1) as usize)
+    };
+    let ([x0, x1], [y0, y1]) = (axis(x, coarse.width()), axis(y, coarse.height()));
+    let top = coarse.at(x0, y0) * 0.75 + coarse.at(x1, y0) * 0.25;
+    let bottom = coarse.at(x0, y1) * 0.75 + coarse.at(x1, y1) * 0.25;
+    top * 0.75 + bottom * 0.25
+}

@@ -1,0 +1,241 @@
+//! Samples where they are missed: a plan's samples shared out by what a history already knows.
+//!
+//! A point of which `known` samples are held and `n` new ones are taken, each of standard deviation `deviation`, is left with the
+//! variance deviation^2 / (known + n). Under a budget the sum over the points is least (Lagrange; Neyman 1934 where nothing is
+//! known) for
+//!
+//! n = clamp(deviation t - known, least, most)
+//!
+//! with the one t that spends the budget. Each ring has its own, so the fovea stays the fovea. Whole
+//! numbers are made of n by chance: `floor(n + draw)` has the mean n.
+//!
+//! n hangs on frames gone by and on a draw that no path uses, never on this frame's samples; so every point's mean is unbiased,
+//! given what the guide says. Whoever weights frames by their counts, and makes the guide of the same frames, should know that
+//! their *sum* is biased (Kirk and Arvo 1991): where the first samples happened to agree, fewer follow that could mend it.
+
+use super::lattice::Lattice;
+use super::{Part, Plan};
+use crate::frame::Guide;
+use crate::trace::cpu::path_key;
+use crate::trace::film::{Film, Moments};
+use crate::trace::work::Spans;
+use afterimage::error::SettingsError;
+use afterimage::image::Image;
+use afterimage::kernel::color::luma;
+use afterimage::kernel::rng::path_draws;
+use rayon::prelude::*;
+
+/// Every sampled point has at least one sample: what has changed is seen.
+const LEAST: u32 = 1;
+
+/// A point has at most so many times the samples that its ring would give it: what more buys elsewhere is worth more, and the
+/// deviation may be wrong.
+const MOST: u32 = 8;
+
+/// Number of a sample that no path has: its draws round.
+const ROUNDING: u32 = u32::MAX;
+
+impl Guide {
+    /// Of frames that were added up in `film`, seen as they are: counts, and deviations of luma on a screen that shows
+    /// x / (1 + x). Deviations are those of 3 x 3 pixels together, as a few samples may agree by chance.
+    pub fn of_film(film: &Film) -> Self {
+        let moments = &film.moments;
+        let [width, height] = moments.size().map(|s| s as i64);
+        let deviation = Image::from_fn_parallel(moments.size(), |[x, y]| {
+            let (mut squares, mut freedom, mut mean, mut count) = (0.0, 0.0, 0.0, 0.0);
+            for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
+                let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
+                if x < 0 || y < 0 || x >= width || y >= height {
+                    continue;
+                }
+                let m: Moments = moments.at(x as usize, y as usize);
+                // Channels of a path rise and fall together, so their deviations add up.
+                squares += luma(m.squares.map(f32::sqrt)).powi(2);
+                freedom += m.count.saturating_sub(1) as f32;
+                mean += luma(m.mean) * m.count as f32;
+                count += m.count as f32;
+            }
+            // The slope of x / (1 + x) there.
+            (squares / freedom).sqrt() / (1.0 + mean / count).powi(2)
+        });
+        Self { known: moments.map(|m| m.count as f32), deviation }
+    }
+
+    /// What is known of a point that stands for the pixels around it: the least of theirs, and their mean deviation.
+    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> Known {
+        let [xs, ys] = lattice.cell(point, self.known.size());
+        let mut known = f32::INFINITY;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x as usize, y as usize))) {
+            // A NaN counts as 0.
+            known = known.min(if self.known.at(x, y) > 0.0 { self.known.at(x, y) } else { 0.0 });
+            let deviation = self.deviation.at(x, y);
+            if deviation >= 0.0 && deviation.is_finite() {
+                sum += f64::from(deviation);
+                count += 1.0;
+            }
+        }
+        Known { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
+    }
+}
+
+impl Plan {
+    /// The same points and, on average over frames, at most as many samples of each ring, shared out by `guide`: at least one a
+    /// point, at most eight times the ring's. Fewer than the plan's only where more would gain nothing. `seed` and `frame` are those
+    /// that it is traced with.
+    ///
+    /// # Errors
+    /// If the guide is not of the frame's size.
+    pub fn guided(&self, guide: &Guide, frame: u64, seed: u64) -> Result<Self, SettingsError> {
+        for (setting, size) in [("guide.known", guide.known.size()), ("guide.deviation", guide.deviation.size())] {
+            if size != self.size_px {
+                return Err(SettingsError {
+                    setting,
+                    found: format!("{} x {} pixels", size[0], size[1]),
+                    expected: format!("the frame's {} x {}", self.size_px[0], self.size_px[1]),
+                });
+            }
+        }
+        let key = path_key(seed, frame);
+        let work = self.parts().into_iter().zip(0..).map(|(part, ring)| {
+            let known: Vec<Known> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
+            let rounded = |([x, y], share): (&[u32; 2], f64)| {
+                (share + f64::from(path_draws(x | y << 16, ROUNDING, ring, key)[0])).floor() as u32
+            };
+            let counts: Vec<u32> = part.targets.par_iter().zip(shares(&known, part.samples)).map(rounded).collect();
+            spans(&part, &counts)
+        });
+        Ok(Self { guided: Some(work.collect()), ..self.clone() })
+    }
+}
+
+/// What is known of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Known {
+    samples: f64,
+    deviation: Option<f64>,
+}
+
+/// Samples that each point is given on average, as many as `samples` of each would be.
+fn shares(points: &[Known], samples: u32) -> Vec<f64> {
+    let (least, most) = (f64::from(samples.min(LEAST)), f64::from(samples) * f64::from(MOST));
+    let deviations = || points.iter().filter_map(|p| p.deviation);
+    let mean = match deviations().count() {
+        0 => 1.0,
+        count => deviations().sum::<f64>() / count as f64,
+    };
+    let known: Vec<[f64; 2]> = points.iter().map(|p| [p.deviation.unwrap_or(mean), p.samples]).collect();
+    let share = |[deviation, samples]: [f64; 2], t: f64| (deviation * t - samples).clamp(least, most);
+    // The sum of all shares, and its slope. In parts of a fixed size: it must not hang on the number of threads.
+    let sum = |t: f64| {
+        let of = |part: &[[f64; 2]]| {
+            part.iter().fold([0.0; 2], |[sum, slope], &p| {
+                let share = share(p, t);
+                [sum + share, if share > least && share < most { slope + p[0] } else { slope }]
+            })
+        };
+        let parts: Vec<[f64; 2]> = known.par_chunks(1 << 14).map(of).collect();
+        parts.iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
+    };
+    let budget = points.len() as f64 * f64::from(samples);
+    // Between these are all quotients of f32s.
+    let (mut low, mut high) = ((-300.0_f64).exp2(), 300.0_f64.exp2());
+    let mut t = high;
+    if sum(high)[0] > budget {
+        // What it would be without bounds.
+        let finite = || known.iter().filter(|p| p[1].is_finite());
+        let sums = finite().fold([budget, 0.0], |[samples, deviation], p| [samples + p[1], deviation + p[0]]);
+        t = (sums[0] / sums[1]).clamp(low, high);
+        let mut last = f64::INFINITY;
+        for _ in 0..100 {
+            let [sum, slope] = sum(t);
+            let off = (sum - budget).abs();
+            if off <= 1e-9 * budget {
+                break;
+            }
+            *(if sum > budget { &mut high } else { &mut low }) = t;
+            // The sum is straight between the points' bounds, where Newton's step is exact; where it gains little, halve what is left.
+            let newton = t + (budget - sum) / slope;
+            t = if off < 0.5 * last && newton > low && newton < high { newton } else { (low * high).sqrt() };
+            last = off;
+        }
+    }
+    known.iter().map(|&p| share(p, t)).collect()
+}
+
+/// Work with so many samples of each target. A number is the sum of powers of two: samples 2^b to 2^(b+1) - 1 are traced of the
+/// targets whose number has bit b, so that a few spans serve any numbers.
+fn spans(part: &Part, counts: &[u32]) -> Vec<Spans> {
+    let bits = u32::BITS - counts.iter().max().map_or(u32::BITS, |most| most.leading_zeros());
+    let of_bit = |bit: u32| {
+        let chosen = part.targets.iter().zip(counts).filter(|(_, n)| **n >> bit & 1 != 0);
+        Spans::new(chosen.map(|(target, _)| *target), 1 << bit..2 << bit)
+    };
+    (0..bits).into_par_iter().map(of_bit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use afterimage::kernel::rng::{pcg4d, unit_draw};
+
+    /// Counts from 0 to 40, deviations from 1e-4 to 1, some points of which nothing is known.
+    fn points(count: u32, seed: u32) -> Vec<Known> {
+        let draws = |i| pcg4d([i, seed, 0, 0]).map(|bits| f64::from(unit_draw(bits)));
+        (0..count)
+            .map(|i| {
+                let [samples, deviation, unknown, _] = draws(i);
+                Known { samples: 40.0 * samples, deviation: (unknown > 0.1).then(|| 1e-4_f64.powf(deviation)) }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn no_sample_would_do_more_elsewhere() {
+        for (seed, samples) in [(1, 2), (2, 4), (3, 16), (4, 100)] {
+            let points = points(5000, seed);
+            let known: Vec<f64> = points.iter().filter_map(|p| p.deviation).collect();
+            let mean = known.iter().sum::<f64>() / known.len() as f64;
+            let shares = shares(&points, samples);
+            let spent = shares.iter().sum::<f64>();
+            assert!((spent / (5000.0 * f64::from(samples)) - 1.0).abs() < 1e-7, "{spent} spent");
+            // Karush, Kuhn and Tucker: what one more sample takes off the variance is the same at all points between the bounds, less at
+            // those with the least, more at those with the most.
+            let gain = |(p, share): (&Known, &f64)| (p.deviation.unwrap_or(mean) / (p.samples + share)).powi(2);
+            let (mut least, mut between, mut most) = (0.0_f64, [f64::INFINITY, 0.0_f64], f64::INFINITY);
+            for (p, share) in points.iter().zip(&shares) {
+                let gain = gain((p, share));
+                match *share {
+                    1.0 => least = least.max(gain),
+                    n if n == 8.0 * f64::from(samples) => most = most.min(gain),
+                    _ => between = [between[0].min(gain), between[1].max(gain)],
+                }
+            }
+            assert!(between[1] < between[0] * (1.0 + 1e-5), "{between:?}");
+            assert!(least <= between[1] && most >= between[0], "{least} {between:?} {most}");
+        }
+    }
+
+    #[test]
+    fn extremes_of_a_float_stay_within_the_bounds() {
+        let known =
+            |samples: f32, deviation: f32| Known { samples: f64::from(samples), deviation: Some(f64::from(deviation)) };
+        let tiny = f32::from_bits(1);
+        let points = [known(f32::MAX, tiny), known(0.0, f32::MAX), known(f32::INFINITY, f32::MAX), known(0.0, 0.0)];
+        let all = shares(&points, 3);
+        assert!(all[1] > 8.999_999 && all[1] <= 9.0, "{all:?}");
+        assert_eq!([all[0], all[2], all[3]], [1.0; 3]);
+        assert_eq!(shares(&points, 0), [0.0; 4]);
+        assert!(shares(&[], 5).is_empty());
+    }
+
+    #[test]
+    fn samples_of_a_number_are_its_bits() {
+        let targets = vec![[3, 1], [4, 1], [9, 1], [0, 2]];
+        let part = Part { lattice: Lattice::blocks(1, [16, 16]), targets, samples: 4 };
+        let spans = spans(&part, &[5, 1, 0, 12]);
+        let ranges: Vec<_> = spans.iter().map(|s| (s.samples(), s.pixels())).collect();
+        assert_eq!(ranges, [(1..2, 2), (2..4, 0), (4..8, 2), (8..16, 1)]);
+        assert_eq!(spans.iter().map(Spans::len).sum::<u64>(), 5 + 1 + 12);
+    }
+}

@@ -1,0 +1,51 @@
+//! Nested lattices offset by the gaze (thesis: foveated path tracing for VR, KTH 2020).
+
+use super::circle::Circle;
+use super::fill::Filter;
+use super::lattice::Lattice;
+use super::regions::tangent_px;
+use super::rings::Ring;
+use afterimage::geometry::ViewGeometry;
+use glam::Vec3;
+
+/// The pattern. Defaults are the thesis'.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layers {
+    /// Radii of the three inner layers around the gaze, degrees.
+    pub radii_deg: [f32; 3],
+    /// Pixels between the target pixels of the four layers.
+    pub steps: [u32; 4],
+    /// Radius in degrees of what a headset's lens shows around the view's axis; nothing is traced outside. `None`: a screen, all of
+    /// it is seen.
+    pub lens_deg: Option<f32>,
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self { radii_deg: [6.0, 10.0, 20.0], steps: [1, 2, 3, 4], lens_deg: None }
+    }
+}
+
+impl Layers {
+    pub(super) fn rings(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32) -> Vec<Ring> {
+        let size_px = geometry.size_px();
+        let lens = self.lens_deg.and_then(|deg| {
+            let center_px = geometry.project(Vec3::Z)?;
+            Some(Circle { center_px, radius_px: tangent_px(geometry, deg) })
+        });
+        let mut radius = 0.0_f32;
+        (0..4)
+            .map(|i| {
+                radius = self.radii_deg.get(i).map_or(f32::INFINITY, |&deg| tangent_px(geometry, deg)).max(radius);
+                Ring {
+                    lattice: Lattice::through(self.steps[i], gaze_px, size_px),
+                    samples,
+                    radius_px: radius,
+                    blend_px: if i < 3 { 2.0 * self.steps[i + 1] as f32 } else { 0.0 },
+                    filter: if self.steps[i] > 1 { Filter::Bicubic } else { Filter::Linear },
+                    lens: lens.unwrap_or(Circle::EVERYTHING),
+                }
+            })
+            .collect()
+    }
+}

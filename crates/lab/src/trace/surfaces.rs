@@ -1,0 +1,69 @@
+//! What the pixel centres see: distance and motion, exact, without noise.
+
+use super::effects::{Effect, Effects};
+use super::view::View;
+use super::world::World;
+use super::{Ray, cpu};
+use crate::kernel::direction::unit;
+use afterimage::image::Image;
+use glam::{DVec3, Vec3};
+
+/// Distance and motion of the first surface behind each pixel's centre. Surfaces that light passes through count, those that
+/// are less than half opaque do not.
+#[derive(Clone, Debug)]
+pub struct Surfaces {
+    /// Distance along the view axis in metres; infinity where there is nothing.
+    pub depth: Image<f32>,
+    /// Pixels, y down, previous minus current. Of what was behind the previous camera: far off the frame.
+    pub motion: Image<[f32; 2]>,
+}
+
+/// Motion of what the previous camera could not have seen.
+const OFF_FRAME_PX: f32 = 1e6;
+
+impl Surfaces {
+    /// Of `world` seen through `view`; `previous` is the view a frame ago, when moving triangles were where
+    /// [`World::pose`] was told.
+    pub fn trace(world: &World, view: &View, previous: &View, effects: Effects) -> Self {
+        let size = view.geometry().size_px();
+        let rays = view.rays();
+        let pixels = Image::from_fn_parallel(size, |[x, y]| {
+            let px = [x as f32, y as f32];
+            let direction = unit(rays.corner + rays.right * px[0] + rays.down * px[1]);
+            let Some(seen) = first_surface(world, rays.origin, direction, effects) else {
+                let before = previous.project_direction(direction.as_dvec3());
+                return (f32::INFINITY, motion(px, before));
+            };
+            let depth = view.project(seen.at).map_or(f32::INFINITY, |(_, depth)| depth as f32);
+            (depth, motion(px, previous.project(seen.was).map(|(px, _)| px)))
+        });
+        Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
+    }
+}
+
+/// A place on a surface, in world space: now, and a frame ago.
+pub(super) struct Seen {
+    pub at: DVec3,
+    pub was: DVec3,
+}
+
+/// What a ray meets first.
+pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<Seen> {
+    let ray = Ray { origin, direction, t_max: f32::INFINITY };
+    let hit = world.geometry.closest(&ray, |triangle, u, v| {
+        !effects.has(Effect::Alpha) || cpu::is_mostly_there(world, triangle, u, v, effects)
+    })?;
+    let corners = world.geometry.triangle(hit.triangle).positions();
+    let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
+    Some(Seen { at: at(corners, hit.u, hit.v), was: at(was, hit.u, hit.v) })
+}
+
+fn at(corners: [Vec3; 3], u: f32, v: f32) -> DVec3 {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    a + (b - a) * f64::from(u) + (c - a) * f64::from(v)
+}
+
+fn motion(px: [f32; 2], before: Option<[f64; 2]>) -> [f32; 2] {
+    let off = [OFF_FRAME_PX; 2];
+    before.map_or(off, |b| [0, 1].map(|i| ((b[i] - f64::from(px[i])) as f32).clamp(-OFF_FRAME_PX, OFF_FRAME_PX)))
+}

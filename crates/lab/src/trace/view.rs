@@ -1,0 +1,116 @@
+//! The view that a frame is traced for.
+
+use crate::scene::Camera;
+use crate::trace::sampling::Lattice;
+use afterimage::error::SettingsError;
+use afterimage::geometry::ViewGeometry;
+use glam::{DMat4, DVec3, Vec3};
+
+/// Where a frame is seen from, and through which pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    geometry: ViewGeometry,
+    world_from_camera: DMat4,
+    lattice: Option<Lattice>,
+}
+
+/// Rays of a view: `corner + right x + down y` goes through pixel (x, y), whose centre is at integers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewRays {
+    /// Where all rays start.
+    pub origin: Vec3,
+    /// Through pixel (0, 0).
+    pub corner: Vec3,
+    /// From one pixel to its neighbour on the right.
+    pub right: Vec3,
+    /// From one pixel to its neighbour below.
+    pub down: Vec3,
+    /// Edge of the square that samples are spread over, in pixels.
+    pub jitter: f32,
+}
+
+impl View {
+    /// `geometry` seen from `world_from_camera` (rigid; x right, y up, looking along -z).
+    pub fn new(geometry: ViewGeometry, world_from_camera: DMat4) -> Self {
+        Self { geometry, world_from_camera, lattice: None }
+    }
+
+    /// What a scene's camera sees in a picture of `size_px`, with its own field of view or `hfov_deg` (horizontal, degrees).
+    ///
+    /// # Errors
+    /// If the field of view is not in (0, 180) degrees.
+    pub fn of_camera(camera: &Camera, size_px: [u32; 2], hfov_deg: Option<f32>) -> Result<Self, SettingsError> {
+        let geometry = match hfov_deg {
+            Some(hfov_deg) => ViewGeometry::flat(size_px, hfov_deg)?,
+            None => {
+                let half = (camera.vfov_deg.to_radians() * 0.5).tan();
+                let wide = half * size_px[0].max(1) as f32 / size_px[1].max(1) as f32;
+                ViewGeometry::off_axis(size_px, [-wide, wide], [-half, half])?
+            }
+        };
+        Ok(Self::new(geometry, camera.world_from_camera))
+    }
+
+    /// Pixels and angles.
+    pub fn geometry(&self) -> &ViewGeometry {
+        &self.geometry
+    }
+
+    /// Camera to world.
+    pub fn world_from_camera(&self) -> DMat4 {
+        self.world_from_camera
+    }
+
+    /// Takes a point from this view's space (x right, y down, z forward) to `previous`'; row-major, for column vectors.
+    pub fn previous_from_current(&self, previous: &Self) -> [[f32; 4]; 4] {
+        let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
+        let matrix = flip * previous.world_from_camera.inverse() * self.world_from_camera * flip;
+        matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
+    }
+
+    /// The same view of which only the points of a lattice are sampled: its pixels are those points.
+    pub fn on_lattice(&self, lattice: &Lattice) -> Self {
+        Self { lattice: Some(*lattice), ..*self }
+    }
+
+    /// Its rays.
+    pub fn rays(&self) -> ViewRays {
+        let (scale, offset) = self.geometry.scale_offset();
+        let to_world = |x: f32, y: f32, z: f32| {
+            // The view's y is down and its z forward, the camera's y up and its z back.
+            let v = DVec3::new(f64::from(x), -f64::from(y), -f64::from(z));
+            self.world_from_camera.transform_vector3(v).as_vec3()
+        };
+        let origin = self.world_from_camera.w_axis.truncate().as_vec3();
+        let (first, step, jitter) =
+            self.lattice.map_or(([0.0; 2], 1.0, 1.0), |l| (l.first_px, l.step as f32, l.footprint_px / l.step as f32));
+        ViewRays {
+            origin,
+            corner: to_world(offset[0] + scale[0] * first[0], offset[1] + scale[1] * first[1], 1.0),
+            right: to_world(scale[0] * step, 0.0, 0.0),
+            down: to_world(0.0, scale[1] * step, 0.0),
+            jitter,
+        }
+    }
+
+    /// Pixel and distance along the axis (metres) of a point in world space; `None` behind the camera.
+    pub fn project(&self, world: DVec3) -> Option<([f64; 2], f64)> {
+        let c = self.world_from_camera.inverse().transform_point3(world);
+        let depth = -c.z;
+        self.pixel(c).map(|px| (px, depth))
+    }
+
+    /// Pixel of a direction in world space; `None` behind the camera.
+    pub fn project_direction(&self, world: DVec3) -> Option<[f64; 2]> {
+        self.pixel(self.world_from_camera.inverse().transform_vector3(world))
+    }
+
+    fn pixel(&self, camera: DVec3) -> Option<[f64; 2]> {
+        let (scale, offset) = self.geometry.scale_offset();
+        let depth = -camera.z;
+        (depth > 0.0).then(|| {
+            let at = |v: f64, axis: usize| (v / depth - f64::from(offset[axis])) / f64::from(scale[axis]);
+            [at(camera.x, 0), at(-camera.y, 1)]
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! A device that is lost in mid-stream: an error that says so, from every part of the tool that computes on one, and no panic; a new device
+//! goes on. The drop-in itself is in `tests/gpu_pass/lifecycle.rs`. Hard case H77.
+
+use afterimage::Settings;
+use afterimage::error::FrameError;
+use afterimage::foveation::Foveation;
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::source::{
+    AnalyticSource, FrameSource, RasterSource, ReadLimits, SceneOptions, TracedSamples, TracedSource,
+};
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_testing::holds;
+use std::sync::Arc;
+
+const OPTIONS: SceneOptions = SceneOptions { size: Some([32, 24]), hfov_deg: None, fps: None };
+
+fn device() -> Option<Arc<Headless>> {
+    Some(Headless::on(afterimage_testing::gpu::adapter()?, wgpu::Limits::default()).unwrap())
+}
+
+/// The error of frame 1, for which the device is no longer there.
+fn error_of(mut source: impl FrameSource, device: &Headless) -> String {
+    let frame = source.frame(0).unwrap();
+    assert!(frame.color.pixels().iter().any(|c| c[0] > 0.0));
+    device.device.destroy();
+    source.frame(1).map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn a_lost_device_is_an_error_and_a_new_one_goes_on() {
+    let Some(lost) = device() else { return };
+    let mut source = AnalyticSource::new("lateral", [64, 36], 70.0, 60.0).unwrap();
+    let pipeline = |device: &Arc<Headless>, geometry| {
+        let (foveation, kinds) = (Foveation::default(), [LaneKind::PostProcess(Settings::default())]);
+        Pipeline::new(geometry, foveation, &kinds, false, &[], &Backend::Gpu(device.clone())).unwrap()
+    };
+    let mut first = pipeline(&lost, *source.view());
+    for index in 0..3 {
+        first.step(index, &source.frame(index).unwrap(), Some([30.0, 18.0])).unwrap();
+    }
+    lost.check().unwrap();
+    lost.device.destroy();
+    for index in 3..5 {
+        let error = first.step(index, &source.frame(index).unwrap(), None).map(|_| ()).unwrap_err();
+        assert_eq!(error, FrameError::DeviceLost);
+    }
+    assert_eq!(lost.check(), Err(FrameError::DeviceLost));
+
+    // A new device shows what one shows that never had another: no frame of the past.
+    let show = |pipeline: &mut Pipeline, source: &mut AnalyticSource| {
+        let step = pipeline.step(5, &source.frame(5).unwrap(), Some([30.0, 18.0])).unwrap();
+        step.shown[0].image.pixels().to_vec()
+    };
+    let again = [device().unwrap(), device().unwrap()].map(|d| show(&mut pipeline(&d, *source.view()), &mut source));
+    assert_eq!(again[0], again[1]);
+    holds!(
+        "H77",
+        Tool,
+        "a device lost after 3 frames: FrameError::DeviceLost in each frame after; a new one starts afresh"
+    );
+}
+
+#[test]
+fn sources_say_that_their_device_was_lost() {
+    let Some(lost) = device() else { return };
+    let limits = ReadLimits::default();
+    let raster = RasterSource::open("builtin:cubes", &limits, &OPTIONS, None, lost.clone()).unwrap();
+    let said = error_of(raster, &lost);
+    assert!(said.starts_with("builtin:cubes: the graphics device was lost"), "{said}");
+
+    let lost = device().unwrap();
+    let (settings, samples) =
+        (TraceSettings::default(), TracedSamples { foveated: None, samples: 1, full_rate_samples: 1 });
+    let backend = Backend::Gpu(lost.clone());
+    let traced = TracedSource::open("builtin:cubes", &limits, &OPTIONS, Some("orbit"), &backend, settings, samples);
+    let said = error_of(traced.unwrap(), &lost);
+    assert!(said.contains("the graphics device was lost") && said.contains("--backend cpu"), "{said}");
+}

@@ -1,0 +1,389 @@
+//! Damaged and odd files: a clear error or a sound scene, never a panic or a hang.
+
+use super::builder::{Gltf, TRIANGLE, encoded, glb, png, written};
+use super::{assert_refused, assert_sound, open};
+use serde_json::{Value, json};
+
+/// A file that has some of everything.
+pub fn everything() -> Gltf {
+    let mut file = Gltf::with_material(json!({"name": "m", "normalTexture": {"index": 0}, "alphaMode": "BLEND",
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatTexture": {"index": 0}},
+            "KHR_materials_volume": {"thicknessFactor": 1.0, "attenuationDistance": 2.0},
+            "KHR_materials_anisotropy": {"anisotropyStrength": 0.5}}}));
+    file.texture(&png([3, 2], |x, y| [x as u8, y as u8, 255, 128]));
+    file.push("samplers", json!({"wrapS": 33071}));
+    file.json["textures"][0]["sampler"] = json!(0);
+    file.json["extensionsUsed"] = json!(["KHR_lights_punctual", "KHR_materials_clearcoat"]);
+    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": {}}]}});
+    file.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}));
+    let (target, joints) =
+        (file.floats(&[[0.5f32, 0.0, 0.0]; 3]), file.accessor(&[0, 1, 0, 0].repeat(3), 3, "VEC4", 5121));
+    let weights = file.floats(&[[0.5f32, 0.5, 0.0, 0.0]; 3]);
+    let (at, values) = (file.view(&[1]), file.view(&[0; 12]));
+    file.json["accessors"][target]["sparse"] =
+        json!({"count": 1, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
+    let indices = file.indices(&[2, 0, 1]);
+    let primitive = &mut file.json["meshes"][0]["primitives"][0];
+    primitive["targets"] = json!([{"POSITION": target}]);
+    primitive["indices"] = json!(indices);
+    primitive["attributes"]["JOINTS_0"] = json!(joints);
+    primitive["attributes"]["WEIGHTS_0"] = json!(weights);
+    let leaf = file.push("nodes", json!({"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}));
+    let root = file.node(json!({"children": [leaf], "scale": [1.0, 2.0, -1.0]}));
+    let identity = glam::Mat4::IDENTITY.to_cols_array();
+    let bind = file.floats(&[identity, identity]);
+    file.push("skins", json!({"joints": [root, leaf], "inverseBindMatrices": bind}));
+    file.json["nodes"][0]["skin"] = json!(0);
+    let times = file.floats(&[[0.0], [1.0]]);
+    let (turns, shapes) = (file.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]]), file.floats(&[[0.0]; 6]));
+    file.push("animations", json!({
+        "samplers": [{"input": times, "output": turns}, {"input": times, "output": shapes, "interpolation": "CUBICSPLINE"}],
+        "channels": [{"sampler": 0, "target": {"node": root, "path": "rotation"}}, {"sampler": 1, "target": {"node": 0, "path": "weights"}}]
+    }));
+    file
+}
+
+#[test]
+fn a_file_of_everything_is_sound() {
+    let scene = everything().open();
+    assert_eq!(scene.pose(0.0).moving.len(), 1);
+    assert_eq!(scene.warnings, [""; 0]);
+}
+
+#[test]
+fn files_that_end_too_soon() {
+    let whole = everything().glb();
+    for length in (0..whole.len()).step_by(7).chain([11, 12, 19, 20, whole.len() - 1]) {
+        let file = written("cut.glb", &whole[..length]);
+        assert_refused(&file.path, &[]);
+        // The same with a length in the header that fits what is there.
+        let mut honest = whole[..length].to_vec();
+        if length >= 12 {
+            honest[8..12].copy_from_slice(&(length as u32).to_le_bytes());
+        }
+        assert_refused(&written("cut.glb", &honest).path, &[]);
+    }
+}
+
+#[test]
+fn containers_and_descriptions_of_other_kinds() {
+    let cases: [(&str, Vec<u8>, &str); 10] = [
+        ("a.glb", b"glTF".to_vec(), "ends after"),
+        ("a.glb", [b"glTF".as_slice(), &[1, 0, 0, 0], &[12, 0, 0, 0]].concat(), "version 1"),
+        ("a.glb", [b"glTF".as_slice(), &[2, 0, 0, 0], &[12, 0, 0, 0]].concat(), "JSON chunk"),
+        ("a.glb", [b"glTF".as_slice(), &[2, 0, 0, 0], &[0, 0, 0, 0]].concat(), "JSON chunk"),
+        ("a.gltf", Vec::new(), "not a glTF"),
+        ("a.gltf", b"{\"asset\": {}}".to_vec(), "version"),
+        ("a.gltf", b"{\"asset\": {\"version\": \"1.0\"}}".to_vec(), "version 1.0"),
+        (
+            "a.gltf",
+            [
+                br#"{"asset": {"version": "2.0"}, "extensions": {"x": "#.as_slice(),
+                &b"[".repeat(100_000),
+                &b"]".repeat(100_000),
+                b"}}",
+            ]
+            .concat(),
+            "recursion",
+        ),
+        ("a.gltf", b"{\"asset\": {\"version\": \"2.0\", \"generator\": \"\xFF\"}}".to_vec(), "not a glTF"),
+        ("a.gltf", b"{\"asset\": {\"version\": \"2.0\"}, \"nodes\": 7}".to_vec(), "not a glTF"),
+    ];
+    for (name, bytes, word) in cases {
+        assert_refused(&written(name, &bytes).path, &[word]);
+    }
+    // No buffer is wanted: no binary chunk needed.
+    let bare = written("bare.glb", &glb(br#"{"asset": {"version": "2.0"}}"#, None));
+    let scene = open(&bare.path).unwrap();
+    assert!(scene.bounds().is_none() && scene.pose(0.0).cameras.is_empty());
+    assert_sound(&scene);
+}
+
+/// Everything, with one value of the description replaced.
+fn changed(path: &str, value: Value) -> Gltf {
+    let mut file = everything();
+    *file.json.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value;
+    file
+}
+
+#[test]
+fn references_to_nothing() {
+    for path in [
+        "/scene",
+        "/scenes/0/nodes/0",
+        "/nodes/0/mesh",
+        "/nodes/0/skin",
+        "/nodes/1/camera",
+        "/nodes/2/children/0",
+        "/nodes/1/extensions/KHR_lights_punctual/light",
+        "/meshes/0/primitives/0/material",
+        "/meshes/0/primitives/0/indices",
+        "/meshes/0/primitives/0/attributes/POSITION",
+        "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+        "/meshes/0/primitives/0/targets/0/POSITION",
+        "/materials/0/normalTexture/index",
+        "/materials/0/extensions/KHR_materials_clearcoat/clearcoatTexture/index",
+        "/textures/0/source",
+        "/textures/0/sampler",
+        "/images/0/bufferView",
+        "/accessors/0/bufferView",
+        "/bufferViews/0/buffer",
+        "/skins/0/joints/1",
+        "/skins/0/inverseBindMatrices",
+        "/animations/0/channels/0/sampler",
+        "/animations/0/channels/0/target/node",
+        "/animations/0/samplers/0/input",
+        "/animations/0/samplers/1/output",
+    ] {
+        for index in [999u64, u32::MAX.into()] {
+            changed(path, json!(index)).assert_refused(&[]);
+        }
+    }
+}
+
+#[test]
+fn accessors_of_the_wrong_type_or_length() {
+    let mut file = everything();
+    let attributes = file.json["meshes"][0]["primitives"][0]["attributes"].clone();
+    let (positions, uvs) = (attributes["POSITION"].clone(), attributes["TEXCOORD_0"].clone());
+    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = uvs;
+    file.assert_refused(&["positions", "Vec2"]);
+    let mut file = everything();
+    file.json["meshes"][0]["primitives"][0]["indices"] = positions;
+    file.assert_refused(&["indices", "Vec3"]);
+    // Indices that are numbers with a fraction.
+    let mut file = everything();
+    let floats = file.floats(&[[0.0], [1.0], [2.0]]);
+    file.json["meshes"][0]["primitives"][0]["indices"] = json!(floats);
+    file.assert_refused(&["indices", "F32"]);
+    changed("/accessors/1/count", json!(2)).assert_refused(&["texture coordinates", "2 elements, expected 3"]);
+    changed("/accessors/0/componentType", json!(5124)).assert_refused(&["component type"]);
+    changed("/accessors/0/type", json!("VEC7")).assert_refused(&["unknown type"]);
+    for (path, value) in [
+        ("/accessors/0/count", json!(4)),
+        ("/accessors/0/count", json!(1u64 << 40)),
+        ("/accessors/0/count", json!(u64::MAX)),
+        ("/bufferViews/0/byteOffset", json!(u64::MAX)),
+        ("/bufferViews/0/byteLength", json!(u64::MAX)),
+        ("/bufferViews/0/byteLength", json!(35)),
+    ] {
+        changed(path, value).assert_refused(&[]);
+    }
+    let mut file = everything();
+    for stride in [0, 4, 11, u32::MAX] {
+        file.json["bufferViews"][0]["byteStride"] = json!(stride);
+        file.assert_refused(&["beyond its buffer"]);
+    }
+}
+
+#[test]
+fn indices_and_sparse_elements_out_of_range() {
+    let mut file = Gltf::new();
+    let (positions, indices) = (file.floats(&TRIANGLE), file.indices(&[0, 1, 3]));
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}, "indices": indices}));
+    file.node(json!({"mesh": mesh}));
+    file.assert_refused(&["index 3 of 3 vertices"]);
+    let mut file = Gltf::new();
+    file.soup(&TRIANGLE);
+    let (at, values) = (file.view(&[3]), file.view(&[0; 12]));
+    file.json["accessors"][0]["sparse"] =
+        json!({"count": 1, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
+    file.assert_refused(&["sets element 3"]);
+    file.json["accessors"][0]["sparse"]["count"] = json!(2);
+    file.assert_refused(&["beyond its buffer"]);
+    file.json["accessors"][0]["sparse"]["count"] = json!(u64::MAX);
+    file.assert_refused(&["beyond its buffer"]);
+}
+
+#[test]
+fn triangles_that_are_not_finite_are_left_out_and_counted() {
+    let mut file = Gltf::new();
+    let far = [[3e9, 0.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0]];
+    let positions: Vec<_> =
+        [TRIANGLE, [[f32::NAN, 0.0, 0.0], [0.0; 3], [1.0; 3]], [[0.0; 3], [0.0, f32::INFINITY, 0.0], [1.0; 3]], far]
+            .concat();
+    file.soup(&positions);
+    let scene = file.open();
+    assert_eq!(scene.still().len(), 1);
+    assert_eq!(scene.warnings, ["3 triangles with corners that are not finite, or farther than 1e9 m, are left out"]);
+    // Finite until its node has moved it.
+    file.json["nodes"][0]["scale"] = json!([1e30, 1.0, 1.0]);
+    assert_eq!(file.open().still().len(), 0);
+}
+
+#[test]
+fn triangles_without_area_and_duplicates_are_kept() {
+    let mut file = Gltf::new();
+    file.soup(&[TRIANGLE, TRIANGLE, [[1.0; 3]; 3], [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]].concat());
+    let scene = file.open();
+    assert_eq!((scene.still().len(), scene.warnings.len()), (4, 0));
+    // With tangents to be made for them, too.
+    let mut file = everything();
+    let flat = file.floats(&[[0.5f32, 0.5, 0.5]; 3]);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(flat);
+    file.open();
+}
+
+#[test]
+fn nodes_that_are_no_tree() {
+    let mut file = Gltf::new();
+    for children in [json!([1]), json!([2]), json!([1])] {
+        file.push("nodes", json!({"children": children}));
+    }
+    file.assert_refused(&["node 1", "must form a tree"]);
+    for cycle in [json!([{"children": [0]}]), json!([{"children": [1]}, {"children": [0]}])] {
+        let mut file = Gltf::new();
+        file.json["nodes"] = cycle;
+        file.json["scenes"][0]["nodes"] = json!([0]);
+        file.assert_refused(&["cycle"]);
+    }
+    // A root that the scene names twice is there once.
+    let mut file = Gltf::new();
+    let node = file.soup(&TRIANGLE);
+    file.json["scenes"][0]["nodes"] = json!([node, node]);
+    assert_eq!(file.open().still().len(), 1);
+}
+
+#[test]
+fn a_chain_of_a_hundred_thousand_nodes() {
+    let mut file = Gltf::new();
+    let positions = file.floats(&TRIANGLE);
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let n = 100_000;
+    let chain = (0..n).map(|i| json!({"children": [i + 1], "translation": [0.001, 0.0, 0.0]}));
+    file.json["nodes"] = chain.chain([json!({"mesh": mesh})]).collect();
+    file.json["scenes"][0]["nodes"] = json!([0]);
+    let scene = file.open();
+    // 0.001 as f32 is off by 5e-8 of itself.
+    assert!((scene.still().positions[0][0].x - 100.0).abs() < 1e-4);
+    let (times, values) = (file.floats(&[[0.0], [1.0]]), file.floats(&[[0.0; 3], [0.0, 5.0, 0.0]]));
+    file.push(
+        "animations",
+        json!({"samplers": [{"input": times, "output": values}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}),
+    );
+    assert!((file.open().pose(0.5).moving.positions[0][0].y - 2.5).abs() < 1e-4);
+}
+
+#[test]
+fn animations_with_keys_that_do_not_fit() {
+    let broken = |times: &[[f32; 1]], values: &[[f32; 3]], interpolation: &str| {
+        let mut file = Gltf::new();
+        let node = file.soup(&TRIANGLE);
+        let (input, output) = (file.floats(times), file.floats(values));
+        file.push(
+            "animations",
+            json!({"samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+            "channels": [{"sampler": 0, "target": {"node": node, "path": "scale"}}]}),
+        );
+        file
+    };
+    let two = [[0.0], [1.0]];
+    broken(&two, &[[1.0; 3]], "LINEAR").assert_refused(&["1 elements, expected 2"]);
+    broken(&two, &[[1.0; 3]; 2], "CUBICSPLINE").assert_refused(&["2 elements, expected 6"]);
+    broken(&[[1.0], [0.0]], &[[1.0; 3]; 2], "STEP").assert_refused(&["not ascending"]);
+    broken(&[[0.0], [f32::NAN]], &[[1.0; 3]; 2], "LINEAR").assert_refused(&["not finite"]);
+    broken(&[], &[], "LINEAR").assert_refused(&["empty"]);
+    broken(&two, &[[f32::INFINITY; 3]; 2], "LINEAR").assert_refused(&["not finite"]);
+    broken(&two, &[[1.0; 3]; 2], "WOBBLY").assert_refused(&["interpolation"]);
+    // Two keys at once: the later one counts.
+    let scene = broken(&[[0.5], [0.5]], &[[1.0; 3], [3.0; 3]], "LINEAR").open();
+    assert_eq!(scene.pose(0.0).moving.positions[0][1].x, 1.0);
+    // Huge values move triangles out of sight, and never to infinity.
+    broken(&two, &[[3e38; 3], [-3e38; 3]], "LINEAR").open();
+    let mut file = everything();
+    file.json["animations"][0]["channels"][0]["target"]["path"] = json!("color");
+    assert!(file.open().warnings[0].contains("unknown"));
+}
+
+#[test]
+fn skins_with_odd_weights_and_joints() {
+    let with = |joints: [u8; 4], weights: [f32; 4]| {
+        let mut file = everything();
+        let (joints, weights) = (file.accessor(&joints.repeat(3), 3, "VEC4", 5121), file.floats(&[weights; 3]));
+        file.json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(joints);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
+        file
+    };
+    with([0, 2, 0, 0], [0.5, 0.5, 0.0, 0.0]).assert_refused(&["joint 2 of 2"]);
+    // What has no weight may point anywhere.
+    assert_eq!(with([0, 200, 0, 0], [1.0, 0.0, 0.0, 0.0]).open().warnings, [""; 0]);
+    let even = with([0, 1, 0, 0], [0.5, 0.5, 0.0, 0.0]).open();
+    for weights in [[3.0, 3.0, 0.0, 0.0], [0.001, 0.001, 0.0, 0.0], [0.25, 0.25, f32::NAN, -1.0]] {
+        let scene = with([0, 1, 0, 0], weights).open();
+        assert_eq!(scene.warnings, ["weights of joints that do not sum to 1 are scaled: mesh 0"]);
+        for (a, b) in scene.pose(0.3).moving.positions[0].iter().zip(even.pose(0.3).moving.positions[0]) {
+            assert!(a.abs_diff_eq(b, 1e-6));
+        }
+    }
+    for weights in [[0.0; 4], [f32::NAN; 4], [-1.0; 4], [f32::MAX; 4]] {
+        with([1, 1, 1, 1], weights).open();
+    }
+    changed("/skins/0/joints", json!([1])).assert_refused(&["joint 1 of 1"]);
+    changed("/skins/0/joints", json!([])).assert_refused(&["of 0"]);
+    changed("/skins/0/joints", json!([1, 2, 1])).assert_refused(&["3 joints and 2 bind matrices"]);
+}
+
+#[test]
+fn scales_of_zero_and_matrices_of_nothing() {
+    for scale in
+        [json!([0.0, 0.0, 0.0]), json!([1.0, 0.0, 1.0]), json!([1e-30, 1e-30, 1e-30]), json!([1e300, 1.0, 1.0])]
+    {
+        let mut file = everything();
+        file.json["nodes"][2]["scale"] = scale.clone();
+        file.open();
+        let mut file = Gltf::new();
+        let node = file.soup(&TRIANGLE);
+        file.json["nodes"][node]["scale"] = scale;
+        file.open();
+    }
+    for matrix in [[0.0; 16], [f32::MAX; 16]] {
+        let mut file = everything();
+        file.json["nodes"][2] = json!({"children": [1], "matrix": matrix});
+        file.open();
+    }
+    let mut file = Gltf::new();
+    let node = file.soup(&TRIANGLE);
+    file.json["nodes"][node]["rotation"] = json!([0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(file.open().still().positions[0][1], glam::Vec3::X);
+}
+
+#[test]
+fn primitives_and_scenes_that_lack_something() {
+    let mut file = everything();
+    file.json["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("POSITION");
+    assert!(file.open().warnings.contains(&"primitives without positions are left out: mesh 0".to_owned()));
+    // Attributes of applications are no error.
+    let mut file = everything();
+    file.json["meshes"][0]["primitives"][0]["attributes"]["_TEMPERATURE"] = json!(0);
+    assert_eq!(file.open().pose(0.0).moving.len(), 1);
+    let mut file = everything();
+    file.json["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);
+    let scene = file.open();
+    assert!(scene.bounds().is_none());
+    assert_eq!(scene.warnings, ["scene 0 of 2 is shown, the others are left out"]);
+    // Without scenes all nodes are shown.
+    let mut file = Gltf::new();
+    file.soup(&TRIANGLE);
+    file.json.as_object_mut().unwrap().remove("scenes");
+    file.json.as_object_mut().unwrap().remove("scene");
+    assert_eq!(file.open().still().len(), 1);
+}
+
+#[test]
+fn images_that_are_none() {
+    let with = |bytes: &[u8]| {
+        let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0}}));
+        file.texture(bytes);
+        file
+    };
+    let whole = png([9, 9], |x, y| [x as u8 * 20, y as u8 * 20, (x * y) as u8, 255]);
+    for length in [0, 4, 8, 20, 33, 50, whole.len() - 20] {
+        with(&whole[..length]).assert_refused(&["image 0"]);
+    }
+    with(b"RIFF....WEBPVP8 ").assert_refused(&["WebP", "expected PNG or JPEG"]);
+    with(b"plain text").assert_refused(&["unknown format"]);
+    let tiny = encoded(&image::DynamicImage::ImageLumaA8(image::ImageBuffer::from_pixel(1, 1, image::LumaA([7, 9]))));
+    assert_eq!(with(&tiny).open().textures[0].texels, [[7, 7, 7, 9]]);
+}

@@ -1,0 +1,177 @@
+//! Small scenes made in code: JSON and the bytes that it refers to.
+
+use afterimage_lab::scene::{Scene, SceneLimits};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A file under construction, with one buffer.
+#[derive(Clone)]
+pub struct Gltf {
+    pub json: Value,
+    pub bin: Vec<u8>,
+}
+
+/// A written file, with its folder.
+pub struct Written {
+    pub folder: TempDir,
+    pub path: PathBuf,
+}
+
+pub const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+impl Gltf {
+    pub fn new() -> Self {
+        let json = json!({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [], "meshes": [],
+            "accessors": [], "bufferViews": []
+        });
+        Self { json, bin: Vec::new() }
+    }
+
+    /// Adds to a list at the top and gives the index.
+    pub fn push(&mut self, list: &str, value: Value) -> usize {
+        if self.json.get(list).is_none() {
+            self.json[list] = json!([]);
+        }
+        let list = self.json[list].as_array_mut().unwrap();
+        list.push(value);
+        list.len() - 1
+    }
+
+    pub fn view(&mut self, bytes: &[u8]) -> usize {
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
+        let offset = self.bin.len();
+        self.bin.extend_from_slice(bytes);
+        self.push("bufferViews", json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()}))
+    }
+
+    /// An accessor of the given GL component type.
+    pub fn accessor(&mut self, bytes: &[u8], count: usize, kind: &str, component: u32) -> usize {
+        let view = self.view(bytes);
+        self.push("accessors", json!({"bufferView": view, "count": count, "type": kind, "componentType": component}))
+    }
+
+    pub fn floats<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
+        let bytes: Vec<u8> = values.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        let kind = match N {
+            1 => "SCALAR",
+            2 => "VEC2",
+            3 => "VEC3",
+            4 => "VEC4",
+            _ => "MAT4",
+        };
+        self.accessor(&bytes, values.len(), kind, 5126)
+    }
+
+    pub fn indices(&mut self, values: &[u32]) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        self.accessor(&bytes, values.len(), "SCALAR", 5125)
+    }
+
+    /// A mesh of one primitive.
+    pub fn mesh(&mut self, primitive: Value) -> usize {
+        self.push("meshes", json!({"primitives": [primitive]}))
+    }
+
+    /// A node without a parent, in the scene.
+    pub fn node(&mut self, node: Value) -> usize {
+        let index = self.push("nodes", node);
+        self.json["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(index));
+        index
+    }
+
+    /// A node with a mesh of the given positions.
+    pub fn soup(&mut self, positions: &[[f32; 3]]) -> usize {
+        let positions = self.floats(positions);
+        let mesh = self.mesh(json!({"attributes": {"POSITION": positions}}));
+        self.node(json!({"mesh": mesh}))
+    }
+
+    /// One triangle with the given material.
+    pub fn with_material(material: Value) -> Self {
+        let mut file = Self::new();
+        let positions = file.floats(&TRIANGLE);
+        let uvs = file.floats(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+        let material = file.push("materials", material);
+        let attributes = json!({"POSITION": positions, "TEXCOORD_0": uvs});
+        let mesh = file.mesh(json!({"attributes": attributes, "material": material}));
+        file.node(json!({"mesh": mesh}));
+        file
+    }
+
+    /// A texture whose encoded image is in the buffer.
+    pub fn texture(&mut self, encoded: &[u8]) -> usize {
+        let view = self.view(encoded);
+        let image = self.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
+        self.push("textures", json!({"source": image}))
+    }
+
+    /// The bytes of a `.glb`.
+    pub fn glb(&self) -> Vec<u8> {
+        let mut root = self.json.clone();
+        if root.get("buffers").is_none() {
+            root["buffers"] = json!([{"byteLength": self.bin.len()}]);
+        }
+        glb(root.to_string().as_bytes(), Some(&self.bin))
+    }
+
+    pub fn written(&self) -> Written {
+        written("scene.glb", &self.glb())
+    }
+
+    #[track_caller]
+    pub fn open(&self) -> Scene {
+        let file = self.written();
+        let scene = super::open(&file.path).unwrap();
+        super::assert_sound(&scene);
+        scene
+    }
+
+    #[track_caller]
+    pub fn open_clip(&self, clip: &str) -> Result<Scene, afterimage_lab::error::InputError> {
+        let file = self.written();
+        Scene::open_clip(file.path.to_str().unwrap(), Some(clip), &SceneLimits::default())
+    }
+
+    #[track_caller]
+    pub fn assert_refused(&self, words: &[&str]) {
+        super::assert_refused(&self.written().path, words);
+    }
+}
+
+/// A container around a description and a binary chunk.
+pub fn glb(json: &[u8], bin: Option<&[u8]>) -> Vec<u8> {
+    let mut body = Vec::new();
+    for (kind, data, fill) in [(b"JSON", json, b' ')].into_iter().chain(bin.map(|b| (b"BIN\0", b, 0))) {
+        let length = data.len().next_multiple_of(4);
+        body.extend_from_slice(&(length as u32).to_le_bytes());
+        body.extend_from_slice(kind);
+        body.extend_from_slice(data);
+        body.resize(body.len() + length - data.len(), fill);
+    }
+    let mut bytes = b"glTF".to_vec();
+    bytes.extend_from_slice(&2u32.to_le_bytes());
+    bytes.extend_from_slice(&(body.len() as u32 + 12).to_le_bytes());
+    bytes.extend(body);
+    bytes
+}
+
+pub fn written(name: &str, bytes: &[u8]) -> Written {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    Written { folder, path }
+}
+
+/// A PNG of 8 bit RGBA.
+pub fn png(size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
+    let image = image::RgbaImage::from_fn(size[0], size[1], |x, y| image::Rgba(texel(x, y)));
+    encoded(&image::DynamicImage::ImageRgba8(image))
+}
+
+pub fn encoded(image: &image::DynamicImage) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}

@@ -1,0 +1,67 @@
+//! Scenes that need no file.
+
+use super::{assert_sound, assert_triangles_sound};
+use afterimage_lab::scene::{Environment, Scene, SceneLimits};
+use glam::Vec3;
+use std::collections::HashMap;
+
+fn builtin(name: &str) -> Scene {
+    let scene = Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap();
+    assert_eq!(scene.name, format!("builtin:{name}"));
+    assert_sound(&scene);
+    assert_triangles_sound(scene.still(), &scene);
+    assert_eq!(scene.pose(0.0).cameras.len(), 1);
+    scene
+}
+
+/// Directed edges without a partner that runs the other way.
+fn open_edges(triangles: &[[Vec3; 3]]) -> usize {
+    let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
+    let bits = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
+    for t in triangles {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            *edges.entry([bits(a), bits(b)]).or_default() += 1;
+            *edges.entry([bits(b), bits(a)]).or_default() -= 1;
+        }
+    }
+    edges.values().filter(|&&n| n != 0).count()
+}
+
+#[test]
+fn triangles_are_as_many_as_the_thesis_has() {
+    for (name, count) in [("control", 0), ("bunny-low", 292), ("bunny-high", 4_968), ("cubes", 441 * 12)] {
+        assert_eq!(builtin(name).still().len(), count, "{name}");
+    }
+    assert!(builtin("mirror-room").still().len() > 100);
+}
+
+#[test]
+fn bodies_are_closed_and_face_outwards() {
+    for name in ["bunny-low", "bunny-high", "cubes", "mirror-room"] {
+        let scene = builtin(name);
+        assert_eq!(open_edges(&scene.still().positions), 0, "{name}");
+        for (p, n) in scene.still().positions.iter().zip(&scene.still().normals) {
+            let face = (p[1] - p[0]).cross(p[2] - p[0]);
+            assert!(face.length() > 0.0, "{name}: a triangle without area");
+            assert!(n.iter().all(|n| n.dot(face) > 0.0), "{name}: shading normals point away from the front");
+        }
+        // Planted error: a triangle taken away leaves a hole of three edges, missed in both directions.
+        assert_eq!(open_edges(&scene.still().positions[1..]), 6, "{name}");
+    }
+}
+
+#[test]
+fn there_is_light_and_the_camera_is_where_it_should_be() {
+    for name in ["control", "bunny-low", "bunny-high", "cubes", "mirror-room"] {
+        let scene = builtin(name);
+        let sky = matches!(scene.environment, Environment::Constant(c) if c != [0.0; 3]);
+        let emits = scene.materials.iter().any(|m| m.emissive != [0.0; 3]);
+        assert!(sky || emits || !scene.pose(0.0).lights.is_empty(), "{name}");
+        assert!(scene.materials.iter().all(|m| m.phong.is_some()), "{name}");
+        let eye = scene.pose(0.0).cameras[0].world_from_camera.w_axis.truncate().as_vec3();
+        if let Some(bounds) = scene.bounds() {
+            let inside = eye.cmpgt(bounds.min).all() && eye.cmplt(bounds.max).all();
+            assert_eq!(inside, name == "mirror-room", "{name}");
+        }
+    }
+}

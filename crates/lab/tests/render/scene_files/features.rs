@@ -1,0 +1,239 @@
+//! What is read of meshes, nodes, lights and cameras.
+
+use super::builder::{Gltf, TRIANGLE};
+use afterimage_lab::scene::PunctualKind;
+use glam::{Vec2, Vec3, Vec4};
+use serde_json::json;
+
+const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+
+/// Positions with the given indices and mode.
+fn with_mode(positions: &[[f32; 3]], indices: Option<&[u32]>, mode: u32) -> Gltf {
+    let mut file = Gltf::new();
+    let attributes = json!({"POSITION": file.floats(positions)});
+    let mut primitive = json!({"attributes": attributes, "mode": mode});
+    if let Some(indices) = indices {
+        primitive["indices"] = json!(file.indices(indices));
+    }
+    let mesh = file.mesh(primitive);
+    file.node(json!({"mesh": mesh}));
+    file
+}
+
+#[test]
+fn lists_strips_and_fans_give_the_same_square() {
+    let list = with_mode(&SQUARE, Some(&[0, 1, 2, 1, 3, 2]), 4).open();
+    let strip = with_mode(&SQUARE, None, 5).open();
+    let fan = with_mode(&SQUARE, Some(&[0, 1, 3, 2]), 6).open();
+    for scene in [&list, &strip, &fan] {
+        let triangles = scene.still();
+        assert_eq!(triangles.len(), 2);
+        let area: f32 = triangles.positions.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).z / 2.0).sum();
+        // Counter-clockwise seen from +z: the area is positive.
+        assert_eq!(area, 1.0, "{:?}", triangles.positions);
+        assert!(triangles.normals.iter().flatten().all(|n| *n == Vec3::Z));
+        assert!(scene.warnings.is_empty());
+    }
+}
+
+#[test]
+fn points_and_lines_are_named() {
+    for mode in [0, 1, 2, 3] {
+        let scene = with_mode(&SQUARE, None, mode).open();
+        assert!(scene.still().is_empty());
+        assert_eq!(scene.warnings, ["points and lines are left out: mesh 0"]);
+    }
+}
+
+#[test]
+fn a_list_that_is_cut_short_loses_its_last_corners() {
+    assert_eq!(with_mode(&SQUARE, None, 4).open().still().len(), 1);
+    assert_eq!(with_mode(&SQUARE, Some(&[]), 5).open().still().len(), 0);
+    assert_eq!(with_mode(&SQUARE, Some(&[0, 1]), 6).open().still().len(), 0);
+}
+
+#[test]
+fn integer_attributes_are_scaled_where_they_are_normalised() {
+    let mut file = Gltf::new();
+    let positions: Vec<u8> = [[0i16, 0, 0], [300, 0, 0], [0, -32768, 0]]
+        .iter()
+        .flat_map(|p| p.iter().flat_map(|x| x.to_le_bytes()))
+        .collect();
+    let positions = file.accessor(&positions, 3, "VEC3", 5122);
+    let colors = file.accessor(&[255, 0, 51, 0, 255, 0, 0, 0, 255], 3, "VEC3", 5121);
+    file.json["accessors"][colors]["normalized"] = json!(true);
+    let uvs: Vec<u8> = [0u16, 65535, 13107, 0, 0, 0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let uvs = file.accessor(&uvs, 3, "VEC2", 5123);
+    file.json["accessors"][uvs]["normalized"] = json!(true);
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions, "COLOR_0": colors, "TEXCOORD_0": uvs}}));
+    file.node(json!({"mesh": mesh}));
+    let scene = file.open();
+    let triangles = scene.still();
+    assert_eq!(triangles.positions[0], [Vec3::ZERO, Vec3::X * 300.0, Vec3::Y * -32768.0]);
+    assert_eq!(triangles.colors[0][0], Vec4::new(1.0, 0.0, 0.2, 1.0));
+    assert_eq!(triangles.uvs[0], [Vec2::new(0.0, 1.0), Vec2::new(0.2, 0.0), Vec2::ZERO]);
+
+    file.json["accessors"][positions]["normalized"] = json!(true);
+    // -32768 / 32767 is held at -1 (glTF 2.0, 3.11).
+    assert_eq!(file.open().still().positions[0][2], -Vec3::Y);
+}
+
+#[test]
+fn interleaved_vertices_are_read_by_their_stride() {
+    let mut file = Gltf::new();
+    let bytes: Vec<u8> =
+        TRIANGLE.iter().flat_map(|p| [p[0], p[1], p[2], 0.25, 0.5].into_iter().flat_map(f32::to_le_bytes)).collect();
+    let view = file.view(&bytes);
+    file.json["bufferViews"][view]["byteStride"] = json!(20);
+    let accessor = |offset, kind| json!({"bufferView": view, "byteOffset": offset, "count": 3, "type": kind, "componentType": 5126});
+    let positions = file.push("accessors", accessor(0, "VEC3"));
+    let uvs = file.push("accessors", accessor(12, "VEC2"));
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions, "TEXCOORD_0": uvs}}));
+    file.node(json!({"mesh": mesh}));
+    let scene = file.open();
+    assert_eq!(scene.still().positions[0], TRIANGLE.map(Vec3::from_array));
+    assert_eq!(scene.still().uvs[0], [Vec2::new(0.25, 0.5); 3]);
+}
+
+#[test]
+fn sparse_accessors_replace_elements_with_or_without_a_base() {
+    let mut file = Gltf::new();
+    let positions = file.floats(&TRIANGLE);
+    let (at, values) = (file.view(&[1, 2]), file.floats(&[[5.0, 0.0, 0.0], [0.0, 7.0, 0.0]]));
+    let values = file.json["accessors"][values]["bufferView"].clone();
+    let sparse =
+        json!({"count": 2, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
+    file.json["accessors"][positions]["sparse"] = sparse;
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    file.node(json!({"mesh": mesh}));
+    let expected = [Vec3::ZERO, Vec3::X * 5.0, Vec3::Y * 7.0];
+    assert_eq!(file.open().still().positions[0], expected);
+    file.json["accessors"][positions].as_object_mut().unwrap().remove("bufferView");
+    assert_eq!(file.open().still().positions[0], expected);
+}
+
+#[test]
+fn nodes_place_their_meshes_through_the_tree() {
+    let mut file = Gltf::new();
+    let positions = file.floats(&TRIANGLE);
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let leaf = file.push("nodes", json!({"mesh": mesh, "scale": [2.0, 1.0, 1.0]}));
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    file.node(json!({"children": [leaf], "translation": [10.0, 0.0, 0.0], "rotation": [0.0, 0.0, half, half]}));
+    // The same mesh again, by a matrix (column by column).
+    file.node(json!({"mesh": mesh, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1]}));
+    let scene = file.open();
+    let [a, b] = [0, 1].map(|i| scene.still().positions[i]);
+    // A quarter turn about z takes 2x to 2y and y to -x. Coordinates around 10 round by 1e-6.
+    for (found, expected) in a.iter().zip([Vec3::X * 10.0, Vec3::new(10.0, 2.0, 0.0), Vec3::X * 9.0]) {
+        assert!(found.abs_diff_eq(expected, 2e-6), "{found} {expected}");
+    }
+    assert_eq!(b[0], Vec3::Z * 5.0);
+}
+
+#[test]
+fn mirrored_triangles_stay_counter_clockwise_from_the_front() {
+    let mut file = Gltf::new();
+    let attributes = json!({
+        "POSITION": file.floats(&TRIANGLE), "NORMAL": file.floats(&[[0.0, 0.0, 1.0]; 3]), "TEXCOORD_0": file.floats(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    });
+    let mesh = file.mesh(json!({"attributes": attributes}));
+    for scale in [[-1.0, 1.0, 1.0], [-1.0, -2.0, 1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]] {
+        file.node(json!({"mesh": mesh, "scale": scale}));
+    }
+    let scene = file.open();
+    for i in 0..5 {
+        let ([a, b, c], normals) = (scene.still().positions[i], scene.still().normals[i]);
+        let face = (b - a).cross(c - a).normalize();
+        assert_eq!(face, normals[0], "{i}");
+        // Corners keep their texture coordinates.
+        let uv_of_x = scene.still().positions[i].iter().position(|p| p.x != 0.0).unwrap();
+        assert_eq!(scene.still().uvs[i][uv_of_x], Vec2::X, "{i}");
+    }
+    // The outside stays the outside.
+    assert_eq!([0, 1, 2, 3, 4].map(|i| scene.still().normals[i][0].z), [1.0, 1.0, -1.0, -1.0, 1.0]);
+}
+
+#[test]
+fn normals_stay_perpendicular_under_uneven_scale() {
+    let mut file = Gltf::new();
+    // A slope: normals given, so that they are transformed and not made anew.
+    let normal = Vec3::new(1.0, 1.0, 0.0).normalize().to_array();
+    let attributes = json!({
+        "POSITION": file.floats(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]]), "NORMAL": file.floats(&[normal; 3])
+    });
+    let mesh = file.mesh(json!({"attributes": attributes}));
+    for scale in [[10.0, 1.0, 3.0], [1e-12, 2e-12, 1e-12], [1e6, 1.0, 1e-3]] {
+        file.node(json!({"mesh": mesh, "scale": scale}));
+    }
+    let scene = file.open();
+    for i in 0..3 {
+        let [a, b, c] = scene.still().positions[i].map(|p| p.as_dvec3());
+        let n = scene.still().normals[i][0].as_dvec3();
+        for edge in [(b - a).normalize(), (c - a).normalize()] {
+            // f32 normals round by 6e-8.
+            assert!(n.dot(edge).abs() < 3e-7, "{i}: {}", n.dot(edge));
+        }
+    }
+    // Planted error: transformed like a direction, the normal would lean.
+    let wrong = (Vec3::new(10.0, 1.0, 3.0) * Vec3::from_array(normal)).normalize();
+    let [a, b, _] = scene.still().positions[0];
+    assert!(wrong.dot((b - a).normalize()).abs() > 0.5);
+}
+
+#[test]
+fn lights_and_cameras_follow_their_nodes() {
+    let mut file = Gltf::new();
+    file.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+    let spot = json!({"type": "spot", "color": [1.0, 0.5, 0.0], "intensity": 8.0, "range": 20.0,
+        "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}});
+    let lights = json!([spot, {"type": "directional"}, {"type": "point", "intensity": 3.0}]);
+    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
+    file.push("cameras", json!({"type": "perspective", "name": "main", "perspective": {"yfov": 0.5, "znear": 0.1}}));
+    file.push(
+        "cameras",
+        json!({"type": "orthographic", "orthographic": {"xmag": 1.0, "ymag": 1.0, "znear": 0.1, "zfar": 9.0}}),
+    );
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let camera = file.push("nodes", json!({"camera": 0, "scale": [3.0, 3.0, 3.0]}));
+    let mut children = vec![camera];
+    for light in 0..3 {
+        let extensions = json!({"KHR_lights_punctual": {"light": light}});
+        children.push(file.push("nodes", json!({"extensions": extensions, "translation": [0.0, 0.0, 1.0]})));
+    }
+    // A quarter turn about y takes -z to -x, and z to x.
+    file.node(json!({"children": children, "rotation": [0.0, half, 0.0, half], "scale": [2.0, 2.0, 2.0]}));
+    file.node(json!({"camera": 1}));
+    let scene = file.open();
+    let pose = scene.pose(0.0);
+    assert_eq!(scene.warnings, ["orthographic cameras are left out: camera 1"]);
+    assert_eq!(pose.lights.len(), 3);
+    for light in &pose.lights {
+        assert!(
+            light.position.abs_diff_eq(Vec3::X * 2.0, 1e-6) && light.direction.abs_diff_eq(-Vec3::X, 1e-6),
+            "{light:?}"
+        );
+    }
+    assert_eq!(pose.lights[0].intensity, [8.0, 4.0, 0.0]);
+    assert_eq!(pose.lights[0].range, 20.0);
+    assert_eq!(pose.lights[0].kind, PunctualKind::Spot { cos_inner: 0.25f32.cos(), cos_outer: 0.5f32.cos() });
+    assert_eq!((pose.lights[1].kind, pose.lights[1].intensity), (PunctualKind::Directional, [1.0; 3]));
+    assert_eq!((pose.lights[2].kind, pose.lights[2].range), (PunctualKind::Point, f32::INFINITY));
+    let [camera] = &pose.cameras[..] else { panic!() };
+    assert_eq!(camera.name, "main");
+    assert!((camera.vfov_deg - 0.5f32.to_degrees()).abs() < 1e-4);
+    // Scales of nodes do not reach the camera.
+    let looks = camera.world_from_camera.transform_vector3(-glam::DVec3::Z);
+    assert!(looks.abs_diff_eq(-glam::DVec3::X, 1e-7), "{looks}");
+}
+
+#[test]
+fn builtin_and_unknown_names_are_told_apart() {
+    let limits = afterimage_lab::scene::SceneLimits::default();
+    for (input, word) in
+        [("builtin:nothing", "built-in"), ("scene.obj", "not a scene"), ("nowhere.glb", "does not exist")]
+    {
+        let error = afterimage_lab::scene::Scene::open(input, &limits).unwrap_err().to_string();
+        assert!(error.contains(word) && error.starts_with(input), "{error}");
+    }
+}

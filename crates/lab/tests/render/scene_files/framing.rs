@@ -1,0 +1,62 @@
+//! Bounds, and the camera for scenes without one.
+
+use super::builder::Gltf;
+use afterimage_lab::scene::{Bounds, Camera};
+use glam::{DVec3, Vec3};
+
+/// Whether all corners of the box are in the picture, and how much of it they fill at most.
+fn coverage(camera: &Camera, bounds: Bounds, aspect: f64) -> f64 {
+    let view = camera.world_from_camera.inverse();
+    let tan = f64::from(camera.vfov_deg / 2.0).to_radians().tan();
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    (0..8)
+        .map(|i| {
+            let pick = |bit: usize| if i >> bit & 1 == 0 { min[bit] } else { max[bit] };
+            let p = view.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
+            assert!(p.z < 0.0, "behind the camera: {p}");
+            (p.y / (-p.z * tan)).abs().max((p.x / (-p.z * tan * aspect)).abs())
+        })
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_whole_box_is_in_view_at_every_size() {
+    for size in [1e-4f32, 1.0, 1e5] {
+        for aspect in [0.3f32, 1.0, 3.0] {
+            let corners = [[0.0, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size * 0.1, 4.0 * size]];
+            let mut file = Gltf::new();
+            file.soup(&corners);
+            let scene = file.open();
+            let bounds = scene.bounds().unwrap();
+            assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(size, size * 0.1, 4.0 * size)));
+            let camera = scene.framing_camera(aspect);
+            let filled = coverage(&camera, bounds, aspect.into());
+            // In view with 5 % to spare, and no smaller than it must be.
+            assert!((filled - 1.0 / 1.05).abs() < 1e-6, "{size} {aspect}: {filled}");
+            // From above, looking down at it, upright.
+            let m = camera.world_from_camera;
+            assert!(m.y_axis.y > 0.0 && m.z_axis.y > 0.0 && m.x_axis.y.abs() < 1e-12);
+            // Planted error: a camera a little nearer does not see all.
+            let mut nearer = camera.clone();
+            nearer.world_from_camera.w_axis = m.w_axis - m.z_axis * 0.2 * f64::from(size);
+            assert!(coverage(&nearer, bounds, aspect.into()) > filled);
+        }
+    }
+}
+
+#[test]
+fn points_and_nothing_are_looked_at_too() {
+    let empty = Gltf::new().open();
+    assert!(empty.bounds().is_none());
+    let mut file = Gltf::new();
+    file.soup(&[[3.0, 4.0, 5.0]; 3]);
+    let point = file.open();
+    for aspect in [1.0, 0.0, f32::NAN, f32::INFINITY, -2.0] {
+        for scene in [&empty, &point] {
+            let camera = scene.framing_camera(aspect);
+            assert!(camera.world_from_camera.is_finite());
+        }
+    }
+    let seen = point.framing_camera(1.0).world_from_camera.inverse().transform_point3(DVec3::new(3.0, 4.0, 5.0));
+    assert!(seen.z < 0.0 && seen.x.abs() < 1e-9 && seen.y.abs() < 1e-9);
+}

@@ -1,0 +1,134 @@
+//! Counts that would need more memory than allowed are refused before it is set aside.
+
+use super::builder::{Gltf, TRIANGLE, Written, png};
+use afterimage_lab::scene::{Scene, SceneLimits};
+use serde_json::json;
+
+const SMALL: SceneLimits =
+    SceneLimits { max_triangles: 10, max_texels: 100, max_file_bytes: 10_000, max_json_bytes: 5_000 };
+
+#[track_caller]
+fn assert_refused(file: &Written, limits: &SceneLimits, words: &[&str]) {
+    let text = Scene::open(file.path.to_str().unwrap(), limits).map(|_| ()).unwrap_err().to_string();
+    for word in words {
+        assert!(text.contains(word), "{word:?} is not in: {text}");
+    }
+}
+
+#[track_caller]
+fn assert_open(file: &Written, limits: &SceneLimits) {
+    Scene::open(file.path.to_str().unwrap(), limits).unwrap();
+}
+
+/// Largest resident memory of this process so far, in MB, where the system tells.
+fn peak_mb() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? / 1024)
+}
+
+#[test]
+fn triangles_are_counted_with_every_use() {
+    let mut file = Gltf::new();
+    let positions = file.floats(&TRIANGLE);
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    for _ in 0..10 {
+        file.node(json!({"mesh": mesh}));
+    }
+    assert_open(&file.written(), &SMALL);
+    file.node(json!({"mesh": mesh}));
+    assert_refused(&file.written(), &SMALL, &["11 triangles", "limit of 10", "max_triangles"]);
+}
+
+#[test]
+fn primitives_without_triangles_count_too() {
+    let mut file = Gltf::new();
+    let positions = file.floats(&TRIANGLE);
+    let empty = json!({"attributes": {"POSITION": positions}, "mode": 0});
+    file.push("meshes", json!({"primitives": vec![empty; 11]}));
+    file.node(json!({"mesh": 0}));
+    assert_refused(&file.written(), &SMALL, &["11 triangles"]);
+}
+
+#[test]
+fn vertices_that_no_triangle_needs_are_bounded() {
+    // Many primitives that read the same long accessor and draw one triangle of it.
+    let mut file = Gltf::new();
+    let (positions, indices) = (file.floats(&[TRIANGLE; 4].concat()), file.indices(&[0, 1, 2]));
+    let primitive = json!({"attributes": {"POSITION": positions}, "indices": indices});
+    file.push("meshes", json!({"primitives": vec![primitive; 9]}));
+    file.node(json!({"mesh": 0}));
+    assert_refused(&file.written(), &SMALL, &["elements"]);
+}
+
+#[test]
+fn texels_are_counted_from_the_headers() {
+    let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0}, "normalTexture": {"index": 1}}));
+    file.texture(&png([6, 10], |_, _| [1; 4]));
+    file.texture(&png([4, 10], |_, _| [2; 4]));
+    assert_open(&file.written(), &SMALL);
+    file.texture(&png([1, 1], |_, _| [3; 4]));
+    file.json["materials"][0]["pbrMetallicRoughness"] = json!({"baseColorTexture": {"index": 2}});
+    assert_refused(&file.written(), &SMALL, &["101 texels", "max_texels"]);
+}
+
+#[test]
+fn an_image_that_claims_to_be_huge_takes_no_memory() {
+    let mut bytes = png([8, 8], |_, _| [1; 4]);
+    // Width and height in the header, then its checksum.
+    bytes[16..24].copy_from_slice(&[0, 0, 0xff, 0xff, 0, 0, 0xff, 0xff]);
+    let crc = crc32(&bytes[12..29]);
+    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0}}));
+    file.texture(&bytes);
+    assert_refused(&file.written(), &SceneLimits::default(), &["4294836225 texels"]);
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &b| {
+        (0..8).fold(crc ^ u32::from(b), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
+    })
+}
+
+#[test]
+fn bytes_of_all_files_together_and_of_the_description() {
+    let mut file = Gltf::new();
+    file.soup(&TRIANGLE);
+    file.json["buffers"] = json!([{"byteLength": 36, "uri": "a.bin"}, {"byteLength": 1, "uri": "b.bin"}]);
+    let written = file.written();
+    let fill = |a: usize, b: usize| {
+        std::fs::write(written.folder.path().join("a.bin"), vec![0; a]).unwrap();
+        std::fs::write(written.folder.path().join("b.bin"), vec![0; b]).unwrap();
+    };
+    fill(4000, 4000);
+    assert_open(&written, &SMALL);
+    fill(4000, 9000);
+    assert_refused(&written, &SMALL, &["b.bin", "max_file_bytes"]);
+    let large = written.folder.path().join("a.bin");
+    std::fs::File::create(&large).unwrap().set_len(1 << 34).unwrap();
+    assert_refused(&written, &SceneLimits::default(), &["a.bin", "max_file_bytes"]);
+    let tight = SceneLimits { max_json_bytes: 100, ..SMALL };
+    assert_refused(&written, &tight, &["bytes of JSON", "max_json_bytes"]);
+    // The file itself.
+    std::fs::File::create(&written.path).unwrap().set_len(1 << 34).unwrap();
+    assert_refused(&written, &SceneLimits::default(), &["scene.glb", "max_file_bytes"]);
+}
+
+#[test]
+fn counts_alone_take_no_memory() {
+    let before = peak_mb();
+    // Elements without a buffer, all zero: a few bytes ask for gigabytes.
+    for count in [100_000_000u64, 1 << 40, u64::MAX] {
+        let mut file = Gltf::new();
+        let positions = file.push("accessors", json!({"count": count, "type": "VEC3", "componentType": 5126}));
+        let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+        file.node(json!({"mesh": mesh}));
+        let limits = SceneLimits { max_triangles: u64::MAX, ..SceneLimits::default() };
+        assert_refused(&file.written(), &limits, &["no buffer"]);
+        assert_refused(&file.written(), &SMALL, &["triangles"]);
+    }
+    if let (Some(before), Some(after)) = (before, peak_mb()) {
+        // 100 million positions would be 1200 MB; other tests of this process run meanwhile.
+        assert!(after - before < 600, "took {} MB", after - before);
+    }
+}

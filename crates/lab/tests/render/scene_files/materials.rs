@@ -1,0 +1,229 @@
+//! Materials, their extensions, their textures and texture coordinates.
+
+use super::builder::{Gltf, encoded, png};
+use afterimage_lab::scene::{Alpha, Material, Wrap};
+use glam::Vec2;
+use image::DynamicImage;
+use serde_json::{Value, json};
+
+/// The material that a description gives, and the warnings.
+#[track_caller]
+fn read(material: Value) -> (Material, Vec<String>) {
+    let scene = Gltf::with_material(material).open();
+    (scene.materials[0].clone(), scene.warnings)
+}
+
+/// As [`read`], without a warning.
+#[track_caller]
+fn quietly(material: Value) -> Material {
+    let (material, warnings) = read(material);
+    assert_eq!(warnings, [""; 0]);
+    material
+}
+
+#[track_caller]
+fn extension(name: &str, value: Value) -> Material {
+    quietly(json!({"extensions": {name: value}}))
+}
+
+#[test]
+fn defaults_are_gltfs() {
+    let material = quietly(json!({}));
+    let expected = Material { metallic: 1.0, double_sided: false, ..Material::default() };
+    assert_eq!(material, expected);
+    // A primitive without a material has the same one.
+    let mut file = Gltf::new();
+    file.soup(&super::builder::TRIANGLE);
+    let scene = file.open();
+    assert_eq!(scene.materials[scene.still().materials[0] as usize], expected);
+}
+
+#[test]
+fn core_factors() {
+    let material = quietly(json!({
+        "name": "paint", "doubleSided": true, "emissiveFactor": [0.1, 0.2, 0.3], "alphaMode": "MASK", "alphaCutoff": 0.25,
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 0.75], "metallicFactor": 0.0, "roughnessFactor": 0.4}
+    }));
+    assert_eq!(
+        material,
+        Material {
+            name: "paint".into(),
+            base_color: [0.5, 0.25, 0.125],
+            opacity: 0.75,
+            roughness: 0.4,
+            emissive: [0.1, 0.2, 0.3],
+            alpha: Alpha::Mask { cutoff: 0.25 },
+            ..Material::default()
+        }
+    );
+    assert_eq!(quietly(json!({"alphaMode": "MASK"})).alpha, Alpha::Mask { cutoff: 0.5 });
+    assert_eq!(quietly(json!({"alphaMode": "BLEND"})).alpha, Alpha::Blend);
+}
+
+#[test]
+fn extensions_of_materials() {
+    let strong = quietly(json!({"emissiveFactor": [1.0, 0.5, 0.0],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 100.0}}}));
+    assert_eq!(strong.emissive, [100.0, 50.0, 0.0]);
+    assert_eq!(extension("KHR_materials_ior", json!({"ior": 1.33})).ior, 1.33);
+    assert_eq!(extension("KHR_materials_transmission", json!({"transmissionFactor": 0.9})).transmission, 0.9);
+    let specular =
+        extension("KHR_materials_specular", json!({"specularFactor": 0.5, "specularColorFactor": [1.0, 0.5, 2.0]}));
+    assert_eq!((specular.specular, specular.specular_color), (0.5, [1.0, 0.5, 2.0]));
+    let coat = extension("KHR_materials_clearcoat", json!({"clearcoatFactor": 0.8, "clearcoatRoughnessFactor": 0.1}));
+    assert_eq!((coat.clearcoat, coat.clearcoat_roughness), (0.8, 0.1));
+    let sheen =
+        extension("KHR_materials_sheen", json!({"sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.7}));
+    assert_eq!((sheen.sheen_color, sheen.sheen_roughness), ([0.1, 0.2, 0.3], 0.7));
+    assert_eq!(extension("KHR_materials_anisotropy", json!({"anisotropyStrength": 0.6})).anisotropy, 0.6);
+    let thin = extension("KHR_materials_volume", json!({"thicknessFactor": 0.0}));
+    assert!(!thin.volume && thin.absorption == [0.0; 3]);
+    let glass = extension(
+        "KHR_materials_volume",
+        json!({"thicknessFactor": 0.5, "attenuationDistance": 2.0, "attenuationColor": [1.0, 0.5, 0.25]}),
+    );
+    assert!(glass.volume);
+    // Beer and Lambert: after the attenuation distance that color is left.
+    for (share, absorption) in [1.0f64, 0.5, 0.25].into_iter().zip(glass.absorption) {
+        assert!(((-f64::from(absorption) * 2.0).exp() - share).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn unlit_emits_its_base_color() {
+    let unlit = json!({"alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}},
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.0, 0.5]}});
+    let (material, warnings) = read(unlit);
+    assert_eq!(material.emissive, [0.5, 0.25, 0.0]);
+    assert_eq!((material.base_color, material.specular, material.metallic), ([0.0; 3], 0.0, 0.0));
+    assert_eq!((material.alpha, material.opacity), (Alpha::Blend, 0.5));
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].contains("unlit"));
+}
+
+#[test]
+fn factors_out_of_range_are_brought_into_it() {
+    let (material, warnings) = read(json!({"name": "odd", "emissiveFactor": [-1.0, 1e300, 2.0],
+        "pbrMetallicRoughness": {"metallicFactor": 7.0, "roughnessFactor": -1e300, "baseColorFactor": [2.0, 0.5, -3.0, 9.0]},
+        "extensions": {"KHR_materials_ior": {"ior": 0.5}}}));
+    assert_eq!((material.metallic, material.roughness, material.opacity, material.ior), (1.0, 0.0, 1.0, 1.0));
+    assert_eq!(material.base_color, [1.0, 0.5, 0.0]);
+    assert!(material.emissive[0] == 0.0 && material.emissive[1].is_finite() && material.emissive[2] == 2.0);
+    assert_eq!(warnings, ["factors of materials out of their range are brought into it: material 0 (odd)"]);
+}
+
+#[test]
+fn what_is_not_done_is_named_once() {
+    let mut file = Gltf::with_material(json!({"extensions": {
+        "KHR_materials_clearcoat": {"clearcoatNormalTexture": {"index": 0}}, "KHR_materials_anisotropy": {"anisotropyTexture": {"index": 0}},
+        "KHR_materials_iridescence": {}
+    }}));
+    file.json["extensionsUsed"] =
+        json!(["KHR_materials_iridescence", "KHR_materials_clearcoat", "VENDOR_a\nb", "KHR_materials_iridescence"]);
+    let scene = file.open();
+    assert_eq!(
+        scene.warnings,
+        [
+            "extension KHR_materials_iridescence is not supported and left out",
+            "extension VENDOR_a\\nb is not supported and left out",
+            "normal maps of coats are left out: material 0",
+            "textures of anisotropy are left out: material 0",
+        ]
+    );
+    for (required, remedy) in [
+        ("KHR_draco_mesh_compression", "decompress"),
+        ("EXT_meshopt_compression", "decompress"),
+        ("KHR_texture_basisu", "convert"),
+        ("VENDOR_thing", "export"),
+    ] {
+        file.json["extensionsRequired"] = json!(["KHR_materials_clearcoat", required]);
+        file.assert_refused(&[required, "not supported", remedy]);
+    }
+}
+
+#[test]
+fn textures_keep_texels_and_samplers() {
+    let mut file = Gltf::with_material(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "emissiveTexture": {"index": 1}, "normalTexture": {"index": 2, "scale": 0.5}, "occlusionTexture": {"index": 0}}));
+    // Odd sizes, opacity, 16 bits.
+    let rgba = png([3, 5], |x, y| [x as u8 * 10, y as u8 * 10, 7, 200]);
+    let deep = encoded(&DynamicImage::ImageRgb16(image::ImageBuffer::from_fn(1, 2, |_, y| {
+        image::Rgb([65535, 257 * 9, y as u16 * 65535])
+    })));
+    let gray = encoded(&DynamicImage::ImageLuma16(image::ImageBuffer::from_pixel(7, 1, image::Luma([32896]))));
+    for bytes in [rgba, deep, gray] {
+        file.texture(&bytes);
+    }
+    file.push("samplers", json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}));
+    file.json["textures"][0]["sampler"] = json!(0);
+    let scene = file.open();
+    // In the order in which the material asks for them.
+    let [rgba, gray, deep] = &scene.textures[..] else { panic!() };
+    assert_eq!((rgba.size, rgba.wrap, rgba.nearest), ([3, 5], [Wrap::Clamp, Wrap::Mirror], true));
+    assert_eq!(rgba.texels[4 * 3 + 2], [20, 40, 7, 200]);
+    assert_eq!((deep.size, deep.wrap, deep.nearest), ([1, 2], [Wrap::Repeat; 2], false));
+    assert_eq!(deep.texels, [[255, 9, 0, 255], [255, 9, 255, 255]]);
+    assert_eq!((gray.size, gray.texels[6]), ([7, 1], [128, 128, 128, 255]));
+    let material = &scene.materials[0];
+    assert_eq!(scene.textures[material.emissive_texture.unwrap().texture as usize].size, [1, 2]);
+    assert_eq!(scene.textures[material.normal_texture.unwrap().texture as usize].size, [7, 1]);
+    assert_eq!(material.normal_scale, 0.5);
+}
+
+#[test]
+fn extension_textures_are_taken_and_images_shared() {
+    let info = json!({"index": 0});
+    let mut file = Gltf::with_material(json!({"extensions": {
+        "KHR_materials_clearcoat": {"clearcoatFactor": 1.0, "clearcoatTexture": info, "clearcoatRoughnessTexture": info},
+        "KHR_materials_sheen": {"sheenColorTexture": info, "sheenRoughnessTexture": info},
+        "KHR_materials_specular": {"specularTexture": info, "specularColorTexture": info},
+        "KHR_materials_transmission": {"transmissionTexture": info}
+    }}));
+    file.texture(&png([2, 2], |_, _| [1, 2, 3, 4]));
+    let scene = file.open();
+    assert_eq!(scene.textures.len(), 1);
+    let m = &scene.materials[0];
+    let all = [
+        m.clearcoat_texture,
+        m.clearcoat_roughness_texture,
+        m.sheen_color_texture,
+        m.sheen_roughness_texture,
+        m.specular_texture,
+        m.specular_color_texture,
+        m.transmission_texture,
+    ];
+    assert!(all.iter().all(|t| t.is_some_and(|t| t.texture == 0)));
+}
+
+#[test]
+fn texture_transforms_are_baked_and_disagreement_is_named() {
+    let transform = |rotation: f64| {
+        json!({"index": 0, "extensions": {"KHR_texture_transform":
+        {"offset": [0.25, 0.5], "rotation": rotation, "scale": [2.0, 4.0]}}})
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let mut file = Gltf::with_material(json!({"pbrMetallicRoughness": {"baseColorTexture": transform(quarter)},
+        "normalTexture": transform(quarter)}));
+    file.texture(&png([2, 2], |_, _| [128, 128, 255, 255]));
+    let scene = file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    // Scaled, turned counter-clockwise as seen (v grows downwards: u becomes -v), shifted.
+    let expected = [Vec2::new(0.25, 0.5), Vec2::new(0.25, -1.5), Vec2::new(4.25, 0.5)];
+    for (found, expected) in scene.still().uvs[0].iter().zip(expected) {
+        assert!(found.abs_diff_eq(expected, 1e-6), "{found} {expected}");
+    }
+    file.json["materials"][0]["normalTexture"] = transform(0.0);
+    assert!(file.open().warnings[0].contains("different texture coordinates"));
+}
+
+#[test]
+fn the_second_set_of_coordinates_is_found() {
+    let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0, "texCoord": 1}}));
+    file.texture(&png([2, 2], |_, _| [1, 2, 3, 4]));
+    assert!(file.open().warnings[0].contains("without texture coordinates"));
+    let second = file.floats(&[[0.5, 0.5], [0.6, 0.5], [0.5, f32::NAN]]);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
+    let scene = file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.still().uvs[0], [Vec2::splat(0.5), Vec2::new(0.6, 0.5), Vec2::ZERO]);
+}

@@ -1,0 +1,118 @@
+//! Damaged files: changed bytes must give an error or a sound scene, never a panic, a hang or a flood of memory.
+
+use super::assert_sound;
+use super::bad_input::everything;
+use super::builder::Gltf;
+use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_testing::Draws;
+use serde_json::{Value, json};
+
+/// Small enough that a file which gets through takes little.
+const LIMITS: SceneLimits =
+    SceneLimits { max_triangles: 10_000, max_texels: 10_000, max_file_bytes: 1 << 20, max_json_bytes: 1 << 20 };
+
+/// Opens damaged bytes; whether they were a scene all the same.
+fn survives(bytes: &[u8], path: &std::path::Path) -> bool {
+    std::fs::write(path, bytes).unwrap();
+    match Scene::open(path.to_str().unwrap(), &LIMITS) {
+        Ok(scene) => {
+            assert_sound(&scene);
+            true
+        }
+        Err(e) => {
+            let text = e.to_string();
+            assert!(!text.contains('\n') && !e.remedy.is_empty() && text.contains("damaged.glb"), "{text}");
+            false
+        }
+    }
+}
+
+#[test]
+fn flipped_lost_and_added_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.glb");
+    let whole = everything().glb();
+    assert!(survives(&whole, &path));
+    let mut draws = Draws::new("flipped bytes");
+    let mut read = 0;
+    for _ in 0..6000 {
+        let mut bytes = whole.clone();
+        for _ in 0..1 + draws.bits() % 2 {
+            let i = draws.bits() as usize % bytes.len();
+            match draws.bits() % 12 {
+                0 => bytes[i] = draws.bits() as u8,
+                1 => bytes[i] ^= 1 << (draws.bits() % 8),
+                2 => bytes[i] = 0xff,
+                3 | 6..=11 => bytes[i] = b'0' + (draws.bits() % 10) as u8,
+                4 => drop(bytes.remove(i)),
+                _ => bytes.insert(i, draws.bits() as u8),
+            }
+        }
+        read += u32::from(survives(&bytes, &path));
+    }
+    println!("{read} of 6000 damaged files were still scenes");
+    // Otherwise nothing behind the first checks is tested.
+    assert!(read > 600, "{read}");
+}
+
+#[test]
+fn every_number_of_the_description_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.glb");
+    let file = everything();
+    let mut paths = Vec::new();
+    numbers(&file.json, String::new(), &mut paths);
+    assert!(paths.len() > 80, "{}", paths.len());
+    let values = [
+        json!(0),
+        json!(1),
+        json!(2),
+        json!(-1),
+        json!(255),
+        json!(5126),
+        json!(5121),
+        json!(1u64 << 31),
+        json!(u64::MAX),
+        json!(1e38),
+        json!(-1e300),
+        json!(0.5),
+        json!(null),
+        json!("x"),
+        json!([]),
+        json!({}),
+    ];
+    let mut read = 0;
+    for pointer in &paths {
+        for value in &values {
+            let mut damaged: Gltf = file.clone();
+            *damaged.json.pointer_mut(pointer).unwrap() = value.clone();
+            read += u32::from(survives(&damaged.glb(), &path));
+        }
+    }
+    println!("{read} of {} damaged files were still scenes", paths.len() * values.len());
+    assert!(read > 100, "{read}");
+}
+
+/// Where in the description numbers are.
+fn numbers(value: &Value, at: String, out: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => out.push(at),
+        Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| numbers(v, format!("{at}/{i}"), out)),
+        Value::Object(map) => map.iter().for_each(|(k, v)| numbers(v, format!("{at}/{k}"), out)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_four_bytes_of_the_buffer_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.glb");
+    let file = everything();
+    for at in (0..file.bin.len() - 3).step_by(4) {
+        for word in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e-40, -0.0, f32::from_bits(u32::MAX)] {
+            let mut damaged = file.clone();
+            damaged.bin[at..at + 4].copy_from_slice(&word.to_le_bytes());
+            survives(&damaged.glb(), &path);
+        }
+    }
+}

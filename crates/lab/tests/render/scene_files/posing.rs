@@ -1,0 +1,283 @@
+//! Animation, skins and morph targets, against a plain evaluation in f64 of what glTF 2.0 says.
+
+use super::builder::{Gltf, TRIANGLE};
+use afterimage_lab::scene::Scene;
+use afterimage_testing::Draws;
+use glam::{DMat4, DQuat, DVec3, Vec3};
+use serde_json::json;
+
+/// Adds an animation of one channel.
+fn animate<const N: usize>(
+    file: &mut Gltf,
+    node: usize,
+    path: &str,
+    interpolation: &str,
+    times: &[f32],
+    values: &[[f32; N]],
+) {
+    let times: Vec<[f32; 1]> = times.iter().map(|&t| [t]).collect();
+    let (input, output) = (file.floats(&times), file.floats(values));
+    let sampler = json!({"input": input, "output": output, "interpolation": interpolation});
+    let channel = json!({"sampler": 0, "target": {"node": node, "path": path}});
+    file.push(
+        "animations",
+        json!({"name": format!("{path} {interpolation}"), "channels": [channel], "samplers": [sampler]}),
+    );
+}
+
+/// Where the first corner is at a time.
+fn corner(scene: &Scene, time_s: f64) -> Vec3 {
+    scene.pose(time_s).moving.positions[0][0]
+}
+
+#[test]
+fn every_interpolation_between_keys_and_beyond() {
+    let keys = [[1.0f32, 0.0, 0.0], [3.0, 2.0, 0.0], [3.0, 2.0, 8.0]];
+    let times = [0.5f32, 1.0, 2.0];
+    for interpolation in ["STEP", "LINEAR"] {
+        let mut file = Gltf::new();
+        let node = file.soup(&TRIANGLE);
+        animate(&mut file, node, "translation", interpolation, &times, &keys);
+        let scene = file.open();
+        assert_eq!((scene.still().len(), scene.pose(0.0).moving.len(), scene.duration_s()), (0, 1, 2.0));
+        let halfway = if interpolation == "STEP" { keys[0] } else { [2.0, 1.0, 0.0] };
+        // The animation is 2 s long: at 2 s it starts over, before its first key.
+        for (time_s, expected) in
+            [(0.0, keys[0]), (0.75, halfway), (1.0, keys[1]), (2.0, keys[0]), (2.75, halfway), (-1.0, keys[1])]
+        {
+            assert_eq!(corner(&scene, time_s), Vec3::from_array(expected), "{interpolation} at {time_s}");
+        }
+    }
+}
+
+#[test]
+fn cubic_splines_follow_their_formula() {
+    let mut draws = Draws::new("cubic splines");
+    let stored: Vec<[f32; 3]> = (0..9).map(|_| [0; 3].map(|_| draws.range(-2.0, 2.0))).collect();
+    let times = [0.0f32, 0.5, 2.5];
+    let mut file = Gltf::new();
+    let node = file.soup(&TRIANGLE);
+    animate(&mut file, node, "translation", "CUBICSPLINE", &times, &stored);
+    let scene = file.open();
+    let at = |key: usize, part: usize| DVec3::from_array(stored[key * 3 + part].map(f64::from));
+    for step in 1..50 {
+        let time_s = f64::from(step) * 0.05 - 0.001;
+        let key = usize::from(time_s >= 0.5);
+        let span = f64::from(times[key + 1] - times[key]);
+        let t = (time_s - f64::from(times[key])) / span;
+        // glTF 2.0, appendix C.5, the tangents scaled by the span.
+        let expected = |away_scale: f64| {
+            at(key, 1) * (2.0 * t * t * t - 3.0 * t * t + 1.0)
+                + at(key, 2) * away_scale * (t * t * t - 2.0 * t * t + t)
+                + at(key + 1, 1) * (-2.0 * t * t * t + 3.0 * t * t)
+                + at(key + 1, 0) * span * (t * t * t - t * t)
+        };
+        let found = corner(&scene, time_s).as_dvec3();
+        // Positions are rounded to f32: 1e-7 of values up to 4.
+        assert!(found.abs_diff_eq(expected(span), 1e-6), "{time_s}: {found}");
+        // Planted error: unscaled tangents.
+        let off = (found - expected(1.0)).length();
+        assert!(off > 1e-3 || !(0.05..=0.95).contains(&t), "{time_s}: {off}");
+    }
+}
+
+#[test]
+fn rotations_take_the_shorter_arc() {
+    // The second key is a quarter turn about z with its sign flipped: the same rotation.
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let mut file = Gltf::new();
+    let node = file.soup(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    animate(&mut file, node, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 2.0], [0.0, 0.0, -half, -half]]);
+    let scene = file.open();
+    let found = corner(&scene, 1.0 / 3.0);
+    let (sin, cos) = (std::f32::consts::FRAC_PI_6).sin_cos();
+    assert!(found.abs_diff_eq(Vec3::new(cos, sin, 0.0), 1e-6), "{found}");
+}
+
+#[test]
+fn a_clip_is_chosen_by_name_or_number() {
+    let mut file = Gltf::new();
+    let (a, b) = (file.soup(&TRIANGLE), file.soup(&TRIANGLE));
+    animate(&mut file, a, "translation", "STEP", &[0.0], &[[5.0, 0.0, 0.0]]);
+    animate(&mut file, b, "scale", "LINEAR", &[0.0, 3.0], &[[1.0; 3], [2.0; 3]]);
+    assert_eq!(file.open().duration_s(), 0.0);
+    // An animation of one key is one pose.
+    assert_eq!(corner(&file.open(), 7.0), Vec3::X * 5.0);
+    for clip in ["scale LINEAR", "1"] {
+        let scene = file.open_clip(clip).unwrap();
+        assert_eq!((scene.duration_s(), scene.still().len()), (3.0, 1));
+        assert_eq!(scene.pose(1.5).moving.positions[0][1], Vec3::X * 1.5);
+    }
+    for clip in ["walk", "2", "-1"] {
+        let text = file.open_clip(clip).unwrap_err().to_string();
+        assert!(text.contains(clip) && text.contains("animation 1 (scale LINEAR)"), "{text}");
+    }
+}
+
+/// A strip bent by two joints, the second below the first and turning.
+struct Bent {
+    file: Gltf,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    weights: Vec<[f32; 4]>,
+    inverse_bind: [DMat4; 2],
+}
+
+const ROOT_SHIFT: [f32; 3] = [0.5, -1.0, 2.0];
+const JOINT_SHIFT: [f32; 3] = [0.0, 1.5, 0.0];
+const JOINT_SCALE: [f32; 3] = [1.0, 0.5, 2.0];
+
+fn bent() -> Bent {
+    let mut draws = Draws::new("bent");
+    let positions: Vec<[f32; 3]> = (0..30).map(|_| [0; 3].map(|_| draws.range(-1.0, 1.0))).collect();
+    let normals: Vec<[f32; 3]> =
+        (0..30).map(|_| Vec3::from_array([0; 3].map(|_| draws.range(-1.0, 1.0))).normalize().to_array()).collect();
+    let weights: Vec<[f32; 4]> = (0..30).map(|_| draws.uniform()).map(|w| [w, 1.0 - w, 0.0, 0.0]).collect();
+    let inverse_bind = [
+        DMat4::from_translation(DVec3::new(0.0, 0.25, 0.0)),
+        DMat4::from_rotation_x(0.5) * DMat4::from_translation(DVec3::NEG_Y),
+    ];
+    let mut file = Gltf::new();
+    let attributes = json!({
+        "POSITION": file.floats(&positions), "NORMAL": file.floats(&normals), "WEIGHTS_0": file.floats(&weights),
+        "JOINTS_0": file.accessor(&[0u8, 1, 200, 0].repeat(30), 30, "VEC4", 5121)
+    });
+    let mesh = file.mesh(json!({"attributes": attributes}));
+    let matrices = inverse_bind.map(|m| m.as_mat4().to_cols_array());
+    let matrices = file.floats(&matrices);
+    let joint = file.push("nodes", json!({"translation": JOINT_SHIFT, "scale": JOINT_SCALE}));
+    let root = file.node(json!({"children": [joint], "translation": ROOT_SHIFT}));
+    let skin = file.push("skins", json!({"joints": [root, joint], "inverseBindMatrices": matrices}));
+    // The place of the mesh's own node does not count.
+    file.node(json!({"mesh": mesh, "skin": skin, "translation": [100.0, 0.0, 0.0]}));
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    animate(&mut file, joint, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [half, 0.0, 0.0, half]]);
+    let inverse_bind = matrices_of(&inverse_bind);
+    Bent { file, positions, normals, weights, inverse_bind }
+}
+
+/// As the file has them, rounded to f32.
+fn matrices_of(m: &[DMat4; 2]) -> [DMat4; 2] {
+    m.map(|m| m.as_mat4().as_dmat4())
+}
+
+impl Bent {
+    /// Position and normal of a vertex at a share of the turn.
+    fn expected(&self, vertex: usize, share: f64, inverse_bind: &[DMat4; 2]) -> (DVec3, DVec3) {
+        let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+        let turn = DQuat::from_rotation_x(share * std::f64::consts::FRAC_PI_2);
+        let root = DMat4::from_translation(vector(ROOT_SHIFT));
+        let joint = root * DMat4::from_scale_rotation_translation(vector(JOINT_SCALE), turn, vector(JOINT_SHIFT));
+        let [w0, w1, ..] = self.weights[vertex].map(f64::from);
+        let m = (root * inverse_bind[0]) * w0 + (joint * inverse_bind[1]) * w1;
+        let position = m.transform_point3(vector(self.positions[vertex]));
+        let normal = m.inverse().transpose().transform_vector3(vector(self.normals[vertex])).normalize();
+        (position, normal)
+    }
+}
+
+#[test]
+fn skinned_vertices_are_where_f64_puts_them() {
+    let bent = bent();
+    let scene = bent.file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!((scene.still().len(), scene.pose(0.0).moving.len()), (0, 10));
+    let (mut caught, mut checked) = (0, 0);
+    for share in [0.0, 0.3, 0.99] {
+        let moving = scene.pose(share).moving;
+        for (vertex, (found, normal)) in
+            moving.positions.iter().flatten().zip(moving.normals.iter().flatten()).enumerate()
+        {
+            let (position, expected_normal) = bent.expected(vertex, share, &bent.inverse_bind);
+            // Four products and sums in f32, of values up to 5.
+            assert!(found.as_dvec3().abs_diff_eq(position, 3e-6), "{found} {position}");
+            assert!(normal.as_dvec3().abs_diff_eq(expected_normal, 1e-5), "{normal} {expected_normal}");
+            // Planted error: the bind pose forgotten.
+            let (wrong, _) = bent.expected(vertex, share, &[DMat4::IDENTITY; 2]);
+            caught += usize::from((found.as_dvec3() - wrong).length() > 0.01);
+            checked += 1;
+        }
+    }
+    assert_eq!(caught, checked);
+}
+
+#[test]
+fn a_skin_that_nothing_moves_is_still() {
+    let mut bent = bent();
+    bent.file.json["animations"] = json!([]);
+    let scene = bent.file.open();
+    assert_eq!((scene.still().len(), scene.pose(0.0).moving.len()), (10, 0));
+    let (position, _) = bent.expected(0, 0.0, &bent.inverse_bind);
+    assert!(scene.still().positions[0][0].as_dvec3().abs_diff_eq(position, 3e-6));
+}
+
+#[test]
+fn morph_targets_add_up() {
+    let deltas = [[[1.0f32, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3]], [[0.0, 0.0, -3.0]; 3]];
+    let tilt = [[1.0f32, 0.0, 0.0]; 3];
+    let mut file = Gltf::new();
+    let attributes = json!({"POSITION": file.floats(&TRIANGLE), "NORMAL": file.floats(&[[0.0, 0.0, 1.0]; 3])});
+    let targets = json!([{"POSITION": file.floats(&deltas[0]), "NORMAL": file.floats(&tilt)}, {"POSITION": file.floats(&deltas[1])}]);
+    let mesh = file
+        .push("meshes", json!({"primitives": [{"attributes": attributes, "targets": targets}], "weights": [0.0, 1.0]}));
+    let node = file.node(json!({"mesh": mesh, "weights": [0.5, 0.0]}));
+    file.node(json!({"mesh": mesh}));
+    let expected = |corner: usize, w: [f64; 2]| {
+        let v = |a: [f32; 3]| DVec3::from_array(a.map(f64::from));
+        v(TRIANGLE[corner]) + v(deltas[0][corner]) * w[0] + v(deltas[1][corner]) * w[1]
+    };
+    let still = file.open();
+    for corner in 0..3 {
+        // The node's own weights come before the mesh's.
+        assert_eq!(still.still().positions[0][corner].as_dvec3(), expected(corner, [0.5, 0.0]));
+        assert_eq!(still.still().positions[1][corner].as_dvec3(), expected(corner, [0.0, 1.0]));
+    }
+    animate(&mut file, node, "weights", "LINEAR", &[0.0, 2.0], &[[0.0], [0.5], [1.0], [-0.5]]);
+    let scene = file.open();
+    assert_eq!((scene.still().len(), scene.pose(0.0).moving.len()), (1, 1));
+    let moving = scene.pose(1.0).moving;
+    for corner in 0..3 {
+        let (found, expected) = (moving.positions[0][corner].as_dvec3(), expected(corner, [0.5, 0.0]));
+        assert!(found.abs_diff_eq(expected, 1e-6), "{found} {expected}");
+        let normal = Vec3::new(0.5, 0.0, 1.0).normalize();
+        assert!(moving.normals[0][corner].abs_diff_eq(normal, 1e-6));
+    }
+}
+
+#[test]
+fn what_hangs_below_an_animated_node_moves_with_it() {
+    let mut file = Gltf::new();
+    file.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}));
+    file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+    let positions = file.floats(&TRIANGLE);
+    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let leaf =
+        file.push("nodes", json!({"mesh": mesh, "camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}));
+    let middle =
+        file.push("nodes", json!({"children": [leaf], "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1]}));
+    let top = file.node(json!({"children": [middle]}));
+    file.node(json!({"mesh": mesh}));
+    animate(&mut file, top, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [4.0, 0.0, 0.0]]);
+    let scene = file.open();
+    assert_eq!(scene.still().len(), 1);
+    let pose = scene.pose(0.5);
+    let expected = Vec3::new(2.0, 1.0, 0.0);
+    assert_eq!(pose.moving.positions[0][0], expected);
+    assert_eq!(pose.lights[0].position, expected);
+    assert_eq!(pose.cameras[0].world_from_camera.w_axis.truncate().as_vec3(), expected);
+}
+
+#[test]
+fn animated_scales_mirror_and_collapse_without_harm() {
+    let mut file = Gltf::new();
+    let node = file.soup(&TRIANGLE);
+    animate(&mut file, node, "scale", "LINEAR", &[0.0, 1.0], &[[1.0; 3], [-1.0, 1.0, 1.0]]);
+    let scene = file.open();
+    for time_s in [0.0, 0.25, 0.5, 0.75, 0.999] {
+        let moving = scene.pose(time_s).moving;
+        super::assert_triangles_sound(&moving, &scene);
+        if time_s != 0.5 {
+            assert_eq!(moving.normals[0], [Vec3::Z; 3], "{time_s}");
+        }
+    }
+}

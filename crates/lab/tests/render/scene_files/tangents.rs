@@ -1,0 +1,129 @@
+//! Tangents that a file leaves out.
+
+use super::builder::{Gltf, png};
+use super::open;
+use super::real::path_of;
+use afterimage_lab::scene::Scene;
+use afterimage_testing::Draws;
+use glam::{Vec3, Vec4};
+use serde_json::json;
+
+/// A square with a normal map, its texture coordinates as given.
+fn mapped(uvs: &[[f32; 2]; 4], normals: bool) -> Gltf {
+    let mut file = Gltf::with_material(json!({"normalTexture": {"index": 0}}));
+    file.texture(&png([2, 2], |_, _| [128, 128, 255, 255]));
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let mut attributes = json!({"POSITION": file.floats(&square), "TEXCOORD_0": file.floats(uvs)});
+    if normals {
+        attributes["NORMAL"] = json!(file.floats(&[[0.0, 0.0, 1.0]; 4]));
+    }
+    file.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
+    file.json["meshes"][0]["primitives"][0]["mode"] = json!(5);
+    file
+}
+
+#[test]
+fn tangents_point_along_growing_u_and_green_up_in_the_image() {
+    // u to the right; the image upright (its top at v = 0, so v falls with y), upside down, and turned.
+    let upright = [[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]];
+    let flipped = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let turned = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+    for normals in [true, false] {
+        for (uvs, tangent, green) in
+            [(upright, Vec3::X, Vec3::Y), (flipped, Vec3::X, -Vec3::Y), (turned, Vec3::Y, -Vec3::X)]
+        {
+            let scene = mapped(&uvs, normals).open();
+            for (t, n) in scene.still().tangents.iter().flatten().zip(scene.still().normals.iter().flatten()) {
+                assert!(t.truncate().abs_diff_eq(tangent, 1e-6), "{t}");
+                assert!((n.cross(t.truncate()) * t.w).abs_diff_eq(green, 1e-6), "{t}");
+            }
+        }
+    }
+}
+
+#[test]
+fn anisotropy_turns_the_tangents() {
+    let mut file = mapped(&[[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]], true);
+    let turn = std::f32::consts::FRAC_PI_2;
+    file.json["materials"][0] =
+        json!({"extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 1.0, "anisotropyRotation": turn}}});
+    let scene = file.open();
+    // From the tangent towards the bitangent, which is up.
+    assert!(scene.still().tangents.iter().flatten().all(|t| t.truncate().abs_diff_eq(Vec3::Y, 1e-6)));
+}
+
+#[test]
+fn vertices_that_a_thousand_triangles_share_take_no_square_time() {
+    let n = 100_000;
+    let mut file = Gltf::with_material(json!({"normalTexture": {"index": 0}}));
+    file.texture(&png([2, 2], |_, _| [128, 128, 255, 255]));
+    let rim = (0..n).map(|i| (i as f32 / n as f32 * std::f32::consts::TAU).sin_cos());
+    let positions: Vec<[f32; 3]> = [[0.0; 3]].into_iter().chain(rim.map(|(y, x)| [x, y, 0.0])).collect();
+    let uvs: Vec<[f32; 2]> = positions.iter().map(|p| [p[0], -p[1]]).collect();
+    let attributes = json!({"POSITION": file.floats(&positions), "TEXCOORD_0": file.floats(&uvs)});
+    file.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
+    file.json["meshes"][0]["primitives"][0]["mode"] = json!(6);
+    let scene = file.open();
+    assert_eq!(scene.still().len(), n - 1);
+    // Rims of 6e-5 from coordinates rounded to 6e-8: the direction is good to a few thousandths.
+    for t in scene.still().tangents.iter().flatten() {
+        assert!(t.abs_diff_eq(Vec4::new(1.0, 0.0, 0.0, 1.0), 0.02), "{t}");
+    }
+}
+
+/// Triangles on a grid so coarse that many have no area, share edges three times, or lie on each other.
+#[test]
+fn tangled_meshes_get_tangents_too() {
+    let mut draws = Draws::new("tangled meshes");
+    let extremes = [0.0, 1.0, -1.0, 0.5, 1e-30, 1e9, -1e9, 1e-20, 3e38, -3e38, f32::NAN];
+    for case in 0..400 {
+        let choices = if case % 2 == 0 { 3 } else { extremes.len() as u32 };
+        let mut pick = || extremes[(draws.bits() % choices) as usize];
+        let positions: Vec<[f32; 3]> = (0..24).map(|_| [pick(), pick(), pick()]).collect();
+        let uvs: Vec<[f32; 2]> = (0..24).map(|_| [pick(), pick()]).collect();
+        let normals: Vec<[f32; 3]> = (0..24).map(|_| [pick(), pick(), pick()]).collect();
+        let indices: Vec<u32> = (0..120).map(|_| draws.bits() % 24).collect();
+        let mut file = mapped(&[[0.0; 2]; 4], false);
+        let mut attributes = json!({"POSITION": file.floats(&positions), "TEXCOORD_0": file.floats(&uvs)});
+        if case % 4 < 2 {
+            attributes["NORMAL"] = json!(file.floats(&normals));
+        }
+        let indices = file.indices(&indices);
+        file.json["meshes"][0]["primitives"][0] = json!({"attributes": attributes, "indices": indices, "material": 0});
+        // Sound: that is all that can be asked.
+        file.open();
+    }
+}
+
+/// Share of corners whose tangents agree: within 20 degrees and of the same sign.
+fn agreement(a: &Scene, b: &Scene, sign: f32) -> f64 {
+    let pairs = a.still().tangents.iter().flatten().zip(b.still().tangents.iter().flatten());
+    let agree = |(a, b): &(&Vec4, &Vec4)| a.truncate().dot(b.truncate()) > 0.94 && a.w == b.w * sign;
+    pairs.clone().filter(agree).count() as f64 / pairs.count() as f64
+}
+
+#[test]
+fn tangents_of_the_flight_helmet_are_found_again() {
+    let Some(path) = path_of("flight_helmet/FlightHelmet.gltf") else { return };
+    let given = open(&path).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for entry in std::fs::read_dir(path.parent().unwrap()).unwrap() {
+        let entry = entry.unwrap();
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
+    }
+    let mut description: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    for mesh in description["meshes"].as_array_mut().unwrap() {
+        for primitive in mesh["primitives"].as_array_mut().unwrap() {
+            assert!(primitive["attributes"].as_object_mut().unwrap().remove("TANGENT").is_some());
+        }
+    }
+    let bare = folder.path().join("bare.gltf");
+    std::fs::write(&bare, description.to_string()).unwrap();
+    let made = open(&bare).unwrap();
+    let found = agreement(&given, &made, 1.0);
+    println!("{:.2} % of the tangents agree with the file's", found * 100.0);
+    // The file's are averaged over welded vertices, and differ at seams and poles.
+    assert!(found > 0.99, "{found}");
+    // Planted error: green down.
+    assert!(agreement(&given, &made, -1.0) < 0.1);
+}

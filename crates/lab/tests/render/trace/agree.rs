@@ -1,0 +1,90 @@
+//! The three integrators are three ways to the same image.
+
+use super::rig::Rig;
+use super::scenes::{builtin, under_a_map, under_a_screen, under_lamps};
+use super::statistics::{p_of_means, p_of_regions};
+use afterimage_lab::scene::builtin::furnace_of;
+use afterimage_lab::scene::{Material, Scene};
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
+use afterimage_testing::{accept, reject};
+
+fn film(rig: &Rig, integrator: Integrator, bsdf: Bsdf, spp: u32) -> Film {
+    // A seed of its own each: with the same draws films would be alike where they need not be.
+    let settings = TraceSettings { integrator, bsdf, max_depth: 3, seed: 10 + integrator as u64, effects: None };
+    rig.cpu(settings, spp)
+}
+
+#[track_caller]
+fn check(scene: Scene, integrators: &[(Integrator, u32)]) {
+    let rig = Rig::new(scene, [32, 32]);
+    for bsdf in [Bsdf::Principled, Bsdf::Phong] {
+        let films: Vec<Film> = integrators.iter().map(|&(i, spp)| film(&rig, i, bsdf, spp)).collect();
+        for (k, other) in films.iter().enumerate().skip(1) {
+            let what = format!("{}, {bsdf:?}, {:?} and {:?}", rig.name, integrators[0].0, integrators[k].0);
+            accept(&format!("{what}: regions"), p_of_regions(&films[0], other));
+            accept(&format!("{what}: mean"), p_of_means(&films[0], other, |_| true));
+        }
+    }
+}
+
+const ALL: [(Integrator, u32); 3] = [(Integrator::Mis, 64), (Integrator::Nee, 64), (Integrator::Naive, 256)];
+
+#[test]
+fn in_the_cornell_box() {
+    check(builtin("cornell"), &ALL);
+}
+
+#[test]
+fn in_the_furnace() {
+    check(builtin("furnace"), &[ALL[0], ALL[2]]);
+    // Who only looks for light misses narrow highlights, nearly always: no sound statistics of them in so few samples.
+    let rough = Material { roughness: 0.7, ..Material::default() };
+    let metal = Material { metallic: 1.0, ..rough.clone() };
+    check(furnace_of(vec![rough, metal]), &ALL);
+}
+
+#[test]
+fn under_a_sky_with_a_bright_spot() {
+    check(under_a_map(), &ALL);
+}
+
+#[test]
+fn under_a_screen_that_shows_an_image() {
+    check(under_a_screen(), &ALL);
+}
+
+#[test]
+fn under_punctual_lights() {
+    check(under_lamps(), &ALL[..2]);
+    // They have no size: by chance no path meets them.
+    let rig = Rig::new(under_lamps(), [16, 16]);
+    let dark = film(&rig, Integrator::Naive, Bsdf::Principled, 4);
+    assert!(dark.moments.pixels().iter().all(|m| m.mean == glam::Vec3::ZERO));
+}
+
+#[test]
+fn a_light_picked_with_a_wrong_probability_is_caught() {
+    let mut rig = Rig::new(under_a_screen(), [32, 32]);
+    let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
+    for pick in &mut rig.world.picks {
+        pick.chosen *= 1.1;
+    }
+    reject(
+        "chosen 1.1 times as often",
+        p_of_means(&right, &film(&rig, Integrator::Nee, Bsdf::Principled, 64), |_| true),
+    );
+}
+
+#[test]
+fn a_texel_picked_with_a_wrong_probability_is_caught() {
+    let mut rig = Rig::new(under_a_map(), [32, 32]);
+    let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
+    for texel in &mut rig.world.map {
+        texel.chosen *= 1.1;
+    }
+    reject(
+        "texels 1.1 times as often",
+        p_of_means(&right, &film(&rig, Integrator::Nee, Bsdf::Principled, 64), |_| true),
+    );
+}

@@ -1,0 +1,166 @@
+//! Films: sums, bad samples, the same bits however the work is split.
+
+use super::rig::{Rig, device, differing};
+use super::scenes::{DARK, builtin, stage, under_a_map};
+use afterimage_lab::device::Backend;
+use afterimage_lab::scene::{Pose, Scene};
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::cpu::CpuTracer;
+use afterimage_lab::trace::film::{Film, Moments};
+use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::work::{WorkItem, uniform};
+use afterimage_testing::Draws;
+use glam::Vec3;
+
+fn on_threads(rig: &Rig, threads: usize) -> Film {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| rig.cpu(TraceSettings::default(), 4))
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    for scene in [builtin("cornell"), under_a_map()] {
+        let rig = Rig::new(scene, [40, 30]);
+        let (one, three) = (on_threads(&rig, 1), on_threads(&rig, 3));
+        assert_eq!(differing(&one, &three), 0);
+        assert_eq!((one.rays, one.nonfinite), (three.rays, three.nonfinite));
+    }
+}
+
+#[test]
+fn how_the_work_is_split_changes_no_bit() {
+    let rig = Rig::new(builtin("cornell"), [40, 30]);
+    let whole = rig.cpu(TraceSettings::default(), 8);
+    let mut backends = vec![Backend::Cpu];
+    backends.extend(device().map(Backend::Gpu));
+    for backend in backends {
+        let tracer = Tracer::new(&backend, &rig.world, TraceSettings::default()).unwrap();
+        // Rows apart, and samples apart.
+        let rows = [0..7, 7..8, 8..30].map(|rows| uniform(40, rows, 0..8));
+        let samples = [0..3, 3..4, 4..8].map(|samples| uniform(40, 0..30, samples));
+        for parts in [rows, samples] {
+            let mut film = Film::new(rig.size());
+            for items in &parts {
+                tracer.trace(&rig.world, &rig.view, 0, items, &mut film);
+            }
+            assert_eq!(differing(&film, &whole), 0);
+            assert_eq!(film.rays, whole.rays);
+        }
+        // Nothing to do is nothing done.
+        let mut film = whole.clone();
+        tracer.trace(&rig.world, &rig.view, 0, &[], &mut film);
+        assert_eq!(differing(&film, &whole), 0);
+    }
+}
+
+#[test]
+fn a_pixel_with_more_samples_than_a_batch_goes_on_in_the_next() {
+    let Some(device) = device() else { return };
+    let rig = Rig::new(builtin("cornell"), [2, 1]);
+    let spp = afterimage_lab::trace::gpu::BATCH + 100;
+    let settings = TraceSettings { max_depth: 1, ..TraceSettings::default() };
+    assert_eq!(differing(&rig.cpu(settings, spp), &rig.gpu(&device, settings, Storage::Texture, spp)), 0);
+}
+
+#[test]
+fn other_frames_and_seeds_have_other_noise() {
+    let rig = Rig::new(builtin("cornell"), [40, 30]);
+    let film = rig.cpu(TraceSettings::default(), 2);
+    let other = rig.cpu(TraceSettings { seed: 1, ..TraceSettings::default() }, 2);
+    assert!(differing(&film, &other) > 500);
+    let mut next = Film::new(rig.size());
+    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 1, &rig.items(2), &mut next);
+    assert!(differing(&film, &next) > 500);
+}
+
+#[test]
+fn only_the_pixels_of_the_work_are_touched() {
+    let rig = Rig::new(builtin("furnace"), [16, 8]);
+    let mut film = Film::new(rig.size());
+    let items = [WorkItem::new(3, 2, 0), WorkItem::new(3, 2, 7), WorkItem::new(15, 7, 1)];
+    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 0, &items, &mut film);
+    let counts: Vec<_> = film.moments.pixels().iter().enumerate().filter(|(_, m)| m.count > 0).collect();
+    assert_eq!(counts.iter().map(|(i, m)| (*i, m.count)).collect::<Vec<_>>(), [(2 * 16 + 3, 2), (7 * 16 + 15, 1)]);
+    assert!(film.variance().at(15, 7)[0].is_infinite() && film.color().at(0, 0) == [0.0; 3]);
+}
+
+#[test]
+fn moments_are_those_of_f64() {
+    let mut d = Draws::new("moments");
+    for (offset, spread, count) in [(0.0, 1.0, 1000), (1000.0, 1.0, 1000), (1e-3, 1e-4, 100_000), (5.0, 0.0, 50)] {
+        let samples: Vec<Vec3> = (0..count)
+            .map(|_| Vec3::from_array(std::array::from_fn(|_| offset + spread * d.uniform() * d.uniform())))
+            .collect();
+        let mut m = Moments::default();
+        samples.iter().for_each(|&s| m.add(s));
+        let n = f64::from(count);
+        for k in 0..3 {
+            let mean = samples.iter().map(|s| f64::from(s[k])).sum::<f64>() / n;
+            let squares = samples.iter().map(|s| (f64::from(s[k]) - mean).powi(2)).sum::<f64>();
+            let exact = squares / (n * (n - 1.0));
+            let got = f64::from(m.variance_of_mean()[k]);
+            // Each step rounds mean and sum by half an ulp; the errors of n steps add up like a random walk, sqrt(n) 6e-8 with
+            // room to spare.
+            let rounding = 2e-7 * n.sqrt();
+            assert!((f64::from(m.mean[k]) - mean).abs() <= rounding * mean, "{} {mean}", m.mean[k]);
+            // The mean's ulp is an error of each deviation.
+            let ulp = 1.2e-7 * mean / (squares / n).sqrt().max(1e-30);
+            assert!((got - exact).abs() <= (rounding + 4.0 * ulp) * exact + 1e-30, "{got} {exact}");
+        }
+    }
+    assert_eq!(Moments::default().variance_of_mean(), Vec3::INFINITY);
+}
+
+/// The stage with a wall that emits this.
+fn wall_of(emissive: [f32; 3]) -> Rig {
+    let (mut materials, t, camera) = stage();
+    materials[1].emissive = emissive;
+    let pose = Pose { cameras: vec![camera], ..Pose::default() };
+    Rig::new(Scene::made("a bad wall", materials, t, pose, DARK).unwrap(), [32, 24])
+}
+
+#[test]
+fn samples_that_are_no_numbers_are_counted_and_black_h37() {
+    let settings = TraceSettings { max_depth: 0, ..TraceSettings::default() };
+    let spp = 8;
+    let sound = wall_of([1.0; 3]).cpu(settings, spp);
+    let hits: f64 = sound.moments.pixels().iter().map(|m| f64::from(m.mean.x) * f64::from(spp)).sum();
+    for bad in [f32::INFINITY, f32::NAN] {
+        let rig = wall_of([bad, 1.0, 1.0]);
+        let mut films = vec![rig.cpu(settings, spp)];
+        films.extend(device().map(|d| rig.gpu(&d, settings, Storage::Texture, spp)));
+        for film in films {
+            assert_eq!(film.nonfinite, hits.round() as u64, "{bad}");
+            // A sample is black as a whole: half a color would be a tint.
+            assert!(film.moments.pixels().iter().all(|m| (m.mean, m.count) == (Vec3::ZERO, spp)));
+        }
+    }
+    assert!(hits > 100.0);
+}
+
+#[test]
+fn a_surface_that_is_no_number_stays_in_its_pixels_h17() {
+    let (mut materials, t, camera) = stage();
+    materials[3].base_color = [f32::NAN, 0.5, 0.5];
+    let pose = Pose { cameras: vec![camera], ..Pose::default() };
+    let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
+    let bad = Rig::new(Scene::made("a bad ball", materials, t, pose, sky).unwrap(), [32, 24]);
+    let film = bad.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
+    assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite() && m.squares.is_finite()));
+    // What does not see the ball is as it was with a sound one: at depth 1 nothing is reflected twice.
+    let (materials, t, camera) = stage();
+    let pose = Pose { cameras: vec![camera], ..Pose::default() };
+    let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
+    let sound = Rig::new(Scene::made("a sound ball", materials, t, pose, sky).unwrap(), [32, 24]);
+    let reference = sound.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
+    let mut same = 0;
+    for (i, (a, b)) in film.moments.pixels().iter().zip(reference.moments.pixels()).enumerate() {
+        let (x, y) = ((i % 32) as f32 - 15.5, (i / 32) as f32 - 11.5);
+        // The ball is to the right of the middle.
+        let far = x < 0.0 || y < -9.0;
+        assert!(!far || a == b, "pixel {i}");
+        same += usize::from(a == b);
+    }
+    assert!(same < 32 * 24 && same > 32 * 24 / 2, "{same}");
+}

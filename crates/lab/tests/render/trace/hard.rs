@@ -1,0 +1,257 @@
+//! Nothing that a scene may be makes the tracer panic or a pixel no number.
+
+use super::rig::{Rig, device, differing};
+use super::scenes::{DARK, builtin, stage};
+use afterimage::image::Image;
+use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
+use afterimage_lab::trace::Bvh;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::gpu::GpuTracer;
+use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
+use afterimage_lab::trace::surfaces::Surfaces;
+use afterimage_lab::trace::work::uniform;
+use afterimage_testing::holds;
+use glam::{DVec3, Vec3, Vec4};
+
+const SIZE: [u32; 2] = [16, 12];
+
+fn scene(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
+    Scene::made(name, materials, t, pose, environment).unwrap()
+}
+
+fn one_triangle(corners: [Vec3; 3]) -> Triangles {
+    let mut t = Triangles::default();
+    t.push_flat(corners, 0);
+    t
+}
+
+fn glowing() -> Material {
+    Material { emissive: [1.0; 3], ..Material::default() }
+}
+
+fn pose_of(eye: DVec3, target: DVec3) -> Pose {
+    Pose { cameras: vec![Camera::look_at(eye, target, 50.0)], ..Pose::default() }
+}
+
+fn sky() -> Environment {
+    Environment::Constant([1.0; 3])
+}
+
+/// The stage, all of it scaled and moved, lit by a lamp.
+fn far_away(scale: f32, offset: Vec3) -> Scene {
+    let (materials, mut t, camera) = stage();
+    t.positions.iter_mut().flatten().for_each(|p| *p = *p * scale + offset);
+    let eye = camera.world_from_camera.w_axis.truncate() * f64::from(scale) + offset.as_dvec3();
+    let target = DVec3::new(0.0, 1.2, 0.0) * f64::from(scale) + offset.as_dvec3();
+    scene(&format!("scale {scale}, at {offset}"), materials, t, pose_of(eye, target), sky())
+}
+
+fn scenes() -> Vec<Scene> {
+    let triangle = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
+    let front = || pose_of(DVec3::Z * 3.0, DVec3::ZERO);
+    let lamp = |intensity, position, range| PunctualLight {
+        kind: PunctualKind::Point,
+        position,
+        direction: Vec3::NEG_Z,
+        intensity: [intensity; 3],
+        range,
+    };
+    let lit = |lights| Pose { lights, ..front() };
+    let mut nan = Triangles::default();
+    nan.push_flat([Vec3::NAN, Vec3::X, Vec3::Y], 0);
+    nan.push_flat(triangle, 0);
+    nan.push_flat([Vec3::ZERO; 3], 0);
+    nan.push_flat([Vec3::INFINITY, Vec3::X, Vec3::Y], 0);
+    nan.normals[1] = [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY];
+    nan.tangents[1] = [Vec4::NAN; 3];
+    nan.colors[1] = [Vec4::NAN; 3];
+    let mut one = one_triangle(triangle);
+    one.positions[0][2] = Vec3::new(0.0, 1e9, 0.0);
+    let mirrors = vec![Material { metallic: 1.0, roughness: 0.0, ..Material::default() }];
+    let weird = Material {
+        roughness: 7.0,
+        metallic: -3.0,
+        ior: 0.0,
+        specular: 9.0,
+        clearcoat: 4.0,
+        anisotropy: 5.0,
+        transmission: 2.0,
+        volume: true,
+        absorption: [1e30; 3],
+        base_color: [4.0; 3],
+        ..Material::default()
+    };
+    let bright = Environment::Map(Image::from_fn([3, 2], |[x, _]| [if x == 0 { 1e30 } else { 0.0 }; 3]));
+    let black_map = Environment::Map(Image::filled([4, 2], [0.0; 3]));
+    let bad_map = Environment::Map(Image::from_fn([4, 2], |[x, _]| if x == 1 { [f32::NAN; 3] } else { [1.0; 3] }));
+    vec![
+        scene("nothing", vec![], Triangles::default(), Pose::default(), DARK),
+        scene("nothing but sky", vec![], Triangles::default(), Pose::default(), sky()),
+        scene(
+            "nothing but a lamp",
+            vec![],
+            Triangles::default(),
+            lit(vec![lamp(5.0, Vec3::ZERO, f32::INFINITY)]),
+            DARK,
+        ),
+        scene("one triangle", vec![Material::default()], one_triangle(triangle), front(), sky()),
+        scene("one triangle that glows", vec![glowing()], one_triangle(triangle), front(), DARK),
+        scene("one triangle without light", vec![Material::default()], one_triangle(triangle), front(), DARK),
+        scene("a point that glows", vec![glowing()], one_triangle([Vec3::ZERO; 3]), front(), DARK),
+        scene("a line that glows", vec![glowing()], one_triangle([Vec3::X, Vec3::ZERO, -Vec3::X]), front(), DARK),
+        scene("a very long triangle", vec![glowing()], one, front(), sky()),
+        scene("no numbers", vec![glowing()], nan, front(), sky()),
+        scene(
+            "a lamp on a surface",
+            vec![Material::default()],
+            one_triangle(triangle),
+            lit(vec![lamp(5.0, Vec3::ZERO, 9.0)]),
+            DARK,
+        ),
+        scene(
+            "a lamp without range",
+            vec![Material::default()],
+            one_triangle(triangle),
+            lit(vec![lamp(5.0, Vec3::Z, 0.0)]),
+            DARK,
+        ),
+        scene(
+            "a lamp of nothing",
+            vec![Material::default()],
+            one_triangle(triangle),
+            lit(vec![lamp(0.0, Vec3::Z, 9.0)]),
+            DARK,
+        ),
+        scene("parameters out of range", vec![weird], one_triangle(triangle), front(), sky()),
+        scene("a camera in a mirror's plane", mirrors, one_triangle(triangle), pose_of(DVec3::ZERO, DVec3::X), sky()),
+        scene("a very bright texel", vec![Material::default()], one_triangle(triangle), front(), bright),
+        scene("a black map", vec![Material::default()], one_triangle(triangle), front(), black_map),
+        scene("a map that is no number", vec![Material::default()], one_triangle(triangle), front(), bad_map),
+        far_away(1e-3, Vec3::ZERO),
+        far_away(1e5, Vec3::ZERO),
+        far_away(1.0, Vec3::new(1e5, -1e6, 1e5)),
+        far_away(1e7, Vec3::splat(1e8)),
+    ]
+}
+
+#[test]
+fn every_scene_gives_an_image_of_numbers_h81_h82_h83() {
+    let (scenes, variants) = (scenes(), 3 * 2 * 2);
+    let said = format!("{} scenes x {variants} variants of the tracer: no pixel but numbers >= 0", scenes.len());
+    for scene in scenes {
+        let rig = Rig::new(scene, SIZE);
+        for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
+            for bsdf in [Bsdf::Principled, Bsdf::Phong] {
+                for effects in [None, Some(afterimage_lab::trace::effects::Effects::all())] {
+                    let settings = TraceSettings { integrator, bsdf, effects, ..TraceSettings::default() };
+                    let film = rig.cpu(settings, 4);
+                    let sound =
+                        |m: &afterimage_lab::trace::film::Moments| m.mean.is_finite() && m.mean.min_element() >= 0.0;
+                    assert!(film.moments.pixels().iter().all(sound), "{}, {settings:?}", rig.name);
+                }
+            }
+        }
+        let seen = Surfaces::trace(&rig.world, &rig.view, &rig.view, rig.world.needs);
+        assert!(seen.depth.pixels().iter().all(|d| *d > 0.0), "{}", rig.name);
+        assert!(seen.motion.pixels().iter().all(|m| m.iter().all(|x| x.is_finite())), "{}", rig.name);
+    }
+    holds!("H81", Cpu, "{said}");
+    holds!("H82", Cpu, "{said}, scaled from 1e-3 to 1e7 and moved by up to 1e8 m among them");
+    holds!("H83", Cpu, "{said}");
+}
+
+#[test]
+fn every_scene_gives_the_same_image_on_the_gpu() {
+    let Some(device) = device() else { return };
+    let scenes = scenes();
+    let said = format!("{} scenes: every pixel the CPU's bit for bit, all of them numbers", scenes.len());
+    for scene in scenes {
+        let rig = Rig::new(scene, SIZE);
+        let settings = TraceSettings::default();
+        let (cpu, gpu) = (rig.cpu(settings, 4), rig.gpu(&device, settings, Storage::Texture, 4));
+        let count = differing(&cpu, &gpu);
+        println!("{}: {count} pixels differ", rig.name);
+        assert!(gpu.moments.pixels().iter().all(|m| m.mean.is_finite()), "{}", rig.name);
+        assert_eq!((count, cpu.nonfinite), (0, gpu.nonfinite), "{}", rig.name);
+    }
+    holds!("H81", Gpu, "{said}");
+    holds!("H82", Gpu, "{said}");
+    holds!("H83", Gpu, "{said}");
+}
+
+#[test]
+fn without_light_it_is_dark_and_without_surfaces_it_is_sky() {
+    let black = |name: &str| {
+        let rig = Rig::new(scenes().into_iter().find(|s| s.name == name).unwrap(), SIZE);
+        rig.cpu(TraceSettings::default(), 2).moments.pixels().iter().all(|m| m.mean == Vec3::ZERO)
+    };
+    assert!(black("nothing") && black("one triangle without light") && black("nothing but a lamp"));
+    assert!(!black("one triangle that glows"));
+    let film = Rig::new(builtin("control"), SIZE).cpu(TraceSettings::default(), 2);
+    assert!(film.moments.pixels().iter().all(|m| m.mean == Vec3::new(0.5, 0.7, 1.0)));
+    assert_eq!(film.rays, 16 * 12 * 2);
+}
+
+#[test]
+fn a_camera_inside_a_body_sees_it_from_inside() {
+    let mut t = Triangles::default();
+    super::scenes::ball(&mut t, Vec3::ZERO, 1.0, 0);
+    // Closed: no light of the sky gets in.
+    let pose = || pose_of(DVec3::new(0.1, 0.2, 0.3), DVec3::X);
+    let dark = Rig::new(scene("inside", vec![Material::default()], t.clone(), pose(), sky()), SIZE);
+    let film = dark.cpu(TraceSettings { max_depth: 8, ..TraceSettings::default() }, 16);
+    assert!(film.moments.pixels().iter().all(|m| m.mean == Vec3::ZERO));
+    // Lit from all around by itself: radiance 1 at depth 0, a geometric series of its albedo after.
+    let half = Material { base_color: [0.5; 3], specular: 0.0, emissive: [1.0; 3], ..Material::default() };
+    let lit = Rig::new(scene("inside a lamp", vec![half], t, pose(), DARK), SIZE);
+    let naive = TraceSettings { integrator: Integrator::Naive, ..TraceSettings::default() };
+    for (max_depth, expected) in [(0, 1.0), (1, 1.5), (3, 1.875)] {
+        for m in lit.cpu(TraceSettings { max_depth, ..naive }, 4).moments.pixels() {
+            // Each bounce rounds a few times.
+            assert!((m.mean.x - expected).abs() < 1e-5, "{} {expected}", m.mean.x);
+        }
+    }
+}
+
+#[test]
+fn the_image_is_the_same_far_from_the_origin_h82() {
+    // A power of two away, so that the scene itself is rounded a little only.
+    let near = Rig::new(far_away(1.0, Vec3::ZERO), [32, 24]);
+    let settings = TraceSettings { max_depth: 2, ..TraceSettings::default() };
+    let reference = near.cpu(settings, 64);
+    let mean = |film: &afterimage_lab::trace::film::Film| super::statistics::mean_of(film, 0, |_| true);
+    let (expected, se) = mean(&reference);
+    for (scale, offset) in
+        [(1e-3, Vec3::ZERO), (1e4, Vec3::ZERO), (1.0, Vec3::splat(1024.0)), (1.0, Vec3::splat(16384.0))]
+    {
+        let film = Rig::new(far_away(scale, offset), [32, 24]).cpu(settings, 64);
+        let (got, _) = mean(&film);
+        println!("{scale}, {offset}: {got:.5}, {expected:.5} +- {se:.5}");
+        // A position at 16 km has steps of 2 mm, the rays' offset there is 6 cm of a stage of 6 m.
+        assert!((got / expected - 1.0).abs() < 0.02, "{scale}, {offset}");
+    }
+}
+
+#[test]
+fn what_had_no_area_at_first_may_grow_on_the_device() {
+    let Some(device) = device() else { return };
+    let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
+    let mut grown = Triangles::default();
+    for z in [0.0, -0.5, -1.0] {
+        grown.push_flat(corners.map(|p| p + Vec3::Z * z), 0);
+    }
+    let mut shrunk = grown.clone();
+    shrunk.positions.fill([Vec3::ZERO; 3]);
+    let pose = Pose { moving: shrunk, ..pose_of(DVec3::Z * 3.0, DVec3::ZERO) };
+    let materials = vec![Material { base_color: [0.5; 3], ..Material::default() }];
+    let mut rig = Rig::new(scene("growing", materials.clone(), Triangles::default(), pose, sky()), SIZE);
+    let settings = TraceSettings::default();
+    let mut tracer = GpuTracer::new(device, &rig.world, settings).unwrap();
+    rig.world.geometry.moving = Bvh::build(&grown, Some(&grown.positions), &materials);
+    tracer.update(&rig.world).unwrap();
+    let mut film = Film::new(SIZE);
+    tracer.trace(&rig.world, &rig.view, 0, &uniform(SIZE[0], 0..SIZE[1], 0..2), &mut film);
+    assert_eq!(differing(&film, &rig.cpu(settings, 2)), 0);
+    assert!(film.color().pixels().iter().any(|c| c[0] < 0.9), "the triangle is seen");
+}

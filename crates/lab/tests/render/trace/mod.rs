@@ -1,0 +1,16 @@
+//! The path tracer as a whole: CPU against GPU, integrators against each other and against closed forms, energy, effects, depth
+//! and motion, bad input; hard cases H80-H84.
+
+mod agree;
+mod chance;
+mod closed_form;
+mod effects;
+mod equal;
+mod frames;
+mod hard;
+mod radiosity;
+mod rig;
+mod scenes;
+mod statistics;
+mod stereo;
+mod surfaces;

@@ -1,0 +1,88 @@
+//! Scenes traced on the CPU and on the device.
+
+use afterimage_lab::device::Headless;
+use afterimage_lab::scene::{Camera, Scene};
+use afterimage_lab::trace::cpu::CpuTracer;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::gpu::GpuTracer;
+use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::{WorkItem, uniform};
+use afterimage_lab::trace::world::World;
+use std::sync::{Arc, OnceLock};
+
+/// A scene ready to be traced.
+pub struct Rig {
+    pub name: String,
+    pub world: World,
+    pub view: View,
+}
+
+impl Rig {
+    /// Through the scene's first camera, or one that has all of it in view.
+    pub fn new(scene: Scene, size: [u32; 2]) -> Self {
+        let aspect = size[0] as f32 / size[1] as f32;
+        let camera = scene.pose(0.0).cameras.first().cloned().unwrap_or_else(|| scene.framing_camera(aspect));
+        Self::seen_by(scene, &camera, size)
+    }
+
+    pub fn seen_by(scene: Scene, camera: &Camera, size: [u32; 2]) -> Self {
+        let view = View::of_camera(camera, size, None).unwrap();
+        Self { name: scene.name.clone(), world: World::new(&scene), view }
+    }
+
+    pub fn size(&self) -> [u32; 2] {
+        self.view.geometry().size_px()
+    }
+
+    pub fn items(&self, spp: u32) -> Vec<WorkItem> {
+        uniform(self.size()[0], 0..self.size()[1], 0..spp)
+    }
+
+    pub fn cpu(&self, settings: TraceSettings, spp: u32) -> Film {
+        let mut film = Film::new(self.size());
+        CpuTracer::new(settings).trace(&self.world, &self.view, 0, &self.items(spp), &mut film);
+        film
+    }
+
+    pub fn gpu(&self, device: &Arc<Headless>, settings: TraceSettings, storage: Storage, spp: u32) -> Film {
+        afterimage_testing::gpu::validated(&device.device, &self.name, || {
+            let tracer = GpuTracer::with_storage(device.clone(), &self.world, settings, storage).unwrap();
+            let mut film = Film::new(self.size());
+            tracer.trace(&self.world, &self.view, 0, &self.items(spp), &mut film);
+            film
+        })
+    }
+}
+
+/// Pixels whose mean, squares or count differ in any bit.
+pub fn differing(a: &Film, b: &Film) -> usize {
+    let words = |film: &Film| -> Vec<[u32; 7]> {
+        let row = |m: &afterimage_lab::trace::film::Moments| {
+            let [x, y, z] = m.mean.to_array().map(f32::to_bits);
+            let [u, v, w] = m.squares.to_array().map(f32::to_bits);
+            [x, y, z, u, v, w, m.count]
+        };
+        film.moments.pixels().iter().map(row).collect()
+    };
+    words(a).iter().zip(words(b)).filter(|(a, b)| **a != *b).count()
+}
+
+/// The adapter of this run, one device for all tests; `None` after saying so.
+pub fn device() -> Option<Arc<Headless>> {
+    static DEVICE: OnceLock<Arc<Headless>> = OnceLock::new();
+    let adapter = afterimage_testing::gpu::adapter()?;
+    let open = || {
+        let offered = adapter.limits();
+        // Sponza is larger than the default limits allow.
+        let required_limits = wgpu::Limits {
+            max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            max_buffer_size: offered.max_buffer_size,
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        };
+        Headless::on(adapter, required_limits).expect("a device with these limits")
+    };
+    Some(DEVICE.get_or_init(open).clone())
+}

@@ -1,0 +1,148 @@
+//! What is traced.
+
+use afterimage::image::Image;
+use afterimage_lab::scene::{
+    Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, SceneLimits, Texture, TextureRef,
+    Triangles, Wrap,
+};
+use glam::{DVec3, Vec2, Vec3};
+use std::io::Write;
+
+pub fn builtin(name: &str) -> Scene {
+    Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap()
+}
+
+/// Small scenes of the shared data, which others made.
+pub const SMALL: &[&str] = &[
+    "alpha_blend_mode_test/AlphaBlendModeTest.glb",
+    "animated_morph_cube/AnimatedMorphCube.gltf",
+    "emissive_cornell_box/CornellBox.glb",
+    "flight_helmet/FlightHelmet.gltf",
+    "fox/Fox.glb",
+    "lights_punctual/Lights.glb",
+    "transmission_roughness_test/TransmissionRoughnessTest.glb",
+    "vertex_color/22_vertex_color.gltf",
+];
+
+/// A scene of the shared data, `None` after saying loudly that it is not there. Scenes without light get a sky.
+pub fn shared(name: &str) -> Option<Scene> {
+    let path = afterimage_testing::workspace().join("../shared/data/scenes").join(name);
+    if !path.is_file() {
+        // Not eprintln: the harness would swallow it.
+        let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
+        return None;
+    }
+    let mut scene = Scene::open(path.to_str().unwrap(), &SceneLimits::default()).unwrap();
+    scene.environment = Environment::Constant([0.6, 0.7, 0.9]);
+    scene.name = name.to_owned();
+    Some(scene)
+}
+
+/// A floor, a wall, a leaning sheet of metal and a ball, seen from the front; no light.
+pub fn stage() -> (Vec<Material>, Triangles, Camera) {
+    let materials = vec![
+        Material { name: "floor".into(), base_color: [0.6, 0.5, 0.4], specular: 0.0, ..Material::default() },
+        Material { name: "wall".into(), base_color: [0.3, 0.5, 0.7], roughness: 0.6, ..Material::default() },
+        Material {
+            name: "metal".into(),
+            base_color: [0.9, 0.8, 0.6],
+            metallic: 1.0,
+            roughness: 0.4,
+            ..Material::default()
+        },
+        Material {
+            name: "ball".into(),
+            base_color: [0.7, 0.2, 0.2],
+            clearcoat: 1.0,
+            clearcoat_roughness: 0.4,
+            ..Material::default()
+        },
+    ];
+    let mut t = Triangles::default();
+    let v = Vec3::new;
+    t.push_quad([v(-3., 0., 3.), v(3., 0., 3.), v(3., 0., -3.), v(-3., 0., -3.)], 0);
+    t.push_quad([v(-3., 0., -3.), v(3., 0., -3.), v(3., 4., -3.), v(-3., 4., -3.)], 1);
+    t.push_quad([v(-2.5, 0., 0.), v(-0.5, 0., -0.6), v(-0.5, 1.6, -1.4), v(-2.5, 1.6, -0.8)], 2);
+    ball(&mut t, v(1.2, 0.8, 0.0), 0.8, 3);
+    let camera = Camera::look_at(DVec3::new(0.0, 1.8, 6.0), DVec3::new(0.0, 1.2, 0.0), 45.0);
+    (materials, t, camera)
+}
+
+/// A ball of flat faces.
+pub fn ball(t: &mut Triangles, center: Vec3, radius: f32, material: u32) {
+    let (columns, rows) = (24, 12);
+    let at = |i: u32, j: u32| {
+        let (a, b) = (std::f32::consts::TAU * i as f32 / columns as f32, std::f32::consts::PI * j as f32 / rows as f32);
+        center + radius * Vec3::new(b.sin() * a.sin(), b.cos(), b.sin() * a.cos())
+    };
+    for i in 0..columns {
+        for j in 0..rows {
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at((i + 1) % columns, j + 1), at((i + 1) % columns, j)];
+            if j + 1 < rows {
+                t.push_flat([a, b, c], material);
+            }
+            if j > 0 {
+                t.push_flat([a, c, d], material);
+            }
+        }
+    }
+}
+
+pub const DARK: Environment = Environment::Constant([0.0; 3]);
+
+fn made(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
+    Scene::made(name, materials, t, pose, environment).unwrap()
+}
+
+/// The stage under a sky with a bright spot.
+pub fn under_a_map() -> Scene {
+    let (materials, t, camera) = stage();
+    let map = Image::from_fn([16, 8], |[x, y]| {
+        let spot = if (x, y) == (10, 1) { 40.0 } else { 0.0 };
+        [0.2 + 0.05 * x as f32 + spot, 0.3 + 0.8 * spot, 0.8 - 0.05 * y as f32 + 0.5 * spot]
+    });
+    made("a map", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, Environment::Map(map))
+}
+
+/// The stage under a lamp of each punctual kind.
+pub fn under_lamps() -> Scene {
+    let (materials, t, camera) = stage();
+    let light = |kind, position, direction: Vec3, intensity, range| PunctualLight {
+        kind,
+        position,
+        direction: direction.normalize(),
+        intensity,
+        range,
+    };
+    let spot = PunctualKind::Spot { cos_inner: 0.9, cos_outer: 0.7 };
+    let lights = vec![
+        light(PunctualKind::Directional, Vec3::ZERO, Vec3::new(0.5, -1.0, -0.6), [1.0, 0.9, 0.8], f32::INFINITY),
+        light(PunctualKind::Point, Vec3::new(-1.0, 2.5, 1.5), Vec3::NEG_Y, [3.0, 2.0, 4.0], 6.0),
+        light(spot, Vec3::new(1.5, 3.0, 1.0), Vec3::new(-0.3, -1.0, -0.3), [9.0, 9.0, 5.0], f32::INFINITY),
+    ];
+    made("lamps", materials, t, Pose { lights, cameras: vec![camera], ..Pose::default() }, DARK)
+}
+
+/// The stage under a screen whose light is an image.
+pub fn under_a_screen() -> Scene {
+    let (mut materials, mut t, camera) = stage();
+    materials.push(Material {
+        name: "screen".into(),
+        base_color: [0.0; 3],
+        specular: 0.0,
+        emissive: [8.0, 6.0, 4.0],
+        emissive_texture: Some(TextureRef { texture: 0 }),
+        ..Material::default()
+    });
+    let v = Vec3::new;
+    t.push_quad([v(-1.5, 3.5, 1.0), v(-1.5, 3.5, -1.0), v(1.5, 3.5, -1.0), v(1.5, 3.5, 1.0)], 4);
+    let n = t.len();
+    let corner = [Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];
+    t.uvs[n - 2] = [corner[0], corner[1], corner[2]];
+    t.uvs[n - 1] = [corner[0], corner[2], corner[3]];
+    let mut scene = made("a screen", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, DARK);
+    let texels =
+        (0..12).map(|i| [(i * 21) as u8, 255 - (i * 13) as u8, if i % 3 == 0 { 255 } else { 0 }, 255]).collect();
+    scene.textures.push(Texture { size: [4, 3], texels, wrap: [Wrap::Repeat; 2], nearest: false });
+    scene
+}

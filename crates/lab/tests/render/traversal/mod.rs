@@ -1,0 +1,11 @@
+//! Rays and triangles: hierarchies against brute force, watertightness, degenerate input, CPU against GPU; hard cases H80, H81,
+//! H82.
+
+mod brute_force;
+mod degenerate;
+mod on_gpu;
+mod records;
+mod records_on_gpu;
+mod scenes;
+mod self_intersection;
+mod watertight;

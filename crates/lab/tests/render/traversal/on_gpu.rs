@@ -1,0 +1,229 @@
+//! The device's hits are the CPU's, bit for bit: triangle, distance, barycentrics.
+
+use super::scenes::{all, direction, no_rays, rays, soup, sphere};
+use afterimage_lab::scene::{Alpha, Material};
+use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage};
+use afterimage_lab::trace::gpu::ray_lists::{GpuRays, Question};
+use afterimage_lab::trace::heap::{Heap, HeapBuilder};
+use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
+use glam::{Vec3, vec3};
+
+const STORAGES: [Storage; 2] = [Storage::Texture, Storage::Buffer];
+
+struct Rig {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    geometry: Geometry,
+    heap: Heap,
+    on_device: GpuHeap,
+    storage: Storage,
+}
+
+impl Rig {
+    fn new(geometry: Geometry, most_moving: usize, storage: Storage) -> Option<Self> {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        let limits = storage.limits(&device.limits());
+        let heap = HeapBuilder::default().geometry(&geometry, most_moving).finish(limits).unwrap();
+        let on_device = GpuHeap::new(&device, &queue, &heap, storage);
+        Some(Self { device, queue, geometry, heap, on_device, storage })
+    }
+
+    fn ask(&self, question: Question, rays: &[Ray], source: Option<&str>) -> Vec<Option<Hit>> {
+        afterimage_testing::gpu::validated(&self.device, "the tracer", || {
+            let tracer =
+                GpuRays::new(&self.device, &self.queue, &self.heap, &self.geometry, self.storage, question, source);
+            let batch = tracer.batch(&self.on_device, rays);
+            tracer.run(&batch);
+            tracer.hits(&batch)
+        })
+    }
+
+    /// Rays whose hits differ from the CPU's in any bit.
+    fn differing(&self, rays: &[Ray], source: Option<&str>) -> usize {
+        let got = self.ask(Question::Closest, rays, source);
+        rays.iter().zip(got).filter(|(ray, got)| self.geometry.closest(ray, all) != *got).count()
+    }
+
+    #[track_caller]
+    fn check(&self, name: &str, rays: &[Ray]) {
+        let differing = self.differing(rays, None);
+        println!("{name}, {:?}: {differing} of {} hits differ", self.storage, rays.len());
+        assert_eq!(differing, 0, "{name}");
+        let any = self.ask(Question::Any, rays, None);
+        assert!(rays.iter().zip(any).all(|(ray, got)| self.geometry.occluded(ray, all) == got.is_some()), "{name}");
+    }
+}
+
+fn resting(still: Bvh) -> Geometry {
+    Geometry { still, ..Geometry::default() }
+}
+
+#[test]
+fn random_soups() {
+    for (count, center, half) in [
+        (0, Vec3::ZERO, 1.0),
+        (1, Vec3::ZERO, 1.0),
+        (5, Vec3::ZERO, 1.0),
+        (3000, Vec3::ZERO, 1.0),
+        (3000, vec3(3.0, -40.0, 7.0), 10.0),
+        (500, Vec3::splat(1e6), 30.0),
+        (500, Vec3::ZERO, 1e-3),
+        (500, Vec3::ZERO, 1e6),
+    ] {
+        let name = format!("soup of {count} around {center}, {half} m");
+        for storage in STORAGES {
+            let geometry = resting(Bvh::build(&soup(&name, count, center, half), None, &[]));
+            let Some(rig) = Rig::new(geometry, 0, storage) else { return };
+            let mut rays = rays(&name, 20_000, center, half);
+            // Limits, too.
+            let mut d = Draws::new("limits");
+            rays.iter_mut().step_by(3).for_each(|r| r.t_max = half * d.range(0.0, 2.0));
+            rig.check(&name, &rays);
+        }
+    }
+}
+
+#[test]
+fn a_ray_that_is_no_ray_hits_nothing() {
+    let geometry = resting(Bvh::build(&soup("no ray on the device", 500, Vec3::ZERO, 1.0), None, &[]));
+    let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
+    rig.check("no rays", &no_rays());
+}
+
+#[test]
+fn copies_of_triangles_are_told_apart_alike() {
+    let once = soup("copies on the device", 300, Vec3::ZERO, 1.0);
+    let mut twice = once.clone();
+    twice.extend(&once);
+    let geometry = Geometry { still: Bvh::build(&twice, None, &[]), moving: Bvh::build(&once, None, &[]) };
+    let Some(rig) = Rig::new(geometry, 300, Storage::Texture) else { return };
+    rig.check("copies", &rays("copies on the device", 20_000, Vec3::ZERO, 1.0));
+}
+
+#[test]
+fn moving_triangles_are_where_they_were_last_written() {
+    for storage in STORAGES {
+        let still = Bvh::build(&soup("still on the device", 500, Vec3::ZERO, 1.0), None, &[]);
+        let pose = |i: u32, count| Bvh::build(&soup(&format!("pose {i}"), count, Vec3::ZERO, 1.0), None, &[]);
+        let Some(mut rig) = Rig::new(Geometry { still, moving: pose(0, 200) }, 200, storage) else { return };
+        let rays = rays("poses", 5000, Vec3::ZERO, 1.0);
+        rig.check("first pose", &rays);
+        for (i, count) in [(1, 200), (2, 7), (3, 0), (4, 200)] {
+            rig.geometry.moving = pose(i, count);
+            // Before the upload the device still sees the pose before.
+            assert!(rig.differing(&rays, None) > 0);
+            rig.heap.rewrite_moving(&rig.geometry).unwrap();
+            rig.on_device.write_moving(&rig.queue, &rig.heap);
+            rig.check(&format!("pose {i} of {count}"), &rays);
+        }
+    }
+}
+
+#[test]
+fn h80_a_closed_sphere_has_no_holes_on_the_device() {
+    let mut asked = 0;
+    for (center, radius, levels) in [(Vec3::ZERO, 1.0, 6), (Vec3::splat(1e6), 100.0, 4), (Vec3::ZERO, 1e-3, 4)] {
+        let geometry = resting(Bvh::build(&sphere(center, radius, levels), None, &[]));
+        let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
+        let mut d = Draws::new("holes");
+        let corners = rig.geometry.still.triangles().iter().map(|t| t.positions());
+        let targets = corners.flat_map(|[a, b, c]| [a, (a + b) * 0.5, (a + b + c) / 3.0]).map(|p| p - center);
+        let mut directions: Vec<Vec3> = targets.chain((0..20_000).map(|_| direction(&mut d))).collect();
+        for x in [0.0, -0.0] {
+            for one in [1.0, -1.0] {
+                directions.extend([vec3(one, x, -x), vec3(x, one, x), vec3(-x, x, one), vec3(one, one, x)]);
+            }
+        }
+        let ray = |direction| Ray { origin: center, direction, t_max: f32::INFINITY };
+        let rays: Vec<Ray> = directions.into_iter().map(ray).collect();
+        let holes = rig.ask(Question::Closest, &rays, None).iter().filter(|h| h.is_none()).count();
+        println!("radius {radius} around {center}: {holes} holes, {} rays", rays.len());
+        assert_eq!(holes, 0);
+        rig.check("sphere", &rays);
+        asked += rays.len();
+    }
+    holds!("H80", Gpu, "three closed spheres: 0 holes in {asked} rays, every hit the CPU's bit for bit");
+}
+
+#[test]
+fn opacity_is_asked_where_it_matters_and_only_there() {
+    let materials = [Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..Material::default() }, Material::default()];
+    let mut triangles = soup("alpha on the device", 600, Vec3::ZERO, 1.0);
+    triangles.materials = (0..600).map(|i| i % 2).collect();
+    let geometry = resting(Bvh::build(&triangles, None, &materials));
+    let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
+    let rays = rays("alpha on the device", 10_000, Vec3::ZERO, 1.0);
+    // Lets through a third of the hits on triangles that ask, by their index.
+    let source = GpuRays::source(Storage::Texture)
+        .replace("    return true;\n}", "    return triangle % 3u != 0u;\n}")
+        .replace("if ALPHA {", "if true {");
+    let got = rig.ask(Question::Closest, &rays, Some(&source));
+    let mut differing = 0;
+    for (ray, got) in rays.iter().zip(got) {
+        assert_eq!(got, rig.geometry.closest(ray, |triangle, _, _| triangle % 3 != 0));
+        differing += usize::from(got != rig.geometry.closest(ray, all));
+    }
+    println!("{differing} hits go through");
+    assert!(differing > 100);
+}
+
+#[test]
+fn planted_errors_are_caught() {
+    let geometry = |name: &str| Geometry {
+        still: Bvh::build(&soup(name, 3000, Vec3::ZERO, 1.0), None, &[]),
+        moving: Bvh::build(&soup(&format!("{name}, moving"), 300, Vec3::ZERO, 1.0), None, &[]),
+    };
+    let Some(rig) = Rig::new(geometry("planted"), 300, Storage::Texture) else { return };
+    let rays = rays("planted", 20_000, Vec3::ZERO, 1.0);
+    // The same rays with limits at which they hit nothing any more.
+    let nearest = |r: &Ray| rig.geometry.closest(r, all).map_or(1.0, |h| h.t);
+    let limits: Vec<Ray> = rays.iter().map(|r| Ray { t_max: nearest(r), ..*r }).collect();
+    let source = GpuRays::source(Storage::Texture);
+    for (right, wrong) in [
+        ("max(e0, max(e1, e2)) > 0.0", "max(e0, max(e1, e2)) < 0.0"),
+        ("let e0 = edge(c, b);", "let e0 = edge(b, c);"),
+        ("let octants = octant * 0x01010101u;", "let octants = (octant ^ 1u) * 0x01010101u;"),
+        ("(bit - 24u) ^ octant", "bit - 24u"),
+        ("(n0.w >> 24u)", "(n0.w >> 25u)"),
+        ("let first_x = select(n2.xy, n2.zw, backward.x);", "let first_x = n2.xy;"),
+        ("n1.y + firstTrailingBit(leaves)", "n1.y + firstLeadingBit(leaves)"),
+        ("let number = first + index;", "let number = index;"),
+        ("if MOVES {\n        hit", "if false {\n        hit"),
+        ("hit.triangle != NO_TRIANGLE && number", "number"),
+    ] {
+        assert_eq!(source.matches(right).count(), 1, "'{right}'");
+        let wrong_source = source.replace(right, wrong);
+        let differing = rig.differing(&rays, Some(&wrong_source)) + rig.differing(&limits, Some(&wrong_source));
+        println!("'{right}' -> '{wrong}': {differing} hits differ");
+        assert!(differing > 0, "planted error not caught: '{right}' -> '{wrong}'");
+    }
+}
+
+#[test]
+fn boxes_that_are_not_widened_let_rays_leak() {
+    // Flat boxes: walls of an axis-aligned room, rays from afar towards them and along their edges.
+    let mut triangles = afterimage_lab::scene::Triangles::default();
+    for i in 0..40 {
+        for j in 0..40 {
+            let (x, y) = (i as f32 * 0.37 + 1000.1, j as f32 * 0.41 - 777.7);
+            let at = |x, y| vec3(x, 0.3, y);
+            triangles.push_quad([at(x, y), at(x + 0.37, y), at(x + 0.37, y + 0.41), at(x, y + 0.41)], 0);
+        }
+    }
+    let Some(rig) = Rig::new(resting(Bvh::build(&triangles, None, &[])), 0, Storage::Texture) else { return };
+    let mut d = Draws::new("flat boxes");
+    let rays: Vec<Ray> = (0..40_000)
+        .map(|_| {
+            let origin = vec3(d.range(-3e4, 3e4), d.range(1.0, 3e3), d.range(-3e4, 3e4));
+            let target = vec3(d.range(1000.2, 1014.0), 0.3, d.range(-777.0, -762.0));
+            Ray { origin, direction: (target - origin).normalize(), t_max: f32::INFINITY }
+        })
+        .collect();
+    rig.check("flat boxes", &rays);
+    let source = GpuRays::source(Storage::Texture).replace("NODE_SLACK: f32 = 1.0 / 524288.0", "NODE_SLACK: f32 = 0.0");
+    let differing = rig.differing(&rays, Some(&source));
+    println!("without widening: {differing} of {} rays leak", rays.len());
+    assert!(differing > 0, "planted error not caught");
+}

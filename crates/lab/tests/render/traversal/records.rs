@@ -1,0 +1,114 @@
+//! What is packed comes out again.
+
+use super::scenes::{direction, soup};
+use afterimage_lab::scene::{Alpha, Material};
+use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, heap};
+use afterimage_testing::Draws;
+use glam::{Vec2, Vec3, Vec4};
+
+#[test]
+fn attributes_survive_packing() {
+    let mut d = Draws::new("attributes");
+    let mut triangles = soup("attributes", 500, Vec3::ZERO, 1.0);
+    for i in 0..500 {
+        triangles.normals[i] = [0; 3].map(|_| direction(&mut d));
+        triangles.tangents[i] =
+            [0; 3].map(|_| direction(&mut d).extend(if d.range(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 }));
+        triangles.uvs[i] = [0; 3].map(|_| Vec2::new(d.range(-9.0, 9.0), d.range(-9.0, 9.0)));
+        triangles.colors[i] = [0; 3].map(|_| Vec4::new(d.range(0.0, 1.0), d.range(0.0, 1.0), 1.0, d.range(0.0, 1.0)));
+    }
+    let bvh = Bvh::build(&triangles, None, &[]);
+    for (record, attributes) in bvh.triangles().iter().zip(bvh.attributes()) {
+        let (source, got) = (record.source() as usize, attributes.unpack());
+        assert_eq!(record.positions(), triangles.positions[source]);
+        assert_eq!(got.uvs, triangles.uvs[source]);
+        for i in 0..3 {
+            let (normal, tangent) = (triangles.normals[source][i], triangles.tangents[source][i]);
+            // Half a step of 1/32767 in x and y, and a step more in x of the tangent for the sign's bit; z moves by the sum, and the
+            // sphere is at most sqrt(3) larger than the octahedron: sqrt(3) * |(0.5, 0.5, 1)| and sqrt(3) * |(1.5, 0.5, 2)| steps.
+            assert!(got.normals[i].distance(normal) < 2.13 / 32767.0, "{} {normal}", got.normals[i]);
+            assert!(got.tangents[i].truncate().distance(tangent.truncate()) < 4.42 / 32767.0);
+            assert_eq!(got.tangents[i].w, tangent.w);
+            assert!((got.colors[i] - triangles.colors[source][i]).abs().max_element() <= 0.5 / 255.0 + 1e-6);
+        }
+    }
+}
+
+#[test]
+fn bad_attributes_become_harmless() {
+    let mut triangles = soup("bad attributes", 1, Vec3::ZERO, 1.0);
+    triangles.normals[0] = [Vec3::NAN, Vec3::ZERO, Vec3::INFINITY];
+    triangles.uvs[0] = [Vec2::NAN, Vec2::INFINITY, Vec2::ONE];
+    triangles.colors[0] = [Vec4::NAN, Vec4::splat(-1.0), Vec4::splat(7.0)];
+    triangles.materials.clear();
+    let bvh = Bvh::build(&triangles, None, &[]);
+    let got = bvh.attributes()[0].unpack();
+    assert_eq!(got.normals, [Vec3::Z; 3]);
+    assert_eq!(got.uvs, [Vec2::ZERO, Vec2::ZERO, Vec2::ONE]);
+    assert_eq!(got.colors, [Vec4::ZERO, Vec4::ZERO, Vec4::ONE]);
+    assert_eq!(bvh.triangles()[0].material(), 0);
+}
+
+#[test]
+fn flags_say_what_a_material_needs() {
+    let plain = Material::default();
+    assert_eq!(TriangleFlags::of(&plain), 0);
+    for (material, flag) in [
+        (Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..plain.clone() }, TriangleFlags::ALPHA),
+        (Material { alpha: Alpha::Blend, ..plain.clone() }, TriangleFlags::ALPHA),
+        (Material { emissive: [0.0, 0.1, 0.0], ..plain.clone() }, TriangleFlags::EMISSIVE),
+        (Material { transmission: 0.1, ..plain.clone() }, TriangleFlags::TRANSMISSIVE),
+    ] {
+        assert_eq!(TriangleFlags::of(&material), flag);
+    }
+}
+
+#[test]
+fn moving_triangles_are_rewritten_where_they_were_reserved() {
+    let mut first =
+        Geometry { still: Bvh::build(&soup("still", 300, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
+    let pose = |name| soup(name, 100, Vec3::ZERO, 1.0);
+    let (before, now) = (pose("before"), pose("now"));
+    first.moving = Bvh::build(&before, Some(&before.positions), &[]);
+    let limits = heap::HeapLimits { rows: 8192, elements: 1 << 26 };
+    let mut packed = heap::HeapBuilder::default().geometry(&first, 100).finish(limits).unwrap();
+    let resting = packed.elements()[..packed.base(heap::Section::MovingNodes) as usize].to_vec();
+
+    let mut second = first.clone();
+    second.moving = Bvh::build(&now, Some(&before.positions), &[]);
+    packed.rewrite_moving(&second).unwrap();
+    let afresh = heap::HeapBuilder::default().geometry(&second, 100).finish(limits).unwrap();
+    assert_eq!(packed.elements()[..resting.len()], resting);
+    for section in [heap::Section::MovingTriangles, heap::Section::MovingAttributes, heap::Section::MovingPrevious] {
+        let of = |heap: &heap::Heap| {
+            heap.elements()[heap.base(section) as usize..][..heap.capacity(section) as usize].to_vec()
+        };
+        assert_eq!(of(&packed), of(&afresh), "{section:?}");
+    }
+    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(heap::Section::MovingNodes));
+    for (record, previous) in second.moving.triangles().iter().zip(second.moving.previous()) {
+        assert_eq!(previous.positions(), before.positions[record.source() as usize]);
+    }
+
+    // Nothing moves any more, and then more than was reserved.
+    second.moving = Bvh::default();
+    packed.rewrite_moving(&second).unwrap();
+    second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
+    assert!(matches!(packed.rewrite_moving(&second), Err(heap::HeapError::Full { .. })));
+}
+
+#[test]
+fn a_heap_that_no_device_takes_is_refused() {
+    let geometry =
+        Geometry { still: Bvh::build(&soup("large", 3000, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
+    for limits in [heap::HeapLimits { rows: 16, elements: 1 << 20 }, heap::HeapLimits { rows: 8192, elements: 5000 }] {
+        let refused = heap::HeapBuilder::default().geometry(&geometry, 0).finish(limits);
+        assert!(matches!(refused, Err(heap::HeapError::TooLarge { .. })), "{refused:?}");
+    }
+    // Wider rows where the default ones would be too many.
+    let limits = heap::HeapLimits { rows: 2048, elements: 1 << 22 };
+    let mut builder = heap::HeapBuilder::default();
+    let wide =
+        builder.geometry(&geometry, 0).reserve(heap::Section::Texels, &[0_u32; 0], 3 << 20).finish(limits).unwrap();
+    assert_eq!((wide.width_log2(), wide.rows() <= 2048), (11, true));
+}

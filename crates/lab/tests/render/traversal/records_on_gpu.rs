@@ -1,0 +1,181 @@
+//! What the device reads of a triangle is what the CPU reads, bit for bit.
+
+use super::scenes::{direction, soup};
+use afterimage_lab::scene::{Alpha, Material, Triangles};
+use afterimage_lab::shader::SHADERS;
+use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage, geometry_constants, traversal_constants};
+use afterimage_lab::trace::heap::HeapBuilder;
+use afterimage_lab::trace::{Bvh, Geometry, TriangleRecord};
+use afterimage_testing::Draws;
+use glam::{Vec2, Vec3, Vec4};
+
+const STILL: u32 = 400;
+const MOVING: u32 = 100;
+/// Words of a triangle's line.
+const WORDS: usize = 34;
+
+const PROBE: &str = "
+@group(0) @binding(1) var<storage, read> weights: array<vec2<f32>>;
+@group(0) @binding(2) var<storage, read_write> words: array<u32>;
+var<private> at: u32;
+fn put(x: f32) { words[at] = bitcast<u32>(x); at += 1u; }
+fn put3(v: vec3<f32>) { put(v.x); put(v.y); put(v.z); }
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&weights) { return; }
+    at = id.x * 34u;
+    let t = triangle_at(id.x);
+    let before = previous_corners(id.x);
+    for (var i = 0u; i < 3u; i++) { put3(t.corners[i]); }
+    for (var i = 0u; i < 3u; i++) { put3(before[i]); }
+    words[at] = t.material | t.flags;
+    words[at + 1u] = t.source;
+    at += 2u;
+    let a = attributes_at(id.x, weights[id.x].x, weights[id.x].y);
+    put3(a.normal); put3(a.tangent); put(a.bitangent_sign); put(a.uv.x); put(a.uv.y);
+    put(a.color.x); put(a.color.y); put(a.color.z); put(a.color.w);
+    put(f32(is_moving(id.x)));
+}
+";
+
+fn dressed(name: &str, count: u32) -> Triangles {
+    let mut d = Draws::new(name);
+    let mut triangles = soup(name, count as usize, Vec3::ZERO, 1.0);
+    for i in 0..count as usize {
+        triangles.normals[i] = [0; 3].map(|_| direction(&mut d));
+        triangles.tangents[i] =
+            [0; 3].map(|_| direction(&mut d).extend(if d.bits().is_multiple_of(2) { 1.0 } else { -1.0 }));
+        triangles.uvs[i] = [0; 3].map(|_| Vec2::new(d.range(-9.0, 9.0), d.range(-9.0, 9.0)));
+        triangles.colors[i] = [0; 3].map(|_| Vec4::new(d.uniform(), d.uniform(), d.uniform(), d.uniform()));
+        triangles.materials[i] = i as u32 % 2;
+    }
+    triangles
+}
+
+fn expected(geometry: &Geometry, weights: &[[f32; 2]]) -> Vec<u32> {
+    let mut words = vec![];
+    for (i, &[u, v]) in weights.iter().enumerate() {
+        let i = i as u32;
+        let record: &TriangleRecord = geometry.triangle(i);
+        let before = geometry.previous(i).map_or(record.positions(), |p| p.positions());
+        let mut put = |x: f32| words.push(x.to_bits());
+        record.positions().into_iter().chain(before).flat_map(|p| p.to_array()).for_each(&mut put);
+        let flags = [24, 25, 26].iter().filter(|&&bit| record.has(1 << bit)).map(|bit| 1 << bit).sum::<u32>();
+        put(f32::from_bits(record.material() | flags));
+        put(f32::from_bits(record.source()));
+        let a = geometry.attributes(i).at(u, v);
+        let floats = [a.normal, a.tangent].map(|v| v.to_array()).concat();
+        floats.into_iter().chain([a.bitangent_sign, a.uv.x, a.uv.y]).chain(a.color.to_array()).for_each(&mut put);
+        put(f32::from(u8::from(i >= geometry.first_moving())));
+    }
+    words
+}
+
+/// Lines that differ between the device and the CPU.
+fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usize> {
+    let materials = [
+        Material { emissive: [1.0; 3], transmission: 0.5, ..Material::default() },
+        Material { alpha: Alpha::Blend, ..Material::default() },
+    ];
+    let (still, moving, before) = (dressed("still", STILL), dressed("moving", MOVING), dressed("before", MOVING));
+    let geometry = Geometry {
+        still: Bvh::build(&still, None, &materials),
+        moving: Bvh::build(&moving, Some(&before.positions), &materials),
+    };
+    let (device, queue) = afterimage_testing::gpu::device()?;
+    let heap =
+        HeapBuilder::default().geometry(&geometry, MOVING as usize).finish(storage.limits(&device.limits())).unwrap();
+    let on_device = GpuHeap::new(&device, &queue, &heap, storage);
+    let mut d = Draws::new("weights");
+    let weights: Vec<[f32; 2]> = (0..STILL + MOVING).map(|_| [d.range(0.0, 0.5), d.range(0.0, 0.5)]).collect();
+
+    let text = source(SHADERS.compose_with(&[storage.module(), "accept_all", "geometry"], PROBE).source);
+    let mut constants = traversal_constants(&heap, &geometry, true, storage);
+    constants.extend(geometry_constants(&heap));
+    // Overrides that the probe does not use are not in it.
+    constants.retain(|(name, _)| text.contains(&format!("override {name}:")));
+    let words = afterimage_testing::gpu::validated(&device, "the probe", || {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        });
+        let buffer = |size: usize, usage| {
+            let size = size as u64;
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let storage_in = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let input = buffer(weights.len() * 8, storage_in);
+        queue.write_buffer(&input, 0, bytemuck::cast_slice(&weights));
+        let bytes = weights.len() * WORDS * 4;
+        let output = buffer(bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let readback = buffer(bytes, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: on_device.binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: output.as_entire_binding() },
+            ],
+        });
+        let mut encoder = device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups((weights.len() as u32).div_ceil(64), 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&output, 0, &readback, 0, bytes as u64);
+        queue.submit([encoder.finish()]);
+        readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        let mapped = readback.get_mapped_range(..).expect("the readback is mapped");
+        bytemuck::cast_slice::<u8, u32>(&mapped).to_vec()
+    });
+    let expected = expected(&geometry, &weights);
+    let lines = words.chunks(WORDS).zip(expected.chunks(WORDS));
+    let differing: Vec<_> = lines.enumerate().filter(|(_, (got, expected))| got != expected).collect();
+    for (i, (got, expected)) in differing.iter().take(3) {
+        let columns: Vec<usize> = (0..WORDS).filter(|&w| got[w] != expected[w]).collect();
+        println!("triangle {i}: words {columns:?} differ");
+    }
+    Some(differing.len())
+}
+
+#[test]
+fn the_device_reads_what_was_packed() {
+    for storage in [Storage::Texture, Storage::Buffer] {
+        let Some(differing) = differing(storage, |s| s) else { return };
+        assert_eq!(differing, 0, "{storage:?}");
+    }
+}
+
+#[test]
+fn records_read_wrongly_are_caught() {
+    for (right, wrong) in [
+        ("r0.w & 0xff000000u", "r0.w & 0xfe000000u"),
+        ("MOVING_PREVIOUS + ", "MOVING_TRIANGLES + "),
+        ("(tangents.x & 1u) != 0u", "false"),
+        ("vec2<u32>(uv0.z, uv1.x)", "vec2<u32>(uv0.z, uv1.y)"),
+        ("(triangle - FIRST_MOVING) * size", "triangle * size"),
+    ] {
+        let planted = |source: String| {
+            assert_eq!(source.matches(right).count(), 1, "'{right}'");
+            source.replace(right, wrong)
+        };
+        let Some(differing) = differing(Storage::Texture, planted) else { return };
+        println!("'{right}' -> '{wrong}': {differing} differ");
+        assert!(differing > 0, "planted error not caught: '{right}' -> '{wrong}'");
+    }
+}

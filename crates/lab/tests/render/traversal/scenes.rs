@@ -1,0 +1,113 @@
+//! Triangles and rays that tests share.
+
+use afterimage_lab::kernel::triangle::{Meeting, intersect, shear};
+use afterimage_lab::scene::Triangles;
+use afterimage_lab::trace::{Bvh, Hit, Ray};
+use afterimage_testing::Draws;
+use glam::{Vec3, Vec3A, vec3};
+
+/// Hits everything.
+pub fn all(_: u32, _: f32, _: f32) -> bool {
+    true
+}
+
+/// A point in the cube of half width `half`.
+pub fn point(d: &mut Draws, half: f32) -> Vec3 {
+    vec3(d.range(-half, half), d.range(-half, half), d.range(-half, half))
+}
+
+/// A uniform direction.
+pub fn direction(d: &mut Draws) -> Vec3 {
+    loop {
+        let p = point(d, 1.0);
+        if (0.01..1.0).contains(&p.length_squared()) {
+            return p.normalize();
+        }
+    }
+}
+
+/// Random triangles of sizes from `half` down to a thousandth of it, around `center`.
+pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
+    let mut d = Draws::new(name);
+    let mut triangles = Triangles::default();
+    for _ in 0..count {
+        let at = center + point(&mut d, half);
+        let size = half * 10_f32.powf(d.range(-3.0, 0.0));
+        triangles.push_flat([0; 3].map(|_| at + point(&mut d, size)), 0);
+    }
+    triangles
+}
+
+/// Rays from inside and around the cube of half width `half`; every fourth parallel to an axis, with zeros of both signs.
+pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
+    let mut d = Draws::new(name);
+    let axes = [
+        vec3(1.0, 0.0, 0.0),
+        vec3(-1.0, -0.0, 0.0),
+        vec3(0.0, 1.0, -0.0),
+        vec3(-0.0, -1.0, -0.0),
+        vec3(0.0, -0.0, 1.0),
+        vec3(0.0, 0.0, -1.0),
+        vec3(0.6, 0.8, 0.0),
+        vec3(-0.0, 0.6, -0.8),
+    ];
+    let ray = |i: usize| {
+        let direction = if i.is_multiple_of(4) { axes[i / 4 % axes.len()] } else { direction(&mut d) };
+        Ray { origin: center + point(&mut d, 1.5 * half), direction, t_max: f32::INFINITY }
+    };
+    (0..count).map(ray).collect()
+}
+
+/// The nearest of all triangles of a hierarchy, by the same test of triangles.
+pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    let shear = shear(ray.direction);
+    let mut best = Hit { triangle: u32::MAX, t: ray.t_max, u: 0.0, v: 0.0 };
+    for (i, triangle) in bvh.triangles().iter().enumerate() {
+        let [a, b, c] = triangle.positions().map(Vec3A::from);
+        let Meeting { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
+        if t > 0.0 && t < best.t {
+            best = Hit { triangle: i as u32, t, u, v };
+        }
+    }
+    (best.triangle != u32::MAX).then_some(best)
+}
+
+/// A closed sphere of radius 1 made of `8 * 4^levels` triangles, corners shared bit for bit.
+pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
+    let mut faces = vec![];
+    for (x, y, z) in
+        [(1, 1, 1), (-1, 1, 1), (-1, -1, 1), (1, -1, 1), (1, 1, -1), (-1, 1, -1), (-1, -1, -1), (1, -1, -1)]
+    {
+        let corners = [Vec3::X * x as f32, Vec3::Y * y as f32, Vec3::Z * z as f32];
+        faces.push(if x * y * z > 0 { corners } else { [corners[0], corners[2], corners[1]] });
+    }
+    for _ in 0..levels {
+        let halves = |[a, b, c]: [Vec3; 3]| {
+            // The sum of two corners does not depend on their order: neighbours get the same bits.
+            let middle = |p: Vec3, q: Vec3| (p + q).normalize();
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        faces = faces.into_iter().flat_map(halves).collect();
+    }
+    let mut triangles = Triangles::default();
+    for face in faces {
+        triangles.push_flat(face.map(|p| center + p * radius), 0);
+    }
+    triangles
+}
+
+/// Rays that can hit nothing: not finite, without a direction or a limit.
+pub fn no_rays() -> Vec<Ray> {
+    let mut out = vec![Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: f32::NAN }];
+    for (origin, direction) in [
+        (Vec3::NAN, Vec3::X),
+        (Vec3::ZERO, Vec3::NAN),
+        (Vec3::ZERO, Vec3::ZERO),
+        (Vec3::INFINITY, Vec3::X),
+        (Vec3::ZERO, vec3(f32::INFINITY, 0.0, 0.0)),
+    ] {
+        out.extend([f32::INFINITY, 1.0, 0.0, -1.0, f32::NAN].map(|t_max| Ray { origin, direction, t_max }));
+    }
+    out
+}

@@ -1,0 +1,108 @@
+//! H82: a ray that leaves a surface does not meet it again, and starts no further away than the stated bound.
+
+use super::scenes::{all, direction, point, sphere};
+use afterimage_lab::kernel::triangle::{ORIGIN_OFFSET, magnitude, offset_ray, point_at};
+use afterimage_lab::scene::Triangles;
+use afterimage_lab::trace::{Bvh, Ray};
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
+use glam::{Vec3, vec3};
+
+/// Rays that leave points of convex and flat surfaces to the outside and are stopped by them nevertheless.
+fn stopped(triangles: &Triangles, outside: impl Fn(Vec3) -> Vec3, name: &str) -> (usize, usize) {
+    let bvh = Bvh::build(triangles, None, &[]);
+    let mut d = Draws::new(name);
+    let (mut count, mut rays) = (0, 0);
+    for i in 0..40_000 {
+        let triangle = &bvh.triangles()[i % bvh.triangles().len()];
+        let [a, b, c] = triangle.positions();
+        let (u, v) = (d.range(0.0, 1.0), d.range(0.0, 1.0));
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        let hit = point_at(a, b, c, u, v);
+        let flat = (b - a).cross(c - a).normalize();
+        let normal = if flat.dot(outside(hit)) < 0.0 { -flat } else { flat };
+        let largest = magnitude(a, b, c);
+        let origin = offset_ray(hit, normal, largest);
+        // The offset and three roundings to floats of the size of the largest coordinate.
+        assert!((origin - hit).length() <= largest * (ORIGIN_OFFSET + 3.0 * f32::EPSILON), "{origin} from {hit}");
+        let mut direction = direction(&mut d);
+        // Grazing ones as well: down to 1e-3 above the surface.
+        let above = direction.dot(normal);
+        let wanted = if i % 2 == 0 { 1e-3 } else { above.abs().max(1e-3) };
+        direction = (direction + normal * (wanted - above)).normalize();
+        rays += 1;
+        count += usize::from(bvh.occluded(&Ray { origin, direction, t_max: f32::INFINITY }, all));
+    }
+    (count, rays)
+}
+
+fn grid(center: Vec3, step: f32, x: Vec3, y: Vec3) -> Triangles {
+    let mut triangles = Triangles::default();
+    for i in -20..20 {
+        for j in -20..20 {
+            let at = |i: i32, j: i32| center + x * (i as f32 * step) + y * (j as f32 * step);
+            triangles.push_quad([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], 0);
+        }
+    }
+    triangles
+}
+
+#[test]
+fn h82_flat_ground_does_not_stop_what_leaves_it() {
+    let mut left = 0;
+    for (center, step) in [
+        (Vec3::ZERO, 1.0),
+        (Vec3::ZERO, 1e-3),
+        (vec3(0.0, 5.0, 0.0), 1e-3),
+        (vec3(1e6, 7.0, -1e6), 1.0),
+        (Vec3::splat(1e6), 10.0),
+    ] {
+        let (count, rays) = stopped(&grid(center, step, Vec3::X, Vec3::Z), |_| Vec3::Y, &format!("{center} {step}"));
+        println!("{center}, {step} m: {count} of {rays} stopped");
+        assert_eq!(count, 0);
+        left += rays;
+    }
+    holds!(
+        "H82",
+        Cpu,
+        "0 of {left} rays stopped that leave flat ground, down to 1e-3 m and out to 1e6 m; offset at most 2^-18 of the largest coordinate"
+    );
+}
+
+#[test]
+fn h82_tilted_ground_does_not_stop_what_leaves_it() {
+    // Corners on a slope of simple numbers are exact: the ground is flat in floats, too.
+    let (x, y) = (vec3(1.0, 0.5, 0.0), vec3(0.0, 0.25, 1.0));
+    for (center, step) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1.0 / 1024.0), (Vec3::splat(1_048_576.0), 4.0)] {
+        let (count, rays) = stopped(&grid(center, step, x, y), |_| Vec3::Y, &format!("slope {center} {step}"));
+        println!("{center}, {step} m: {count} of {rays} stopped");
+        assert_eq!(count, 0);
+    }
+}
+
+#[test]
+fn h82_a_sphere_of_a_millimetre_does_not_stop_what_leaves_it() {
+    for radius in [1e-3, 1.0] {
+        let triangles = sphere(Vec3::ZERO, radius, 4);
+        let (count, rays) = stopped(&triangles, |p| p, &format!("sphere {radius}"));
+        println!("radius {radius}: {count} of {rays} stopped");
+        assert_eq!(count, 0);
+    }
+}
+
+#[test]
+fn without_the_offset_rays_are_stopped() {
+    let triangles = grid(vec3(3.0, 5.0, 0.3), 0.37, vec3(1.0, 0.3, 0.1), vec3(0.2, 0.4, 1.0));
+    let bvh = Bvh::build(&triangles, None, &[]);
+    let mut d = Draws::new("no offset");
+    let mut count = 0;
+    for i in 0..10_000 {
+        let [a, b, c] = bvh.triangles()[i % bvh.triangles().len()].positions();
+        let origin = point_at(a, b, c, d.range(0.0, 0.5), d.range(0.0, 0.5));
+        let normal = (b - a).cross(c - a).normalize();
+        let direction = (normal * normal.y.signum() + point(&mut d, 0.9)).normalize();
+        count += usize::from(bvh.occluded(&Ray { origin, direction, t_max: f32::INFINITY }, all));
+    }
+    println!("{count} of 10000 stopped");
+    assert!(count > 100, "planted error not caught");
+}

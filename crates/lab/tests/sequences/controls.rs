@@ -1,0 +1,140 @@
+//! Errors planted in the pass, or in what it is given: whole sequences must show each of them.
+
+use super::rig::{Rig, View, noise, with_w_sum};
+use super::sequences::{SIZE, trust, view};
+use afterimage::foveation::Foveation;
+use afterimage::frame::{ContextDesc, Exposure, Reset};
+use afterimage::image::Image;
+use afterimage::kernel::rng;
+use afterimage::kernel::rng::Purpose;
+use afterimage::settings::{Bias, Sampler, Settings};
+use afterimage::shader::SHADERS;
+use afterimage_lab::source::AnalyticSource;
+
+/// The pass with one place of its text changed.
+#[track_caller]
+fn mutated(right: &str, wrong: &str) -> String {
+    let source = SHADERS.compose("wrs_pass").source;
+    assert_eq!(source.matches(right).count(), 1, "'{right}' in the pass");
+    source.replace(right, wrong)
+}
+
+/// The frame from which on the device differs from the CPU, if it does within 12 frames of a thing that moves sideways; every other
+/// frame is shaken up and down.
+fn first_difference(settings: Settings, source: &str) -> Option<u64> {
+    let mut scene = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
+    let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, source)?;
+    (0..12).find(|&index| {
+        rig.exposure = if index == 6 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
+        let mut views = [View { trust: Some(trust(index)), ..view(&mut scene, index) }];
+        let shake = (index % 2) as f32 * 3.0;
+        views[0].motion = views[0].motion.as_ref().map(|m| m.map(|[x, y]| [x, y + shake]));
+        rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+    })
+}
+
+#[test]
+fn every_planted_error_in_the_pass_is_caught() {
+    let keys = Settings { sampler: Sampler::AEs, ..Settings::paper() };
+    if Rig::new(ContextDesc::new(SIZE), keys).is_none() {
+        return;
+    }
+    for settings in [Settings::paper(), keys] {
+        assert_eq!(first_difference(settings, &SHADERS.compose("wrs_pass").source), None, "without an error");
+    }
+    for (right, wrong) in [
+        // Swapped images.
+        (
+            "select(history.past.color, candidate.color, decision.take)",
+            "select(candidate.color, history.past.color, decision.take)",
+        ),
+        ("step(candidate.color, candidate_w, history.past,", "step(history.past.color, candidate_w, history.past,"),
+        // Flipped motion.
+        ("f32(x) + motion.x", "f32(x) - motion.x"),
+        ("f32(y) + motion.y", "f32(y) - motion.y"),
+        // A weight 1 % off.
+        ("frame.inv_density_at_fovea);", "1.01 * frame.inv_density_at_fovea);"),
+        // The frame before last, in effect: nothing is stored.
+        (
+            "textureStore(next_weights, px, view, vec4<u32>(words.z,",
+            "textureStore(next_weights, px, view, vec4<u32>(0u,",
+        ),
+        // Draws of another frame, and the same for all pixels.
+        ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(px.x, px.y, frame.frame_low + 1u, constants.key)"),
+        ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(0u, px.y, frame.frame_low, constants.key)"),
+        // Inputs that are not read.
+        ("past = believe(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);", ""),
+        ("past.color = expose(past.color, frame.exposure);", ""),
+        ("if !is_same_surface(", "if false && !is_same_surface("),
+        // Counts.
+        ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
+        ("count_if(!usable, COUNT_NONFINITE);", ""),
+    ] {
+        let caught = first_difference(Settings::paper(), &mutated(right, wrong));
+        println!("'{right}' -> '{wrong}': {caught:?}");
+        assert!(caught.is_some(), "planted error not caught: '{right}' -> '{wrong}'");
+    }
+    let caught = first_difference(
+        keys,
+        &mutated(
+            "textureStore(next_keys, px, view, vec4<f32>(decision.log_key,",
+            "textureStore(next_keys, px, view, vec4<f32>(0.0,",
+        ),
+    );
+    assert!(caught.is_some());
+}
+
+/// A draw that meets its threshold exactly is one in 2^24: pixels are chosen that have one.
+#[test]
+fn a_lax_comparison_is_caught() {
+    let size = [128, 64];
+    let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
+    let settings = Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() };
+    // With a sum of 2^k - 1 a candidate of weight 1 is taken below a draw of 2^-k, and not at it.
+    let power = |index: u64, x: u32, y: u32| {
+        let key = rng::stream_key(settings.seed, 0, Purpose::Select, index);
+        let draw = rng::unit_draw(rng::bits(x, y, index as u32, key));
+        (1..=16).find(|&k| draw == 0.5_f32.powi(k))
+    };
+    let pixels = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let (index, at, k) = (1..100_000_u64)
+        .find_map(|index| {
+            pixels().find_map(|(x, y)| power(index, x, y).map(|k| (index, (y * size[0] + x) as usize, k)))
+        })
+        .unwrap();
+    println!("frame {index}, pixel {at}: a draw of 2^-{k}");
+    let texts =
+        [SHADERS.compose("wrs_pass").source, mutated("draw * w_sum < candidate_w", "draw * w_sum <= candidate_w")];
+    for (text, differs) in texts.iter().zip([false, true]) {
+        let Some(mut rig) = Rig::with_shader(ContextDesc::new(size), settings, text) else { return };
+        let words = {
+            let first = [View::still(noise(size, "lax"), [0.0; 2])];
+            rig.on_cpu(0, Reset::None, &first);
+            rig.on_gpu(0, Reset::None, &first).words
+        };
+        rig.restore(&with_w_sum(&words, 2.0_f32.powi(k) - 1.0));
+        let views = [View::still(noise(size, "lax, next"), [0.0; 2])];
+        let (gpu, (cpu, trace)) = (rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views));
+        assert!(!trace[0].pixels()[at].take, "strict");
+        assert_eq!(gpu != cpu, differs);
+    }
+}
+
+#[test]
+fn swapped_and_shifted_inputs_are_caught() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let mut scene = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
+    let [first, second] = [0, 1].map(|index| [view(&mut scene, index)]);
+    let mut flipped = second.clone();
+    flipped[0].motion = second[0].motion.as_ref().map(|m| m.map(|v| v.map(|x| -x)));
+    let mut mirrored = second.clone();
+    let color = &second[0].color;
+    mirrored[0].color = Image::from_fn(SIZE, |[x, y]| color.at((SIZE[0] - 1 - x) as usize, y as usize));
+    rig.both(0, Reset::None, &first);
+    for (what, wrong) in [("the frame before", &first), ("flipped motion", &flipped), ("a mirrored image", &mirrored)] {
+        // A fresh pair for each: nothing of one error helps the next.
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+        rig.both(0, Reset::None, &first);
+        assert!(rig.on_gpu(1, Reset::None, wrong) != rig.on_cpu(1, Reset::None, &second).0, "{what}");
+    }
+}

@@ -1,0 +1,143 @@
+//! What is known of decisions: counters, debug views, warnings. They agree with the CPU's, cost no state, and can be left out.
+
+use super::rig::{Rig, View, make_texture};
+use super::sequences::{SIZE, reset, trust, view};
+use afterimage::DebugView;
+use afterimage::error::FrameError;
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::gpu::{Frame, Recorded};
+use afterimage::kernel::debug_view::view_color;
+use afterimage::kernel::reproject::Verdict;
+use afterimage::settings::{Method, Sampler, Settings};
+use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use afterimage::warning::Warning;
+use afterimage_lab::source::AnalyticSource;
+use wgpu::{BufferUsages, TextureFormat, TextureUsages};
+
+const VIEWS: [DebugView; 6] =
+    [DebugView::Weight, DebugView::Age, DebugView::Survival, DebugView::Flush, DebugView::Gate, DebugView::Motion];
+
+fn source(scene: &str) -> AnalyticSource {
+    AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()
+}
+
+/// With broken numbers and a mask, so that every verdict occurs.
+fn masked(source: &mut AnalyticSource, index: u64) -> View {
+    View { trust: Some(trust(index)), ..view(source, index) }
+}
+
+#[test]
+fn debug_views_draw_what_record_decides_next_and_move_nothing() {
+    let base = Settings::paper();
+    for settings in [
+        base,
+        Settings { sampler: Sampler::AEs, gate: None, ..base },
+        Settings { method: Method::None, ..base },
+        Settings { method: Method::Taa, ..base },
+        Settings { method: Method::Smr, ..base },
+    ] {
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        let Some(mut undisturbed) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        let mut source = source("occluder");
+        let mut seen = [0; Verdict::COUNT];
+        for index in 0..28 {
+            rig.exposure = if index == 20 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
+            undisturbed.exposure = rig.exposure;
+            let views = [masked(&mut source, index)];
+            let pictures = VIEWS.map(|v| rig.decisions(index, reset(index), &views, v));
+            let counted = rig.read().stats;
+            let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
+            assert_eq!(counted, cpu.stats, "a view counts, too");
+            for (view, picture) in VIEWS.into_iter().zip(&pictures) {
+                let expected: Vec<[u32; 3]> =
+                    trace[0].pixels().iter().map(|t| view_color(view, t).to_array().map(f32::to_bits)).collect();
+                assert!(*picture == expected, "{settings:?}, {view:?}, frame {index}");
+            }
+            let after = rig.on_gpu(index, reset(index), &views);
+            assert!(after == undisturbed.on_gpu(index, reset(index), &views), "frame {index}");
+            assert!((&after.shown, after.stats) == (&cpu.shown, cpu.stats), "frame {index}");
+            for (sum, n) in seen.iter_mut().zip(cpu.stats.verdicts) {
+                *sum += n;
+            }
+        }
+        println!("verdicts {seen:?}");
+        assert!(settings.method == Method::None || seen.iter().all(|&n| n > 0), "every verdict is shown: {seen:?}");
+    }
+}
+
+#[test]
+fn counting_changes_nothing_and_may_be_left_out() {
+    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let mut source = source("lateral");
+    for index in 0..6 {
+        let views = [masked(&mut source, index)];
+        let with = counted.on_gpu(index, Reset::None, &views);
+        let without = uncounted.on_gpu_uncounted(index, Reset::None, &views);
+        assert_eq!((with.shown, with.words), (without.shown, without.words));
+        assert_eq!(with.stats.pixels, u64::from(SIZE[0] * SIZE[1]));
+        assert_eq!(without.stats, FrameStats::default(), "not counted, not cleared");
+        let warnings: Vec<_> = with.stats.warnings().collect();
+        assert!(warnings.iter().any(|w| matches!(w, Warning::NonfiniteColor { pixels: 1.. })), "{warnings:?}");
+        assert!(warnings.iter().any(|w| matches!(w, Warning::BadTrust { pixels: 1.. })), "{warnings:?}");
+    }
+}
+
+#[test]
+fn counters_without_room_or_use_are_refused() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let texture = |usage| make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, usage);
+    let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+    let mut source = source("still");
+    let facts = [view(&mut source, 0).facts];
+    let enough = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+    for (size, usage, word) in [
+        (COUNTERS_BYTES - 4, enough, "40 bytes"),
+        (COUNTERS_BYTES, BufferUsages::STORAGE, "COPY_DST"),
+        (COUNTERS_BYTES, BufferUsages::COPY_DST, "STORAGE"),
+    ] {
+        let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = rig.device.create_buffer(&desc);
+        let frame = Frame { counters: Some(&buffer), ..Frame::new(&color, &output, &facts, 0) };
+        let mut encoder = rig.device.create_command_encoder(&Default::default());
+        let error = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap_err();
+        println!("{error}");
+        assert!(matches!(error, FrameError::Buffer { input: "counters", .. }));
+        assert!(error.to_string().contains(word), "{error}");
+    }
+    assert_eq!(FrameStats::from_counters(&[0; COUNTERS_BYTES as usize - 1]), None);
+}
+
+#[test]
+fn h63_what_is_odd_about_the_gaze_is_said_at_once() {
+    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
+    let texture = |usage| make_texture(&rig.device, &desc, TextureFormat::Rgba32Float, usage);
+    let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+    let mut source = source("still");
+    let facts = view(&mut source, 0).facts;
+    let mut index = 0;
+    let mut record = |gazes: [Gaze; 2]| -> Recorded {
+        let views = gazes.map(|gaze| ViewFrame { gaze, ..facts });
+        let mut encoder = rig.device.create_command_encoder(&Default::default());
+        index += 1;
+        let frame = Frame::new(&color, &output, &views, index);
+        let seen = rig.gpu.record_view(&rig.device, &mut encoder, &frame, DebugView::Gate).unwrap();
+        let recorded = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap();
+        assert_eq!(seen, recorded, "a view moves no state");
+        rig.queue.submit([encoder.finish()]);
+        recorded
+    };
+    let at = |x, y| Gaze::At { px: [x, y] };
+    let expect = |recorded: Recorded, list: &[Warning]| assert_eq!(recorded.warnings().collect::<Vec<_>>(), list);
+    let [right, bottom] = [SIZE[0] as f32 - 0.5, SIZE[1] as f32 - 0.5];
+    expect(record([at(3.0, 3.0), Gaze::Lost]), &[Warning::GazeUnknown { view: 1 }]);
+    // The middle that was taken is held from then on, like any gaze.
+    expect(record([Gaze::Lost, Gaze::Lost]), &[Warning::GazeHeld { view: 0 }, Warning::GazeHeld { view: 1 }]);
+    expect(record([at(f32::NAN, 1.0), at(-0.5, -0.5)]), &[Warning::GazeHeld { view: 0 }]);
+    expect(record([at(right, 5.0), at(5.0, bottom)]), &[0, 1].map(|view| Warning::GazeOffScreen { view }));
+    expect(record([at(right.next_down(), 5.0), at(5.0, bottom.next_down())]), &[]);
+    for warning in record([Gaze::Lost, at(1e9, 0.0)]).warnings() {
+        println!("{warning}");
+    }
+}

@@ -1,0 +1,16 @@
+//! The post-process on analytic scenes: both executors agree in every bit, and planted errors are seen.
+
+#[allow(dead_code, reason = "the drop-in's tests use the rest")]
+#[path = "../../../../tests/gpu/pass/rig.rs"]
+mod rig;
+#[allow(dead_code, reason = "the drop-in's tests use all of it")]
+#[path = "../../../../tests/cpu/surfaces/rig.rs"]
+mod surfaces_rig;
+
+mod controls;
+mod decisions;
+mod sequences;
+mod surfaces_controls;
+mod surfaces_lifecycle;
+mod surfaces_scenes;
+mod surfaces_variants;

@@ -1,0 +1,209 @@
+//! Errors planted in taa and smr: whole sequences must show each of them.
+
+use super::rig::{Rig, View};
+use super::sequences::{SIZE, foveated, trust};
+use super::surfaces_variants::noisy;
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset};
+use afterimage::image::Image;
+use afterimage::settings::{Method, Settings};
+use afterimage::shader::SHADERS;
+use afterimage_lab::source::AnalyticSource;
+
+fn eyes() -> ContextDesc {
+    ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }
+}
+
+fn settings(method: Method, filter: Filter) -> Settings {
+    let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    Settings { method, foveation, ..Settings::paper() }
+}
+
+/// The pass with one place of its text changed.
+#[track_caller]
+fn mutated(pass: &str, right: &str, wrong: &str) -> String {
+    let source = SHADERS.compose(pass).source;
+    assert_eq!(source.matches(right).count(), 1, "'{right}' in the pass");
+    source.replace(right, wrong)
+}
+
+/// The frame from which on the device differs from the CPU, if it does within 12 frames of two eyes that see different things: one
+/// that moves sideways behind another, and a change of light. Every other frame is shaken up and down.
+fn first_difference(settings: Settings, source: &str, tells_lod: bool) -> Option<u64> {
+    let mut scenes = ["occluder", "light-step"].map(|s| AnalyticSource::new(s, SIZE, 70.0, 60.0).unwrap());
+    let mut rig = Rig::with_shader(eyes(), settings, source)?;
+    (0..12).find(|&index| {
+        rig.exposure = if index == 6 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
+        let shake = (index % 2) as f32 * 3.0;
+        let views: Vec<View> = scenes
+            .iter_mut()
+            .enumerate()
+            .map(|(eye, scene)| {
+                let mut view = foveated(scene, index, &settings.foveation);
+                view.facts.gaze = Gaze::At { px: [30.0 + 60.0 * eye as f32, 50.0] };
+                view.motion = view.motion.map(|m| m.map(|[x, y]| [x, y + shake]));
+                view.trust = Some(trust(index));
+                if settings.noisy {
+                    view = noisy(2 * index + eye as u64, view);
+                }
+                view.lod = tells_lod.then(|| Image::from_fn(SIZE, |[x, _]| (x / 16) as f32 / 3.0));
+                view
+            })
+            .collect();
+        rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+    })
+}
+
+#[track_caller]
+fn all_caught(pass: &str, settings: Settings, tells_lod: bool, errors: &[(&str, &str)]) {
+    if Rig::new(eyes(), settings).is_none() {
+        return;
+    }
+    let right = SHADERS.compose(pass).source;
+    assert_eq!(first_difference(settings, &right, tells_lod), None, "without an error");
+    for (right, wrong) in errors {
+        let caught = first_difference(settings, &mutated(pass, right, wrong), tells_lod);
+        println!("{pass}, '{right}' -> '{wrong}': {caught:?}");
+        assert!(caught.is_some(), "planted error not caught: '{right}' -> '{wrong}'");
+    }
+}
+
+/// Errors in what both methods share.
+const SHARED: &[(&str, &str)] = &[
+    // Flipped motion: of the nearest texel, and of the position between texels.
+    ("f32(x) + motion.x", "f32(x) - motion.x"),
+    ("f32(y) + motion.y", "f32(y) - motion.y"),
+    ("let at = vec2<f32>(px) + motion;", "let at = vec2<f32>(px) - motion;"),
+    // The other eye.
+    ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
+    ("textureStore(next_surfaces, px, view,", "textureStore(next_surfaces, px, 1u - view,"),
+    // Taps one column off, and weights of the other axis.
+    ("source.texel + vec2<i32>(at) - 1", "source.texel + vec2<i32>(at)"),
+    ("catmull_rom(source.fraction.x)", "catmull_rom(source.fraction.y)"),
+    // Inputs that are not read, and tests that are not made.
+    ("believed = trust(textureLoad(trust_in, px, view, 0).x);", ""),
+    ("return expose(stored, frame.exposure);", "return stored;"),
+    ("if !is_same_surface(", "if false && !is_same_surface("),
+    ("same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
+    // Counts.
+    ("count_if(!usable, COUNT_NONFINITE);", ""),
+];
+
+#[test]
+fn every_planted_error_in_taa_is_caught() {
+    let errors = [
+        SHARED,
+        &[
+            // Swapped candidate and history; a share 1 % off.
+            (
+                "clipped + (roots(candidate) - clipped) * alpha",
+                "roots(candidate) + (clipped - roots(candidate)) * alpha",
+            ),
+            (
+                "clipped + (roots(candidate) - clipped) * alpha",
+                "clipped + (roots(candidate) - clipped) * (1.01 * alpha)",
+            ),
+            // A neighbour left out, a wider box, what is broken stored as if it were not.
+            ("vec2<u32>(tap % 3u, tap / 3u)", "vec2<u32>(tap % 3u, min(tap / 3u, 1u))"),
+            ("const BOX_SIGMAS: f32 = 2.0;", "const BOX_SIGMAS: f32 = 2.02;"),
+            ("select(-1.0, 0.0, candidate.usable || valid)", "0.0"),
+        ],
+    ]
+    .concat();
+    all_caught("taa_pass", settings(Method::Taa, Filter::Mip), false, &errors);
+}
+
+#[test]
+fn every_planted_error_in_smr_is_caught() {
+    let errors = [
+        SHARED,
+        &[
+            // Swapped candidate and history, shown and compared.
+            ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
+            ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
+            ("(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)"),
+            // A fit, a tolerance, a gain 1 % off.
+            ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
+            ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
+            ("clamp((candidate + DARK)", "clamp(1.01 * (candidate + DARK)"),
+            // The other eye's chain, its levels and texels one off.
+            (
+                "textureLoad(past_chain, four.low, view, level - 1u)",
+                "textureLoad(past_chain, four.low, 1u - view, level - 1u)",
+            ),
+            ("textureStore(next_chain, id.xy, group.z,", "textureStore(next_chain, id.xy, 1u - group.z,"),
+            ("first = chain_level(at, level, view);", "first = chain_level(at, min(level + 1u, last), view);"),
+            (
+                "let second = chain_level(at, min(level + 1u, last), view);",
+                "let second = chain_level(at, max(level, 1u), view);",
+            ),
+            ("chain_level(at, min(level + 1u, last), view)", "chain_level(at, level, view)"),
+            ("texels_1 = select(texels_1, texel, i == 1u);", ""),
+            // Rules that are forgotten: coarse edges are not kept, broken pixels are empty, means weigh what is covered.
+            ("select(MAX_LOD, made.lod, keep || made.lod < 0.0)", "made.lod"),
+            ("if source.verdict == VERDICT_VALID && !keep {", "if false {"),
+            ("select(-1.0, lod, candidate.usable)", "lod"),
+            ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
+            // Quality of what is stored.
+            ("return (relight.x + relight.y * contrast) + noise;", "return relight.x + noise;"),
+            ("1.0 - want.finer * believed", "1.0 - believed"),
+            ("count_if(valid && made.share == 0.0, COUNT_REPLACED);", ""),
+        ],
+    ]
+    .concat();
+    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), false, &errors);
+}
+
+#[test]
+fn every_planted_error_in_smr_of_other_filters_is_caught() {
+    all_caught(
+        "smr_pass",
+        settings(Method::Smr, Filter::Block),
+        false,
+        &[
+            ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
+            ("compared = candidates_around(px, view, candidate, radius, true);", ""),
+            ("reach = 2.0 * radius;", ""),
+            ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
+            ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),
+        ],
+    );
+    let gauss = [("if FILTER == FILTER_GAUSS {", "if false {")];
+    all_caught("smr_pass", settings(Method::Smr, Filter::Gauss), false, &gauss);
+    let told = [("if HAS_LOD != 0u {", "if false {"), ("clamp(given, 0.0, MAX_LOD)", "clamp(given, 0.0, 1.0)")];
+    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), true, &told);
+}
+
+#[test]
+fn every_planted_error_in_noisy_smr_is_caught() {
+    let settings = Settings { noisy: true, ..settings(Method::Smr, Filter::Mip) };
+    all_caught(
+        "smr_pass",
+        settings,
+        false,
+        &[
+            // The other eye's noise and candidates.
+            (
+                "textureLoad(past_noise, source.nearest_at, view, 0)",
+                "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
+            ),
+            (
+                "textureLoad(candidate_chain, four.low, view, level - 1u)",
+                "textureLoad(candidate_chain, four.low, 1u - view, level - 1u)",
+            ),
+            ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
+            // Noise that exposure forgets, a mean of broken candidates, three sigmas that are two.
+            ("return expose_noise(stored, frame.exposure);", "return stored;"),
+            ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
+            // Weights, and what a finer or a coarser history is worth.
+            ("history.samples / (history.samples + candidate.samples)", "0.5"),
+            (
+                "let together = candidate.samples / max(1.0 - share",
+                "let together = candidate.samples / max(1.01 - share",
+            ),
+            ("/ QUALITY_WIDTH, 0.0, 1.0) * sure.x", "/ QUALITY_WIDTH, 0.0, 1.0)"),
+            ("/ COARSER_WIDTH, 0.0, 1.0) * sure.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
+            ("const COARSER_FRAMES: f32 = 4.0;", "const COARSER_FRAMES: f32 = 5.0;"),
+        ],
+    );
+}

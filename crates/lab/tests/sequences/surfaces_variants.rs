@@ -1,0 +1,279 @@
+//! Variants of taa and smr: what a frame may lack or bring, conventions, filters, sizes. Bit equality throughout.
+
+use super::rig::noise_view;
+use super::rig::{Rig, View};
+use super::sequences::{SIZE, foveated, reset, trust};
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::{ContextDesc, Exposure, Reset};
+use afterimage::image::Image;
+use afterimage::settings::{Method, Settings, Smr};
+use afterimage_lab::source::AnalyticSource;
+use afterimage_testing::Draws;
+
+const FRAMES: u64 = 26;
+
+pub fn settings(method: Method) -> Settings {
+    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    Settings { method, foveation, ..Settings::paper() }
+}
+
+pub fn both_methods() -> [Settings; 2] {
+    [Method::Taa, Method::Smr].map(settings)
+}
+
+/// Runs a damaged scene through both, which must agree in every bit of what they show, keep and count.
+#[track_caller]
+fn agree(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
+    let Some(mut rig) = Rig::new(desc, settings) else { return };
+    let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
+    let (mut kept, mut flushed) = (0, 0);
+    for index in 0..FRAMES {
+        let view = foveated(&mut source, index, &settings.foveation);
+        let view = change(index, view, &mut rig);
+        let (_, trace) = rig.both(index, reset(index), &[view]);
+        kept += trace[0].pixels().iter().filter(|t| !t.take).count();
+        flushed += trace[0].pixels().iter().filter(|t| t.verdict as u32 > 1).count();
+    }
+    println!("{:?}, {scene}: {kept} kept and {flushed} flushed pixels agree", settings.method);
+    assert!(kept > 1000, "history must play a part");
+}
+
+/// The same, but for methods that keep nothing.
+#[track_caller]
+fn agree_or_pass(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
+    if settings.method != Method::None {
+        return agree(scene, desc, settings, change);
+    }
+    let Some(mut rig) = Rig::new(desc, settings) else { return };
+    let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
+    for index in 0..3 {
+        let view = foveated(&mut source, index, &settings.foveation);
+        let view = change(index, view, &mut rig);
+        rig.both(index, reset(index), &[view]);
+    }
+}
+
+#[test]
+fn absent_inputs_are_switched_off() {
+    for base in both_methods() {
+        let desc = ContextDesc::new(SIZE);
+        agree("lateral", desc, base, |_, v, _| View { depth: None, ..v });
+        agree("still", desc, base, |_, v, _| View { motion: None, ..v });
+        agree("still", desc, base, |_, v, _| View { motion: None, depth: None, ..v });
+        agree("occluder", desc, Settings { depth_test: None, ..base }, |_, v, _| v);
+    }
+}
+
+/// Some stops up and down, thirds of stops, a fade to nothing, and no change.
+fn exposure(index: u64) -> Exposure {
+    let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
+    match index % 4 {
+        0 => Exposure::Same,
+        _ => Exposure::Changed { ratio: ratios[index as usize % ratios.len()] },
+    }
+}
+
+#[test]
+fn trust_and_exposure_agree_bit_for_bit() {
+    for base in both_methods() {
+        let desc = ContextDesc::new(SIZE);
+        // The mask has NaN, infinity, numbers below 0 and above 1.
+        let masked = |index, v| View { trust: Some(trust(index)), ..v };
+        agree("occluder", desc, base, |index, v, _| masked(index, v));
+        agree("still", desc, base, |index, v, rig| {
+            rig.exposure = exposure(index);
+            v
+        });
+        agree("lateral", desc, base, |index, v, rig| {
+            rig.exposure = exposure(index);
+            View { depth: None, ..masked(index, v) }
+        });
+    }
+}
+
+#[test]
+fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
+    let base = settings(Method::Smr);
+    let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+    let smr = |smr| Settings { smr, ..base };
+    let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, blend_deg: 7.0, ..base.foveation };
+    for settings in [
+        with(Filter::Gauss),
+        with(Filter::Block),
+        Settings { smr: Smr { relight: false, ..Smr::default() }, ..with(Filter::Block) },
+        smr(Smr { relight: false, ..Smr::default() }),
+        smr(Smr { accumulate: 0.0, ..Smr::default() }),
+        smr(Smr { accumulate: 0.98, tolerance: 10.0, ..Smr::default() }),
+        smr(Smr { tolerance: 0.1, ..Smr::default() }),
+        Settings { foveation: fovea(0.0), ..base },
+        Settings { foveation: fovea(20.0), ..base },
+        Settings { foveation: Foveation { rate_mid: 1, rate_far: 256, ..base.foveation }, ..base },
+    ] {
+        println!("{settings:?}");
+        for scene in ["occluder", "light-step"] {
+            agree(scene, ContextDesc::new(SIZE), settings, |_, v, _| v);
+        }
+    }
+    // Full rate everywhere: history shows where a candidate is broken, and nowhere else.
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), with(Filter::Off)) else { return };
+    let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
+    for index in 0..4 {
+        rig.both(index, Reset::None, &[foveated(&mut source, index, &with(Filter::Off).foveation)]);
+    }
+}
+
+/// Levels of detail that a renderer tells: whole, between, beyond the chain, and no numbers at all.
+fn told(index: u64, size: [u32; 2]) -> Image<f32> {
+    let values = [0.0, 1.0, 2.0, 3.0, 1.5, 2.71, 0.1, 8.0, 8.9, 100.0, -1.0, -0.0, 1e-20];
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+    Image::from_fn(size, |[x, y]| {
+        let i = (x / 9 + y / 6 + index as u32 / 8) as usize;
+        if (x + 3 * y).is_multiple_of(97) { broken[i % broken.len()] } else { values[i % values.len()] }
+    })
+}
+
+#[test]
+fn told_levels_of_detail_agree_bit_for_bit() {
+    let base = settings(Method::Smr);
+    for filter in [Filter::Mip, Filter::Block, Filter::Off] {
+        let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+        let desc = ContextDesc::new(SIZE);
+        agree("occluder", desc, settings, |index, v, _| View { lod: Some(told(index, SIZE)), ..v });
+    }
+    // taa knows nothing of them.
+    agree("still", ContextDesc::new(SIZE), settings(Method::Taa), |index, v, _| View {
+        lod: Some(told(index, SIZE)),
+        ..v
+    });
+}
+
+/// The inputs as an engine with other conventions has them.
+fn in_conventions(view: View, desc: &ContextDesc) -> View {
+    let scale = desc.motion.to_internal(desc.size_px);
+    let stored = |z: f32| match desc.depth {
+        DepthConvention::Reversed { near, .. } => near / z,
+        _ => z,
+    };
+    View {
+        motion: view.motion.map(|m| m.map(|[x, y]| [x / scale[0], y / scale[1]])),
+        depth: view.depth.map(|d| d.map(stored)),
+        ..view
+    }
+}
+
+/// What a path tracer might tell of its noise, and what it must not.
+fn noise(index: u64, size: [u32; 2]) -> Image<[f32; 2]> {
+    let mut draws = Draws::new(&format!("noise {index}"));
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, 0.0];
+    Image::from_fn(size, |[x, y]| {
+        let told = [draws.range(0.0, 0.3), [1.0, 2.0, 8.0, 32.0][(x / 31 + y / 17) as usize % 4]];
+        match (x + 3 * y) % 89 {
+            0 => [broken[draws.bits() as usize % broken.len()], told[1]],
+            1 => [told[0], broken[draws.bits() as usize % broken.len()]],
+            _ => told,
+        }
+    })
+}
+
+/// A view whose colors scatter by what it tells.
+pub fn noisy(index: u64, view: View) -> View {
+    let size = view.color.size();
+    let noise = noise(index, size);
+    let mut draws = Draws::new(&format!("scatter {index}"));
+    let color = Image::from_fn(size, |[x, y]| {
+        let [error, _] = noise.at(x as usize, y as usize);
+        let by = if error.is_finite() { error.clamp(0.0, 1.0) * draws.range(-1.7, 1.7) } else { 0.0 };
+        view.color.at(x as usize, y as usize).map(|c| c + by)
+    });
+    View { color, noise: Some(noise), ..view }
+}
+
+#[test]
+fn noisy_frames_agree_bit_for_bit() {
+    for method in [Method::Smr, Method::Wrs, Method::Taa, Method::None] {
+        let base = Settings { noisy: true, ..settings(method) };
+        let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+        let desc = ContextDesc::new(SIZE);
+        let scenes =
+            if method == Method::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
+        for scene in scenes {
+            agree_or_pass(scene, desc, base, |index, v, _| noisy(index, v));
+        }
+        if method != Method::Smr {
+            continue;
+        }
+        agree("lateral", desc, with(Filter::Off), |index, v, _| noisy(index, v));
+        agree("still", desc, with(Filter::Block), |index, v, _| View {
+            lod: Some(told(index, SIZE)),
+            trust: Some(trust(index)),
+            ..noisy(index, v)
+        });
+        agree("still", desc, base, |index, v, rig| {
+            rig.exposure = exposure(index);
+            View { depth: None, ..noisy(index, v) }
+        });
+        let plain = Smr { relight: false, accumulate: 0.98, tolerance: 0.3 };
+        agree("light-step", desc, Settings { smr: plain, ..base }, |index, v, _| noisy(index, v));
+        for size in [[65, 33], [3, 2], [1, 7]] {
+            let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
+            let Some(mut rig) = Rig::new(desc, base) else { return };
+            for index in 0..6 {
+                let still = noise_view(&format!("odd {}", index / 3), &desc);
+                let eye = |eye: u64| noisy(2 * index + eye, still.clone());
+                rig.both(index, Reset::None, &[eye(0), eye(1)]);
+                if index == 3 {
+                    rig.poison();
+                    rig.both(index, Reset::All, &[eye(0), eye(1)]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn noise_is_asked_for_and_refused_by_the_setting() {
+    let desc = ContextDesc::new(SIZE);
+    for noisy_setting in [false, true] {
+        let settings = Settings { noisy: noisy_setting, ..settings(Method::Smr) };
+        let Some(mut rig) = Rig::new(desc, settings) else { return };
+        let view = noise_view("refused", &desc);
+        let wrong = if noisy_setting { view.clone() } else { noisy(0, view.clone()) };
+        let message = rig.refusal(&wrong);
+        println!("{message}");
+        assert!(message.contains("noise") && message.contains("Settings::noisy"), "{message}");
+        let right = if noisy_setting { noisy(0, view) } else { view };
+        rig.both(0, Reset::None, &[right]);
+    }
+}
+
+#[test]
+fn other_conventions_agree_bit_for_bit() {
+    let motion =
+        MotionConvention { unit: MotionUnit::Ndc, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
+    let depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
+    let desc = ContextDesc { motion, depth, ..ContextDesc::new(SIZE) };
+    for base in both_methods() {
+        agree("occluder", desc, base, |_, v, _| in_conventions(v, &desc));
+    }
+}
+
+#[test]
+fn odd_sizes_agree_bit_for_bit() {
+    for base in both_methods() {
+        for filter in [Filter::Mip, Filter::Block] {
+            let settings = Settings { foveation: Foveation { filter, fovea_deg: 0.0, ..base.foveation }, ..base };
+            agree("lateral", ContextDesc::new([65, 33]), settings, |_, v, _| v);
+            for size in [[1, 1], [3, 2], [1, 7], [2, 3], [129, 1], [63, 64]] {
+                let desc = ContextDesc::new(size);
+                let Some(mut rig) = Rig::new(desc, settings) else { return };
+                for index in 0..6 {
+                    // The same picture for three frames, so that history is of use.
+                    let still = noise_view(&format!("odd {}", index / 3), &desc);
+                    let lod = (index % 2 == 1).then(|| told(index, size));
+                    rig.both(index, Reset::None, &[View { lod, ..still }]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Analytic scenes: their depth and motion against closed forms in f64 that share no code with them, their promises about
+//! what stays the same, and the page of text among the fixtures.
+
+use afterimage::image::Image;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::source::FrameSource;
+use afterimage_lab::source::analytic::{AnalyticSource, LIGHT_STEP};
+use glam::Vec3;
+
+mod oracle;
+mod page;
+
+const SIZE: [u32; 2] = [640, 360];
+const FPS: f64 = 60.0;
+
+fn source(name: &str, size: [u32; 2]) -> AnalyticSource {
+    AnalyticSource::new(name, size, 70.0, FPS as f32).unwrap()
+}
+
+fn frames(name: &str, indices: [u64; 2]) -> [SourceFrame; 2] {
+    let mut source = source(name, SIZE);
+    indices.map(|index| source.frame(index).unwrap())
+}
+
+/// Depth and motion of a frame; analytic scenes always have both.
+fn geometry(frame: &SourceFrame) -> (&Image<f32>, &Image<[f32; 2]>) {
+    (frame.depth.as_ref().unwrap(), frame.motion.as_ref().unwrap())
+}
+
+fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
+    (0..size[1] as usize).flat_map(move |y| (0..size[0] as usize).map(move |x| (x, y)))
+}
+
+/// Near enough to sRGB for a PSNR.
+fn encode(color: [f32; 3]) -> Vec3 {
+    Vec3::from(color).clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2)
+}
+
+/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, where all four texels lie on the same surface,
+/// and the share of pixels that is.
+fn explained(before: &SourceFrame, now: &SourceFrame, sign: f32) -> (f64, f64) {
+    let (depth, motion) = geometry(now);
+    let (previous_depth, _) = geometry(before);
+    let (mut sum, mut count) = (0.0_f64, 0_u32);
+    for (x, y) in pixels(SIZE) {
+        let [mx, my] = motion.at(x, y).map(|m| m * sign);
+        let (px, py) = (x as f32 + mx, y as f32 + my);
+        if !((0.0..639.0).contains(&px) && (0.0..359.0).contains(&py)) {
+            continue;
+        }
+        let (left, top) = (px.floor(), py.floor());
+        let z = depth.at(x, y);
+        let mut fetched = Vec3::ZERO;
+        let mut same = true;
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let (tx, ty) = (left as usize + dx, top as usize + dy);
+            let weight = (1.0 - (px - tx as f32).abs()) * (1.0 - (py - ty as f32).abs());
+            let there = previous_depth.at(tx, ty);
+            same &= there == z || (there - z).abs() < 0.05 * z;
+            fetched += weight * Vec3::from(before.color.at(tx, ty));
+        }
+        if same {
+            let error = encode(fetched.to_array()) - encode(now.color.at(x, y));
+            sum += f64::from(error.length_squared() / 3.0);
+            count += 1;
+        }
+    }
+    let mean = sum / f64::from(count);
+    (-10.0 * mean.log10(), f64::from(count) / (640.0 * 360.0))
+}
+
+#[test]
+fn motion_explains_the_next_frame() {
+    for (name, index) in [("lateral", 4), ("lateral", 60), ("turn", 10), ("turn", 70), ("occluder", 40)] {
+        let [before, now] = frames(name, [index - 1, index]);
+        let (right, share) = explained(&before, &now, 1.0);
+        let (flipped, _) = explained(&before, &now, -1.0);
+        let (none, _) = explained(&before, &now, 0.0);
+        println!("{name} {index}: {right:.2} dB over {share:.3} of the frame, flipped {flipped:.2}, ignored {none:.2}");
+        assert!(right > 31.0, "{name} {index}: {right} dB");
+        assert!(right > flipped + 8.0 && right > none + 5.0, "{name} {index}");
+        assert!(share > 0.85);
+    }
+}
+
+fn bits(frame: &SourceFrame) -> Vec<u32> {
+    let (depth, motion) = geometry(frame);
+    let numbers = frame.color.pixels().iter().flatten();
+    numbers
+        .chain(depth.pixels())
+        .chain(motion.pixels().iter().flatten())
+        .chain(frame.previous_from_current.iter().flatten().flatten())
+        .map(|v| v.to_bits())
+        .collect()
+}
+
+fn all_zero(motion: &Image<[f32; 2]>) -> bool {
+    motion.pixels().iter().all(|m| *m == [0.0; 2])
+}
+
+#[test]
+fn still_stays() {
+    let mut source = source("still", SIZE);
+    assert!(source.info().still && source.info().frames.is_none());
+    let first = source.frame(0).unwrap();
+    assert!(first.cut && all_zero(geometry(&first).1));
+    for index in [1, 59, 1 << 40] {
+        let later = source.frame(index).unwrap();
+        assert!(!later.cut);
+        assert!(bits(&later) == bits(&first), "frame {index}");
+    }
+    let identity = std::array::from_fn(|i| std::array::from_fn(|k| f32::from(u8::from(i == k))));
+    assert_eq!(first.previous_from_current, Some(identity));
+}
+
+#[test]
+fn light_step_scales_the_color_and_nothing_else() {
+    let mut source = source("light-step", SIZE);
+    assert!(!source.info().still);
+    let bright = source.frame(0).unwrap();
+    for (index, factor) in [(29, 1.0), (30, LIGHT_STEP), (74, LIGHT_STEP), (75, 1.0)] {
+        let frame = source.frame(index).unwrap();
+        let scaled = bright.color.map(|c| c.map(|v| v * factor));
+        assert!(frame.color == scaled, "frame {index}");
+        assert_eq!(geometry(&frame), geometry(&bright));
+    }
+    assert_eq!(LIGHT_STEP, 0.45);
+}
+
+#[test]
+fn scroll_changes_the_panel_only_and_does_not_say_so() {
+    let mut source = source("scroll", SIZE);
+    assert!(self::source("still", [8, 8]).panel_mask(0).is_none());
+    let mask = source.panel_mask(40).unwrap();
+    let [before, now] = [39, 40].map(|index| source.frame(index).unwrap());
+    assert!(all_zero(geometry(&now).1));
+    assert_eq!(geometry(&before), geometry(&now));
+    let (mut panel, mut changed) = (0, 0);
+    for (x, y) in pixels(SIZE) {
+        let differs = before.color.at(x, y) != now.color.at(x, y);
+        assert!(mask.at(x, y) || !differs, "({x}, {y}) is beside the panel");
+        panel += u32::from(mask.at(x, y));
+        changed += u32::from(differs);
+    }
+    println!("panel: {panel} pixels, {changed} change");
+    assert!(panel > 20_000 && f64::from(changed) > 0.3 * f64::from(panel));
+}
+
+#[test]
+fn scroll_moves_two_pixels_a_frame() {
+    // In shade and sun the page's brightness differs, so the rows are compared where the light is even: by correlation.
+    let [before, now] = frames("scroll", [39, 40]);
+    let luma = |frame: &SourceFrame, x: usize, y: usize| frame.color.at(x, y)[1];
+    let difference = |shift: usize| {
+        (140..260)
+            .flat_map(|y| (390..540).map(move |x| (x, y)))
+            .map(|(x, y)| (luma(&now, x, y) - luma(&before, x, y + shift)).abs())
+            .sum::<f32>()
+    };
+    let differences: Vec<f32> = (0..6).map(difference).collect();
+    println!("difference by shift: {differences:?}");
+    let best = (0..6).min_by(|&a, &b| differences[a].total_cmp(&differences[b]));
+    assert_eq!(best, Some(2));
+    assert!(differences[2] < 0.5 * differences[1]);
+}
+
+#[test]
+fn frames_do_not_depend_on_threads_or_order() {
+    for name in AnalyticSource::names() {
+        let on = |threads: usize, indices: &[u64]| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut source = source(name, [203, 117]);
+                indices.iter().map(|&index| bits(&source.frame(index).unwrap())).last()
+            })
+        };
+        assert!(on(1, &[33]) == on(2, &[50, 0, 33]), "{name}");
+    }
+}
+
+#[test]
+fn any_size_gives_finite_frames() {
+    for name in AnalyticSource::names() {
+        for size in [[1, 1], [17, 1], [1, 33], [96, 54]] {
+            let mut source = source(name, size);
+            for index in [0, 1, 45, 1_000_000] {
+                let frame = source.frame(index).unwrap();
+                let (depth, motion) = geometry(&frame);
+                assert_eq!(frame.color.size(), size);
+                let colors = frame.color.pixels().iter().flatten();
+                assert!(colors.clone().all(|c| (0.0..1.6).contains(c)), "{name} {size:?}");
+                assert!(depth.pixels().iter().all(|&z| z > 0.0));
+                assert!(motion.pixels().iter().flatten().all(|m| m.is_finite()));
+                assert_eq!((frame.cut, frame.nonfinite), (index == 0, 0));
+            }
+        }
+    }
+}
+
+#[test]
+fn refusals_say_what_to_do() {
+    let refusal = |name, size, hfov, fps| AnalyticSource::new(name, size, hfov, fps).err().unwrap().to_string();
+    let unknown = refusal("courtyrad", SIZE, 70.0, 60.0);
+    for name in AnalyticSource::names() {
+        assert!(unknown.contains(name), "{unknown}");
+    }
+    for (message, word) in [
+        (refusal("still", [0, 9], 70.0, 60.0), "0x9"),
+        (refusal("still", [9, 99_999], 70.0, 60.0), "16384"),
+        (refusal("still", SIZE, 180.0, 60.0), "hfov_deg is 180"),
+        (refusal("still", SIZE, 70.0, 0.0), "frame rate is 0"),
+        (refusal("still", SIZE, 70.0, f32::NAN), "frame rate is NaN"),
+    ] {
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+#[test]
+#[ignore = "writes pictures to look at and prints how long they took"]
+fn write_pictures() {
+    let folder = std::env::temp_dir().join("analytic");
+    std::fs::create_dir_all(&folder).unwrap();
+    for name in AnalyticSource::names() {
+        for size in [SIZE, [1280, 720]] {
+            let mut source = source(name, size);
+            for index in [0, 40] {
+                let start = std::time::Instant::now();
+                let frame = source.frame(index).unwrap();
+                println!("{name} {size:?} {index}: {:?}", start.elapsed());
+                let bytes = frame
+                    .color
+                    .pixels()
+                    .iter()
+                    .flat_map(|&c| (encode(c) * 255.0 + 0.5).to_array())
+                    .map(|v| v as u8)
+                    .collect();
+                image::RgbImage::from_raw(size[0], size[1], bytes)
+                    .unwrap()
+                    .save(folder.join(format!("{name}_{}_{index}.png", size[0])))
+                    .unwrap();
+            }
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Metrics against hand-calculated cases and an oracle in f64, and what latency of the gaze costs (H68).
+
+mod flip;
+mod weighted;
+
+use afterimage::foveation::Foveation;
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage::simulator::Pyramid;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::metric;
+use afterimage_lab::metric::{Band, Flip, NO_PAST, References, Scorer, Tracker};
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
+use approx::assert_abs_diff_eq;
+
+fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()])
+}
+
+fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
+    let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
+    let ecc = geometry.eccentricity_map(gaze);
+    let lods = foveation.lod_map(&geometry, gaze, &ecc);
+    foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods)
+}
+
+#[test]
+fn h68_the_error_at_the_true_gaze_grows_with_latency() {
+    let size = [640, 360];
+    let image = noise(size, "latency");
+    let reference = metric::encode(&image, 0.0);
+    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    let ecc = geometry.eccentricity_map([320.0, 180.0]);
+    // The eye moves at 30 degrees a second; the foveation lags.
+    let latencies_ms = [0.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0, 100.0, 125.0, 150.0];
+    let scores = latencies_ms.map(|latency_ms| {
+        let lag_px = 30.0 * latency_ms / 1000.0 * 8.0;
+        let shown = metric::encode(&foveate(&Foveation::default(), &image, [320.0 - lag_px, 180.0]), 0.0);
+        let mut frame = source_frame(image.clone());
+        frame.cut = true;
+        let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
+        let mut scorer = Scorer::default();
+        scorer.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+        let scores = scorer.scores();
+        (scores.bands[0].mse.unwrap(), scores.weighted_psnr_db.unwrap())
+    });
+    for (ms, (mse, db)) in latencies_ms.iter().zip(scores) {
+        println!("{ms} ms: mean squared error in the true fovea {mse:.4}, weighted {db:.2} dB");
+    }
+    assert_eq!(scores[0].0, 0.0);
+    assert!(scores.windows(2).all(|w| w[0].0 <= w[1].0 && w[0].1 > w[1].1), "{scores:?}");
+    let [none, half, all] = [0, 5, 9].map(|i| scores[i].1);
+    holds!(
+        "H68",
+        Cpu,
+        "weighted PSNR falls at each of 10 latencies: {none:.2} dB at 0 ms, {half:.2} at 60, {all:.2} at 150"
+    );
+}
+
+fn source_frame(color: Image<[f32; 3]>) -> SourceFrame {
+    SourceFrame { color, depth: None, motion: None, trust: None, previous_from_current: None, cut: false, nonfinite: 0 }
+}
+
+#[test]
+fn psnr_ssim_and_flicker_of_known_errors() {
+    let size = [96, 64];
+    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    let ecc = geometry.eccentricity_map([48.0, 32.0]);
+    let reference = Image::filled(size, [0.5; 3]);
+    let mut tracker = Tracker::default();
+    let mut scorer = Scorer::default();
+    let mut references = References::default();
+    for (i, offset) in [0.1_f32, -0.1, 0.1].into_iter().enumerate() {
+        let frame = SourceFrame { cut: i == 0, ..source_frame(reference.clone()) };
+        let tracked = tracker.advance(&frame, &geometry, &ecc, &ecc);
+        let full = references.next(&reference, &tracked);
+        scorer.push(&full, &reference.map(|c| c.map(|v| v + offset)), &tracked, &ecc);
+    }
+    let scores = scorer.scores();
+    assert_abs_diff_eq!(scores.whole.psnr_db.unwrap(), 20.0, epsilon = 1e-4);
+    assert_abs_diff_eq!(scores.bands[2].psnr_db.unwrap(), 20.0, epsilon = 1e-4);
+    assert_abs_diff_eq!(scores.flicker.unwrap(), 200.0, epsilon = 1e-2);
+    // Flat patches leave SSIM its luminance term alone: (2 ab + c1) / (a^2 + b^2 + c1).
+    let luminance = |a: f64, b: f64| (2.0 * a * b + 6.5025) / (a * a + b * b + 6.5025);
+    let expected = (2.0 * luminance(127.5, 153.0) + luminance(127.5, 102.0)) / 3.0;
+    assert_abs_diff_eq!(scores.whole.ssim.unwrap(), expected, epsilon = 1e-4);
+    // An exact picture has no PSNR.
+    let mut exact = Scorer::default();
+    let tracked = tracker.advance(&source_frame(reference.clone()), &geometry, &ecc, &ecc);
+    exact.push(&references.next(&reference, &tracked), &reference, &tracked, &ecc);
+    let scores = exact.scores();
+    assert_eq!((scores.whole.psnr_db, scores.whole.mse), (None, Some(0.0)));
+    assert_abs_diff_eq!(scores.whole.ssim.unwrap(), 1.0, epsilon = 1e-6);
+}
+
+/// SSIM by its definition in f64, window by window.
+fn ssim64(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>, x0: usize, y0: usize) -> f64 {
+    let luma = |c: [f32; 3]| 255.0 * (0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2]));
+    let gauss = |d: usize| (-0.5 * ((d as f64 - 5.0) / 1.5).powi(2)).exp();
+    let (mut sum, mut ma, mut mb, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for y in 0..11 {
+        for x in 0..11 {
+            let w = gauss(x) * gauss(y);
+            let (p, q) = (luma(a.at(x0 + x, y0 + y)), luma(b.at(x0 + x, y0 + y)));
+            sum += w;
+            ma += w * p;
+            mb += w * q;
+            aa += w * p * p;
+            bb += w * q * q;
+            ab += w * p * q;
+        }
+    }
+    let (ma, mb) = (ma / sum, mb / sum);
+    let (va, vb, cov) = (aa / sum - ma * ma, bb / sum - mb * mb, ab / sum - ma * mb);
+    let (c1, c2) = (2.55_f64.powi(2), 7.65_f64.powi(2));
+    (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2))
+}
+
+#[test]
+fn ssim_is_the_published_formula_at_full_resolution() {
+    // Taller than a strip, and larger than the size from which the authors' script would shrink it.
+    let (a, mut b) = (noise([400, 420], "ssim a"), noise([400, 420], "ssim b"));
+    for (p, q) in b.pixels_mut().iter_mut().zip(a.pixels()) {
+        *p = [0, 1, 2].map(|i| 0.6 * q[i] + 0.4 * p[i]);
+    }
+    let map = metric::ssim_map(&a, &b).unwrap();
+    assert_eq!(map.size(), [390, 410]);
+    for (x, y) in [(0, 0), (389, 409), (17, 127), (17, 128), (200, 255), (3, 300)] {
+        assert_abs_diff_eq!(f64::from(map.at(x, y)), ssim64(&a, &b, x, y), epsilon = 1e-3);
+    }
+    assert!(metric::ssim_map(&noise([10, 40], "s"), &noise([10, 40], "t")).is_none());
+}
+
+#[test]
+fn bands_and_retention_follow_the_eye() {
+    assert_eq!([0.0, 2.49, 2.5, 7.5, 7.51].map(|e| Band::of(e) as usize), [0, 0, 1, 1, 2]);
+    let size = [320, 180];
+    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    let foveation = Foveation::default();
+    let mut tracker = Tracker::default();
+    let mut look = |frame: &SourceFrame, gaze| {
+        let ecc = geometry.eccentricity_map(gaze);
+        let lods = foveation.lod_map(&geometry, gaze, &ecc);
+        tracker.advance(frame, &geometry, &ecc, &lods)
+    };
+    let mut frame = source_frame(noise(size, "track"));
+    frame.cut = true;
+    let first = look(&frame, [100.0, 90.0]);
+    assert!(first.past.pixels().iter().all(|&p| p == NO_PAST) && !first.retained.pixels().contains(&true));
+    frame.cut = false;
+    let second = look(&frame, [220.0, 90.0]);
+    assert!(second.retained.at(100, 90) && !second.retained.at(220, 90) && !second.retained.at(160, 20));
+    assert_eq!(second.past.at(7, 3), 3 * 320 + 7);
+    // All moves right by 5 px: retention moves along.
+    frame.motion = Some(Image::filled(size, [-5.0, 0.0]));
+    let third = look(&frame, [220.0, 90.0]);
+    let left_edge = |t: &metric::Tracked| (0..320).find(|&x| t.retained.at(x, 90)).unwrap();
+    assert_eq!(left_edge(&third), left_edge(&second) + 5);
+    assert_eq!(third.past.at(2, 0), NO_PAST, "came from outside");
+    // Something else stands there now: forgotten for good.
+    frame.motion = Some(Image::filled(size, [0.0; 2]));
+    frame.depth = Some(Image::filled(size, 5.0));
+    look(&frame, [220.0, 90.0]);
+    let mut depth = Image::filled(size, 5.0);
+    depth.pixels_mut()[90 * 320 + 105] = 1.0;
+    frame.depth = Some(depth);
+    let hidden = look(&frame, [220.0, 90.0]);
+    assert!(!hidden.retained.at(105, 90));
+}
+
+#[test]
+fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
+    let size = [320, 180];
+    let view = ViewGeometry::flat(size, 70.0).unwrap();
+    let ecc = view.eccentricity_map([90.0, 100.0]);
+    let reference = noise(size, "flip bands");
+    let shown = foveate(&Foveation::default(), &reference, [90.0, 100.0]);
+    let tracked = Tracker::default().advance(&source_frame(reference.clone()), &view, &ecc, &ecc);
+    let flip = Flip::for_view(&view);
+    let mut scorer = Scorer::default();
+    let mut references = References::with_flip(flip.clone());
+    for _ in 0..2 {
+        scorer.push(&references.next(&reference, &tracked), &shown, &tracked, &ecc);
+    }
+    let scores = scorer.scores();
+    let map = flip.map(&reference, &shown);
+    let mean_of = |band: Option<Band>| {
+        let pixels = map.pixels().iter().zip(ecc.pixels());
+        let values: Vec<f64> =
+            pixels.filter(|(_, e)| band.is_none_or(|b| Band::of(**e) == b)).map(|(v, _)| f64::from(*v)).collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    for band in Band::ALL {
+        assert_abs_diff_eq!(scores.bands[band as usize].flip.unwrap(), mean_of(Some(band)), epsilon = 1e-9);
+    }
+    assert_abs_diff_eq!(scores.whole.flip.unwrap(), mean_of(None), epsilon = 1e-9);
+    // The fovea is shown at full rate, but the eye's filters reach in from around it.
+    assert!(scores.bands[0].flip.unwrap() < 0.1 * scores.bands[2].flip.unwrap());
+    let mut without = Scorer::default();
+    without.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+    let scores = without.scores();
+    assert!(scores.whole.flip.is_none() && scores.bands.iter().all(|b| b.flip.is_none()));
+}

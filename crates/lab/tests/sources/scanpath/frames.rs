@@ -1,0 +1,157 @@
+//! One gaze point per frame: which sample is held, and where it falls.
+
+use super::{VIEW_PX, any_samples, at, parse, path_of, screen, view};
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::scanpath::*;
+use proptest::prelude::*;
+
+/// Any float, the largest and the non-finite ones often.
+fn wild() -> impl Strategy<Value = f32> {
+    prop_oneof![any::<f32>(), Just(f32::MAX), Just(f32::MIN), Just(f32::NAN), Just(f32::INFINITY)]
+}
+
+/// The two maps written out for `view()` and `screen(true)`, with a pinhole of the frame's focal length.
+fn mapped(px: [f32; 2], map: GazeMap) -> [f32; 2] {
+    let (x, y) = (f64::from(px[0]), f64::from(px[1]));
+    let focal = 320.0 / 35f64.to_radians().tan();
+    let out = match map {
+        GazeMap::Fit => [x * 640.0 / 1024.0 - 0.5, y * 360.0 / 768.0 - 0.5],
+        GazeMap::Angle => [
+            320.0 - 0.5 + focal * (x - 512.0) * (38.0 / 1024.0) / 67.0,
+            180.0 - 0.5 + focal * (y - 384.0) * (30.0 / 768.0) / 67.0,
+        ],
+    };
+    out.map(|v| v as f32)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// H63, against an oracle that walks through all samples.
+    #[test]
+    fn each_frame_holds_the_last_valid_sample(
+        samples in any_samples(), start in 0.0f64..1.0, fps in 5.0f64..500.0, fit in any::<bool>(),
+    ) {
+        let Ok(path) = path_of(samples.clone()) else { return Ok(()) };
+        let start_s = start * path.duration_s();
+        let map = if fit { GazeMap::Fit } else { GazeMap::Angle };
+        let gaze = FrameGaze::new(&path, &view(), map, start_s, fps).unwrap();
+        // The last frame is shown while the recording lasts, the next one would not be.
+        let last_s = start_s + (gaze.frames() - 1) as f64 / fps;
+        prop_assert!(last_s <= path.duration_s() + 1e-9 && last_s + 1.0 / fps > path.duration_s());
+        for i in 0..gaze.frames() + 3 {
+            let now = samples[0].t_s + start_s + i as f64 / fps;
+            let (mut px, mut age) = (None, None);
+            for sample in &samples {
+                if let Some(p) = sample.px && sample.t_s <= now + 1e-9 {
+                    px = Some(mapped(p, map));
+                    age = Some((now - sample.t_s).max(0.0));
+                }
+            }
+            match (gaze.px(i), px) {
+                (Some(a), Some(b)) => {
+                    prop_assert!((0..2).all(|k| (a[k] - b[k]).abs() < 2e-3), "{:?} {:?}", a, b);
+                    prop_assert!((gaze.age_s(i).unwrap() - age.unwrap()).abs() < 1e-9);
+                }
+                (a, b) => prop_assert_eq!(a, b),
+            }
+        }
+    }
+
+    #[test]
+    fn the_angle_map_keeps_angles_and_directions(x in -2e3f32..3e3, y in -2e3f32..3e3, hfov in 20f32..120.0) {
+        let view = ViewGeometry::flat(VIEW_PX, hfov).unwrap();
+        let path = path_of(vec![at(0.0, [x, y])]).unwrap();
+        let px = FrameGaze::new(&path, &view, GazeMap::Angle, 0.0, 60.0).unwrap().px(0).unwrap();
+        let on_screen = [(f64::from(x) - 512.0) * 38.0 / 1024.0 / 67.0, (f64::from(y) - 384.0) * 30.0 / 768.0 / 67.0];
+        let ray = view.ray(px).as_dvec3();
+        let angle = |x: f64, y: f64| x.hypot(y).atan().to_degrees();
+        prop_assert!((angle(ray.x, ray.y) - angle(on_screen[0], on_screen[1])).abs() < 1e-4);
+        // Same direction too: the tangents agree one by one, so left stays left and up stays up.
+        prop_assert!((ray.x - on_screen[0]).abs() < 2e-6 && (ray.y - on_screen[1]).abs() < 2e-6);
+    }
+
+    /// H63: coordinates of any size come out finite or lost.
+    #[test]
+    fn wild_coordinates_never_become_non_finite(x in wild(), y in wild(), fit in any::<bool>()) {
+        let path = path_of(vec![at(0.0, [3.0, 4.0]), at(0.1, [x, y])]).unwrap();
+        let finite = x.is_finite() && y.is_finite();
+        prop_assert_eq!(path.lost(), usize::from(!finite));
+        let map = if fit { GazeMap::Fit } else { GazeMap::Angle };
+        // So narrow and fine a view that the largest floats overflow in it.
+        let view = ViewGeometry::flat([15_360, 8_640], 5.0).unwrap();
+        let gaze = FrameGaze::new(&path, &view, map, 0.0, 10.0).unwrap();
+        prop_assert!((0..4).all(|i| gaze.px(i).unwrap().iter().all(|v| v.is_finite())));
+        if !finite {
+            prop_assert_eq!(gaze.px(1), gaze.px(0));
+        }
+    }
+}
+
+#[test]
+fn centre_goes_to_centre_and_fit_puts_corners_on_corners() {
+    let one = |px, map| {
+        let path = path_of(vec![at(0.0, px)]).unwrap();
+        FrameGaze::new(&path, &view(), map, 0.0, 60.0).unwrap().px(0).unwrap()
+    };
+    for map in [GazeMap::Angle, GazeMap::Fit] {
+        let [x, y] = one([512.0, 384.0], map);
+        assert!((x - 319.5).abs() < 1e-4 && (y - 179.5).abs() < 1e-4, "{map:?}: {x}, {y}");
+    }
+    // The corner of the screen is the outer corner of the corner pixel, half a pixel from its centre.
+    assert_eq!(one([0.0, 0.0], GazeMap::Fit), [-0.5, -0.5]);
+    assert_eq!(one([1024.0, 768.0], GazeMap::Fit), [639.5, 359.5]);
+    // The centre of the screen's first pixel is inside the frame's.
+    let first = one([0.8, 768.0 / 360.0 * 0.5], GazeMap::Fit);
+    assert!(first.iter().all(|v| v.abs() < 1e-6), "{first:?}");
+}
+
+#[test]
+fn a_screen_made_for_the_view_makes_both_maps_the_same() {
+    let view = view();
+    let path = Scanpath::new("v", Screen::of_view(&view), About::default(), vec![at(0.0, [33.25, 301.5])]).unwrap();
+    for map in [GazeMap::Angle, GazeMap::Fit] {
+        let px = FrameGaze::new(&path, &view, map, 0.0, 60.0).unwrap().px(0).unwrap();
+        assert!((px[0] - 32.75).abs() < 1e-3 && (px[1] - 301.0).abs() < 1e-3, "{map:?}: {px:?}");
+    }
+    let default = Screen::default();
+    let [slope_x, slope_y] = default.tangent_per_px().unwrap();
+    assert!(((slope_x * 960.0).atan().to_degrees() - 35.0).abs() < 1e-4);
+    assert!((slope_x / slope_y - 1.0).abs() < 1e-6, "square pixels");
+}
+
+/// H63: nothing before the first valid sample, then held through a blink, through NaN and to the end.
+#[test]
+fn lost_gaze_is_held_and_its_age_grows() {
+    let path =
+        parse("5.0,0,0,0\n5.1,512,384,1\n5.2,nan,nan,1\n5.3,0.00,0.00,0\n5.4,-4000,384,1\n5.5,nan,nan,0\n").unwrap();
+    let gaze = FrameGaze::new(&path, &view(), GazeMap::Fit, 0.0, 10.0).unwrap();
+    assert_eq!(gaze.frames(), 6);
+    let x: Vec<_> = (0..8).map(|i| gaze.px(i).map(|p| p[0])).collect();
+    let (middle, off) = (Some(319.5), Some(-2500.5));
+    assert_eq!(x, [None, middle, middle, middle, off, off, off, off]);
+    let age = |i| gaze.age_s(i).map(|a| (a * 10.0).round());
+    assert_eq!([age(0), age(1), age(3), age(5), age(7)], [None, Some(0.0), Some(2.0), Some(1.0), Some(3.0)]);
+}
+
+#[test]
+fn impossible_time_windows_and_maps_are_refused() {
+    let path = parse("0,1,2,1\n2.0,1,2,1\n").unwrap();
+    let make =
+        |path: &Scanpath, map, start, fps| FrameGaze::new(path, &view(), map, start, fps).map_err(|e| e.to_string());
+    assert_eq!(make(&path, GazeMap::Fit, 2.0, 60.0).unwrap().frames(), 1);
+    assert_eq!(make(&path, GazeMap::Fit, 0.0, 60.0).unwrap().frames(), 121);
+    for start in [2.1, -0.1, f64::NAN, f64::INFINITY] {
+        let error = make(&path, GazeMap::Fit, start, 60.0).unwrap_err();
+        assert!(error.contains("expected 0 to 2 s"), "{error}");
+    }
+    for fps in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(make(&path, GazeMap::Fit, 0.0, fps).unwrap_err().starts_with("fps: "));
+    }
+    let samples = vec![at(0.0, [1.0, 2.0])];
+    let unknown = Scanpath::new("u.csv", screen(false), About::default(), samples).unwrap();
+    assert_eq!(GazeMap::default_for(unknown.screen()), GazeMap::Fit);
+    assert_eq!(GazeMap::default_for(path.screen()), GazeMap::Angle);
+    let error = make(&unknown, GazeMap::Angle, 0.0, 60.0).unwrap_err();
+    assert!(error.starts_with("u.csv: ") && error.contains("use the gaze map `fit`"), "{error}");
+}

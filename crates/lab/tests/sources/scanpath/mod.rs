@@ -1,0 +1,277 @@
+//! Scanpaths: files, resampling to frames, and the statistics of the synthetic eye.
+//!
+//! `cargo test --features lab --test scanpath -- --ignored write_fixture` makes `fixtures/scanpath_viewing.csv` anew.
+
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::error::InputError;
+use afterimage_lab::scanpath::*;
+use proptest::prelude::*;
+use std::path::{Path, PathBuf};
+
+mod frames;
+mod statistics;
+
+const HEADER: &str = "# screen_px: 1024x768\n# screen_cm: 38.0x30.0\n# distance_cm: 67\nt_s,x_px,y_px,valid\n";
+const VIEW_PX: [u32; 2] = [640, 360];
+
+fn fixture() -> PathBuf {
+    afterimage_testing::workspace().join("fixtures/scanpath_viewing.csv")
+}
+
+fn view() -> ViewGeometry {
+    ViewGeometry::flat(VIEW_PX, 70.0).unwrap()
+}
+
+fn parse(rows: &str) -> Result<Scanpath, InputError> {
+    parse_csv("gaze.csv", format!("{HEADER}{rows}").as_bytes())
+}
+
+fn screen(known: bool) -> Screen {
+    Screen { size_px: [1024, 768], size_cm: known.then_some([38.0, 30.0]), distance_cm: known.then_some(67.0) }
+}
+
+fn path_of(samples: Vec<Sample>) -> Result<Scanpath, InputError> {
+    Scanpath::new("test", screen(true), About::default(), samples)
+}
+
+fn at(t_s: f64, px: [f32; 2]) -> Sample {
+    Sample { t_s, px: Some(px) }
+}
+
+/// Name, samples, lost samples: the table of the data's own README.
+const RECORDED: [(&str, usize, usize); 6] = [
+    ("reading_1250hz_clean.csv", 20_000, 0),
+    ("reading_1250hz_blinks.csv", 22_500, 521),
+    ("reading_250hz_noisy.csv", 5_000, 188),
+    ("image_500hz.csv", 4_987, 123),
+    ("image_500hz_lost.csv", 4_988, 450),
+    ("video_500hz_pursuit.csv", 10_000, 88),
+];
+
+#[test]
+fn recorded_files_and_the_fixture_read_as_their_table_says() {
+    let path = read_csv(fixture()).unwrap();
+    assert_eq!((path.samples().len(), path.lost()), (1500, 0));
+    let folder = afterimage_testing::workspace().join("../shared/data/scanpaths");
+    if !folder.is_dir() {
+        eprintln!("SKIPPED: {} is not here, recorded files not read", folder.display());
+        return;
+    }
+    for (name, samples, lost) in RECORDED {
+        let path = read_csv(folder.join(name)).unwrap();
+        assert_eq!((path.samples().len(), path.lost()), (samples, lost), "{name}");
+        assert_eq!(path.screen().size_px, [1024, 768]);
+        let known = path.screen().tangent_per_px().is_some();
+        assert_eq!(known, name != "reading_250hz_noisy.csv");
+        let rate: f64 = name.split('_').find_map(|w| w.split("hz").next()?.parse().ok()).unwrap();
+        assert_eq!(path.about().rate_hz, Some(rate));
+        // H63: lost and wild samples of real trackers give finite pixels in every frame after the first valid sample.
+        let gaze = FrameGaze::new(&path, &view(), GazeMap::default_for(path.screen()), 0.0, 60.0).unwrap();
+        let first_valid = path.samples().iter().find(|s| s.px.is_some()).unwrap().t_s;
+        for i in 0..gaze.frames() {
+            let px = gaze.px(i);
+            assert_eq!(px.is_none(), (i as f64 / 60.0) < first_valid, "{name}, frame {i}");
+            assert!(px.unwrap_or_default().iter().all(|v| v.is_finite()));
+        }
+        let written = csv(&path);
+        assert_eq!(parse_csv(path.name(), &written).unwrap(), path, "{name} round trip");
+    }
+}
+
+#[test]
+#[ignore = "writes fixtures/scanpath_viewing.csv"]
+fn write_fixture() {
+    std::fs::write(fixture(), csv(&fixture_path())).unwrap();
+}
+
+#[test]
+fn the_fixture_is_what_the_generator_makes() {
+    let read = read_csv(fixture()).unwrap();
+    let made = fixture_path();
+    assert_eq!(read.about(), made.about());
+    for (a, b) in read.samples().iter().zip(made.samples()) {
+        let (p, q) = (a.px.unwrap(), b.px.unwrap());
+        // Not bit for bit: another platform's sines may differ in their last digit.
+        assert!(a.t_s == b.t_s && (p[0] - q[0]).abs() < 1e-2 && (p[1] - q[1]).abs() < 1e-2);
+    }
+    assert!(std::fs::metadata(fixture()).unwrap().len() < 100_000);
+}
+
+fn fixture_path() -> Scanpath {
+    let options = SyntheticOptions { seed: 1, duration_s: 6.0, rate_hz: 250.0, ..Default::default() };
+    generate(&options).unwrap().path
+}
+
+fn csv(path: &Scanpath) -> Vec<u8> {
+    let mut out = Vec::new();
+    write_csv(path, &mut out).unwrap();
+    out
+}
+
+#[test]
+fn bad_files_are_refused_in_one_line_that_says_where() {
+    let cases: [(&str, &str); 14] = [
+        ("", "there is no sample"),
+        ("0,1,2,0\n", "lost in all 1 samples"),
+        ("0,nan,nan,1\n", "lost in all 1 samples"),
+        ("0,1,2,1\n0.1,1,2\n", "line 6: 3 columns"),
+        ("0,1,2,1\n0.1,1,2,1,1\n", "line 6: 5 columns"),
+        ("0,1,2,1\n\n0.1,x,2,1\n", "line 7: x_px is \"x\""),
+        ("0,1,2,yes\n", "line 5: valid is \"yes\""),
+        ("nan,1,2,1\n", "line 5: t_s is \"nan\""),
+        (",1,2,1\n", "line 5: t_s is \"\""),
+        ("0.1,1,2,1\n0.1,1,2,1\n", "line 6: t_s is 0.1 after 0.1"),
+        ("0.1,1,2,1\n0.0,1,2,1\n", "line 6: t_s is 0 after 0.1"),
+        ("# screen_px: 5x5\n0,1,2,1\n", "line 5: \"screen_px\" is given a second time"),
+        ("# rate_hz: fast\n", "line 5: rate_hz is \"fast\""),
+        ("# origin: middle\n", "line 5: the origin is \"middle\""),
+    ];
+    for (rows, expected) in cases {
+        let error = parse(rows).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.starts_with("gaze.csv"), "{rows:?}: {error}");
+        assert!(!error.contains('\n') && error.contains("; "), "{error}");
+    }
+    let whole: [(&[u8], &str); 8] = [
+        (b"", "no column names"),
+        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" where the column names belong"),
+        (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
+        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
+        (b"# screen_px: 0x768\n", "line 1: screen_px is \"0x768\""),
+        (b"# screen_cm: 38x-1\n", "line 1: screen_cm is"),
+        (b"# distance_cm: inf\n", "line 1: distance_cm is"),
+        (b"# a\n# b \xff\n", "line 2: not UTF-8"),
+    ];
+    for (bytes, expected) in whole {
+        let error = parse_csv("gaze.csv", bytes).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn missing_folder_and_oversized_files_are_refused_before_reading() {
+    let dir = tempfile::tempdir().unwrap();
+    let error = |p: &Path| read_csv(p).unwrap_err().to_string();
+    assert!(error(&dir.path().join("none.csv")).contains("none.csv: cannot be read"));
+    assert!(error(dir.path()).contains("is a folder"));
+    let big = dir.path().join("big.csv");
+    // Sparse: takes no space, and reading it would be seen as slow.
+    std::fs::File::create(&big).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
+    assert!(error(&big).contains("larger than 256 MiB"));
+}
+
+#[test]
+fn remarks_unknowns_crlf_and_a_byte_order_mark_are_read() {
+    let text = "\u{feff}# screen_px: 1024x768 (inferred: words)\r\n# screen_cm: unknown\r\n# odd line\r\n\r\n\
+                t_s, x_px, y_px, valid\r\n0, 1.5, -2e3, 1\r\n1,,,0\r\n";
+    let path = parse_csv("x", text.as_bytes()).unwrap();
+    assert_eq!(path.screen().size_px, [1024, 768]);
+    assert_eq!(path.screen().size_cm, None);
+    assert_eq!(path.about().notes, [("screen_px_note".to_owned(), "(inferred: words)".to_owned())]);
+    assert_eq!(path.samples(), [at(0.0, [1.5, -2e3]), Sample { t_s: 1.0, px: None }]);
+}
+
+fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
+    let px = prop::option::weighted(0.7, [-2e3f32..4e3, -2e3f32..4e3]);
+    prop::collection::vec((1e-4f64..0.1, px), 1..60).prop_map(|steps| {
+        let mut t_s = -0.3;
+        let step = |(dt, px)| {
+            t_s += dt;
+            Sample { t_s, px }
+        };
+        steps.into_iter().map(step).collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn writing_and_reading_gives_the_same_scanpath(
+        samples in any_samples(),
+        known in any::<bool>(),
+        task in prop::option::of("[ -~é]{0,20}"),
+        rate_hz in prop::option::of(0.1f64..5e3),
+        notes in prop::collection::btree_map("[a-z]{3}_[a-z ]{0,5}", "[ -~\t]{0,20}", 0..4),
+    ) {
+        let about = About { task, rate_hz, notes: notes.into_iter().collect() };
+        let Ok(path) = Scanpath::new("n", screen(known), about, samples) else {
+            return Ok(()); // All lost, or two notes alike after trimming.
+        };
+        prop_assert_eq!(parse_csv("n", &csv(&path)).unwrap(), path);
+    }
+
+    #[test]
+    fn mutated_files_never_panic_and_errors_stay_on_one_line(
+        edits in prop::collection::vec((0usize..400, any::<u8>(), any::<bool>()), 1..12),
+    ) {
+        let mut bytes = format!("{HEADER}0,1,2,1\n0.1,nan,nan,0\n0.2,-5,6e9,1\n").into_bytes();
+        for (place, byte, insert) in edits {
+            let place = place % bytes.len();
+            if insert { bytes.insert(place, byte) } else { bytes[place] = byte }
+        }
+        match parse_csv("g", &bytes) {
+            Ok(path) => prop_assert!(path.lost() < path.samples().len()),
+            Err(e) => prop_assert!(!e.to_string().contains('\n')),
+        }
+    }
+
+    #[test]
+    fn strange_text_never_panics(rows in "(\\PC{0,60}\n){1,3}") {
+        if let Err(e) = parse(&rows) {
+            prop_assert!(!e.to_string().contains('\n'));
+        }
+    }
+
+    #[test]
+    fn garbage_never_panics(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let _ = parse_csv("g", &bytes);
+        let rows = [HEADER.as_bytes(), &bytes].concat();
+        let _ = parse_csv("g", &rows);
+    }
+
+    #[test]
+    fn a_broken_row_is_named_by_its_line(before in 0usize..20, junk in "[a-z;,]{1,12}") {
+        let mut rows: String = (0..before).map(|i| format!("{i},1,2,1\n")).collect();
+        rows += &junk;
+        let error = parse(&rows).unwrap_err().to_string();
+        prop_assert!(error.starts_with(&format!("gaze.csv, line {}: ", before + 5)), "{}", error);
+    }
+}
+
+#[test]
+fn a_seed_is_a_scanpath() {
+    let make = |seed| generate(&SyntheticOptions { seed, duration_s: 3.0, ..Default::default() }).unwrap();
+    assert_eq!(make(3), make(3));
+    let starts: Vec<_> = (0..20).map(|seed| make(seed).path.samples()[0].px.unwrap()).collect();
+    for (i, a) in starts.iter().enumerate() {
+        assert!(starts[..i].iter().all(|b| a != b));
+    }
+    let lengths = [(1.1, 10.0, 11), (6.0, 250.0, 1500), (0.001, 1.0, 1), (2.0, 0.5 + 0.5, 2)];
+    for (duration_s, rate_hz, samples) in lengths {
+        let made = generate(&SyntheticOptions { duration_s, rate_hz, ..Default::default() }).unwrap();
+        assert_eq!(made.path.samples().len(), samples);
+        assert_eq!((made.path.lost(), made.path.samples()[0].t_s), (0, 0.0));
+    }
+}
+
+#[test]
+fn options_out_of_range_are_named() {
+    let with = |change: fn(&mut SyntheticOptions)| {
+        let mut options = SyntheticOptions::default();
+        change(&mut options);
+        generate(&options).unwrap_err().to_string()
+    };
+    for (error, expected) in [
+        (with(|o| o.rate_hz = 0.0), "rate: 0 Hz"),
+        (with(|o| o.rate_hz = f64::NAN), "rate: NaN Hz"),
+        (with(|o| o.duration_s = -1.0), "duration: -1 s"),
+        (with(|o| o.duration_s = f64::NAN), "duration: NaN s"),
+        (with(|o| o.duration_s = 1e9), "at most ten million"),
+        (with(|o| o.screen.size_px = [0, 4]), "0x4 pixels"),
+        (with(|o| o.screen.size_cm = None), "not known"),
+        (with(|o| o.screen.distance_cm = Some(-3.0)), "from -3 cm"),
+        (with(|o| o.screen.distance_cm = Some(3e3)), "at least 8 degrees"),
+    ] {
+        assert!(error.starts_with("synthetic scanpath, ") && error.contains(expected), "{error}");
+    }
+}

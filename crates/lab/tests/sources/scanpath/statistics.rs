@@ -1,0 +1,237 @@
+//! The synthetic eye against the distributions it claims.
+//!
+//! Seeds are independent of one another and chosen before the first run. A test fails below p = 1e-4: with the ten
+//! p-values here, a correct generator with other seeds fails one time in a thousand.
+
+use afterimage_lab::scanpath::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use std::sync::LazyLock;
+
+const RUNS: u64 = 30;
+const DURATION_S: f64 = 60.0;
+const P_LEAST: f64 = 1e-4;
+
+static MADE: LazyLock<Vec<Synthetic>> = LazyLock::new(|| {
+    let make = |i: u64| {
+        let seed = i.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5ca1_ab1e;
+        generate(&SyntheticOptions { seed, duration_s: DURATION_S, ..Default::default() }).unwrap()
+    };
+    (0..RUNS).map(make).collect()
+});
+
+fn of(kind: EventKind) -> Vec<Event> {
+    let all = MADE.iter().flat_map(|made| &made.events);
+    all.filter(|e| e.kind == kind).copied().collect()
+}
+
+fn length_s(e: &Event) -> f64 {
+    e.end_s - e.start_s
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
+}
+
+/// Two-sided test of a sum of independent draws with known mean and standard deviation.
+fn check_z(what: &str, found: f64, expected: f64, sd: f64) {
+    let z = (found - expected) / sd;
+    let p = 2.0 * Normal::standard().sf(z.abs());
+    println!("{what}: {found:.6}, expected {expected:.6} +- {sd:.6}, z = {z:.2}, p = {p:.4}");
+    assert!(p > P_LEAST, "{what}: p = {p:e}");
+}
+
+/// All draws within the range, mean as of a uniform distribution, and its shape by chi-squared over ten bins.
+fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
+    let slack = 1e-9;
+    assert!(draws.iter().all(|d| (low - slack..=high + slack).contains(d)), "{what}");
+    let sd = (high - low) / 12f64.sqrt() / (draws.len() as f64).sqrt();
+    check_z(what, mean(draws.iter().copied()), 0.5 * (low + high), sd);
+    let mut bins = [0.0; 10];
+    for d in draws {
+        bins[(((d - low) / (high - low) * 10.0).max(0.0) as usize).min(9)] += 1.0;
+    }
+    let expected = draws.len() as f64 / 10.0;
+    let chi2: f64 = bins.iter().map(|n| (n - expected) * (n - expected) / expected).sum();
+    let p = ChiSquared::new(9.0).unwrap().sf(chi2);
+    println!("{what}: shape, chi2(9) = {chi2:.2}, p = {p:.4}");
+    assert!(p > P_LEAST, "{what}: shape, p = {p:e}");
+}
+
+#[test]
+fn fixations_landings_undershoot_and_microsaccades_are_distributed_as_claimed() {
+    let lengths = |kind| of(kind).iter().map(length_s).collect::<Vec<_>>();
+    check_uniform("fixation / s", &lengths(EventKind::Fixation), [0.2, 0.4]);
+    check_uniform("landing / s", &lengths(EventKind::Landing), [0.12, 0.18]);
+    let short = |e: &Event| 1.0 - e.amplitude_deg / e.intended_deg;
+    let undershoot: Vec<_> = of(EventKind::Saccade).iter().map(short).collect();
+    check_uniform("undershoot", &undershoot, [0.04, 0.12]);
+    let micro: Vec<_> = of(EventKind::Microsaccade).iter().map(|e| e.amplitude_deg).collect();
+    check_uniform("microsaccade / deg", &micro, [0.2, 1.0]);
+    // One per fixation with probability 2 Hz x length: a sum of independent yes-or-no draws.
+    let chances: Vec<f64> = of(EventKind::Fixation).iter().map(|e| 2.0 * length_s(e)).collect();
+    let sd = chances.iter().map(|p| p * (1.0 - p)).sum::<f64>().sqrt();
+    let fixated_s = chances.iter().sum::<f64>() / 2.0;
+    check_z("microsaccades / s of fixation", micro.len() as f64 / fixated_s, 2.0, sd / fixated_s);
+}
+
+#[test]
+fn two_to_four_saccades_a_second_with_and_without_correctives() {
+    for made in MADE.iter() {
+        let count = |kind| made.events.iter().filter(|e| e.kind == kind).count() as f64;
+        let saccades = count(EventKind::Saccade) / DURATION_S;
+        let all = saccades + count(EventKind::Corrective) / DURATION_S;
+        assert!((2.0..4.0).contains(&saccades) && (2.0..4.0).contains(&all), "{saccades} {all}");
+        assert_eq!(count(EventKind::Landing), count(EventKind::Corrective));
+    }
+    let per_s = |kind| of(kind).len() as f64 / (RUNS as f64 * DURATION_S);
+    println!("saccades/s {:.3}, correctives/s {:.3}", per_s(EventKind::Saccade), per_s(EventKind::Corrective));
+}
+
+#[test]
+fn events_tile_the_time_and_follow_the_grammar() {
+    for made in MADE.iter() {
+        let main: Vec<_> = made.events.iter().filter(|e| e.kind != EventKind::Microsaccade).collect();
+        assert_eq!((main[0].kind, main[0].start_s), (EventKind::Fixation, 0.0));
+        for pair in main.windows(2) {
+            assert!((pair[1].start_s - pair[0].end_s).abs() < 1e-9);
+            use EventKind::*;
+            let kinds = (pair[0].kind, pair[1].kind);
+            let allowed = [
+                (Fixation, Saccade),
+                (Saccade, Fixation),
+                (Saccade, Landing),
+                (Landing, Corrective),
+                (Corrective, Fixation),
+            ];
+            assert!(allowed.contains(&kinds), "{kinds:?}");
+            let error_deg = pair[0].intended_deg - pair[0].amplitude_deg;
+            assert_eq!(kinds == (Saccade, Landing), pair[0].kind == Saccade && error_deg > 0.5);
+        }
+        assert!(main.last().unwrap().end_s >= DURATION_S - 1.0 / 500.0);
+        let fixations = main.iter().filter(|e| e.kind == EventKind::Fixation);
+        let inside = |m: &&Event| fixations.clone().any(|f| f.start_s <= m.start_s && m.end_s <= f.end_s + 1e-9);
+        assert!(made.events.iter().filter(|e| e.kind == EventKind::Microsaccade).all(|m| inside(&m)));
+        let amplitudes = main.iter().filter(|e| e.kind == EventKind::Saccade).map(|e| e.intended_deg);
+        assert!(amplitudes.into_iter().all(|a| (2.5 - 1e-9..=18.0 + 1e-9).contains(&a)));
+    }
+}
+
+/// Ray of a sample, from the screen's centimetres: shares nothing with the generator.
+fn ray(path: &Scanpath, sample: &Sample) -> [f64; 3] {
+    let (screen, px) = (path.screen(), sample.px.unwrap());
+    let cm = |i: usize| (f64::from(px[i]) / f64::from(screen.size_px[i]) - 0.5) * f64::from(screen.size_cm.unwrap()[i]);
+    let v = [cm(0), cm(1), f64::from(screen.distance_cm.unwrap())];
+    let length = v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    v.map(|c| c / length)
+}
+
+/// Angle between unit vectors by their chord.
+fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let chord = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+    (2.0 * (0.5 * chord).asin()).to_degrees()
+}
+
+/// From the samples alone: the time for the middle 80 % of the way follows the main sequence. A minimum-jerk profile spends a
+/// fixed share of its time there, so time against amplitude has that share of the main sequence's slope and intercept.
+#[test]
+fn the_main_sequence_is_in_the_samples() {
+    let mut points = Vec::new();
+    for seed in 0..10 {
+        let made = generate(&SyntheticOptions { seed, rate_hz: 5_000.0, ..Default::default() }).unwrap();
+        let samples = made.path.samples();
+        for e in made.events.iter().filter(|e| e.kind == EventKind::Saccade) {
+            let from = samples.partition_point(|s| s.t_s < e.start_s);
+            let to = samples.partition_point(|s| s.t_s < e.end_s);
+            if to == samples.len() {
+                continue;
+            }
+            let start = ray(&made.path, &samples[from]);
+            let way: Vec<f64> = samples[from..to].iter().map(|s| angle_deg(start, ray(&made.path, s))).collect();
+            let whole = *way.last().unwrap();
+            assert!((whole - e.amplitude_deg).abs() < 0.01, "{whole} {}", e.amplitude_deg);
+            let crossing = |share: f64| {
+                let i = way.partition_point(|w| *w < share * whole);
+                let within = (share * whole - way[i - 1]) / (way[i] - way[i - 1]);
+                (i as f64 - 1.0 + within) / 5_000.0
+            };
+            points.push((whole, crossing(0.9) - crossing(0.1)));
+        }
+    }
+    let (mx, my) = (mean(points.iter().map(|p| p.0)), mean(points.iter().map(|p| p.1)));
+    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+    let slope = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / sxx;
+    let intercept = my - slope * mx;
+    let profile = 1.0 - 2.0 * time_of_a_tenth();
+    println!(
+        "profile {profile:.5}; {} saccades: {:.4} ms + {:.4} ms/deg",
+        points.len(),
+        1e3 * intercept / profile,
+        1e3 * slope / profile
+    );
+    // Nothing here is random: what is left is f32 pixels and linear interpolation between samples 0.2 ms apart.
+    assert!((slope / profile - 0.0022).abs() < 0.0022 * 5e-3 && (intercept / profile - 0.021).abs() < 0.021 * 5e-3);
+}
+
+/// Where 10 u^3 - 15 u^4 + 6 u^5 = 0.1, by bisection.
+fn time_of_a_tenth() -> f64 {
+    let (mut low, mut high) = (0.0f64, 0.5f64);
+    for _ in 0..60 {
+        let u = 0.5 * (low + high);
+        let s = 10.0 * u.powi(3) - 15.0 * u.powi(4) + 6.0 * u.powi(5);
+        if s < 0.1 { low = u } else { high = u }
+    }
+    low
+}
+
+/// From the samples alone: squared steps within fixations, in units of half their claimed mean, are chi-squared with two degrees
+/// of freedom each.
+#[test]
+fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
+    let (mut sum_deg2, mut steps) = (0.0, 0.0);
+    for made in MADE.iter() {
+        let samples = made.path.samples();
+        let rest = |e: &&Event| matches!(e.kind, EventKind::Fixation | EventKind::Landing);
+        let turns: Vec<_> = made.events.iter().filter(|e| !rest(e)).collect();
+        for e in made.events.iter().filter(rest) {
+            let from = samples.partition_point(|s| s.t_s < e.start_s);
+            let to = samples.partition_point(|s| s.t_s < e.end_s);
+            for pair in samples[from..to].windows(2) {
+                if turns.iter().any(|t| t.start_s < pair[1].t_s && pair[0].t_s < t.end_s) {
+                    continue;
+                }
+                sum_deg2 += angle_deg(ray(&made.path, &pair[0]), ray(&made.path, &pair[1])).powi(2);
+                steps += 1.0;
+            }
+        }
+    }
+    // One squared step has mean m and standard deviation m.
+    let step_deg2 = 0.035f64.powi(2) * 60.0 / 500.0;
+    check_z(
+        "drift, squared step / deg^2 x 1e6",
+        1e6 * sum_deg2 / steps,
+        1e6 * step_deg2,
+        1e6 * step_deg2 / f64::sqrt(steps),
+    );
+    println!("drift: {:.5} deg rms in 1/60 s, {steps} steps", (sum_deg2 / steps * 500.0 / 60.0).sqrt());
+}
+
+#[test]
+fn gaze_stays_on_the_screen_and_visits_all_of_it() {
+    for (size_cm, distance) in [([84.0, 47.3], 60.0), ([38.0, 30.0], 67.0), ([8.5, 8.5], 60.0)] {
+        let screen = Screen { size_px: [1000, 800], size_cm: Some(size_cm), distance_cm: Some(distance) };
+        // Few samples a second and hours of them: what is looked for is rare.
+        let made = generate(&SyntheticOptions { seed: 7, screen, duration_s: 20_000.0, rate_hz: 50.0 }).unwrap();
+        let mut quarters = [0usize; 4];
+        for sample in made.path.samples() {
+            let r = ray(&made.path, sample);
+            for i in 0..2 {
+                let half = (0.5 * size_cm[i] / distance).atan().to_degrees();
+                assert!(((r[i] / r[2]).atan().to_degrees()).abs() <= f64::from(half) - 0.499, "{r:?}");
+            }
+            quarters[usize::from(r[0] > 0.0) + 2 * usize::from(r[1] > 0.0)] += 1;
+        }
+        println!("{size_cm:?} cm at {distance} cm: samples per quarter {quarters:?}");
+        assert!(quarters.iter().all(|n| n * 10 > made.path.samples().len()), "{quarters:?}");
+    }
+}

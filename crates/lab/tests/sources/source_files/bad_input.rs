@@ -1,0 +1,286 @@
+//! What can be wrong with an input, and that the message names the file and the way out.
+
+use super::{ALL, Extras, assert_says, error_of, folder_of, limits, picture, write_frame};
+use afterimage_lab::error::InputError;
+use afterimage_lab::source::exr_file::{ExrHeader, FrameToWrite, write};
+use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open};
+use exr::prelude::*;
+use image::{DynamicImage, ImageBuffer, Rgb};
+use std::path::Path;
+
+fn refused(path: &Path) -> InputError {
+    error_of(open(path.to_str().unwrap(), &limits(), &SceneOptions::default()))
+}
+
+#[test]
+fn paths_and_kinds() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["none", "none.exr", "none.png", "none.jpg"] {
+        assert_says(&refused(&at(name)), &[name, "does not exist"]);
+    }
+    assert_says(&refused(folder.path()), &["no .exr", "one image"]);
+    std::fs::write(at("clip.mp4"), b"x").unwrap();
+    assert_says(&refused(&at("clip.mp4")), &["clip.mp4", ".exr", ".png", ".jpg", ".jpeg"]);
+    for scene in ["builtin:cornell", "scene.gltf", "scene.GLB"] {
+        let e = error_of(open(scene, &limits(), &SceneOptions::default()));
+        assert_says(&e, &[scene, "renderer", "EXR frames"]);
+    }
+    std::fs::write(at("empty.exr"), b"").unwrap();
+    assert_says(&refused(&at("empty.exr")), &["empty.exr", "is empty"]);
+    for name in ["text.exr", "text.png", "text.jpg"] {
+        std::fs::write(at(name), b"this is not an image at all, but text").unwrap();
+        assert_says(&refused(&at(name)), &[name, "export it again"]);
+    }
+    std::fs::create_dir(at("dir.png")).unwrap();
+    let e = error_of(StillSource::open(&at("dir.png"), &limits()));
+    assert_says(&e, &["dir.png", "is a folder"]);
+}
+
+#[test]
+fn frames_that_do_not_fit_together() {
+    let cases: [(&str, [u32; 2], Extras, &[&str]); 4] = [
+        ("size", [8, 5], ALL, &["8x5", "8x4", "one size"]),
+        (
+            "motion",
+            [8, 4],
+            Extras { motion: false, to_next: false, ..ALL },
+            &["has no motion vectors to the previous frame", "every frame"],
+        ),
+        ("next", [8, 4], Extras { to_next: false, ..ALL }, &["has no motion vectors to the next frame"]),
+        ("depth", [8, 4], Extras { depth: false, ..ALL }, &["has no depth"]),
+    ];
+    for (what, size, extras, words) in cases {
+        let folder = folder_of(3, [8, 4], ALL);
+        write_frame(&folder.path().join("frame_0002.exr"), size, extras);
+        let e = refused(folder.path());
+        assert_says(&e, words);
+        assert!(e.subject.ends_with("frame_0002.exr"), "{what}: {e}");
+    }
+    let folder = folder_of(4, [8, 4], ALL);
+    std::fs::remove_file(folder.path().join("frame_0002.exr")).unwrap();
+    assert_says(&refused(folder.path()), &["from 1 to 3", "missing frames"]);
+}
+
+#[test]
+fn a_sequence_needs_vectors_for_the_way_it_is_played() {
+    let none = Extras { motion: false, to_next: false, ..ALL };
+    let folder = folder_of(2, [8, 4], none);
+    assert_says(&refused(folder.path()), &["frame_0000.exr", "no motion vectors", "Vector.X/Y", "motion.X/Y"]);
+
+    let forward = Extras { to_next: false, ..ALL };
+    let folder = folder_of(3, [8, 4], forward);
+    let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
+    assert!(source.frame(2).is_ok());
+    let e = source.frame(3).unwrap_err();
+    assert_says(&e, &["frame_0001.exr", "backwards", "Vector.Z/W", "motion.Z/W"]);
+
+    std::fs::remove_file(folder.path().join("frame_0001.exr")).unwrap();
+    let e = source.frame(1).unwrap_err();
+    assert_says(&e, &["frame_0001.exr", "does not exist"]);
+    write_frame(&folder.path().join("frame_0001.exr"), [9, 4], forward);
+    let e = source.frame(1).unwrap_err();
+    assert_says(&e, &["frame_0001.exr", "has changed"]);
+}
+
+/// Every shorter version of a file is refused from its header, tables and last chunk alone.
+#[test]
+fn every_truncation_is_noticed_before_decoding() {
+    let folder = folder_of(1, [40, 40], ALL);
+    let path = folder.path().join("frame_0000.exr");
+    let whole = std::fs::read(&path).unwrap();
+    let cut = folder.path().join("cut.exr");
+    for length in 0..whole.len() {
+        std::fs::write(&cut, &whole[..length]).unwrap();
+        let e = error_of(ExrHeader::open(&cut, &limits()));
+        assert_says(&e, &["cut.exr"]);
+    }
+    let e = error_of(SequenceSource::open(folder.path(), &limits()));
+    assert_says(&e, &["cut.exr", "truncated", "copy or export it again"]);
+}
+
+fn save(path: &Path, channels: Vec<AnyChannel<FlatSamples>>, size: (usize, usize)) {
+    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels);
+    Image::from_layer(layer).write().to_file(path).unwrap();
+}
+
+#[test]
+fn missing_color_lists_what_is_there() {
+    let folder = folder_of(2, [4, 4], ALL);
+    let path = folder.path().join("frame_0001.exr");
+    let zeros = || FlatSamples::F32(vec![0.0; 16]);
+    let names = ["ViewLayer.Depth.Z", "ViewLayer.Mist.Z", "R", "G"];
+    save(&path, names.map(|n| AnyChannel::new(n, zeros())).into(), (4, 4));
+    assert_says(
+        &refused(folder.path()),
+        &["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
+    );
+}
+
+/// Puts `value` in place of the data of attribute `name` of type `kind`.
+fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
+    let key = format!("{name}\0{kind}\0");
+    let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
+    for (i, v) in value.iter().enumerate() {
+        let start = at + key.len() + 4 + 4 * i;
+        bytes[start..start + 4].copy_from_slice(&v.to_le_bytes());
+    }
+}
+
+#[test]
+fn absurd_claims_are_refused_from_the_header() {
+    let folder = folder_of(1, [8, 4], ALL);
+    let path = folder.path().join("frame_0000.exr");
+    let whole = std::fs::read(&path).unwrap();
+    let with = |windows: &[&str], window: [i32; 4]| {
+        let mut bytes = whole.clone();
+        for name in windows {
+            patch(&mut bytes, name, "box2i", &window);
+        }
+        std::fs::write(&path, &bytes).unwrap();
+        refused(&path)
+    };
+    let both = ["dataWindow", "displayWindow"];
+    let e = with(&both, [0, 0, 99_999, 99_999]);
+    assert_says(&e, &["frame_0000.exr", "100000x100000", "64 million", "--max-megapixels 10000"]);
+    let e = with(&both, [0, 0, 1_000_000_000, 1_000_000_000]);
+    assert_says(&e, &["frame_0000.exr", "1000000001"]);
+    // Within the limit, but more chunks than the file has.
+    let e = with(&both, [0, 0, 7, 7_000_000]);
+    assert_says(&e, &["frame_0000.exr", "truncated"]);
+    let e = with(&["displayWindow"], [-1, 0, 8, 3]);
+    assert_says(&e, &["8x4 at (0, 0)", "10x4 at (-1, 0)", "crop or overscan"]);
+
+    let e = error_of(StillSource::open(&path, &ReadLimits { max_pixels: 0 }));
+    assert_says(&e, &["--max-megapixels 1"]);
+    assert_eq!(ReadLimits::default().max_pixels, 64_000_000);
+}
+
+#[test]
+fn one_huge_tile_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tile.exr");
+    // 12 channels of 4 bytes in one block: 48 bytes a pixel, three times what a block may take.
+    let names: Vec<String> =
+        ["R", "G", "B"].map(str::to_owned).into_iter().chain((0..9).map(|i| format!("aux{i}"))).collect();
+    let channels: Vec<_> =
+        names.iter().map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64]))).collect();
+    let encoding = Encoding { blocks: Blocks::Tiles(Vec2(4096, 4096)), ..Encoding::FAST_LOSSLESS };
+    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
+    let layer = Layer::new((64, 64), LayerAttributes::default(), encoding, channels);
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    assert!(StillSource::open(&path, &limits()).is_ok());
+    let tight = ReadLimits { max_pixels: 64 * 64 };
+    let e = error_of(StillSource::open(&path, &tight));
+    assert_says(&e, &["tile.exr", "smaller tiles", "--max-megapixels"]);
+}
+
+#[test]
+fn subsampled_channels_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("yc.exr");
+    let zeros = || FlatSamples::F32(vec![0.0; 64]);
+    save(&path, vec![AnyChannel::new("Y", zeros())], (8, 8));
+    let mut bytes = std::fs::read(&path).unwrap();
+    // Of the channel list: name, zero, type, flags, then the sampling in x and y.
+    let key = b"chlist\0";
+    let at = bytes.windows(key.len()).position(|w| w == key).unwrap() + key.len() + 4 + 2 + 8;
+    bytes[at..at + 8].copy_from_slice(&[2, 0, 0, 0, 2, 0, 0, 0]);
+    std::fs::write(&path, &bytes).unwrap();
+    assert_says(&refused(&path), &["yc.exr", "subsampled", "RGB"]);
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0u32, |crc, &b| {
+        (0..8).fold(crc ^ u32::from(b), |c, _| (c >> 1) ^ (0xEDB8_8320 & 0u32.wrapping_sub(c & 1)))
+    })
+}
+
+#[test]
+fn png_and_jpeg_keep_the_same_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let flat = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb([1, 2, 3])));
+    let png = folder.path().join("a.png");
+    flat.save(&png).unwrap();
+    let mut bytes = std::fs::read(&png).unwrap();
+    bytes[16..20].copy_from_slice(&100_000u32.to_be_bytes());
+    bytes[20..24].copy_from_slice(&90_000u32.to_be_bytes());
+    let crc = crc32(&bytes[12..29]);
+    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    std::fs::write(&png, &bytes).unwrap();
+    assert_says(&refused(&png), &["a.png", "100000x90000", "64 million", "--max-megapixels 9000"]);
+    bytes[16..20].copy_from_slice(&0u32.to_be_bytes());
+    let crc = crc32(&bytes[12..29]);
+    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    std::fs::write(&png, &bytes).unwrap();
+    assert_says(&refused(&png), &["a.png", "export it again"]);
+
+    let jpg = folder.path().join("a.jpg");
+    flat.save(&jpg).unwrap();
+    let mut bytes = std::fs::read(&jpg).unwrap();
+    let sof = bytes.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
+    bytes[sof + 5..sof + 9].copy_from_slice(&[0xFF, 0xFE, 0xFF, 0xFD]);
+    std::fs::write(&jpg, &bytes).unwrap();
+    assert_says(&refused(&jpg), &["a.jpg", "65533x65534", "--max-megapixels 4295"]);
+}
+
+#[test]
+fn cameras_that_do_not_belong() {
+    let folder = folder_of(2, [8, 4], ALL);
+    let json = folder.path().join("cameras.json");
+    let one = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]";
+    let bent = "[[1,0.2,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]";
+    let frame = |n: u32, m: &str| format!(r#"{{"frame":{n},"camera_to_world":{m}}}"#);
+    let frames = |list: &[String]| format!(r#"{{"frames":[{}]}}"#, list.join(","));
+    let cases = [
+        ("{".to_owned(), "not the expected JSON"),
+        (r#"{"fps":"fast"}"#.to_owned(), "not the expected JSON"),
+        (r#"{"fps":0}"#.to_owned(), "fps is 0"),
+        (r#"{"horizontal_fov_deg":180}"#.to_owned(), "horizontal_fov_deg is 180"),
+        (r#"{"width":4,"height":8}"#.to_owned(), "4x8"),
+        (frames(&[frame(0, one), frame(7, one)]), "no camera for frame 1"),
+        (frames(&[frame(0, one), frame(1, bent)]), "camera_to_world of frame 1 scales or shears"),
+        (frames(&[frame(0, one), r#"{"frame":1}"#.to_owned()]), "1 of its 2 frames"),
+    ];
+    for (text, word) in cases {
+        std::fs::write(&json, &text).unwrap();
+        assert_says(&refused(folder.path()), &["cameras.json", word]);
+    }
+    std::fs::write(&json, frames(&[frame(1, one), frame(0, one)])).unwrap();
+    let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
+    assert!(source.frame(1).unwrap().previous_from_current.is_some());
+}
+
+#[test]
+fn a_sequence_is_opened_without_decoding_it() {
+    let folder = folder_of(3, [40, 40], ALL);
+    let path = folder.path().join("frame_0001.exr");
+    let mut bytes = std::fs::read(&path).unwrap();
+    let end = bytes.len();
+    bytes[end - 60..end - 20].fill(0xA5);
+    std::fs::write(&path, &bytes).unwrap();
+    let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
+    assert!(source.frame(0).is_ok());
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "export it again"]);
+    assert!(source.frame(2).is_ok());
+    let color = picture([40, 40]);
+    write(&path, &FrameToWrite::color(&color)).unwrap();
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "has changed"]);
+}
+
+#[test]
+fn truncated_png_and_jpeg_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let noisy = ImageBuffer::from_fn(64, 64, |x, y| Rgb([((x * 37) ^ (y * 91)) as u8; 3]));
+    for name in ["a.png", "a.jpg"] {
+        let path = folder.path().join(name);
+        DynamicImage::ImageRgb8(noisy.clone()).save(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        // A PNG ends with an empty chunk of 12 bytes that holds nothing, a JPEG with a marker of 2.
+        for length in (0..whole.len() - 13).step_by(7).chain([whole.len() - 14]) {
+            std::fs::write(&path, &whole[..length]).unwrap();
+            assert_says(&refused(&path), &[name]);
+        }
+    }
+}

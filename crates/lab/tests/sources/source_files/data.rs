@@ -1,0 +1,224 @@
+//! Against frames of another renderer: names, counts, and that every sign is right.
+
+use super::{limits, recorded};
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::source::exr_file::{ExrHeader, Vectors};
+use afterimage_lab::source::motion_check::{Verdict, detect};
+use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, open};
+use glam::{Mat4, Vec3};
+
+fn tone(x: f32) -> f32 {
+    (x.max(0.0) / (1.0 + x.max(0.0))).powf(1.0 / 2.2)
+}
+
+fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
+    let (w, h) = (image.width(), image.height());
+    let (x0, y0) = (x.floor(), y.floor());
+    let (fx, fy) = (x - x0, y - y0);
+    let at = |x: f32, y: f32| image.at((x.max(0.0) as usize).min(w - 1), (y.max(0.0) as usize).min(h - 1));
+    let (a, b) = (at(x0, y0), at(x0 + 1.0, y0));
+    let (c, d) = (at(x0, y0 + 1.0), at(x0 + 1.0, y0 + 1.0));
+    std::array::from_fn(|i| (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy)
+}
+
+/// Where the point behind a pixel was according to depth and cameras, and at which distance.
+fn by_camera(frame: &SourceFrame, view: &ViewGeometry, x: usize, y: usize) -> ([f32; 2], f32) {
+    let rows = frame.previous_from_current.unwrap();
+    let matrix = Mat4::from_cols_array_2d(&rows).transpose();
+    let z = frame.depth.as_ref().unwrap().at(x, y);
+    let point: Vec3 = matrix.transform_point3(view.ray([x as f32, y as f32]) * z);
+    (view.project(point).unwrap(), point.z)
+}
+
+/// Mean over steps of the PSNR of `previous` fetched at `p + sign * motion`. The same pixels for every sign: those that
+/// were visible before, and whose motion is at least `min_px`.
+fn reprojected_db(
+    source: &mut SequenceSource,
+    indices: std::ops::Range<u64>,
+    sign: [f32; 2],
+    static_scene: bool,
+    min_px: f32,
+) -> f64 {
+    let view = ViewGeometry::flat(source.info().size, source.info().hfov_deg.unwrap_or(70.0)).unwrap();
+    let steps = (indices.end - indices.start) as f64;
+    let mut sum = 0.0;
+    for index in indices {
+        let before = source.frame(index - 1).unwrap();
+        let now = source.frame(index).unwrap();
+        let (zb, zn) = (before.depth.as_ref().unwrap(), now.depth.as_ref().unwrap());
+        let toned = before.color.map(|c| c.map(tone));
+        let motion = now.motion.as_ref().unwrap();
+        let (w, h) = (zn.width(), zn.height());
+        let (mut error, mut count) = (0.0f64, 0u64);
+        for y in 0..h {
+            for x in 0..w {
+                let m = motion.at(x, y);
+                let (px, py) = (x as f32 + m[0], y as f32 + m[1]);
+                let inside = px >= 0.0 && px <= (w - 1) as f32 && py >= 0.0 && py <= (h - 1) as f32;
+                if !inside || m[0].hypot(m[1]) < min_px {
+                    continue;
+                }
+                let (expected, tolerance) =
+                    if static_scene { (by_camera(&now, &view, x, y).1, 0.03) } else { (zn.at(x, y), 0.1) };
+                let seen = zb.at(px.round() as usize, py.round() as usize);
+                if (seen - expected).abs() >= tolerance * expected {
+                    continue;
+                }
+                let fetched = bilinear(&toned, x as f32 + sign[0] * m[0], y as f32 + sign[1] * m[1]);
+                let here = now.color.at(x, y).map(tone);
+                for i in 0..3 {
+                    error += f64::from(fetched[i] - here[i]).powi(2);
+                }
+                count += 3;
+            }
+        }
+        sum += -10.0 * (error / count as f64).log10();
+    }
+    sum / steps
+}
+
+#[test]
+fn counts_sizes_and_channels() {
+    for (name, size, frames) in [
+        ("sponza_lateral", [480, 270], 24),
+        ("sponza_object", [480, 270], 16),
+        ("sponza_still", [1920, 1080], 1),
+        ("blender_raw", [480, 270], 1),
+    ] {
+        let Some(folder) = recorded(name) else { return };
+        let mut source = open(folder.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
+        let info = source.info().clone();
+        assert_eq!((info.size, info.frames), (size, Some(frames)), "{name}");
+        assert_eq!(info.still, frames == 1, "{name}");
+        if name != "blender_raw" {
+            assert_eq!((info.fps, info.hfov_deg), (Some(60.0), Some(70.0)), "{name}");
+        }
+        let frame = source.frame(0).unwrap();
+        assert!(frame.cut && frame.nonfinite == 0);
+        assert_eq!(frame.color.size(), size);
+        let depth = frame.depth.unwrap();
+        assert!(depth.pixels().iter().all(|&z| z > 0.05 && z < 200.0), "{name}");
+        assert_eq!(frame.motion.is_some(), frames > 1, "{name}");
+    }
+}
+
+/// Color and depth of the raw file against its repacked copy, and all four vector channels to half of 1/4096 px.
+#[test]
+fn the_repacked_frame_is_the_raw_one() {
+    let (Some(raw), Some(packed)) = (recorded("blender_raw"), recorded("sponza_lateral")) else {
+        return;
+    };
+    let raw = ExrHeader::open(&raw.join("sponza_lateral_0005.exr"), &limits()).unwrap();
+    let packed = ExrHeader::open(&packed.join("frame_0005.exr"), &limits()).unwrap();
+    assert!(raw.channel_names().iter().any(|n| n.contains("Noisy")));
+    for vectors in [Vectors::ToPrevious, Vectors::ToNext] {
+        let (a, b) = (raw.read(vectors).unwrap(), packed.read(vectors).unwrap());
+        assert_eq!(a.color, b.color, "Combined was not the one taken");
+        let (za, zb) = (a.depth.unwrap(), b.depth.unwrap());
+        for (a, b) in za.pixels().iter().zip(zb.pixels()) {
+            assert!((a - b).abs() <= 1e-5 * a, "{a} {b}");
+        }
+        let (ma, mb) = (a.motion.unwrap(), b.motion.unwrap());
+        for (a, b) in ma.pixels().iter().zip(mb.pixels()) {
+            for i in 0..2 {
+                assert!((a[i] - b[i]).abs() <= 0.5001 / 4096.0, "{a:?} {b:?}");
+            }
+        }
+    }
+}
+
+/// The table of the data's README, forwards and backwards; flipped signs must be clearly worse.
+#[test]
+fn vectors_reproject_as_published() {
+    let cases = [("sponza_lateral", true, 0.0, 36.3, 24.8), ("sponza_object", false, 0.25, 34.8, 18.4)];
+    for (name, static_scene, min_px, right, both_flipped) in cases {
+        let Some(folder) = recorded(name) else { return };
+        let mut source = SequenceSource::open(&folder, &limits()).unwrap();
+        let n = source.info().frames.unwrap();
+        for (direction, steps) in [("forwards", 1..n), ("backwards", n..2 * n - 1)] {
+            let mut db = |sign| reprojected_db(&mut source, steps.clone(), sign, static_scene, min_px);
+            let (good, still, y, both) = (db([1.0, 1.0]), db([0.0, 0.0]), db([1.0, -1.0]), db([-1.0, -1.0]));
+            eprintln!(
+                "{name} {direction}: {good:.2} dB; no motion {still:.2}, y flipped {y:.2}, both flipped {both:.2}"
+            );
+            assert!((good - right).abs() < 0.5, "{name} {direction}: {good}");
+            assert!(good > still + 5.0 && good > both + 8.0, "{name} {direction}");
+            if direction == "forwards" {
+                assert!((both - both_flipped).abs() < 0.5, "{name}: {both}");
+            }
+            if name == "sponza_object" {
+                assert!(good > y + 5.0, "{name} {direction}: the y sign does not matter?");
+            }
+        }
+    }
+}
+
+/// In a scene at rest, depth and cameras say the same as the vectors, in both playing directions.
+#[test]
+fn cameras_agree_with_vectors() {
+    let Some(folder) = recorded("sponza_lateral") else {
+        return;
+    };
+    let mut source = SequenceSource::open(&folder, &limits()).unwrap();
+    let view = ViewGeometry::flat(source.info().size, source.info().hfov_deg.unwrap()).unwrap();
+    for index in [1, 5, 12, 13, 23, 24, 30, 40, 46, 47] {
+        let frame = source.frame(index).unwrap();
+        let motion = frame.motion.as_ref().unwrap();
+        let mut off: Vec<f32> = Vec::new();
+        let mut moved: f32 = 0.0;
+        for y in (0..motion.height()).step_by(3) {
+            for x in (0..motion.width()).step_by(3) {
+                let m = motion.at(x, y);
+                let (was, _) = by_camera(&frame, &view, x, y);
+                off.push((was[0] - x as f32 - m[0]).hypot(was[1] - y as f32 - m[1]));
+                moved = moved.max(m[0].hypot(m[1]));
+            }
+        }
+        let middle = off.len() / 2;
+        let median = *off.select_nth_unstable_by(middle, f32::total_cmp).1;
+        eprintln!("position {index}: median {median:.5} px off, motion up to {moved:.1} px");
+        assert!(median < 0.01, "position {index}: {median}");
+    }
+    assert!(source.frame(0).unwrap().previous_from_current.is_none());
+}
+
+/// The frames at positions i and 2n-2-i are the same pictures; only the first of all is a cut.
+#[test]
+fn playback_turns_round() {
+    let Some(folder) = recorded("sponza_object") else {
+        return;
+    };
+    let mut source = SequenceSource::open(&folder, &limits()).unwrap();
+    let n = source.info().frames.unwrap();
+    for i in [0, 3, n - 2] {
+        let (there, back) = (source.frame(i).unwrap(), source.frame(2 * n - 2 - i).unwrap());
+        assert_eq!(there.color, back.color);
+        assert_ne!(there.motion, back.motion);
+        assert_eq!((there.cut, back.cut), (i == 0, false));
+        let again = source.frame(2 * n - 2 + i).unwrap();
+        assert_eq!(there.color, again.color);
+        assert!(!again.cut);
+    }
+}
+
+#[test]
+fn the_detector_confirms_what_the_reader_delivers() {
+    for (name, verdict) in [("sponza_lateral", Verdict::YAxisOpen), ("sponza_object", Verdict::Decided)] {
+        let Some(folder) = recorded(name) else { return };
+        let mut source = SequenceSource::open(&folder, &limits()).unwrap();
+        for index in [3, 20, 40] {
+            let before = source.frame(index - 1).unwrap();
+            let now = source.frame(index).unwrap();
+            let motion = now.motion.unwrap();
+            let check = detect(&before.color, &now.color, &motion).unwrap();
+            eprintln!(
+                "{name} position {index}: {:?}, {:.1} dB, margin {:.1} dB over {} pixels",
+                check.verdict, check.psnr_db[0].1, check.margin_db, check.pixels
+            );
+            assert_eq!(check.verdict, verdict, "{name} {index}");
+            assert_eq!(check.best, Default::default(), "{name} {index}");
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Every kind of file that is read, written here pixel by pixel and read back.
+
+use super::{ALL, Extras, folder_of, limits, picture, vectors};
+use afterimage::image::Image;
+use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
+use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
+use exr::prelude::*;
+use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+use std::path::Path;
+
+fn srgb(v: f64) -> f32 {
+    let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
+    linear as f32
+}
+
+fn still(path: &Path) -> afterimage_lab::frame::SourceFrame {
+    let mut source = open(path.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
+    assert!(source.info().still);
+    assert_eq!(source.info().frames, Some(1));
+    let first = source.frame(0).unwrap();
+    let later = source.frame(1000).unwrap();
+    assert_eq!(first.color, later.color);
+    assert!(first.cut && !later.cut && first.motion.is_none());
+    first
+}
+
+#[test]
+fn png_is_decoded_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.PNG");
+    let rgb8 = ImageBuffer::from_fn(256, 3, |x, y| Rgb([x as u8, 255 - x as u8, (y * 100) as u8]));
+    DynamicImage::ImageRgb8(rgb8).save_with_format(&path, image::ImageFormat::Png).unwrap();
+    let frame = still(&path);
+    for x in 0..256usize {
+        let e = [x as f64, 255.0 - x as f64, 100.0].map(|v| srgb(v / 255.0));
+        assert_eq!(frame.color.at(x, 1), e);
+    }
+
+    let rgba16 = ImageBuffer::from_fn(64, 64, |x, y| Rgba([(x * 1000) as u16, (y * 1000 + 7) as u16, 65535, 3]));
+    DynamicImage::ImageRgba16(rgba16).save_with_format(&path, image::ImageFormat::Png).unwrap();
+    let frame = still(&path);
+    let e = [5000.0, 9007.0, 65535.0].map(|v: f64| srgb(v / 65535.0));
+    assert_eq!(frame.color.at(5, 9), e);
+}
+
+#[test]
+fn grey_counts_for_all_channels_and_alpha_for_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let images = [
+        DynamicImage::ImageLuma8(ImageBuffer::from_pixel(2, 2, Luma([128]))),
+        DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(2, 2, LumaA([128, 0]))),
+        DynamicImage::ImageLuma16(ImageBuffer::from_pixel(2, 2, Luma([128 * 257]))),
+    ];
+    for image in images {
+        image.save(&path).unwrap();
+        let e = srgb(128.0 / 255.0);
+        assert_eq!(still(&path).color.at(1, 1), [e; 3]);
+    }
+}
+
+#[test]
+fn jpeg_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jpeg");
+    let flat = ImageBuffer::from_pixel(16, 8, Rgb([200, 100, 50]));
+    DynamicImage::ImageRgb8(flat).save(&path).unwrap();
+    let frame = still(&path);
+    assert_eq!(frame.color.size(), [16, 8]);
+    for (found, wanted) in frame.color.at(8, 4).iter().zip([200.0, 100.0, 50.0]) {
+        assert!((found - srgb(wanted / 255.0)).abs() < 0.02);
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.exr");
+    let size = [37, 19];
+    let color = picture(size).map(|c| c.map(|v| v * 1.001));
+    let depth = Image::from_fn(size, |[x, y]| 0.1 + (x * y) as f32);
+    let (motion, to_next) = (vectors(size, 0.3), vectors(size, -7.0));
+    let frame = FrameToWrite {
+        color: &color,
+        format: ColorFormat::Float,
+        depth: Some(&depth),
+        motion: Some(&motion),
+        motion_to_next: Some(&to_next),
+    };
+    write(&path, &frame).unwrap();
+    let header = ExrHeader::open(&path, &limits()).unwrap();
+    let read = header.read(Vectors::ToPrevious).unwrap();
+    assert_eq!(read.color, color);
+    assert_eq!(read.depth.as_ref(), Some(&depth));
+    assert_eq!(read.motion.as_ref(), Some(&motion));
+    assert_eq!(header.read(Vectors::ToNext).unwrap().motion.as_ref(), Some(&to_next));
+    assert!(header.read(Vectors::Skip).unwrap().motion.is_none());
+
+    let first = std::fs::read(&path).unwrap();
+    write(&path, &frame).unwrap();
+    assert_eq!(first, std::fs::read(&path).unwrap(), "not reproducible");
+    let files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(files.len(), 1, "a temporary file was left behind");
+}
+
+#[test]
+fn half_output_clamps_and_a_failed_write_leaves_the_old_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.exr");
+    let color = Image::filled([3, 2], [1e9f32, -1e9, f32::INFINITY]);
+    write(&path, &FrameToWrite::color(&color)).unwrap();
+    let read = still(&path);
+    assert_eq!(read.color.at(0, 0), [65504.0, -65504.0, 65504.0]);
+    assert_eq!(read.nonfinite, 0);
+
+    let depth = Image::filled([3, 3], 1.0f32);
+    let frame = FrameToWrite { depth: Some(&depth), ..FrameToWrite::color(&color) };
+    let e = write(&path, &frame).unwrap_err().to_string();
+    assert!(e.contains("size"), "{e}");
+    assert_eq!(still(&path).color, read.color);
+    let nowhere = folder.path().join("none/f.exr");
+    let e = write(&nowhere, &FrameToWrite::color(&color)).unwrap_err();
+    assert_eq!(e.kind(), std::io::ErrorKind::NotFound, "{e}");
+}
+
+#[test]
+fn broken_numbers_are_counted_or_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = [4, 2];
+    let mut color = picture(size);
+    color.pixels_mut()[1][2] = f32::NAN;
+    color.pixels_mut()[5][0] = f32::NEG_INFINITY;
+    color.pixels_mut()[5][1] = f32::NAN;
+    let values = [0.0, -1.0, f32::NAN, f32::INFINITY, 1e10, 2.0, 1e-30, -0.0];
+    let depth = Image::from_pixels(size, values.to_vec()).unwrap();
+    let mut motion = vectors(size, 0.0);
+    motion.pixels_mut()[3] = [f32::NAN, 1.0];
+    for i in 0..2 {
+        let frame = FrameToWrite {
+            color: &color,
+            format: ColorFormat::Float,
+            depth: Some(&depth),
+            motion: Some(&motion),
+            motion_to_next: None,
+        };
+        write(&folder.path().join(format!("{i}.exr")), &frame).unwrap();
+    }
+    let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
+    let frame = source.frame(1).unwrap();
+    assert_eq!(frame.nonfinite, 2);
+    assert_eq!(frame.color.at(1, 0), [0.0; 3]);
+    assert_eq!(frame.color.at(1, 1), [0.0; 3]);
+    assert_eq!(frame.color.at(2, 1), color.at(2, 1));
+    let read = frame.depth.unwrap();
+    let marked: Vec<bool> = read.pixels().iter().map(|z| z.is_nan()).collect();
+    assert_eq!(marked, [true, true, true, false, false, false, false, true]);
+    assert!(frame.motion.unwrap().at(3, 0)[0].is_nan());
+}
+
+fn channel(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
+    AnyChannel::new(name, samples)
+}
+
+fn ramp(n: usize, scale: f32) -> FlatSamples {
+    FlatSamples::F32((0..n).map(|i| i as f32 * scale).collect())
+}
+
+fn encoding(compression: Compression, blocks: Blocks) -> Encoding {
+    Encoding { compression, blocks, line_order: LineOrder::Increasing }
+}
+
+#[test]
+fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.exr");
+    let (w, h) = (70usize, 45usize);
+    let n = w * h;
+    let scan_lines = Blocks::ScanLines;
+    let tiles = Blocks::Tiles(Vec2(32, 16));
+    for compression in [
+        Compression::Uncompressed,
+        Compression::RLE,
+        Compression::ZIP1,
+        Compression::ZIP16,
+        Compression::PIZ,
+        Compression::PXR24,
+    ] {
+        for blocks in [scan_lines, tiles] {
+            let channels = SmallVec::from_vec(vec![
+                channel("A", ramp(n, 1.0)),
+                channel("B", FlatSamples::F16((0..n).map(|i| f16::from_f32((i % 512) as f32)).collect())),
+                channel("G", FlatSamples::U32((0..n as u32).collect())),
+                channel("R", ramp(n, 0.5)),
+                channel("Z", ramp(n, 2.0)),
+            ]);
+            let layer = Layer::new(
+                (w, h),
+                LayerAttributes::named("beauty").with_position(Vec2(-12, -7)),
+                encoding(compression, blocks),
+                AnyChannels::sort(channels),
+            );
+            // A window away from the origin, on both sides of it.
+            let mut exr = exr::prelude::Image::from_layer(layer);
+            exr.attributes.display_window = attribute::IntegerBounds::new(Vec2(-12, -7), Vec2(w, h));
+            exr.write().to_file(&path).unwrap();
+            let frame = still(&path);
+            for i in 0..n {
+                let (x, y) = (i % w, i / w);
+                let e = [i as f32 * 0.5, i as f32, (i % 512) as f32];
+                assert_eq!(frame.color.at(x, y), e, "{compression:?} {blocks:?}");
+                let z = frame.depth.as_ref().unwrap().at(x, y);
+                assert!(if i == 0 { z.is_nan() } else { z == i as f32 * 2.0 });
+            }
+        }
+    }
+}
+
+#[test]
+fn several_parts_and_grey() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.exr");
+    let (w, h) = (9usize, 5usize);
+    let part = |name: &str, channels: Vec<AnyChannel<FlatSamples>>| {
+        Layer::new(
+            (w, h),
+            LayerAttributes::named(name),
+            encoding(Compression::ZIP16, Blocks::ScanLines),
+            AnyChannels::sort(SmallVec::from_vec(channels)),
+        )
+    };
+    let n = w * h;
+    let parts = vec![
+        part("v.Noisy Image", ["R", "G", "B"].map(|c| channel(c, ramp(n, 9.0))).into()),
+        part("v.Depth", vec![channel("Z", ramp(n, 3.0))]),
+        part("v.Vector", ["X", "Y", "Z", "W"].map(|c| channel(c, ramp(n, 4.0))).into()),
+        part("v.Combined", ["R", "G", "B"].map(|c| channel(c, ramp(n, 1.0))).into()),
+    ];
+    let attributes = ImageAttributes::new(attribute::IntegerBounds::from_dimensions((w, h)));
+    exr::prelude::Image::from_layers(attributes, parts).write().to_file(&path).unwrap();
+    let header = ExrHeader::open(&path, &limits()).unwrap();
+    let frame = header.read(Vectors::ToNext).unwrap();
+    assert_eq!(frame.color.at(2, 1), [11.0; 3]);
+    assert_eq!(frame.depth.unwrap().at(2, 1), 33.0);
+    assert_eq!(frame.motion.unwrap().at(2, 1), [-44.0, 44.0]);
+    let before = header.read(Vectors::ToPrevious).unwrap().motion.unwrap();
+    assert_eq!(before.at(2, 1), [44.0, -44.0]);
+
+    let grey = part("", vec![channel("Y", ramp(n, 1.0))]);
+    exr::prelude::Image::from_layer(grey).write().to_file(&path).unwrap();
+    assert_eq!(still(&path).color.at(3, 2), [21.0; 3]);
+}
+
+#[test]
+fn plain_vectors_are_taken_as_they_are_and_turn_round() {
+    let folder = folder_of(3, [8, 4], ALL);
+    let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
+    let motion = |s: &mut SequenceSource, i| s.frame(i).unwrap().motion.unwrap();
+    assert_eq!(motion(&mut source, 1), vectors([8, 4], 1.0));
+    assert_eq!(motion(&mut source, 2), vectors([8, 4], 1.0));
+    assert_eq!(motion(&mut source, 3), vectors([8, 4], 3.0));
+    assert_eq!(motion(&mut source, 4), vectors([8, 4], 3.0));
+    assert_eq!(motion(&mut source, 5), vectors([8, 4], 1.0));
+    assert_eq!(source.info().fps, None);
+    assert!(source.frame(1).unwrap().previous_from_current.is_none());
+}
+
+#[test]
+fn one_frame_in_a_folder_is_a_still_and_depth_is_optional() {
+    let extras = Extras { depth: false, ..ALL };
+    let folder = folder_of(1, [8, 4], extras);
+    let name = folder.path().to_str().unwrap();
+    std::fs::write(folder.path().join(".frame_0001.exr"), b"hidden").unwrap();
+    let cameras = r#"{"fps": 24, "horizontal_fov_deg": 50.5, "width": 8, "height": 4}"#;
+    std::fs::write(folder.path().join("cameras.json"), cameras).unwrap();
+    let mut source = open(name, &limits(), &SceneOptions::default()).unwrap();
+    let frame = source.frame(7).unwrap();
+    assert!(frame.depth.is_none() && frame.motion.is_none());
+    let info = source.info();
+    assert!(info.still && info.name == name);
+    assert_eq!((info.fps, info.hfov_deg), (Some(24.0), Some(50.5)));
+    let file = folder.path().join("frame_0000.exr");
+    let alone = StillSource::open(&file, &limits()).unwrap();
+    assert_eq!(alone.info().hfov_deg, Some(50.5));
+}

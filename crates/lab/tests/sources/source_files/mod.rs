@@ -1,0 +1,94 @@
+//! File sources: stills, EXR sequences, their vectors and cameras, and everything that can be wrong with a file.
+
+mod bad_input;
+mod data;
+mod formats;
+mod motion;
+mod mutation;
+
+use afterimage::image::Image;
+use afterimage_lab::error::InputError;
+use afterimage_lab::source::ReadLimits;
+use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The folder of a recorded sequence; says loudly when it is not there.
+fn recorded(name: &str) -> Option<PathBuf> {
+    let path = afterimage_testing::workspace().join("../shared/data/sequences").join(name);
+    if path.is_dir() {
+        return Some(path);
+    }
+    // Not eprintln: the harness would swallow it.
+    let _ = writeln!(std::io::stderr(), "SKIPPED: no recorded frames at {}", path.display());
+    None
+}
+
+fn limits() -> ReadLimits {
+    ReadLimits::default()
+}
+
+/// A small picture whose pixels all differ.
+fn picture(size: [u32; 2]) -> Image<[f32; 3]> {
+    Image::from_fn(size, |[x, y]| [x as f32 / 8.0, y as f32 / 4.0, (x * y % 7) as f32])
+}
+
+/// Vectors that differ from pixel to pixel.
+fn vectors(size: [u32; 2], offset: f32) -> Image<[f32; 2]> {
+    Image::from_fn(size, |[x, y]| [x as f32 * 0.25 + offset, y as f32 * -0.5 - offset])
+}
+
+/// What a frame of a synthetic sequence has besides color.
+#[derive(Clone, Copy)]
+struct Extras {
+    depth: bool,
+    motion: bool,
+    to_next: bool,
+}
+
+const ALL: Extras = Extras { depth: true, motion: true, to_next: true };
+
+fn write_frame(path: &Path, size: [u32; 2], extras: Extras) {
+    let color = picture(size);
+    let depth = Image::filled(size, 2.0f32);
+    let motion = vectors(size, 1.0);
+    let to_next = vectors(size, 3.0);
+    let frame = FrameToWrite {
+        color: &color,
+        format: ColorFormat::Half,
+        depth: extras.depth.then_some(&depth),
+        motion: extras.motion.then_some(&motion),
+        motion_to_next: extras.to_next.then_some(&to_next),
+    };
+    write(path, &frame).unwrap();
+}
+
+/// A folder with `n` frames, named from `frame_0000.exr` on.
+fn folder_of(n: u32, size: [u32; 2], extras: Extras) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for i in 0..n {
+        let path = folder.path().join(format!("frame_{i:04}.exr"));
+        write_frame(&path, size, extras);
+    }
+    folder
+}
+
+/// Checks that an error is one line, names its subject, and holds every one of the words.
+#[track_caller]
+fn assert_says(error: &InputError, words: &[&str]) {
+    let text = error.to_string();
+    assert!(!text.contains('\n'), "more than one line: {text:?}");
+    assert!(!error.remedy.is_empty(), "no remedy: {text}");
+    for word in words {
+        assert!(text.contains(word), "{word:?} is not in: {text}");
+    }
+}
+
+/// The error of a result whose value cannot be shown.
+#[track_caller]
+fn error_of<T>(result: Result<T, InputError>) -> InputError {
+    match result {
+        Ok(_) => panic!("was accepted"),
+        Err(e) => e,
+    }
+}

@@ -1,0 +1,170 @@
+//! Damaged files: flipped, inserted and lost bytes must give an error or a picture, never a panic or a flood of memory.
+
+use super::{picture, vectors};
+use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
+use afterimage_lab::source::{ReadLimits, SceneOptions, open};
+use afterimage_testing::panics::silence_the_exr_decoder;
+use exr::prelude::*;
+use image::{DynamicImage, ImageBuffer, Rgb};
+use proptest::prelude::*;
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// Small enough that a file which gets through at its claimed size still takes little.
+const LIMITS: ReadLimits = ReadLimits { max_pixels: 1 << 20 };
+
+/// Name and bytes of a small valid file of every kind and every compression.
+fn samples() -> &'static [(String, Vec<u8>)] {
+    static SAMPLES: OnceLock<Vec<(String, Vec<u8>)>> = OnceLock::new();
+    SAMPLES.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut samples = Vec::new();
+        let mut take = |name: &str| {
+            let bytes = std::fs::read(folder.path().join(name)).unwrap();
+            samples.push((name.to_owned(), bytes));
+        };
+        let noisy = ImageBuffer::from_fn(24, 20, |x, y| Rgb([(x * 11) as u8, (y * 13) as u8, (x * y) as u8]));
+        for name in ["a.png", "a.jpg"] {
+            DynamicImage::ImageRgb8(noisy.clone()).save(folder.path().join(name)).unwrap();
+            take(name);
+        }
+        let (color, motion) = (picture([24, 20]), vectors([24, 20], 0.5));
+        let frame = FrameToWrite { format: ColorFormat::Half, motion: Some(&motion), ..FrameToWrite::color(&color) };
+        write(&folder.path().join("own.exr"), &frame).unwrap();
+        take("own.exr");
+        for (name, compression) in [
+            ("raw", Compression::Uncompressed),
+            ("rle", Compression::RLE),
+            ("zip1", Compression::ZIP1),
+            ("piz", Compression::PIZ),
+            ("pxr24", Compression::PXR24),
+            ("b44", Compression::B44),
+            ("dwaa", Compression::DWAA(None)),
+        ] {
+            for (kind, blocks) in [("lines", Blocks::ScanLines), ("tiles", Blocks::Tiles(Vec2(16, 8)))] {
+                let name = format!("{name}_{kind}.exr");
+                save(&folder.path().join(&name), compression, blocks);
+                take(&name);
+            }
+        }
+        samples
+    })
+}
+
+fn save(path: &Path, compression: Compression, blocks: Blocks) {
+    let n = 24 * 20;
+    let half = |k: usize| FlatSamples::F16((0..n).map(|i| f16::from_f32((i * k % 97) as f32)).collect());
+    let channels = SmallVec::from_vec(vec![
+        AnyChannel::new("R", half(3)),
+        AnyChannel::new("G", half(5)),
+        AnyChannel::new("B", half(7)),
+        AnyChannel::new("Z", FlatSamples::F32((0..n).map(|i| i as f32).collect())),
+    ]);
+    let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
+    let channels = AnyChannels::sort(channels);
+    let layer = Layer::new((24, 20), LayerAttributes::default(), encoding, channels);
+    Image::from_layer(layer).write().to_file(path).unwrap();
+}
+
+/// Largest resident memory of this process so far, in MB, where the system tells.
+fn peak_mb() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? / 1024)
+}
+
+fn mutate(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8)]) {
+    for &(at, value, how) in edits {
+        if bytes.is_empty() {
+            return;
+        }
+        // Headers are where the harm is: half of the edits go there.
+        let span = if how % 2 == 0 { bytes.len().min(420) } else { bytes.len() };
+        let i = at.index(span);
+        match how / 2 % 8 {
+            0 => bytes[i] = value,
+            1 => bytes[i] ^= 1 << (value % 8),
+            2 => bytes[i] = 0xFF,
+            3 => bytes[i] = 0x7F,
+            4 => bytes.insert(i, value),
+            5 => drop(bytes.remove(i)),
+            6 => bytes[i] = bytes[i].wrapping_add(1),
+            _ if value < 32 => bytes.truncate(i),
+            _ => bytes[i] = 0,
+        }
+    }
+}
+
+#[test]
+fn the_samples_are_sound() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in samples() {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let mut source = open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()).unwrap();
+        assert_eq!(source.frame(0).unwrap().color.size(), [24, 20], "{name}");
+    }
+}
+
+/// A DWA chunk starts with counters that its decoder believes: one of 32 GB would end the process.
+#[test]
+fn dwa_counters_do_not_set_memory_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dwaa_lines.exr");
+    let (_, whole) = samples().iter().find(|s| s.0 == "dwaa_lines.exr").unwrap();
+    // The only chunk follows the table whose only entry points at it; its data follow the line and size.
+    let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
+    let chunk = (8..whole.len() - 8).find(|&at| word(at - 8) == at as u64).unwrap();
+    for counter in 1..10 {
+        let mut bytes = whole.clone();
+        let at = chunk + 8 + 8 * counter;
+        bytes[at..at + 8].copy_from_slice(&(1u64 << 35).to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        let e = super::error_of(open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()));
+        super::assert_says(&e, &["dwaa_lines.exr", "damaged"]);
+    }
+}
+
+fn cases() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok());
+    let rng_seed = proptest::test_runner::RngSeed::Fixed(0x6578_7220);
+    ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, rng_seed, ..ProptestConfig::default() }
+}
+
+proptest! {
+    #![proptest_config(cases())]
+
+    #[test]
+    fn damage_gives_an_error_or_a_picture(
+        which in any::<prop::sample::Index>(),
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), any::<u8>()), 1..6),
+    ) {
+        silence_the_exr_decoder();
+        static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+        let folder = FOLDER.get_or_init(|| tempfile::tempdir().unwrap());
+        let (name, bytes) = which.get(samples());
+        let mut bytes = bytes.clone();
+        mutate(&mut bytes, &edits);
+        let path = folder.path().join(name);
+        std::fs::write(&path, &bytes).unwrap();
+        let before = peak_mb();
+        match open(path.to_str().unwrap(), &LIMITS, &SceneOptions::default()) {
+            Err(e) => {
+                let text = e.to_string();
+                prop_assert!(text.contains(name.as_str()), "{}", text);
+                prop_assert!(!text.contains('\n'), "{}", text);
+                prop_assert!(!e.remedy.is_empty());
+            }
+            Ok(mut source) => {
+                let frame = source.frame(0).unwrap();
+                let [w, h] = frame.color.size();
+                prop_assert!(u64::from(w) * u64::from(h) <= LIMITS.max_pixels);
+            }
+        }
+        if let (Some(before), Some(after)) = (before, peak_mb()) {
+            // The largest allowed picture takes 16 MB as color and depth, its decoding about as much again; other tests
+            // of this process run meanwhile.
+            prop_assert!(after - before < 300, "{} took {} MB", name, after - before);
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! The WGSL library of the tracer and the rasteriser against its Rust kernel, function by function, bit for bit; hard cases H80, H83.
+
+#[path = "../../../../tests/gpu/twins/modules.rs"]
+mod modules;
+#[allow(dead_code, reason = "the drop-in's twins use all of it")]
+#[path = "../../../../tests/gpu/twins/probe.rs"]
+mod probe;
+#[allow(dead_code, reason = "the drop-in's twins use all of it")]
+#[path = "../../../../tests/gpu/twins/values.rs"]
+mod values;
+
+mod controls;
+mod facets;
+mod functions;
+mod library;
+mod lighting;
+mod scattering;
+mod scattering_lobes;
+mod triangles;

@@ -1,0 +1,198 @@
+//! One adapter for all GPU tests of a file, a fresh device for each test, and probes: a WGSL entry point over a table of words.
+
+use std::borrow::Cow;
+use std::io::Write;
+use std::sync::OnceLock;
+
+/// What every word of a probe's output holds before it runs. A word that stays so was not written, and differs from what is
+/// expected there.
+pub const SENTINEL: u32 = 0xdead_beef;
+
+/// Threads in a workgroup of a probe.
+pub const WORKGROUP: u32 = 64;
+
+fn say(line: &str) {
+    // Not eprintln!, which the test harness captures: a skip must be seen in a green run.
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+fn find_adapter() -> Option<wgpu::Adapter> {
+    let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
+    desc.backends = wgpu::Backends::VULKAN;
+    let instance = wgpu::Instance::new(desc);
+    let options =
+        wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
+    match pollster::block_on(instance.request_adapter(&options)) {
+        Ok(adapter) => {
+            let info = adapter.get_info();
+            say(&format!("adapter: {}, {}, {}, {:?}", info.name, info.driver, info.driver_info, info.backend));
+            Some(adapter)
+        }
+        Err(error) => {
+            say(&format!("no Vulkan adapter: {error}"));
+            None
+        }
+    }
+}
+
+/// The Vulkan adapter of this run, or `None`, after saying so, where there is none.
+///
+/// # Panics
+/// If there is none and `AFTERIMAGE_GPU=require` is set, as CI does: a missing adapter is a failure there.
+pub fn adapter() -> Option<&'static wgpu::Adapter> {
+    static ADAPTER: OnceLock<Option<wgpu::Adapter>> = OnceLock::new();
+    let adapter = ADAPTER.get_or_init(find_adapter).as_ref();
+    if adapter.is_none() {
+        let required = std::env::var("AFTERIMAGE_GPU").is_ok_and(|v| v == "require");
+        assert!(
+            !required,
+            "AFTERIMAGE_GPU=require, but there is no Vulkan adapter: install mesa-vulkan-drivers (software Vulkan) or a driver"
+        );
+        let test = std::thread::current().name().unwrap_or("a test").to_owned();
+        say(&format!("SKIPPED {test}: no Vulkan adapter (install mesa-vulkan-drivers)"));
+    }
+    adapter
+}
+
+/// A fresh device with default limits. Its uncaptured errors panic.
+pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+    let adapter = adapter()?;
+    let desc = wgpu::DeviceDescriptor { label: Some("test"), ..Default::default() };
+    Some(pollster::block_on(adapter.request_device(&desc)).expect("a device with default limits"))
+}
+
+/// Runs `f` and panics with the message of the first validation error in it.
+#[track_caller]
+pub fn validated<T>(device: &wgpu::Device, what: &str, f: impl FnOnce() -> T) -> T {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let result = f();
+    if let Some(error) = pollster::block_on(scope.pop()) {
+        panic!("{what}: {error}");
+    }
+    result
+}
+
+/// Runs the compute entry point `entry` of `source` and returns its output.
+///
+/// Binding 0: `inputs`, read-only storage; binding 1: `out_words` words of storage, all [`SENTINEL`] before. At least
+/// `out_words` invocations run, in workgroups of [`WORKGROUP`] along x, so that a row needs no more than one.
+#[track_caller]
+pub fn run_probe(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    source: &str,
+    entry: &str,
+    inputs: &[u32],
+    out_words: usize,
+) -> Vec<u32> {
+    let bytes = (out_words * 4) as u64;
+    let buffer = |label, size, usage| {
+        device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+    };
+    validated(device, "the probe", || {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("probe"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(source)),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("probe"),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let input = buffer(
+            "probe input",
+            (inputs.len() * 4) as u64,
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        );
+        let output = buffer(
+            "probe output",
+            bytes,
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+        );
+        let readback = buffer("probe readback", bytes, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        queue.write_buffer(&input, 0, bytemuck::cast_slice(inputs));
+        queue.write_buffer(&output, 0, bytemuck::cast_slice(&vec![SENTINEL; out_words]));
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("probe"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+            ],
+        });
+        let mut encoder = device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups((out_words as u32).div_ceil(WORKGROUP), 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&output, 0, &readback, 0, bytes);
+        queue.submit([encoder.finish()]);
+        readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("the readback maps"));
+        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        let words = bytemuck::cast_slice(&readback.get_mapped_range(..).expect("the readback is mapped")).to_vec();
+        readback.unmap();
+        words
+    })
+}
+
+/// Fills one array layer of a texture.
+pub fn write_layer(queue: &wgpu::Queue, texture: &wgpu::Texture, layer: usize, bytes: &[u8]) {
+    let size = wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 };
+    let mut to = texture.as_image_copy();
+    to.origin.z = layer as u32;
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(bytes.len() as u32 / size.height),
+        rows_per_image: Some(size.height),
+    };
+    queue.write_texture(to, bytes, layout, size);
+}
+
+/// Fills one level of a texture, all its layers, with one byte.
+pub fn fill_level(queue: &wgpu::Queue, texture: &wgpu::Texture, level: u32, byte: u8) {
+    let size = wgpu::Extent3d {
+        width: texture.width() >> level,
+        height: texture.height() >> level,
+        depth_or_array_layers: texture.depth_or_array_layers(),
+    };
+    let row = size.width * texture.format().block_copy_size(None).unwrap();
+    let bytes = vec![byte; (row * size.height * size.depth_or_array_layers) as usize];
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(size.height) };
+    let to = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
+    queue.write_texture(to, &bytes, layout, size);
+}
+
+/// All words of a texture whose texels are whole words, layer after layer.
+pub fn read_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u32> {
+    let texel = texture.format().block_copy_size(None).unwrap();
+    let row = texture.width() * texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let rows = texture.height() * texture.depth_or_array_layers();
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded) * u64::from(rows),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: Some(texture.height()) };
+    let mut encoder = device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        texture.size(),
+    );
+    queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    let mapped = buffer.get_mapped_range(..).expect("the readback is mapped");
+    mapped
+        .chunks_exact(padded as usize)
+        .flat_map(|r| bytemuck::cast_slice::<u8, u32>(&r[..row as usize]).to_vec())
+        .collect()
+}

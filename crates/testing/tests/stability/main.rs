@@ -1,0 +1,128 @@
+//! The contract of hard cases: every row is held by a test, and docs/stability.md says which, with the figure that it measured.
+//!
+//! Tests say `holds!("H08", Cpu, "s = {s}")`; with `AFTERIMAGE_STABILITY` naming a folder, what they said is left there.
+//! `AFTERIMAGE_BLESS=1 cargo test --all-features --test stability -- --ignored` then writes the table anew; `tests/run.sh` compares.
+
+mod rows;
+mod table;
+
+use afterimage_testing::hard_case::{Side, record};
+use afterimage_testing::workspace;
+use rows::ROWS;
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use table::{Held, missing, parse, print};
+
+/// The table, which lies in the workspace.
+fn table_path() -> PathBuf {
+    workspace().join("docs/stability.md")
+}
+
+#[test]
+fn the_rows_are_h01_to_h84_in_order() {
+    for (index, row) in ROWS.iter().enumerate() {
+        assert_eq!(row.id, format!("H{:02}", index + 1));
+        let cells = [row.input, row.must, row.limit.unwrap_or("-")];
+        assert!(cells.iter().all(|c| !c.is_empty() && c.is_ascii() && !c.contains(['|', '\n'])), "{}", row.id);
+    }
+}
+
+/// The printed table has every row, no row more, and a test for every side.
+#[test]
+fn the_table_has_every_row() {
+    let held = parse(&fs::read_to_string(table_path()).unwrap());
+    assert_eq!(missing(&held), Vec::<String>::new());
+}
+
+/// Tests that the table names are there, and say that they hold the row.
+#[test]
+fn the_tests_of_the_table_exist() {
+    for held in parse(&fs::read_to_string(table_path()).unwrap()) {
+        let (name, files) = (held.test.rsplit("::").next().unwrap(), held.files());
+        let side = match held.side.as_str() {
+            "CPU" => "Cpu",
+            "GPU" => "Gpu",
+            _ => "Tool",
+        };
+        let said = [format!("fn {name}("), format!("holds!(\"{}\", {side},", held.row)];
+        let text = files.iter().filter_map(|f| fs::read_to_string(f).ok()).collect::<Vec<_>>().join("\n");
+        let text = text.replace("holds!(\n", "holds!(").replace("!(        ", "!(");
+        let words = |t: &str| t.split_whitespace().collect::<String>();
+        for said in said {
+            assert!(words(&text).contains(&words(&said)), "{} {}: no {said} in {files:?}", held.row, held.test);
+        }
+    }
+}
+
+/// After a whole run of the tests: what they said is what the table says, but for figures, which may differ between machines.
+#[test]
+#[ignore = "after all other tests: tests/run.sh"]
+fn the_table_is_what_the_tests_said() {
+    let folder = PathBuf::from(std::env::var_os("AFTERIMAGE_STABILITY").expect("AFTERIMAGE_STABILITY names no folder"));
+    let said = read(&folder);
+    if std::env::var_os("AFTERIMAGE_BLESS").is_some() {
+        assert_eq!(missing(&said), Vec::<String>::new(), "what is said in {}", folder.display());
+        fs::write(table_path(), print(&said)).unwrap();
+    }
+    let names = |held: &[Held]| -> BTreeSet<_> {
+        held.iter().map(|h| (h.row.clone(), h.side.clone(), h.test.clone())).collect()
+    };
+    let (said, printed) = (names(&said), names(&parse(&fs::read_to_string(table_path()).unwrap())));
+    let of = |a: &BTreeSet<_>, b: &BTreeSet<_>| a.difference(b).cloned().collect::<Vec<(String, String, String)>>();
+    if workspace().join("../shared/data").is_dir() {
+        assert_eq!(of(&printed, &said), [], "in the table, and not said by any test");
+    } else {
+        // Not eprintln: the harness would swallow it.
+        let without = of(&printed, &said).len();
+        let _ =
+            writeln!(std::io::stderr(), "SKIPPED: no ../shared/data; {without} lines of the table were not compared");
+    }
+    assert_eq!(of(&said, &printed), [], "said by tests, and not in the table");
+}
+
+/// What tests have left in the folder, in order.
+fn read(folder: &Path) -> Vec<Held> {
+    let mut held: Vec<Held> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let mut words = name.splitn(3, ' ').map(str::to_owned);
+            let mut word = || words.next().expect("ROW SIDE TEST");
+            let (row, side) = (word(), word());
+            Held { row, side, test: word().replace('.', "::"), figure: fs::read_to_string(&path).unwrap() }
+        })
+        .collect();
+    held.sort();
+    held
+}
+
+/// The checks notice a row without a test, a side without one, and a row of no list.
+#[test]
+fn what_is_missing_is_noticed() {
+    let whole: Vec<Held> = ROWS
+        .iter()
+        .flat_map(|r| r.sides.iter().map(|side| Held::new(r.id, side, "reservoir::drift", "1412.7")))
+        .collect();
+    assert_eq!(missing(&whole), Vec::<String>::new());
+    assert_eq!(parse(&print(&whole)), whole, "what is printed is read again");
+    let without = |row: &str, side: &str| {
+        missing(&whole.iter().filter(|h| h.row != row || h.side != side).cloned().collect::<Vec<_>>())
+    };
+    assert_eq!(without("H08", "GPU"), ["H08 has no test on the GPU"]);
+    assert_eq!(without("H84", "GPU"), ["H84 has no test on the GPU"]);
+    let more = [whole, vec![Held::new("H85", "CPU", "a::b", "0")]].concat();
+    assert_eq!(missing(&more), ["H85 is no row"]);
+}
+
+/// What a test says is left where it is looked for.
+#[test]
+fn a_record_has_a_name_that_is_read_again() {
+    assert_eq!([Side::Cpu, Side::Gpu, Side::Tool].map(|s| s.to_string()), ["CPU", "GPU", "tool"]);
+    // Without the folder it is printed only.
+    if std::env::var_os("AFTERIMAGE_STABILITY").is_none() {
+        record("H01", Side::Cpu, "a::b::{{closure}}", "1");
+    }
+}

@@ -1,0 +1,372 @@
+//! The contract: which input must give what. The numbers are those of the list that the project was designed with.
+
+/// A hard case.
+pub struct Row {
+    pub id: &'static str,
+    pub input: &'static str,
+    pub must: &'static str,
+    /// Sides that a test has to hold it on, as `Side` prints them.
+    pub sides: &'static [&'static str],
+    /// Where the row cannot hold as it stands: why, and the bound that does hold.
+    pub limit: Option<&'static str>,
+}
+
+const CPU: &[&str] = &["CPU"];
+const GPU: &[&str] = &["GPU"];
+const BOTH: &[&str] = &["CPU", "GPU"];
+
+const fn row(id: &'static str, input: &'static str, must: &'static str, sides: &'static [&'static str]) -> Row {
+    Row { id, input, must, sides, limit: None }
+}
+
+impl Row {
+    const fn but(self, limit: &'static str) -> Self {
+        Self { limit: Some(limit), ..self }
+    }
+}
+
+/// All of them, in order.
+pub const ROWS: [Row; 84] = [
+    // Reservoir arithmetic
+    row(
+        "H01",
+        "R1 empty (w_sum=0), R2 w>0, draw = 0 exactly",
+        "R2 chosen (Alg. 2 with `<=` chooses the empty one; ~0.49 px/frame at 4K with 24-bit draws)",
+        BOTH,
+    ),
+    row("H02", "R1 empty, R2 w=0", "result is R2's color with w_sum 0; no NaN; not black; no 0/0", BOTH),
+    row("H03", "w_new = 0 for 1e5 frames on valid history", "history unchanged, w_sum unchanged", BOTH),
+    row(
+        "H04",
+        "w_sum and w both denormal (1e-40)",
+        "selection frequency still w/(w_sum+w) +- CI or treated as 0 consistently on flush-to-zero hardware",
+        BOTH,
+    ),
+    row("H05", "w_sum = 65504 in half storage, w = 1", "no Inf; saturates; documented selection floor", BOTH).but(
+        "weight sums are not stored as halves, but with 16 significant bits up to 2^100: a plain sum of \
+         ones goes on to 65536, where replacement is 1/65537 a frame.",
+    ),
+    row(
+        "H06",
+        "plain A-Chao, f16 w_sum, w=1",
+        "sum stalls at 2048: storage must be f32 or capped below the stall",
+        BOTH,
+    )
+    .but("stored with 16 significant bits, a plain sum of ones stalls at 65536 instead."),
+    row(
+        "H07",
+        "biased recurrence, f16, constant w=1",
+        "stalls at 32.8 after 574 frames; with cap, replacement probability >= stated floor",
+        BOTH,
+    )
+    .but(
+        "there is no cap. Stored sums stall between 256 and 363 times the weight, which holds the stated \
+         floor of 1/364.",
+    ),
+    row("H08", "same in f32, 1e6 frames", "s = 1412.7 +- 0.5 (sqrt(2n) = 1414.2); compare to f64", BOTH).but(
+        "in the arithmetic. Stored between frames, the sum stalls between 256 and 363 times the weight \
+         (H07).",
+    ),
+    row("H09", "biased, w=0.05, f16", "stall at 2.83 after 1401 frames; scale invariance: s(w)/w equal for all w", CPU)
+        .but(
+            "in the arithmetic: exactly for powers of two, to 3e-5 for other weights. Where the stored sum \
+         stalls depends on the mantissa: 256 to 363 times the weight.",
+        ),
+    row(
+        "H10",
+        "1e9 simulated frames via closed form",
+        "no drift > 1e-3 relative between incremental and closed form",
+        CPU,
+    )
+    .but(
+        "in f64. In f32 the sum stays within 1e-3 for 1.2e6 frames and stalls at 4096 times the weight; \
+         stored, it stalls earlier (H07).",
+    ),
+    row(
+        "H11",
+        "constant weights, no bias, N frames",
+        "each frame selected with p=1/N: chi-squared at alpha=1e-4 on 1e7 trials",
+        BOTH,
+    ),
+    row(
+        "H12",
+        "weights 1,2,3,4",
+        "selection frequency w_i / (sum of w), exact CPU f64 enumeration vs GPU histogram",
+        BOTH,
+    ),
+    row(
+        "H13",
+        "order permuted",
+        "unbiased mode: same distribution; biased mode: recency order documented and tested",
+        CPU,
+    ),
+    row("H14", "combine(A,combine(B,C)) vs combine(combine(A,B),C)", "same law in unbiased mode", CPU),
+    row("H15", "m-count/age at u16 or u8 max", "saturates, never wraps to 0", BOTH),
+    row("H16", "cap M: history cap = 8, 32, infinite", "step response half-life equals theory +- 5 %", CPU).but(
+        "no setting caps the history. The kernel answers a step as theory says if its caller caps the \
+         sum.",
+    ),
+    row("H17", "weight negative (bad caller)", "treated as 0, counted, debug warning; never negative w_sum", BOTH).but(
+        "no caller gives weights: they follow from the gaze, and a candidate that must not be used has \
+         weight 0. Such candidates are counted and warned of; in the kernel, a negative weight counts as \
+         0, silently.",
+    ),
+    row("H18", "weight NaN / +-Inf", "treated as 0; sample dropped; previous reservoir survives", BOTH),
+    row(
+        "H19",
+        "stored w_sum is NaN/Inf/negative (corrupt history)",
+        "one-frame recovery: as if reset for that pixel only",
+        BOTH,
+    ),
+    row(
+        "H20",
+        "(1-abs Delta E) with Delta E>1",
+        "clamp to 0; w_sum >= 0 always (Delta E 94 up to 150 in sRGB, 276 for L*=276 HDR)",
+        BOTH,
+    ),
+    row(
+        "H21",
+        "survive factor with w >> w_sum (1e7:1)",
+        "1-w/(w_sum+w) must not cancel: compute w_sum/(w_sum+w) directly; relative error < 4 ulp",
+        BOTH,
+    ),
+    row(
+        "H22",
+        "saved sample color vs weight pair",
+        "color always one of the presented inputs bit-exactly when reprojection is integer (no invented colors)",
+        BOTH,
+    )
+    .but(
+        "samples are remembered as halves: bit for bit for colors that halves hold, else the nearest \
+         half.",
+    ),
+    // Random numbers
+    row(
+        "H23",
+        "u32 -> f32 by x2^-32",
+        "never 1.0 (top 128 values round to 1.0: 0.25 px/frame at 4K); use >>8 * 2^-24",
+        BOTH,
+    ),
+    row(
+        "H24",
+        "seed = pixel + frame",
+        "forbidden: frame t+1 shows frame t shifted; cross-correlation at every shift abs rho < 4/sqrt N",
+        CPU,
+    )
+    .but("over 31 x 31 shifts of a 128 x 128 picture. Over many more, chance alone passes 4 / sqrt N."),
+    row(
+        "H25",
+        "(x,y,frame,purpose) hash, 2^24 samples",
+        "mean, variance, chi-squared, lag-1 in x, y, t, diagonal all inside CI",
+        CPU,
+    ),
+    row(
+        "H26",
+        "width 1, 3, 4095, 4097; index > 2^32 pixels * frames",
+        "no period at row length; 64-bit-safe frame counter wrap at 2^32 frames continues without reset",
+        BOTH,
+    ),
+    row(
+        "H27",
+        "two eyes, same frame",
+        "streams independent, or *identical* when the option for binocular agreement is on",
+        CPU,
+    )
+    .but("there is no option for binocular agreement: two views always draw independent numbers."),
+    row("H28", "CPU vs GPU", "bit-identical integer stream for 1e6 (x,y,f)", BOTH),
+    row("H29", "same frame re-run", "bit-identical output (determinism), any workgroup size", BOTH),
+    // Color difference
+    row(
+        "H30",
+        "Delta H^2 for near-equal hues in f32",
+        "max(0, x) before sqrt: negative in 49 % of same-hue pairs",
+        BOTH,
+    ),
+    row("H31", "C*=0 both (greys)", "Delta E 94 = abs Delta L/kL; no division by C*; gradient finite", BOTH),
+    row(
+        "H32",
+        "Delta E 94(a,b) vs (b,a)",
+        "asymmetric up to 6.7x: reference side fixed and documented, or symmetrised with sqrt(C1 * C2)",
+        CPU,
+    ),
+    row("H33", "Y at 216/24389 +- 1 ulp", "continuous; slope 903.3 on both sides", BOTH),
+    row(
+        "H34",
+        "dark noise sigma=0.002 linear",
+        "Delta L* about 1.8: gate must not flush; noise floor parameter tested",
+        CPU,
+    ),
+    row("H35", "8-bit linear step 1/255 near black", "Delta L* 3.54: quantised sources must not look like change", CPU)
+        .but(
+            "the gate of the paper, without an offset, closes by 3.5 % at such a step, and by 0.5 % at a step \
+         of 8-bit sRGB. With an offset of 3.6 it stays open.",
+        ),
+    row("H36", "negative linear RGB (wide gamut, filter lobes)", "signed cbrt or clamp; never NaN", BOTH),
+    row("H37", "HDR 1e4 nits, 65504, 1e30", "finite Delta E; normalisation by adapted white or saturating map", BOTH),
+    row(
+        "H38",
+        "cbrt via exp2(log2(x)/3) on GPU",
+        "<= 4 ulp vs f64, exact at 0 and 1; `pow` of 0 or negative never called",
+        BOTH,
+    ),
+    row("H39", "identical colors", "Delta E exactly 0 -> factor exactly 1", BOTH),
+    row(
+        "H40",
+        "triangle/identity vectors from Sharma et al. (2004) set adapted to CIE94",
+        "match published/CPU f64 within 1e-4",
+        CPU,
+    ),
+    // Depth and disocclusion
+    row(
+        "H41",
+        "reversed-Z infinite far, d=0 (sky)",
+        "linearise gives \"far\" flag, not Inf; sky-sky never flushes, sky-object always",
+        BOTH,
+    ),
+    row("H42", "d=1 (near), d slightly >1 or <0 from precision", "clamped; finite", BOTH),
+    row(
+        "H43",
+        "half-float depth, z 1 to 1e5",
+        "compared in stored encoding; step at 100 m is 6 cm, at 1 km 0.5 m; no permanent flush or permanent accept",
+        CPU,
+    )
+    .but("Linear halves end at 65504 m: what is further is the sky. One step of a reversed half with near 0.1 m passes the tolerance beyond 16.4 km, where noise of the depth flushes for a frame at a time."),
+    row(
+        "H44",
+        "grazing plane",
+        "slope-scaled threshold: static camera never flushes at any angle <= 89.9 degrees",
+        BOTH,
+    ),
+    row("H45", "camera dolly 1 m toward wall", "expected-depth prediction used; pure motion does not flush", BOTH),
+    row("H46", "1-px wire over far wall, jittered", "flush energy bounded, no alternate-frame blinking", BOTH)
+    .but("A wire that jitter moves between two columns is another surface in each of them in every frame: these show the candidate, so they alternate as the input does and no more. Beside them wrs is constant, and smr blinks by less than 1e-3 of the wire's energy."),
+    row("H47", "depth NaN in 1 px", "that px flushes; neighbours unchanged", BOTH),
+    row("H48", "near/far plane changes between frames", "linear compare unaffected", CPU)
+    .but("Planes belong to a context: engines that move them hand over distances, or make a new context. What is stored does not depend on planes: a history goes on under others without a flush."),
+    row("H49", "orthographic projection", "linear depth path used", CPU),
+    row("H50", "two coplanar z-fighting surfaces", "bounded age oscillation, no color outside inputs", BOTH)
+    .but("smr relights by a gain of 1/5 to 5: nothing beyond the inputs on frames that are low-passed as their level of detail says, up to the gain where single pixels claim to be coarse. Its bound is S5: between the candidate and the history at that gain."),
+    // Motion and reprojection
+    row("H51", "static camera, 1e3 frames, any scene", "reprojection is the identity bit-exactly (nearest)", BOTH),
+    row("H52", "integer pixel shift (3,-2)", "history moves exactly; border ring flagged new", BOTH),
+    row(
+        "H53",
+        "sub-pixel shift 0.5 px/frame x 200",
+        "no cumulative blur (nearest) or blur bounded by stated MTF (bilinear); never bilinear-blend `w_sum` and color from different samples",
+        BOTH,
+    ),
+    row("H54", "MV NaN/Inf/+-1e9", "treated as invalid -> current sample only; no hang", BOTH),
+    row(
+        "H55",
+        "MV of f16 storage at 0.5 uv",
+        "quantum is 1.875 px at 3840: drift bound reported; recommend pixels in f16 only below 1024 px (0.5 px)",
+        CPU,
+    ),
+    row(
+        "H56",
+        "sign/axis/scale flipped",
+        "detector reports the right convention on 99 % of random textured scenes",
+        CPU,
+    ),
+    row("H57", "target 0.01 px outside the view", "rejected; target exactly on the last texel centre accepted", BOTH),
+    row(
+        "H58",
+        "fovea sample reprojected over a depth edge",
+        "nearest-depth MV dilation optional; no bleed wider than 1 px",
+        BOTH,
+    ),
+    row("H59", "zoom (divergent field)", "holes filled by current frame; duplicates allowed, ages kept", BOTH),
+    row("H60", "full 180 degrees turn in 1 frame", "full reset, cost no higher than normal frame x1.1", BOTH),
+    // Gaze and foveation
+    row(
+        "H61",
+        "eccentricity by acos(dot) f32",
+        "0.0057 degrees reads 0, 0.0172 degrees reads 0.0198 degrees: atan2 of cross and dot product, error < 1e-6 rad everywhere",
+        BOTH,
+    ),
+    row(
+        "H62",
+        "gaze off-centre, wide FOV 110 degrees",
+        "per-pixel angle from ray directions, not screen distance",
+        CPU,
+    ),
+    row("H63", "gaze off-screen / NaN / both eyes lost", "hold, then widen or centre by policy; weights finite", BOTH),
+    row("H64", "r_f = 0", "Watson normalised at 0: w=1 only at the gaze point; no 0/0", BOTH),
+    row(
+        "H65",
+        "e = 90 degrees+",
+        "w >= documented floor (w(90 degrees)=0.0013 for r_f=2.5 degrees); sum of weights never underflows f16 (min normal 6.1e-5)",
+        BOTH,
+    ),
+    row(
+        "H66",
+        "gaze saccade 20 degrees between frames",
+        "old fovea keeps its samples (that is the point), decay per theory",
+        BOTH,
+    ),
+    row(
+        "H67",
+        "microsaccade stream +-0.5 degrees 1 kHz, frame 90 Hz",
+        "effective fovea area grows >= predicted union area",
+        CPU,
+    ),
+    row("H68", "latency injected 0-150 ms", "JOD curve monotone; report per latency", CPU)
+    .but("JOD is FovVideoVDP's, which is no dependency of this project: the eccentricity-weighted PSNR and the error in the true fovea are monotone over latency."),
+    row(
+        "H69",
+        "mip simulator, constant image",
+        "output constant at every LOD, incl. odd sizes (1x1, 17x1, 4097x3)",
+        BOTH,
+    ),
+    row("H70", "mip simulator energy", "mean preserved <= 1e-3 over full frame", BOTH),
+    row("H71", "ring boundary", "C0 blend; gradient jump below stated bound", BOTH),
+    // Exposure, range, lifecycle
+    row(
+        "H72",
+        "exposure x256 in one frame, ratio supplied",
+        "no flush, no flash: history scaled; ratio absent -> gate reacts, recovers <= N frames",
+        BOTH,
+    ),
+    row(
+        "H73",
+        "single firefly 65504 in dark scene",
+        "clamped or expires within documented frames; mean energy change accounted",
+        BOTH,
+    ),
+    row("H74", "strobing light 1 frame on/off", "no permanent bias", BOTH)
+    .but("smr accumulates equally coarse history in 10-bit storage: what is left of a weak strobe stalls at up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default (measured 1.1 %). wrs and taa leave nothing."),
+    row("H75", "alternating black/white frames", "output is one of the two, mean over time unbiased", BOTH),
+    row("H76", "resize, odd to even, DPI change, 0x0 minimise", "no panic; reset or resample; bounds valid", BOTH),
+    row("H77", "pause 10 s then resume; device lost", "treated as cut; no stale image for even one frame", BOTH),
+    row("H78", "reset flag two frames running; reset at frame 0", "identical to fresh context, bit for bit", BOTH),
+    row("H79", "poison-filled (NaN) freshly allocated history", "never visible", BOTH),
+    // Path tracer and platform
+    row(
+        "H80",
+        "ray along axis, direction component +-0, in-plane with box/triangle edge",
+        "watertight: no holes in a closed 1e6-triangle sphere; no NaN slab",
+        BOTH,
+    ),
+    row("H81", "degenerate/zero-area/NaN triangles, 1-triangle scene, empty scene", "build and trace succeed", BOTH),
+    row(
+        "H82",
+        "origins at 1e6 m, geometry 1e-3 m; self-intersection",
+        "offset scaled by position magnitude; no acne/leak beyond bound",
+        BOTH,
+    )
+    .but("at 1e6 m floats are 0.06 m apart, so that nothing of 1e-3 m exists there: each of the two is held alone."),
+    row(
+        "H83",
+        "sampling r=0, r->1, grazing cos theta=1e-7, roughness 0 and 1, pdf->0, albedo=1 (furnace test)",
+        "no NaN; energy 1.000 +- CI; MIS weights sum to 1",
+        BOTH,
+    )
+    .but("albedo tables of sheen, brushed metal and rough glass are off by up to 0.5 %, 3.7 % and 5 % at single angles (docs/path-tracing.md); all other lobes keep 1.000."),
+    row(
+        "H84",
+        "same scene, Vulkan/Metal/DX12/GL, fast-math on/off",
+        "difference <= published tolerance; start-up self-test prints NaN/denormal/twoSum behaviour",
+        GPU,
+    )
+    .but("measured on software Vulkan alone, where the tolerance is 0: `afterimage info adapters --self-test` says for any other adapter."),
+];

@@ -1,0 +1,42 @@
+//! `--backend`: what computes.
+
+use crate::failure::Failure;
+use afterimage_lab::device::{Backend, Headless};
+use clap::ValueEnum;
+
+/// What to do without an adapter.
+pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
+
+/// Names of backends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendName {
+    /// A GPU if there is one, else the CPU
+    Auto,
+    /// The CPU
+    Cpu,
+    /// Any adapter, a software one too
+    Gpu,
+}
+
+impl BackendName {
+    /// Chooses what computes.
+    pub fn open(self) -> Result<Backend, Failure> {
+        let found = match self {
+            Self::Cpu => None,
+            Self::Auto => Headless::find(false),
+            Self::Gpu => Some(
+                Headless::find(true)
+                    .ok_or_else(|| Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")))?,
+            ),
+        };
+        Ok(found.map_or(Backend::Cpu, Backend::Gpu))
+    }
+
+    /// The same with textures and buffers as large as the adapter offers: scenes take larger ones than frames.
+    pub fn open_for_scenes(self) -> Result<Backend, Failure> {
+        Ok(match self.open()? {
+            Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),
+            Backend::Cpu => Backend::Cpu,
+        })
+    }
+}

@@ -1,0 +1,71 @@
+//! How frames are foveated.
+
+use afterimage::foveation::{Filter, Foveation};
+use clap::{Args, ValueEnum};
+
+/// Where a frame is how coarse.
+#[derive(Args, Clone, Debug)]
+pub struct FoveationArgs {
+    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, or none
+    #[arg(long = "foveation", value_enum, default_value = "mip")]
+    pub filter: FilterName,
+    /// Diameter of the full-rate region, degrees
+    #[arg(long, default_value_t = 5.0, value_name = "DEG")]
+    pub fovea: f32,
+    /// Diameter of the middle region, degrees
+    #[arg(long, default_value_t = 15.0, value_name = "DEG")]
+    pub mid: f32,
+    /// Width of the linear blend outside each radius, degrees
+    #[arg(long, default_value_t = 1.0, value_name = "DEG")]
+    pub blend: f32,
+    /// Block edge in the middle region, pixels, a power of two
+    #[arg(long, default_value_t = 8, value_name = "N")]
+    pub rate_mid: u32,
+    /// Block edge beyond, pixels, a power of two
+    #[arg(long, default_value_t = 16, value_name = "N")]
+    pub rate_far: u32,
+}
+
+impl FoveationArgs {
+    /// The library's form.
+    pub fn foveation(&self) -> Foveation {
+        Foveation {
+            filter: match self.filter {
+                FilterName::Mip => Filter::Mip,
+                FilterName::Gauss => Filter::Gauss,
+                FilterName::Block => Filter::Block,
+                FilterName::Off => Filter::Off,
+            },
+            fovea_deg: self.fovea,
+            mid_deg: self.mid,
+            blend_deg: self.blend,
+            rate_mid: self.rate_mid,
+            rate_far: self.rate_far,
+        }
+    }
+}
+
+/// Names of foveation simulators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    /// Box mip levels, trilinear
+    Mip,
+    /// Gaussian blur growing with eccentricity
+    Gauss,
+    /// One point sample a block
+    Block,
+    /// Full rate everywhere
+    Off,
+}
+
+impl FilterName {
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mip => "mip",
+            Self::Gauss => "gauss",
+            Self::Block => "block",
+            Self::Off => "off",
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! `--gaze` and its companions: from what was typed to one position a frame.
+
+use crate::failure::Failure;
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
+use clap::{Args, ValueEnum};
+use std::path::Path;
+
+/// Seconds of a gaze that has no end of its own.
+const DEFAULT_SECONDS: f64 = 5.0;
+
+/// Where the eye looks.
+#[derive(Args, Clone, Debug)]
+pub struct GazeArgs {
+    /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
+    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
+    pub gaze: String,
+    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    #[arg(long, value_enum)]
+    pub gaze_map: Option<GazeMapName>,
+    /// Start in the scanpath, seconds
+    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    pub start: f64,
+}
+
+/// Names of gaze maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GazeMapName {
+    /// Keep visual angles, centre on centre
+    Angle,
+    /// Stretch screen to frame
+    Fit,
+}
+
+/// One gaze position a frame.
+pub struct Track {
+    /// Frame pixels; `None`: lost.
+    pub px: Vec<Option<[f32; 2]>>,
+    /// What was done to screen positions.
+    pub map: &'static str,
+}
+
+impl GazeArgs {
+    /// Resolves the options for `frames` frames, or for as many as the gaze has.
+    pub fn resolve(&self, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
+        if !(self.start >= 0.0 && self.start.is_finite()) {
+            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
+        }
+        let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
+        if let Some(px) = fixed(&self.gaze)? {
+            let count = frames.unwrap_or(default_frames) as usize;
+            return Ok(Track { px: vec![Some(px); count], map: "none" });
+        }
+        let synthetic = synthetic_seed(&self.gaze)?;
+        let path = match synthetic {
+            Some(seed) => {
+                let seconds = frames.unwrap_or(default_frames) as f64 / f64::from(fps) + self.start;
+                make_synthetic(seed, seconds + 0.1, view)?
+            }
+            None => read_csv(Path::new(&self.gaze))?,
+        };
+        let map = match self.gaze_map {
+            Some(GazeMapName::Angle) => GazeMap::Angle,
+            Some(GazeMapName::Fit) => GazeMap::Fit,
+            None => GazeMap::default_for(path.screen()),
+        };
+        let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
+        let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
+        let count = frames.unwrap_or(available);
+        let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();
+        if px.iter().all(Option::is_none) {
+            return Err(Failure::Input(format!(
+                "{}: the gaze is lost in all {count} frames from {} s on; choose another --start",
+                self.gaze, self.start
+            )));
+        }
+        Ok(Track {
+            px,
+            map: match map {
+                GazeMap::Angle => "angle",
+                GazeMap::Fit => "fit",
+            },
+        })
+    }
+}
+
+fn make_synthetic(seed: u64, seconds: f64, view: &ViewGeometry) -> Result<Scanpath, Failure> {
+    let options =
+        SyntheticOptions { seed, duration_s: seconds, screen: Screen::of_view(view), ..SyntheticOptions::default() };
+    Ok(generate(&options)?.path)
+}
+
+/// `X,Y` in frame pixels.
+fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
+    let Some((x, y)) = text.split_once(',') else {
+        return Ok(None);
+    };
+    match (x.trim().parse::<f32>(), y.trim().parse::<f32>()) {
+        (Ok(x), Ok(y)) if x.is_finite() && y.is_finite() => Ok(Some([x, y])),
+        // A comma may be part of a file's name.
+        _ if Path::new(text).exists() => Ok(None),
+        _ => {
+            Err(Failure::Input(format!("--gaze {text}: expected X,Y in frame pixels, a CSV file, or synthetic[:SEED]")))
+        }
+    }
+}
+
+fn synthetic_seed(text: &str) -> Result<Option<u64>, Failure> {
+    match text.strip_prefix("synthetic") {
+        Some("") => Ok(Some(0)),
+        Some(rest) if rest.starts_with(':') => rest[1..].parse().map(Some).map_err(|_| {
+            Failure::Input(format!("--gaze {text}: expected synthetic:SEED with a whole number, such as synthetic:7"))
+        }),
+        _ => Ok(None),
+    }
+}

@@ -1,0 +1,42 @@
+//! Numbers with ranges.
+
+use std::str::FromStr;
+
+/// `WxH` in pixels.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let expected = "expected WxH in pixels, such as 1280x720";
+    let (w, h) = text.split_once('x').ok_or(expected)?;
+    match (w.parse(), h.parse()) {
+        (Ok(w), Ok(h)) if w > 0 && h > 0 => Ok([w, h]),
+        _ => Err(expected.into()),
+    }
+}
+
+/// Samples a pixel.
+pub fn parse_samples(text: &str) -> Result<u32, String> {
+    within(text, "1 to 1048576 samples", |v| (1..=1 << 20).contains(v))
+}
+
+/// Number of frames: at most two days at 60 frames a second.
+pub fn parse_frames(text: &str) -> Result<u64, String> {
+    within(text, "1 to 10000000 frames", |v| (1..=10_000_000).contains(v))
+}
+
+/// Frames per second.
+pub fn parse_fps(text: &str) -> Result<f32, String> {
+    within(text, "above 0 and at most 100000 frames per second", |v| *v > 0.0 && *v <= 100_000.0)
+}
+
+/// Horizontal field of view in degrees.
+pub fn parse_hfov(text: &str) -> Result<f32, String> {
+    within(text, "above 0 and below 180 degrees", |v| *v > 0.0 && *v < 180.0)
+}
+
+/// Exposure in stops.
+pub fn parse_exposure(text: &str) -> Result<f32, String> {
+    within(text, "-64 to 64 stops", |v| (-64.0..=64.0).contains(v))
+}
+
+fn within<T: FromStr>(text: &str, range: &str, is_within: impl Fn(&T) -> bool) -> Result<T, String> {
+    text.parse().ok().filter(is_within).ok_or_else(|| format!("expected {range}"))
+}

@@ -1,0 +1,260 @@
+//! A clip through the pipeline, frame by frame, onto disk: what `run` and `demo` share.
+
+pub mod run_report;
+
+use crate::args::{DebugName, FormatName};
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::progress;
+use crate::report::sheet::{Column, Sheet};
+use crate::report::tally::{MethodReport, Share, Tally};
+use afterimage::DebugView;
+use afterimage::foveation::Foveation;
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage_lab::device::Backend;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::metric;
+use afterimage_lab::metric::{Flip, Reference, References};
+use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::pipeline::{LaneKind, Pipeline, Step};
+use afterimage_lab::source::FrameSource;
+use rayon::prelude::*;
+
+/// What is to be done with a clip.
+pub struct Clip {
+    /// Shown in the sheet's first line.
+    pub title: String,
+    pub geometry: ViewGeometry,
+    pub foveation: Foveation,
+    /// Name of each lane, which is also its folder, and what it does.
+    pub lanes: Vec<(&'static str, LaneKind)>,
+    /// One position a frame, in frame pixels; `None`: lost.
+    pub gaze: Vec<Option<[f32; 2]>>,
+    pub exposure_ev: f32,
+    pub format: FormatName,
+    pub write_reference: bool,
+    pub debug: Vec<DebugName>,
+    /// Whether the methods get the source's trust mask.
+    pub trust: bool,
+    /// Whether the source is told what the history knows, to sample what it does not.
+    pub guided: bool,
+    /// Whether FLIP is measured.
+    pub flip: bool,
+    /// Share of the pixels that come in broken.
+    #[cfg(feature = "ablation")]
+    pub poison: f32,
+    pub backend: Backend,
+    /// Why the CPU, if that was not asked for.
+    pub backend_note: &'static str,
+}
+
+/// A frame of a clip, and what became of it.
+pub struct Moment<'a> {
+    pub index: usize,
+    pub frame: &'a SourceFrame,
+    pub reference: &'a Reference<'a>,
+    pub step: &'a Step,
+    /// Camera samples, and CPU time of tracing them, of a frame that its source foveated.
+    pub samples: Option<u64>,
+    #[cfg_attr(not(feature = "full"), expect(dead_code, reason = "sweeps read it"))]
+    pub render_ms: Option<f64>,
+}
+
+/// What a clip came to.
+#[derive(Default)]
+pub struct ClipReport {
+    pub methods: Vec<(&'static str, MethodReport)>,
+    pub foveation_ms: Option<Quartiles>,
+    /// Camera samples of all frames that their source foveated.
+    pub samples: u64,
+    /// What computed the methods, in words.
+    pub backend: String,
+    /// Where the eye was taken to look.
+    pub gaze_px: Vec<[f32; 2]>,
+}
+
+/// The first line of a sheet: what is looked at, and how it is foveated.
+pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &Foveation, simulator: &str) -> String {
+    format!(
+        "{name}   {}x{}, {frames} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {simulator}",
+        size[0], size[1], foveation.fovea_deg, foveation.rate_mid, foveation.rate_far,
+    )
+}
+
+impl Clip {
+    /// Runs the clip and writes everything but `report.json`.
+    pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
+        let mut tallies: Vec<Tally> = self.lanes.iter().map(|_| Tally::default()).collect();
+        let mut report = ClipReport { backend: self.backend_in_words(), ..ClipReport::default() };
+        let mut foveation_ms = vec![];
+        let bar = progress::bar(self.gaze.len() as u64, "frame {pos}/{len}");
+        let mut table = out.table(
+            "frames.csv",
+            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
+        )?;
+        let pipeline = self.play(source, &mut |moment| {
+            let encoded = self.score_and_write(moment, &mut tallies, out)?;
+            for ((name, _), tally) in self.lanes.iter().zip(&tallies) {
+                table.row(&tally.row(moment.index, name))?;
+            }
+            report.samples += moment.samples.unwrap_or(0);
+            foveation_ms.push(moment.step.foveation_ms);
+            report.gaze_px.push(moment.step.gaze_px);
+            if moment.index + 1 == self.gaze.len() {
+                self.write_sheet(moment.reference.encoded(), &encoded, &tallies, &report.gaze_px, out)?;
+            }
+            bar.inc(1);
+            Ok(())
+        })?;
+        bar.finish_and_clear();
+        table.finish()?;
+        out.gaze("gaze.csv", &report.gaze_px)?;
+        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
+        let of =
+            |(i, tally): (usize, &Tally)| (self.lanes[i].0, tally.report(pipeline.memory_bytes(i) as f64 / pixels));
+        report.methods = tallies.iter().enumerate().map(of).collect();
+        compare_with_oracle(&mut report.methods);
+        report.foveation_ms = Quartiles::of(&foveation_ms);
+        Ok(report)
+    }
+
+    /// Plays the clip, and hands out each frame with what all methods made of it. Gives the pipeline as the last frame left it.
+    pub fn play(
+        &self,
+        source: &mut dyn FrameSource,
+        each: &mut dyn FnMut(&Moment<'_>) -> Result<(), Failure>,
+    ) -> Result<Pipeline, Failure> {
+        let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
+        let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
+        let is_still = source.info().still;
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
+        if self.trust {
+            pipeline = pipeline.with_trust();
+        }
+        if self.guided {
+            pipeline = pipeline.with_guidance();
+        }
+        #[cfg(feature = "ablation")]
+        let mut pipeline = pipeline.with_poison(self.poison);
+        let mut references = self.flip().map_or_else(References::default, References::with_flip);
+        for (index, &gaze) in self.gaze.iter().enumerate() {
+            let frame = source.frame(index as u64)?;
+            let full = metric::encode(&frame.color, self.exposure_ev);
+            let at = pipeline.look(gaze);
+            let guide = pipeline.guide(&frame);
+            let watch = Stopwatch::start();
+            let foveated = source.foveated(index as u64, at, guide.as_ref())?;
+            let samples = foveated.as_ref().map(|f| f.samples.iter().sum());
+            let render_ms = foveated.as_ref().map(|_| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()));
+            let step = match foveated {
+                Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
+                None => pipeline.step(index as u64, &frame, gaze)?,
+            };
+            let reference = references.next(&full, &step.tracked);
+            each(&Moment { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
+        }
+        Ok(pipeline)
+    }
+
+    /// What computes the methods, in words.
+    fn backend_in_words(&self) -> String {
+        match &self.backend {
+            Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
+            #[cfg(feature = "full")]
+            Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
+        }
+    }
+
+    /// The metric for an eye that sees the view's angles.
+    pub fn flip(&self) -> Option<Flip> {
+        self.flip.then(|| Flip::for_view(&self.geometry))
+    }
+
+    /// Scores and writes all lanes of a frame side by side; gives their encoded images.
+    fn score_and_write(
+        &self,
+        moment: &Moment<'_>,
+        tallies: &mut [Tally],
+        out: &Output,
+    ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
+        let &Moment { index, frame, reference, step, .. } = moment;
+        if self.write_reference {
+            self.write_frame(out, "reference", index, &frame.color, reference.encoded())?;
+        }
+        tallies
+            .par_iter_mut()
+            .zip(&self.lanes)
+            .zip(&step.shown)
+            .map(|((tally, (name, _)), shown)| {
+                let encoded = metric::encode(&shown.image, self.exposure_ev);
+                tally.push(frame, reference, &encoded, shown, step);
+                self.write_frame(out, name, index, &shown.image, &encoded)?;
+                for (debug, picture) in self.debug.iter().zip(&shown.debug) {
+                    let folder = format!("debug/{name}/{}", debug.name());
+                    out.picture(&folder, index, &to_rgb8(&metric::encode(picture, 0.0)))?;
+                }
+                Ok(encoded)
+            })
+            .collect()
+    }
+
+    fn write_frame(
+        &self,
+        out: &Output,
+        folder: &str,
+        index: usize,
+        #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "PNGs are made of encoded frames"))]
+        linear: &Image<[f32; 3]>,
+        encoded: &Image<[f32; 3]>,
+    ) -> Result<(), Failure> {
+        match self.format {
+            FormatName::Png => out.picture(folder, index, &to_rgb8(encoded)),
+            #[cfg(feature = "full")]
+            FormatName::Exr => out.exr(folder, index, linear),
+        }
+    }
+
+    fn write_sheet(
+        &self,
+        reference: &Image<[f32; 3]>,
+        encoded: &[Image<[f32; 3]>],
+        tallies: &[Tally],
+        gaze_px: &[[f32; 2]],
+        out: &Output,
+    ) -> Result<(), Failure> {
+        let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
+        for (((name, _), shown), tally) in self.lanes.iter().zip(encoded).zip(tallies) {
+            let name = if *name == "none" { "none (foveated only)" } else { name };
+            columns.push(Column { name, shown, scores: Some(tally.scores()) });
+        }
+        let sheet = Sheet {
+            title: self.title.clone(),
+            columns: &columns,
+            geometry: self.geometry,
+            gaze_px,
+            fovea_deg: self.foveation.fovea_deg,
+        };
+        out.sheet("sheet.png", &sheet.draw())
+    }
+}
+
+/// Fills in the shares, where `none` and `oracle` were run.
+fn compare_with_oracle(methods: &mut [(&'static str, MethodReport)]) {
+    let find = |name: &str| methods.iter().find(|m| m.0 == name).map(|m| m.1.scores.whole);
+    let (Some(none), Some(oracle)) = (find("none"), find("oracle")) else {
+        return;
+    };
+    let share = |value: Option<f64>, from: Option<f64>, to: Option<f64>| {
+        let (value, from, to) = (value?, from?, to?);
+        (to > from).then(|| (value - from) / (to - from))
+    };
+    for (_, method) in methods {
+        let whole = method.scores.whole;
+        method.share_of_oracle = Some(Share {
+            psnr: share(whole.psnr_db, none.psnr_db, oracle.psnr_db),
+            ssim: share(whole.ssim, none.ssim, oracle.ssim),
+        });
+    }
+}

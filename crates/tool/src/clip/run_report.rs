@@ -1,0 +1,98 @@
+//! `report.json` of a run.
+
+use super::{Clip, ClipReport};
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::report::backend::BackendReport;
+use crate::report::tally::MethodReport;
+use afterimage_lab::clock::Quartiles;
+use serde::Serialize;
+
+/// What was asked for, as far as the clip does not know it.
+pub struct RunFacts<'a> {
+    pub input: &'a str,
+    pub fps: f32,
+    pub seed: u64,
+    /// What foveates the frames.
+    pub simulator: &'static str,
+    pub gaze: &'a str,
+    pub gaze_map: &'a str,
+    pub start_s: f64,
+}
+
+#[derive(Serialize)]
+struct RunReport<'a> {
+    tool: &'static str,
+    version: &'static str,
+    input: &'a str,
+    size: [u32; 2],
+    frames: usize,
+    fps: f32,
+    hfov_deg: f32,
+    seed: u64,
+    exposure_ev: f32,
+    backend: BackendReport,
+    foveation: FoveationReport,
+    /// Camera samples of all foveated frames; null where a simulator foveates.
+    samples: Option<u64>,
+    gaze: &'a str,
+    gaze_map: &'a str,
+    start_s: f64,
+    /// What FLIP takes the eye's distance from; null without FLIP.
+    flip_pixels_per_degree: Option<f32>,
+    methods: Methods<'a>,
+}
+
+#[derive(Serialize)]
+struct FoveationReport {
+    simulator: &'static str,
+    fovea_deg: f32,
+    mid_deg: f32,
+    blend_deg: f32,
+    rate_mid: u32,
+    rate_far: u32,
+    ms: Option<Quartiles>,
+}
+
+/// Methods in the order they were asked for.
+struct Methods<'a>(&'a [(&'static str, MethodReport)]);
+
+impl Serialize for Methods<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, report)| (name, report)))
+    }
+}
+
+/// Writes `report.json`.
+pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out: &Output) -> Result<(), Failure> {
+    let foveation = clip.foveation;
+    let json = RunReport {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        input: facts.input,
+        size: clip.geometry.size_px(),
+        frames: report.gaze_px.len(),
+        fps: facts.fps,
+        hfov_deg: clip.geometry.hfov_deg(),
+        seed: facts.seed,
+        exposure_ev: clip.exposure_ev,
+        backend: BackendReport::of(&clip.backend),
+        foveation: FoveationReport {
+            simulator: facts.simulator,
+            fovea_deg: foveation.fovea_deg,
+            mid_deg: foveation.mid_deg,
+            blend_deg: foveation.blend_deg,
+            rate_mid: foveation.rate_mid,
+            rate_far: foveation.rate_far,
+            ms: report.foveation_ms,
+        },
+        samples: (report.samples > 0).then_some(report.samples),
+        gaze: facts.gaze,
+        gaze_map: facts.gaze_map,
+        start_s: facts.start_s,
+        flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
+        methods: Methods(&report.methods),
+    };
+    let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
+    out.text("report.json", &(text + "\n"))
+}

@@ -1,0 +1,226 @@
+//! `afterimage bench effects`: what each effect costs a scene that does not need it.
+//!
+//! Kernels with the effect and without are timed in turn, frame by frame, on the same rays; what is compared are ratios of two
+//! frames that were traced within a second of each other.
+
+mod removed;
+mod table;
+
+use super::subject::{Subject, backends, is_real_gpu};
+use super::{BenchArgs, write_json};
+use crate::failure::Failure;
+use crate::report::backend::BackendReport;
+use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage_lab::device::Backend;
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::effects::{Effect, Effects};
+use afterimage_lab::trace::gpu::GpuTracer;
+use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::settings::TraceSettings;
+use removed::REMOVALS;
+use serde::Serialize;
+use std::io::IsTerminal;
+
+/// Frames before the watch starts.
+const WARM_UP: u64 = 2;
+
+/// Times that kernels are compiled.
+const COMPILES: usize = 3;
+
+/// Built-in scenes, of which the first is diffuse only and the last needs most lobes.
+const SCENES: [&str; 4] = ["builtin:courtyard", "builtin:cornell", "builtin:mirror-room", "builtin:furnace"];
+
+#[derive(Serialize)]
+struct Report {
+    tool: &'static str,
+    version: &'static str,
+    size: [u32; 2],
+    frames: u64,
+    max_depth: u32,
+    machine: String,
+    /// Whether the driver was told not to keep compiled kernels.
+    compiled_cold: bool,
+    backends: Vec<BackendReport>,
+    scenes: Vec<SceneReport>,
+}
+
+#[derive(Serialize)]
+struct SceneReport {
+    scene: String,
+    triangles: u32,
+    needs: Vec<&'static str>,
+    /// One a backend.
+    prices: Vec<Vec<Price>>,
+    /// Frames of kernels in which an effect is switched off over those from which it was cut out; on an adapter, on request.
+    removals: Vec<Price>,
+}
+
+/// What a set of effects costs.
+#[derive(Clone, Debug, Serialize)]
+struct Price {
+    /// `auto`, `again` (the same, compiled anew: what is noise), `all`, or the effect that was added.
+    what: String,
+    ms: Option<Quartiles>,
+    /// Of each frame's time over the time of `auto`.
+    ratio: Option<Quartiles>,
+    /// The median's 99.9 % confidence interval.
+    interval: Option<[f64; 2]>,
+    compile_ms: Option<Quartiles>,
+}
+
+/// A tracer that takes turns with others.
+struct Lane {
+    what: String,
+    effects: Effects,
+    tracer: Tracer,
+    ms: Vec<f64>,
+    compile_ms: Vec<f64>,
+}
+
+/// Prices effects for `size` and `frames`.
+pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let backends = backends(args)?;
+    let default = SCENES.map(str::to_owned);
+    let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
+    // What kernels compile to does not depend on the scene but for its effects.
+    let small = Subject::open("builtin:cornell", [8, 8], None, None)?;
+    let mut scenes = vec![];
+    for name in names {
+        let subject = Subject::open(name, size, None, None)?;
+        let needs = subject.world.needs;
+        let mut prices = vec![];
+        let mut removals = vec![];
+        for backend in &backends {
+            let mut lanes = lanes(&subject, backend)?;
+            take_turns(&subject, backend, &mut lanes, frames);
+            if let Backend::Gpu(_) = backend {
+                compile_in_turn(&small, backend, &mut lanes)?;
+            }
+            prices.push(priced(&lanes));
+            if std::io::stderr().is_terminal() {
+                eprintln!("{name}: {} done", BackendReport::of(backend).kind);
+            }
+            drop(lanes);
+            if args.removal && matches!(backend, Backend::Gpu(_)) {
+                removals.extend(price_removals(&subject, backend, frames)?);
+            }
+        }
+        scenes.push(SceneReport {
+            scene: name.rsplit('/').next().unwrap_or(name).to_owned(),
+            triangles: subject.world.geometry.len(),
+            needs: needs.iter().map(Effect::name).collect(),
+            prices,
+            removals,
+        });
+    }
+    let report = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        size,
+        frames,
+        max_depth: TraceSettings::default().max_depth,
+        machine: machine(),
+        compiled_cold: std::env::var("MESA_SHADER_CACHE_DISABLE").is_ok_and(|v| v == "true" || v == "1"),
+        backends: backends.iter().map(BackendReport::of).collect(),
+        scenes,
+    };
+    let text = table::markdown(&report);
+    match &args.out {
+        Some(path) => table::write(path, &text)?,
+        None => say!("{text}"),
+    }
+    write_json(args, &report)
+}
+
+/// What the scene needs, twice; everything; what it needs with each other effect.
+fn lanes(subject: &Subject, backend: &Backend) -> Result<Vec<Lane>, Failure> {
+    let needs = subject.world.needs;
+    let mut sets = vec![("auto".to_owned(), needs), ("again".into(), needs), ("all".into(), Effects::all())];
+    sets.extend(Effects::all().without(needs).iter().map(|e| (e.name().to_owned(), needs.set(e, true))));
+    let lane = |(what, effects): (String, Effects)| {
+        Ok(Lane { what, effects, tracer: subject.tracer(backend, with(effects))?, ms: vec![], compile_ms: vec![] })
+    };
+    sets.into_iter().map(lane).collect()
+}
+
+fn with(effects: Effects) -> TraceSettings {
+    TraceSettings { effects: Some(effects), ..TraceSettings::default() }
+}
+
+/// Every frame by every lane, another first each time.
+fn take_turns(subject: &Subject, backend: &Backend, lanes: &mut [Lane], frames: u64) {
+    let count = lanes.len();
+    for index in 0..WARM_UP + frames {
+        for i in 0..count {
+            let lane = &mut lanes[(i + index as usize) % count];
+            let took = subject.frame(&lane.tracer, index);
+            if index >= WARM_UP {
+                lane.ms.push(took.device_ms.filter(|_| is_real_gpu(backend)).unwrap_or(took.cpu_ms));
+            }
+        }
+    }
+}
+
+/// CPU time from WGSL to the end of a first frame of one workgroup, less a second such frame: drivers compile at the first.
+fn compile_in_turn(small: &Subject, backend: &Backend, lanes: &mut [Lane]) -> Result<(), Failure> {
+    for _ in 0..COMPILES {
+        for lane in &mut *lanes {
+            let watch = Stopwatch::start();
+            let tracer = small.tracer(backend, with(lane.effects))?;
+            small.few(&tracer);
+            let ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
+            lane.compile_ms.push(ms - small.few(&tracer).cpu_ms);
+        }
+    }
+    Ok(())
+}
+
+/// The kernels of `auto`, in which the effect is switched off, against the same with its text cut out.
+fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<Vec<Price>, Failure> {
+    let Backend::Gpu(gpu) = backend else { return Ok(vec![]) };
+    let needs = subject.world.needs;
+    let lane = |what: &str, edit: &dyn Fn(String) -> String| {
+        let storage = Storage::of(gpu.info.device_type);
+        let tracer = GpuTracer::with_text(gpu.clone(), &subject.world, with(needs), storage, edit)
+            .map_err(|e| Failure::Input(format!("{}: {e}", subject.name)))?;
+        let tracer = Tracer::Gpu(Box::new(tracer));
+        Ok::<_, Failure>(Lane { what: what.into(), effects: needs, tracer, ms: vec![], compile_ms: vec![] })
+    };
+    let unneeded: Vec<_> = REMOVALS.iter().filter(|r| !needs.has(r.effect)).collect();
+    let mut lanes = vec![lane("off", &|text| text)?, lane("again", &|text| text)?];
+    for removal in &unneeded {
+        lanes.push(lane(removal.effect.name(), &|text| removal.cut(&text))?);
+    }
+    lanes.push(lane("all of them", &|text| unneeded.iter().fold(text, |text, removal| removal.cut(&text)))?);
+    take_turns(subject, backend, &mut lanes, frames);
+    // Over the removal, not over what is switched off.
+    let off = lanes[0].ms.clone();
+    Ok(lanes.iter().skip(1).map(|lane| price(lane, &off, &lane.ms)).collect())
+}
+
+fn priced(lanes: &[Lane]) -> Vec<Price> {
+    lanes.iter().map(|lane| price(lane, &lane.ms, &lanes[0].ms)).collect()
+}
+
+/// The price of a lane; frame by frame `above` over `below`.
+fn price(lane: &Lane, above: &[f64], below: &[f64]) -> Price {
+    let mut ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
+    let ratio = Quartiles::of(&ratios);
+    ratios.sort_by(f64::total_cmp);
+    // Order statistics: the number of frames below the median is binomial, here as a normal distribution; 3.29 standard deviations
+    // of half the root of n.
+    let n = ratios.len() as f64;
+    let rank = (0.5 * n - 3.29 * 0.5 * n.sqrt()).floor().max(0.0) as usize;
+    let interval = (!ratios.is_empty()).then(|| [ratios[rank], ratios[ratios.len() - 1 - rank]]);
+    let (ms, compile_ms) = (Quartiles::of(&lane.ms), Quartiles::of(&lane.compile_ms));
+    Price { what: lane.what.clone(), ms, ratio, interval, compile_ms }
+}
+
+/// The processor, as far as the system tells.
+fn machine() -> String {
+    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpuinfo.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": "));
+    let model = model.map_or("a processor of unknown name", |(_, name)| name.trim());
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{cores} cores of {model}")
+}

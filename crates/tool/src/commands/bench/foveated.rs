@@ -1,0 +1,159 @@
+//! What foveated sampling saves of the time of uniform sampling, against what it saves of the samples.
+
+use super::subject::{Subject, Took};
+use afterimage_lab::clock::Quartiles;
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
+use serde::Serialize;
+
+/// Rounds over all patterns; each is timed once a round, so that drift meets all alike.
+pub const ROUNDS: u64 = 3;
+
+/// Samples of a pixel of the uniform frame, whose time is taken to grow in proportion.
+pub const UNIFORM_SAMPLES: u32 = 4;
+
+/// Without a GPU the uniform frame is traced in every eighth band of rows only.
+pub const UNIFORM_EVERY: u32 = 8;
+
+/// Where a frame is to be sampled.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    pub name: String,
+    pub sampling: Sampling,
+    /// Samples of a pixel where it is sampled most.
+    pub samples: u32,
+    pub gaze_px: [f32; 2],
+}
+
+/// A pattern of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct PatternReport {
+    pub pattern: String,
+    /// What counts: `CPU` time, of a real GPU `wall` time.
+    pub clock: &'static str,
+    /// Samples of a pixel where it is sampled most; the uniform frame has as many everywhere.
+    pub samples_per_pixel: u32,
+    /// Samples of the uniform frame over those that the pattern's regions have, without blends and borders.
+    pub ideal_reduction: Option<f64>,
+    /// Samples of the uniform frame over those traced.
+    pub sample_reduction: f64,
+    /// Time of tracing the uniform frame over that of the foveated one, plan and filling in included.
+    pub time_reduction: Option<f64>,
+    /// Time reduction over ideal reduction.
+    pub share_of_ideal: Option<f64>,
+    pub cpu_ms: Option<Quartiles>,
+    pub uniform_cpu_ms: Option<Quartiles>,
+    pub wall_ms: Option<Quartiles>,
+    pub uniform_wall_ms: Option<Quartiles>,
+}
+
+impl PatternReport {
+    /// Times of a uniform and of a foveated frame by the clock that counts.
+    pub fn times(&self) -> Option<(Quartiles, Quartiles)> {
+        if self.clock == "wall" { self.uniform_wall_ms.zip(self.wall_ms) } else { self.uniform_cpu_ms.zip(self.cpu_ms) }
+    }
+}
+
+/// Regions as the paper names them, or with a quarter of their samples.
+pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f32; 2]) -> Pattern {
+    let [a, b, c] = of;
+    let (samples, share) = if is_quartered { (of.map(|s| s / 4), ", a quarter of the samples") } else { (of, "") };
+    let radii = if radius_scale == 1.0 { "" } else { ", halved radii" };
+    Pattern {
+        name: format!("regions {a},{b},{c}{radii}{share}"),
+        sampling: Sampling::Regions(Regions { samples, radius_scale, ..Regions::default() }),
+        samples: samples[0],
+        gaze_px,
+    }
+}
+
+/// The papers' patterns, with a quarter of their samples where all are divisible: the ratio is what counts.
+pub fn patterns(subject: &Subject) -> Vec<Pattern> {
+    let middle = subject.middle_px();
+    vec![
+        regions([32, 16, 8], true, 1.0, middle),
+        regions([32, 8, 4], true, 1.0, middle),
+        regions([32, 2, 1], false, 1.0, middle),
+        Pattern {
+            name: "layers 6,10,20 degrees, steps 1,2,3,4".into(),
+            sampling: Sampling::Layers(Layers::default()),
+            samples: 4,
+            gaze_px: middle,
+        },
+    ]
+}
+
+/// Times every pattern `rounds` times with `tracer`, and uniform frames.
+pub fn measure(
+    subject: &Subject,
+    tracer: &Tracer,
+    patterns: &[Pattern],
+    rounds: u64,
+    by_wall: bool,
+) -> Vec<PatternReport> {
+    let geometry = *subject.geometry();
+    let size = geometry.size_px();
+    let pixels = f64::from(size[0]) * f64::from(size[1]);
+    let mut uniform: Vec<Took> = vec![];
+    let mut took: Vec<Vec<Took>> = vec![vec![]; patterns.len()];
+    let mut traced = vec![0; patterns.len()];
+    // Drivers compile at the first dispatch.
+    subject.few(tracer);
+    let every = if by_wall { 1 } else { UNIFORM_EVERY };
+    for round in 0..rounds {
+        uniform.push(subject.uniform(tracer, UNIFORM_SAMPLES, every, round));
+        for (i, p) in patterns.iter().enumerate() {
+            let (frame, time) = subject.foveated(tracer, &p.sampling, p.gaze_px, p.samples, round);
+            traced[i] = frame.samples.iter().sum::<u64>();
+            took[i].push(time);
+        }
+    }
+    let report = |(i, p): (usize, &Pattern)| {
+        let all = pixels * f64::from(p.samples);
+        let ideal_reduction = match p.sampling {
+            Sampling::Regions(regions) => Some(all / regions.ideal_samples(&geometry)),
+            _ => None,
+        };
+        let more = f64::from(p.samples) / f64::from(UNIFORM_SAMPLES);
+        let of = |took: &[Took], ms: fn(&Took) -> f64, factor: f64| {
+            Quartiles::of(&took.iter().map(|t| ms(t) * factor).collect::<Vec<_>>())
+        };
+        let mut report = PatternReport {
+            pattern: p.name.clone(),
+            clock: if by_wall { "wall" } else { "CPU" },
+            samples_per_pixel: p.samples,
+            ideal_reduction,
+            sample_reduction: all / traced[i] as f64,
+            time_reduction: None,
+            share_of_ideal: None,
+            cpu_ms: of(&took[i], |t| t.cpu_ms, 1.0),
+            uniform_cpu_ms: of(&uniform, |t| t.cpu_ms, more),
+            wall_ms: of(&took[i], |t| t.wall_ms, 1.0),
+            uniform_wall_ms: of(&uniform, |t| t.wall_ms, more),
+        };
+        report.time_reduction = report.times().map(|(uniform, foveated)| uniform.median / foveated.median);
+        report.share_of_ideal = report.time_reduction.zip(ideal_reduction).map(|(time, ideal)| time / ideal);
+        report
+    };
+    patterns.iter().enumerate().map(report).collect()
+}
+
+/// A table.
+pub fn print(patterns: &[PatternReport]) {
+    say!("    foveated ms  uniform ms  ideal  samples  time  share of ideal  pattern");
+    for p in patterns {
+        let (Some((uniform, ms)), Some(time)) = (p.times(), p.time_reduction) else { continue };
+        let or_dash =
+            |v: Option<f64>, factor: f64, unit: &str| v.map_or("-".into(), |v| format!("{:.1}{unit}", v * factor));
+        say!(
+            "{:>15.0} {:>11.0} {:>6} {:>7.1}x {:>4.1}x {:>15}  {}",
+            ms.median,
+            uniform.median,
+            or_dash(p.ideal_reduction, 1.0, "x"),
+            p.sample_reduction,
+            time,
+            or_dash(p.share_of_ideal, 100.0, " %"),
+            p.pattern,
+        );
+    }
+}

@@ -1,0 +1,287 @@
+//! `afterimage bench papers`: what foveated path tracing saves, beside what two papers say that it does.
+
+use super::foveated::{Pattern, PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
+use super::subject::{Subject, backends, is_real_gpu};
+use super::{BenchArgs, write_json};
+use crate::args::backend::NO_ADAPTER;
+use crate::failure::Failure;
+use crate::report::backend::BackendReport;
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::device::Backend;
+use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
+use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
+use serde::Serialize;
+
+/// The display of Mohanto et al. 2023: its size in pixels and in centimetres, and how far away it stands.
+const DISPLAY_PX: [u32; 2] = [3840, 2160];
+const DISPLAY_CM: [f32; 2] = [70.848, 39.852];
+const DISPLAY_AWAY_CM: f32 = 60.0;
+/// Its radii in pixels.
+const RADII_PX: [f32; 2] = [147.0, 482.0];
+
+/// What it reports: samples of a block, million samples of a frame, time reduction in Sponza. Without a GPU a quarter of the samples is
+/// traced where all are divisible.
+const TRIPLES: [Triple; 3] = [
+    Triple { samples: [32, 16, 8], is_divisible: true, millions: 8.60, time: 23.93 },
+    Triple { samples: [32, 8, 4], is_divisible: true, millions: 5.39, time: 35.33 },
+    Triple { samples: [32, 2, 1], is_divisible: false, millions: 2.98, time: 56.13 },
+];
+const UNIFORM_MILLIONS: f64 = 265.4;
+/// The first triple with halved radii.
+const HALVED_TIME: f64 = 44.67;
+
+/// An eye of a headset, for the thesis, whose display we do not know: 100 degrees wide, and so is its lens.
+const EYE_HFOV_DEG: f32 = 100.0;
+/// The thesis' scenes, with its speed-ups looking forward and into the corner; its empty scene ran at the display's rate.
+const SCENES: [(&str, Option<[f64; 2]>); 5] = [
+    ("control", None),
+    ("bunny-low", Some([1.99, 3.99])),
+    ("bunny-high", Some([1.75, 8.83])),
+    ("cubes", Some([5.11, 7.99])),
+    ("mirror-room", Some([5.30, 5.49])),
+];
+const THESIS_DEPTH: u32 = 8;
+const THESIS_SAMPLES: u32 = 4;
+
+struct Triple {
+    samples: [u32; 3],
+    is_divisible: bool,
+    millions: f64,
+    time: f64,
+}
+
+#[derive(Serialize)]
+struct Report {
+    tool: &'static str,
+    version: &'static str,
+    backend: BackendReport,
+    frames: u64,
+    arithmetic: Vec<Arithmetic>,
+    regions: SceneReport,
+    layers: Vec<SceneReport>,
+}
+
+/// Samples of a frame on the paper's display.
+#[derive(Serialize)]
+struct Arithmetic {
+    pattern: String,
+    million_samples: f64,
+    reduction: f64,
+    paper_million_samples: f64,
+}
+
+#[derive(Serialize)]
+struct SceneReport {
+    scene: String,
+    triangles: u32,
+    size: [u32; 2],
+    hfov_deg: f32,
+    max_depth: u32,
+    patterns: Vec<Compared>,
+}
+
+#[derive(Serialize)]
+struct Compared {
+    #[serde(flatten)]
+    ours: PatternReport,
+    /// As the paper reports it.
+    paper_time_reduction: Option<f64>,
+    /// The same over the ideal reduction on its display.
+    paper_share_of_ideal: Option<f64>,
+}
+
+/// Measures both tables, the first with frames of `size`, the second with an eye as wide as they are high: 1080x1200 for 1920x1080.
+pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let backend = backends(args)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
+    let eye = [size[1], (size[1] * 10).div_ceil(9)];
+    let layers = |(name, paper): &(&str, Option<[f64; 2]>)| layers_of(name, *paper, &backend, eye, frames);
+    let report = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        frames,
+        arithmetic: arithmetic()?,
+        regions: regions_of_a_scene(args, &backend, size, frames)?,
+        layers: SCENES.iter().map(layers).collect::<Result<_, _>>()?,
+        backend: BackendReport::of(&backend),
+    };
+    print(&report);
+    write_json(args, &report)
+}
+
+fn display() -> Result<ViewGeometry, Failure> {
+    let [x, y] = DISPLAY_CM.map(|cm| 0.5 * cm / DISPLAY_AWAY_CM);
+    Ok(ViewGeometry::off_axis(DISPLAY_PX, [-x, x], [-y, y])?)
+}
+
+/// The pattern with the paper's radii in place of its angles.
+fn with_its_radii(samples: [u32; 3], radius_scale: f32) -> Regions {
+    let cm = DISPLAY_CM[0] / DISPLAY_PX[0] as f32;
+    let diameters_deg = RADII_PX.map(|px| 2.0 * (px * cm / DISPLAY_AWAY_CM).atan().to_degrees());
+    Regions { samples, diameters_deg, radius_scale, ..Regions::default() }
+}
+
+fn arithmetic() -> Result<Vec<Arithmetic>, Failure> {
+    let display = display()?;
+    let uniform = DISPLAY_PX.map(f64::from).iter().product::<f64>() * 32e-6;
+    let row = |t: &Triple| {
+        let million_samples = with_its_radii(t.samples, 1.0).ideal_samples(&display) * 1e-6;
+        let reduction = uniform / million_samples;
+        let pattern = t.samples.map(|s| s.to_string()).join(",");
+        Arithmetic { pattern, million_samples, reduction, paper_million_samples: t.millions }
+    };
+    let all = Arithmetic {
+        pattern: "uniform, 32".into(),
+        million_samples: uniform,
+        reduction: 1.0,
+        paper_million_samples: UNIFORM_MILLIONS,
+    };
+    Ok(std::iter::once(all).chain(TRIPLES.iter().map(row)).collect())
+}
+
+/// The first table: on the paper's display, whatever its size in pixels.
+fn regions_of_a_scene(
+    args: &BenchArgs,
+    backend: &Backend,
+    size: [u32; 2],
+    frames: u64,
+) -> Result<SceneReport, Failure> {
+    let name = args.scene.first().map_or("builtin:courtyard", String::as_str);
+    let subject = Subject::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
+    let settings = TraceSettings::default();
+    let tracer = subject.tracer(backend, settings)?;
+    let by_wall = is_real_gpu(backend);
+    let middle = subject.middle_px();
+    let pattern = |t: &Triple, radius_scale| regions(t.samples, t.is_divisible && !by_wall, radius_scale, middle);
+    let mut patterns: Vec<Pattern> = TRIPLES.iter().map(|t| pattern(t, 1.0)).collect();
+    patterns.push(pattern(&TRIPLES[0], 0.5));
+    let display = display()?;
+    let uniform = DISPLAY_PX.map(f64::from).iter().product::<f64>() * 32.0;
+    let halved = uniform / with_its_radii(TRIPLES[0].samples, 0.5).ideal_samples(&display);
+    let papers = TRIPLES.iter().map(|t| (t.time, UNIFORM_MILLIONS / t.millions)).chain([(HALVED_TIME, halved)]);
+    let compare = |(ours, (time, ideal)): (PatternReport, (f64, f64))| Compared {
+        ours,
+        paper_time_reduction: Some(time),
+        paper_share_of_ideal: Some(time / ideal),
+    };
+    let measured = measure(&subject, &tracer, &patterns, frames, by_wall);
+    Ok(scene_report(&subject, settings, measured.into_iter().zip(papers).map(compare).collect()))
+}
+
+/// A row pair of the second table.
+fn layers_of(
+    name: &str,
+    paper: Option<[f64; 2]>,
+    backend: &Backend,
+    eye_px: [u32; 2],
+    frames: u64,
+) -> Result<SceneReport, Failure> {
+    let subject = Subject::open(&format!("builtin:{name}"), eye_px, None, Some(EYE_HFOV_DEG))?;
+    let settings = TraceSettings {
+        integrator: Integrator::Naive,
+        bsdf: Bsdf::Phong,
+        max_depth: THESIS_DEPTH,
+        ..TraceSettings::default()
+    };
+    let tracer = subject.tracer(backend, settings)?;
+    let lens_deg = 0.5 * EYE_HFOV_DEG;
+    let middle = subject.middle_px();
+    // Where the lens ends towards the top left: further out nothing is seen.
+    let rim = 0.5 * eye_px[0] as f32 * std::f32::consts::FRAC_1_SQRT_2;
+    let pattern = |name: &str, gaze_px| Pattern {
+        name: name.into(),
+        sampling: Sampling::Layers(Layers { lens_deg: Some(lens_deg), ..Layers::default() }),
+        samples: THESIS_SAMPLES,
+        gaze_px,
+    };
+    let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
+    let measured = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend));
+    let compare = |(i, ours): (usize, PatternReport)| Compared {
+        ours,
+        paper_time_reduction: paper.map(|p| p[i]),
+        paper_share_of_ideal: None,
+    };
+    Ok(scene_report(&subject, settings, measured.into_iter().enumerate().map(compare).collect()))
+}
+
+fn scene_report(subject: &Subject, settings: TraceSettings, patterns: Vec<Compared>) -> SceneReport {
+    SceneReport {
+        scene: subject.name.rsplit('/').next().unwrap_or(&subject.name).to_owned(),
+        triangles: subject.world.geometry.len(),
+        size: subject.geometry().size_px(),
+        hfov_deg: subject.geometry().hfov_deg(),
+        max_depth: settings.max_depth,
+        patterns,
+    }
+}
+
+/// Both tables as Markdown.
+fn print(report: &Report) {
+    let ([w, h], [inner, outer]) = (DISPLAY_PX, RADII_PX);
+    say!("Samples of a frame of {w}x{h} pixels, radii {inner} and {outer} pixels:\n");
+    say!("| samples | million | reduction | the paper's million |\n|---|---|---|---|");
+    for row in &report.arithmetic {
+        let [ours, paper] = [row.million_samples, row.paper_million_samples];
+        say!("| {} | {ours:.2} | {:.1}x | {paper} |", row.pattern, row.reduction);
+    }
+    print_regions(&report.regions);
+    print_layers(&report.layers);
+    let clock = report.regions.patterns.first().map_or("", |p| p.ours.clock);
+    say!("\n{}, {clock} time, the median where frames are several; frames: {}.", report.backend.name, report.frames);
+    if clock == "CPU" {
+        say!("Uniform frames: {UNIFORM_SAMPLES} samples a pixel of every {UNIFORM_EVERY}th band of rows.");
+    }
+}
+
+fn print_regions(scene: &SceneReport) {
+    let ([w, h], hfov_deg, depth) = (scene.size, scene.hfov_deg, scene.max_depth);
+    say!("\n{}, {} triangles, {w}x{h}, {hfov_deg:.1} degrees wide, depth {depth}:\n", scene.scene, scene.triangles);
+    say!(
+        "| pattern | ideal | of samples | of time | share of ideal | the paper's time | its share | frames a second |"
+    );
+    say!("|---|---|---|---|---|---|---|---|");
+    for Compared { ours, paper_time_reduction, paper_share_of_ideal } in &scene.patterns {
+        let rates = ours.times().filter(|_| ours.clock == "wall");
+        say!(
+            "| {} | {} | {:.1}x | {} | {} | {} | {} | {} |",
+            ours.pattern,
+            factor(ours.ideal_reduction, 1),
+            ours.sample_reduction,
+            factor(ours.time_reduction, 1),
+            percent(ours.share_of_ideal),
+            factor(*paper_time_reduction, 2),
+            percent(*paper_share_of_ideal),
+            rates.map_or("-".into(), |(u, f)| format!("{:.2} to {:.2}", 1e3 / u.median, 1e3 / f.median)),
+        );
+    }
+}
+
+fn print_layers(scenes: &[SceneReport]) {
+    let Some(SceneReport { size: [w, h], hfov_deg, max_depth, .. }) = scenes.first() else { return };
+    say!(
+        "\nLayers, an eye of {w}x{h} pixels, {hfov_deg:.0} degrees wide, {THESIS_SAMPLES} samples, depth {max_depth}:\n"
+    );
+    say!("| scene | triangles | gaze | of samples | of time | the thesis' | ms, uniform to foveated |");
+    say!("|---|---|---|---|---|---|---|");
+    for scene in scenes {
+        for Compared { ours, paper_time_reduction, .. } in &scene.patterns {
+            say!(
+                "| {} | {} | {} | {:.1}x | {} | {} | {} |",
+                scene.scene,
+                scene.triangles,
+                ours.pattern,
+                ours.sample_reduction,
+                factor(ours.time_reduction, 1),
+                factor(*paper_time_reduction, 2),
+                ours.times().map_or("-".into(), |(u, f)| format!("{:.0} to {:.0}", u.median, f.median)),
+            );
+        }
+    }
+}
+
+fn factor(value: Option<f64>, digits: usize) -> String {
+    value.map_or("-".into(), |v| format!("{v:.digits$}x"))
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or("-".into(), |s| format!("{:.0} %", s * 100.0))
+}

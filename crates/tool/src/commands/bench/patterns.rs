@@ -1,0 +1,292 @@
+//! `afterimage bench patterns`: what sampling patterns make of the same number of samples.
+
+mod equal;
+
+use crate::args::backend::BackendName;
+use crate::args::{parse_exposure, parse_samples, parse_size};
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::report::backend::BackendReport;
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage::kernel::debug_view::heat;
+use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
+use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::source::exr_file;
+use afterimage_lab::source::exr_file::FrameToWrite;
+use afterimage_lab::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::Spans;
+use afterimage_lab::trace::world::{World, light_if_dark};
+use clap::Args;
+use equal::Candidate;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Compare sampling patterns of the path tracer at equal numbers of camera samples
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Example:\n  afterimage bench patterns builtin:courtyard --region-spp 8,4,2 --out out/patterns\n\n\
+    Writes OUT/patterns.md, the first frame of each pattern and its FLIP map, OUT/reference.png and OUT/reference.exr."
+)]
+pub struct PatternsArgs {
+    /// A scene: .gltf, .glb, or builtin:NAME
+    scene: String,
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Where the scene is seen from: one of its cameras, still, framing, or a .json file; default: its first camera
+    #[arg(long, value_name = "NAME|FILE.json")]
+    camera: Option<String>,
+    /// Size of a frame, pixels
+    #[arg(long, value_parser = parse_size, default_value = "640x360", value_name = "WxH")]
+    size: [u32; 2],
+    /// Horizontal field of view, degrees; default: the camera's
+    #[arg(long, value_name = "DEG")]
+    hfov: Option<f32>,
+    /// Where the eye looks, pixels; default: the middle
+    #[arg(long, value_delimiter = ',', num_args = 1, value_name = "X,Y")]
+    gaze: Option<Vec<f32>>,
+    /// Samples of regions: of a pixel in the fovea, of a block of 2x2 in the middle, of a block of 4x4 outside. The other patterns
+    /// are made to take as many, within 2 %
+    #[arg(long, value_delimiter = ',', default_value = "8,4,2", value_name = "A,B,C")]
+    region_spp: Vec<u32>,
+    /// Frames of each pattern that are scored
+    #[arg(long, default_value_t = 8, value_name = "N")]
+    frames: u64,
+    /// Samples a pixel of the reference
+    #[arg(long, default_value_t = 256, value_parser = parse_samples, value_name = "N")]
+    reference_spp: u32,
+    /// A reference that this command wrote for the same view, in place of tracing one
+    #[arg(long, value_name = "FILE.exr")]
+    reference: Option<PathBuf>,
+    /// Exposure before tone mapping (x / (1 + x)), stops
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    exposure: f32,
+    /// What traces: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: BackendName,
+    /// Also write the figures as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Number of the reference's frame: its random draws are no test frame's.
+const REFERENCE_FRAME: u64 = 1 << 30;
+/// Samples a pixel that are traced at a time.
+const REFERENCE_STEP: u32 = 8;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    tool: &'static str,
+    version: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    hfov_deg: f32,
+    gaze_px: [f32; 2],
+    frames: u64,
+    /// `null` where the reference was read from a file.
+    reference_spp: Option<u32>,
+    flip_pixels_per_degree: f32,
+    backend: BackendReport,
+    patterns: Vec<PatternReport>,
+}
+
+#[derive(Serialize)]
+struct PatternReport {
+    pattern: &'static str,
+    settings: String,
+    /// Camera samples a frame, mean over the frames.
+    samples: f64,
+    /// Rays of all kinds a frame, mean over the frames.
+    rays: f64,
+    /// Samples over those of regions.
+    samples_of_regions: f64,
+    #[serde(flatten)]
+    scores: Scores,
+}
+
+/// A scene, where it is seen from, and what traces it.
+struct Stage {
+    world: World,
+    view: View,
+    tracer: Tracer,
+    gaze_px: [f32; 2],
+    exposure: f32,
+}
+
+/// The subcommand.
+pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
+    let region_spp = check(args)?;
+    let mut scene = Scene::open(&args.scene, &SceneLimits::default())?;
+    for warning in &scene.warnings {
+        eprintln!("afterimage: warning: {warning}");
+    }
+    light_if_dark(&mut scene);
+    let name = args.camera.as_deref().unwrap_or("still");
+    let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
+    let view = camera.view(&scene, 0, 0.0);
+    let geometry = *view.geometry();
+    let middle = args.size.map(|s| 0.5 * (s as f32 - 1.0));
+    let gaze_px = args.gaze.as_ref().map_or(middle, |g| [g[0], g[1]]);
+    let patterns = equal::candidates(&geometry, gaze_px, region_spp)?;
+    let backend = args.backend.open_for_scenes()?;
+    let world = World::new(&scene);
+    let tracer = Tracer::new(&backend, &world, TraceSettings::default())
+        .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
+    let stage = Stage { world, view, tracer, gaze_px, exposure: args.exposure.exp2() };
+    let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
+    let out = Output::create(&args.out, &[], "patterns.md")?;
+    let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
+    out.sheet("reference.png", &to_rgb8(&stage.shown(&linear)))?;
+    let path = args.out.join("reference.exr");
+    exr_file::write(&path, &FrameToWrite::color(&linear)).map_err(|e| Failure::writing(&path, e))?;
+    let reports = stage.compare(&patterns, &stage.shown(&linear), args.frames, &out)?;
+    let table = markdown(&reports);
+    out.text("patterns.md", &table)?;
+    let report = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        scene: &args.scene,
+        size: args.size,
+        hfov_deg: geometry.hfov_deg(),
+        gaze_px,
+        frames: args.frames,
+        reference_spp: args.reference.is_none().then_some(args.reference_spp),
+        flip_pixels_per_degree: Flip::for_view(&geometry).pixels_per_degree(),
+        backend: BackendReport::of(&backend),
+        patterns: reports,
+    };
+    super::write_json_to(args.json.as_deref(), &report)?;
+    say!("{table}");
+    say!("pictures and FLIP maps: {}", args.out.display());
+    Ok(())
+}
+
+/// The samples of regions, if everything is as it can be.
+fn check(args: &PatternsArgs) -> Result<[u32; 3], Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    if args.size.iter().any(|s| !(16..=4096).contains(s)) {
+        return refuse(format!("--size {}x{}: expected 16 to 4096 pixels a side", args.size[0], args.size[1]));
+    }
+    if args.gaze.as_ref().is_some_and(|g| g.len() != 2 || g.iter().any(|v| !v.is_finite())) {
+        return refuse("--gaze: expected a pixel, such as 320,180".into());
+    }
+    if !(1..=10_000).contains(&args.frames) {
+        return refuse(format!("--frames {}: expected 1 to 10000", args.frames));
+    }
+    match args.region_spp[..] {
+        [a, b, c] if [a, b, c].iter().all(|v| (1..=4096).contains(v)) => Ok([a, b, c]),
+        _ => refuse("--region-spp: expected three numbers of 1 to 4096, such as 8,4,2".into()),
+    }
+}
+
+/// A reference of an earlier run.
+fn read(path: &Path, size: [u32; 2]) -> Result<Image<[f32; 3]>, Failure> {
+    let color = StillSource::open(path, &ReadLimits::default())?.frame(0)?.color;
+    if color.size() == size {
+        return Ok(color);
+    }
+    let [w, h] = color.size();
+    Err(Failure::Input(format!("{}: is {w}x{h}; expected {}x{}, or another --size", path.display(), size[0], size[1])))
+}
+
+impl Stage {
+    fn geometry(&self) -> &ViewGeometry {
+        self.view.geometry()
+    }
+
+    /// Uniformly sampled, a few samples at a time.
+    fn converged(&self, samples: u32) -> Image<[f32; 3]> {
+        let [w, h] = self.geometry().size_px();
+        let mut film = Film::new([w, h]);
+        for first in (0..samples).step_by(REFERENCE_STEP as usize) {
+            let spans = Spans::uniform(w, 0..h, first..(first + REFERENCE_STEP).min(samples));
+            self.tracer.trace(&self.world, &self.view, REFERENCE_FRAME, &spans, &mut film);
+        }
+        film.color()
+    }
+
+    /// sRGB-encoded, as `trace` writes it: tone mapped by x / (1 + x).
+    fn shown(&self, linear: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+        encode(&linear.map(|c| c.map(|v| v * self.exposure / (1.0 + v * self.exposure))), 0.0)
+    }
+
+    /// Traces and scores all patterns, and writes what they look like.
+    fn compare(
+        &self,
+        patterns: &[Candidate],
+        reference: &Image<[f32; 3]>,
+        frames: u64,
+        out: &Output,
+    ) -> Result<Vec<PatternReport>, Failure> {
+        let size = self.geometry().size_px();
+        let ecc_deg = self.geometry().eccentricity_map(self.gaze_px);
+        let tracked = Tracked::unknown(size);
+        let flip = Flip::for_view(self.geometry());
+        let mut references = References::with_flip(flip.clone());
+        let full = references.next(reference, &tracked);
+        let mut reports: Vec<PatternReport> = vec![];
+        for pattern in patterns {
+            let mut scorer = Scorer::default();
+            let (mut samples, mut rays) = (0, 0);
+            for frame in 0..frames {
+                let plan = pattern.sampling.plan(self.geometry(), self.gaze_px, pattern.samples, frame);
+                let done = plan.trace(&self.tracer, &self.world, &self.view, frame);
+                samples += done.samples.iter().sum::<u64>();
+                rays += done.rays;
+                let shown = self.shown(&done.color);
+                scorer.push(&full, &shown, &tracked, &ecc_deg);
+                if frame == 0 {
+                    let map = flip.map(reference, &shown).map(|v| heat(v).to_array());
+                    out.sheet(&format!("{}.png", pattern.name), &to_rgb8(&shown))?;
+                    out.sheet(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
+                }
+            }
+            let a_frame = |sum: u64| sum as f64 / frames as f64;
+            let of_regions = reports.first().map_or(a_frame(samples), |r| r.samples);
+            reports.push(PatternReport {
+                pattern: pattern.name,
+                settings: pattern.settings.clone(),
+                samples: a_frame(samples),
+                rays: a_frame(rays),
+                samples_of_regions: a_frame(samples) / of_regions,
+                scores: scorer.scores(),
+            });
+        }
+        Ok(reports)
+    }
+}
+
+/// The table.
+fn markdown(reports: &[PatternReport]) -> String {
+    let mut table = String::from(
+        "| pattern | samples | weighted dB | PSNR dB: all, fovea, mid, periphery | SSIM | FLIP: all, fovea, mid, periphery |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    let digits = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+    for r in reports {
+        let s = &r.scores;
+        let list = |of: &dyn Fn(&afterimage_lab::metric::BandScores) -> String| {
+            std::iter::once(&s.whole).chain(&s.bands).map(of).collect::<Vec<_>>().join(", ")
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            table,
+            "| {}: {} | {:.0} | {} | {} | {} | {} |",
+            r.pattern,
+            r.settings,
+            r.samples,
+            digits(s.weighted_psnr_db, 2),
+            list(&|b| digits(b.psnr_db, 2)),
+            digits(s.whole.ssim, 4),
+            list(&|b| digits(b.flip, 4)),
+        );
+    }
+    table
+}

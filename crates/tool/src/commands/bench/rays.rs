@@ -1,0 +1,139 @@
+//! `afterimage bench trace`: how many rays a second the tracers follow.
+
+use super::foveated::{self, PatternReport};
+use super::subject::{Subject, Took, backends, is_real_gpu};
+use super::{BenchArgs, write_json};
+use crate::failure::Failure;
+use crate::report::backend::BackendReport;
+use afterimage_lab::clock::Quartiles;
+use afterimage_lab::trace::settings::TraceSettings;
+use serde::Serialize;
+
+/// Frames before the watch starts.
+const WARM_UP: u64 = 2;
+
+#[derive(Serialize)]
+struct Report {
+    tool: &'static str,
+    version: &'static str,
+    size: [u32; 2],
+    frames: u64,
+    samples_per_pixel: u32,
+    max_depth: u32,
+    scenes: Vec<SceneReport>,
+}
+
+#[derive(Serialize)]
+struct SceneReport {
+    scene: String,
+    triangles: u32,
+    tracers: Vec<TracerReport>,
+}
+
+#[derive(Serialize)]
+struct TracerReport {
+    backend: BackendReport,
+    rays_per_frame: u64,
+    /// CPU time of the process a frame: work list and film to the device and back included.
+    cpu_ms: Option<Quartiles>,
+    wall_ms: Option<Quartiles>,
+    /// Of the kernels alone, by timestamp queries; `null` on the CPU and on software devices.
+    device_ms: Option<Quartiles>,
+    /// Million rays a second of CPU time, which is a second of one core at work.
+    mrays_per_core_second: Option<f64>,
+    /// Million rays a second: of the device's time if it has a clock, else of wall time.
+    mrays_per_second: Option<f64>,
+    scene_bytes_per_triangle: Option<f64>,
+    /// With `--foveated`.
+    foveated: Vec<PatternReport>,
+}
+
+/// Times the tracers for `size` and `frames`.
+pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let settings = TraceSettings::default();
+    let backends = backends(args)?;
+    let default = ["builtin:courtyard".to_owned()];
+    let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
+    let mut scenes = vec![];
+    for name in names {
+        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
+        let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
+        let mut took: Vec<Vec<Took>> = vec![vec![]; tracers.len()];
+        for index in 0..WARM_UP + frames {
+            for (tracer, took) in tracers.iter().zip(&mut took) {
+                let frame = subject.frame(tracer, index);
+                if index >= WARM_UP {
+                    took.push(frame);
+                }
+            }
+        }
+        let triangles = subject.world.geometry.len();
+        let reports = backends.iter().zip(&tracers).zip(&took).map(|((backend, tracer), took)| {
+            let of = |value: &dyn Fn(&Took) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
+            let device = is_real_gpu(backend) && took.iter().all(|t| t.device_ms.is_some());
+            let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
+            let rate = |ms: &dyn Fn(&Took) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
+            TracerReport {
+                backend: BackendReport::of(backend),
+                rays_per_frame: took.first().map_or(0, |t| t.rays),
+                cpu_ms: of(&|t| t.cpu_ms),
+                wall_ms: of(&|t| t.wall_ms),
+                device_ms,
+                mrays_per_core_second: rate(&|t| t.cpu_ms),
+                mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
+                foveated: if args.foveated {
+                    let patterns = foveated::patterns(&subject);
+                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))
+                } else {
+                    vec![]
+                },
+                scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
+            }
+        });
+        scenes.push(SceneReport { scene: name.clone(), triangles, tracers: reports.collect() });
+    }
+    let report = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        size,
+        frames,
+        samples_per_pixel: 1,
+        max_depth: settings.max_depth,
+        scenes,
+    };
+    print(&report);
+    write_json(args, &report)
+}
+
+fn print(report: &Report) {
+    let [w, h] = report.size;
+    say!("{w}x{h}, 1 sample a pixel, depth {}, {} frames; medians and quartiles", report.max_depth, report.frames);
+    say!("ms are CPU time of the process, work list and film to the device and back included");
+    say!("Mrays/s are of wall time, of a GPU with a clock of its own time");
+    for scene in &report.scenes {
+        say!("{}, {} triangles", scene.scene, scene.triangles);
+        say!("    median      p25      p75 ms  rays/frame  Mrays/core-second  Mrays/s  bytes/triangle  tracer");
+        for t in &scene.tracers {
+            let (Some(q), Some(core), Some(rate)) = (t.cpu_ms, t.mrays_per_core_second, t.mrays_per_second) else {
+                continue;
+            };
+            say!(
+                "{:>10.1} {:>8.1} {:>8.1} {:>14} {:>18.3} {:>8.3} {:>15}  {} ({})",
+                q.median,
+                q.p25,
+                q.p75,
+                t.rays_per_frame,
+                core,
+                rate,
+                t.scene_bytes_per_triangle.map_or("-".into(), |b| format!("{b:.0}")),
+                t.backend.name,
+                t.backend.kind,
+            );
+        }
+        for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
+            let clock = t.foveated.first().map_or("", |p| p.clock);
+            say!("  foveated against uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
+            foveated::print(&t.foveated);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A scene to be timed, and what traces it.
+
+use super::{BenchArgs, Traces};
+use crate::args::backend::NO_ADAPTER;
+use crate::failure::Failure;
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::frame::FoveatedFrame;
+use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::source::SceneCamera;
+use afterimage_lab::source::raster::DEFAULT_FPS;
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::sampling::Sampling;
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
+use afterimage_lab::trace::world::{World, light_if_dark};
+use std::time::Duration;
+
+/// A scene at rest and where it is seen from. One sample a pixel.
+pub struct Subject {
+    pub name: String,
+    pub world: World,
+    scene: Scene,
+    camera: SceneCamera,
+    items: Vec<WorkItem>,
+    size: [u32; 2],
+}
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug)]
+pub struct Took {
+    /// CPU time of the process; wall time where the system does not tell.
+    pub cpu_ms: f64,
+    pub wall_ms: f64,
+    /// Of the kernels, by the clock of a real GPU.
+    pub device_ms: Option<f64>,
+    pub rays: u64,
+}
+
+impl Subject {
+    /// The scene `name`, seen by the camera that `trace --camera` finds by that name: without one by its first, else as a whole.
+    pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
+        let mut scene = Scene::open(name, &SceneLimits::default())?;
+        for warning in &scene.warnings {
+            eprintln!("afterimage: warning: {warning}");
+        }
+        light_if_dark(&mut scene);
+        let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
+        let items = uniform(size[0], 0..size[1], 0..1);
+        Ok(Self { name: name.to_owned(), world: World::new(&scene), scene, camera, items, size })
+    }
+
+    /// Pixels and angles.
+    pub fn geometry(&self) -> &ViewGeometry {
+        self.camera.geometry()
+    }
+
+    fn view(&self, index: u64) -> View {
+        self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
+    }
+
+    /// A tracer of it.
+    pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, Failure> {
+        Tracer::new(backend, &self.world, settings).map_err(|e| Failure::Input(format!("{}: {e}", self.name)))
+    }
+
+    /// Traces frame `index`.
+    pub fn frame(&self, tracer: &Tracer, index: u64) -> Took {
+        self.trace(tracer, index, &self.items)
+    }
+
+    /// Traces a few samples only: every kernel runs.
+    pub fn few(&self, tracer: &Tracer) -> Took {
+        self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
+    }
+
+    /// The middle of the picture.
+    pub fn middle_px(&self) -> [f32; 2] {
+        self.size.map(|s| 0.5 * (s as f32 - 1.0))
+    }
+
+    /// Traces a foveated frame; what it took includes planning and filling in.
+    pub fn foveated(
+        &self,
+        tracer: &Tracer,
+        sampling: &Sampling,
+        gaze_px: [f32; 2],
+        samples: u32,
+        index: u64,
+    ) -> (FoveatedFrame, Took) {
+        let view = self.view(index);
+        let watch = Stopwatch::start();
+        let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
+        let frame = plan.trace(tracer, &self.world, &view, index);
+        let took = Took::by(&watch, None, frame.rays);
+        (frame, took)
+    }
+
+    /// Traces `samples` of every pixel, without anything around it; with `every` above 1 only of each so manieth band of rows, for
+    /// which the whole frame's time is taken to be so much longer.
+    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> Took {
+        const BAND: u32 = 4;
+        let [width, height] = self.size;
+        let band = if every > 1 { BAND } else { height };
+        let view = self.view(index);
+        let (mut rows, mut rays) = (0, 0);
+        let watch = Stopwatch::start();
+        for first in (band * (every / 2)..height).step_by((band * every) as usize) {
+            let band = first..(first + band).min(height);
+            let mut film = Film::window([0, first], [width, band.len() as u32]);
+            rows += band.len();
+            tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
+            rays += film.rays;
+        }
+        let took = Took::by(&watch, None, rays);
+        let more = f64::from(height) / rows.max(1) as f64;
+        Took { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
+    }
+
+    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+        let view = self.view(index);
+        let mut film = Film::new(self.size);
+        let watch = Stopwatch::start();
+        let device = match tracer {
+            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &view, index, items, &mut film),
+            Tracer::Cpu(tracer) => {
+                tracer.trace(&self.world, &view, index, items, &mut film);
+                None
+            }
+        };
+        Took::by(&watch, device, film.rays)
+    }
+}
+
+impl Took {
+    fn by(watch: &Stopwatch, device: Option<Duration>, rays: u64) -> Self {
+        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }
+    }
+}
+
+/// What is to be timed: the CPU, an adapter, or both.
+pub fn backends(args: &BenchArgs) -> Result<Vec<Backend>, Failure> {
+    let mut backends = vec![];
+    if args.backend != Traces::Gpu {
+        backends.push(Backend::Cpu);
+    }
+    if args.backend != Traces::Cpu {
+        match Headless::find_roomy(true) {
+            Some(gpu) => backends.push(Backend::Gpu(gpu)),
+            None if args.backend == Traces::Gpu => {
+                return Err(Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")));
+            }
+            None => {}
+        }
+    }
+    Ok(backends)
+}
+
+/// Whether its own clock tells more than the process's CPU time.
+pub fn is_real_gpu(backend: &Backend) -> bool {
+    matches!(backend, Backend::Gpu(gpu) if !gpu.is_software())
+}

@@ -1,0 +1,196 @@
+//! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our figures beside theirs.
+
+use crate::commands::sweep::{SweepArgs, execute};
+use crate::failure::Failure;
+use crate::sweep::{Metric, Row, Table};
+use afterimage_lab::whole_file::write_whole;
+use clap::{Args, Parser};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Table 1 and the run times of weighted reservoir sampling (Cantory et al. 2025) in Markdown, our figures beside theirs
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Example:\n  afterimage bench wrs sponza_still/ sponza_lateral/ --gaze viewing.csv --start 1 --out out/wrs --markdown docs/wrs-table.md\n\n\
+    Goes on where it was stopped; OUT/report.html has all of it."
+)]
+pub struct WrsTableArgs {
+    /// A still, as for run: the paper's scenes "-S"
+    pub still: String,
+    /// Frames of a camera that moves sideways: the paper's "-M"
+    pub moving: String,
+    /// Scanpath, as for run
+    #[arg(long, value_name = "FILE.csv")]
+    pub gaze: String,
+    /// Start in the scanpath, seconds
+    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    pub start: f64,
+    /// Frames of each point
+    #[arg(long, default_value_t = 120, value_name = "N")]
+    pub frames: u64,
+    /// Repetitions of what is random
+    #[arg(long, default_value_t = 3, value_name = "N")]
+    pub seeds: u64,
+    /// What computes the methods: auto, cpu or gpu
+    #[arg(long, default_value = "auto", value_name = "NAME")]
+    pub backend: String,
+    /// Folder of the sweep
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Where to write the tables; default: standard output
+    #[arg(long, value_name = "FILE.md")]
+    pub markdown: Option<PathBuf>,
+}
+
+/// Foveated alone (still) or with TAA (moving), and with weighted reservoirs: PSNR in dB and SSIM.
+struct Published {
+    scene: &'static str,
+    still: Option<[[f64; 2]; 2]>,
+    moving: Option<[[f64; 2]; 2]>,
+    /// Milliseconds at 4K on an RTX 4070 Ti Super: foveated, with TAA, with weighted reservoirs.
+    ms: [f64; 3],
+}
+
+/// The paper's table 1; it gives Sponza's moving figures as those of its still ones, so they are left out.
+const PUBLISHED: [Published; 4] = [
+    Published {
+        scene: "Fantasy Forest",
+        still: Some([[21.93, 0.540], [23.71, 0.661]]),
+        moving: Some([[23.39, 0.600], [24.61, 0.654]]),
+        ms: [12.52, 14.95, 12.63],
+    },
+    Published { scene: "Sponza", still: Some([[24.13, 0.540], [26.52, 0.720]]), moving: None, ms: [9.77, 11.97, 9.82] },
+    Published {
+        scene: "San Miguel",
+        still: Some([[22.15, 0.579], [24.73, 0.749]]),
+        moving: Some([[20.21, 0.614], [21.66, 0.693]]),
+        ms: [13.53, 18.62, 13.59],
+    },
+    Published {
+        scene: "Corridor",
+        still: None,
+        moving: Some([[22.27, 0.7359], [23.12, 0.7752]]),
+        ms: [9.87, 11.66, 10.81],
+    },
+];
+
+const FOVEAE_DEG: [&str; 3] = ["5", "7.5", "10"];
+
+/// `sweep`, for its options.
+#[derive(Parser)]
+#[command(name = "sweep")]
+struct Sweep {
+    #[command(flatten)]
+    args: SweepArgs,
+}
+
+/// Measures and writes.
+pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
+    let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
+    let out = args.out.to_string_lossy();
+    let words = [
+        "sweep",
+        &args.still,
+        &args.moving,
+        "--preset",
+        "paper",
+        "--gaze",
+        &args.gaze,
+        "--start",
+        &start,
+        "--frames",
+        &frames,
+        "--seeds",
+        &seeds,
+        "--backend",
+        &args.backend,
+        "--out",
+        &out,
+    ];
+    let sweep = Sweep::try_parse_from(words).map_err(|e| Failure::usage(&e))?;
+    let Some(table) = execute(&sweep.args)? else { return Ok(()) };
+    let text = markdown(args, &table);
+    match &args.markdown {
+        Some(path) => write_whole(path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(path, e)),
+        None => {
+            say!("{text}");
+            Ok(())
+        }
+    }
+}
+
+fn markdown(args: &WrsTableArgs, table: &Table) -> String {
+    let mut lines = vec![format!("<!-- Made by `{}`; do not edit. -->", table.command), String::new()];
+    let machine = table.machines.first().map_or(String::new(), |m| format!("{} {}, {}", m.kind, m.name, m.clock));
+    for (input, title, baseline) in [(&args.still, "Still", "none"), (&args.moving, "Moving camera", "taa")] {
+        let Some(clip) = table.clips.get(input) else { continue };
+        let [w, h] = clip.size;
+        lines.push(format!("{title}: `{input}`, {w}x{h}, {} frames.\n", clip.frames));
+        lines.push("| | fovea, degrees | PSNR dB | SSIM | FLIP | retained dB | ms a frame |".into());
+        lines.push("|---|---|---|---|---|---|---|".into());
+        for fovea in FOVEAE_DEG {
+            for method in ["none", "taa", "wrs", "smr"] {
+                if let Some(row) = find(table, input, method, fovea) {
+                    lines.push(line(row, fovea));
+                }
+            }
+        }
+        for published in &PUBLISHED {
+            let pair = if baseline == "none" { published.still } else { published.moving };
+            let Some([before, after]) = pair else { continue };
+            let name = if baseline == "none" { "none" } else { "taa" };
+            for (method, [psnr, ssim]) in [(name, before), ("wrs", after)] {
+                lines.push(format!("| paper, {}: {method} | 5 | {psnr:.2} | {ssim:.3} | - | - | - |", published.scene));
+            }
+        }
+        lines.push(gain(table, input, baseline));
+    }
+    lines.push(format!("Run time, milliseconds a frame ({machine}); the paper's are of a 4K frame on an RTX 4070 Ti Super, rendering included, so what\na method adds is the difference from the first column:\n"));
+    lines.push("| | foveated | + taa | + wrs | + smr |".into());
+    lines.push("|---|---|---|---|---|".into());
+    for input in [&args.still, &args.moving] {
+        let ms = |method| find(table, input, method, "5").map_or("-".into(), |r| format!("{:.2}", r.pass_ms.median));
+        lines.push(format!("| `{input}` | {} | {} | {} | {} |", ms("none"), ms("taa"), ms("wrs"), ms("smr")));
+    }
+    for published in &PUBLISHED {
+        let [foveated, taa, wrs] = published.ms;
+        lines.push(format!("| paper, {} | {foveated:.2} | {taa:.2} | {wrs:.2} | - |", published.scene));
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn find<'a>(table: &'a Table, input: &str, method: &str, fovea: &str) -> Option<&'a Row> {
+    let fits = |r: &&Row| {
+        r.point.input == input && r.point.method == method && r.point.options.get("fovea").is_some_and(|f| f == fovea)
+    };
+    table.rows.iter().find(fits)
+}
+
+fn line(row: &Row, fovea: &str) -> String {
+    let value = |key: &str| {
+        let digits = Metric::find(key).map_or(2, |m| m.digits);
+        row.values.get(key).copied().flatten().map_or("-".into(), |v| format!("{v:.digits$}"))
+    };
+    let [psnr, ssim, flip, retained] = ["psnr_db", "ssim", "flip", "retained_psnr_db"].map(value);
+    format!("| {} | {fovea} | {psnr} | {ssim} | {flip} | {retained} | {:.2} |", row.point.method, row.pass_ms.median)
+}
+
+/// What the paper's method gains over what the paper compares with, here and there.
+fn gain(table: &Table, input: &str, baseline: &str) -> String {
+    let psnr = |method| find(table, input, method, "5").and_then(|r| r.values.get("psnr_db").copied().flatten());
+    let (Some(before), Some(wrs), Some(smr)) = (psnr(baseline), psnr("wrs"), psnr("smr")) else {
+        return String::new();
+    };
+    let theirs: Vec<f64> = PUBLISHED
+        .iter()
+        .filter_map(|p| if baseline == "none" { p.still } else { p.moving })
+        .map(|[before, after]| after[0] - before[0])
+        .collect();
+    let (least, most) = theirs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &v| (l.min(v), m.max(v)));
+    format!(
+        "\nOver {baseline}, 5 degrees: wrs {:+.2} dB, smr {:+.2} dB; the paper's wrs {least:+.2} to {most:+.2} dB on its scenes.\n",
+        wrs - before,
+        smr - before
+    )
+}

@@ -1,0 +1,127 @@
+//! `afterimage info`: what an input holds, or which adapters there are.
+
+mod adapters;
+mod scene;
+
+use crate::failure::Failure;
+use afterimage_lab::error::InputError;
+use afterimage_lab::scanpath::{GazeMap, read_csv};
+use afterimage_lab::source;
+use afterimage_lab::source::motion_check;
+use afterimage_lab::source::motion_check::Verdict;
+use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions};
+use clap::Args;
+use std::path::Path;
+
+/// Say what an input holds, or which adapters there are
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Examples:\n  afterimage info frames/\n  afterimage info scene.glb\n  afterimage info viewing.csv\n  \
+                  afterimage info adapters --self-test"
+)]
+pub struct InfoArgs {
+    /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a scanpath (.csv), or the word adapters
+    pub input: String,
+    /// Largest image that is read, million pixels
+    #[arg(long, default_value_t = 64, value_name = "N")]
+    pub max_megapixels: u32,
+    /// With adapters: ask each how it computes, and whether the passes give the CPU's bits there (seconds on software devices)
+    #[arg(long)]
+    pub self_test: bool,
+}
+
+/// The subcommand.
+pub fn info(args: &InfoArgs) -> Result<(), Failure> {
+    if args.input == "adapters" {
+        return adapters::adapters_info(args.self_test);
+    }
+    if args.self_test {
+        return Err(Failure::Input(format!("--self-test: expected the word adapters, not {}", args.input)));
+    }
+    if Path::new(&args.input).extension().is_some_and(|e| e == "csv") {
+        return Ok(scanpath_info(&args.input)?);
+    }
+    if source::is_scene(&args.input) {
+        return Ok(scene::scene_info(&args.input)?);
+    }
+    let limits = ReadLimits::from_megapixels(args.max_megapixels);
+    let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;
+    Ok(frames_info(source.as_mut())?)
+}
+
+fn scanpath_info(path: &str) -> Result<(), InputError> {
+    let scanpath = read_csv(Path::new(path))?;
+    let screen = scanpath.screen();
+    let lost = scanpath.samples().iter().filter(|s| s.px.is_none()).count();
+    say!("scanpath of {:.3} s", scanpath.duration_s());
+    say!("samples: {} ({lost} lost)", scanpath.samples().len());
+    say!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
+    match (screen.size_cm, screen.distance_cm) {
+        (Some([w, h]), Some(d)) => say!("geometry: {w}x{h} cm seen from {d} cm"),
+        _ => say!("geometry: not known"),
+    }
+    let map = match GazeMap::default_for(screen) {
+        GazeMap::Angle => "angle",
+        GazeMap::Fit => "fit",
+    };
+    say!("default --gaze-map: {map}");
+    if let Some(task) = &scanpath.about().task {
+        say!("task: {task}");
+    }
+    for (key, value) in &scanpath.about().notes {
+        say!("{key}: {value}");
+    }
+    Ok(())
+}
+
+fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
+    let info = source.info().clone();
+    let known = |v: Option<f32>| v.map_or("not stated".to_owned(), |v| v.to_string());
+    say!("{}", info.name);
+    say!("size: {}x{} px", info.size[0], info.size[1]);
+    match info.frames {
+        Some(n) => say!("frames: {n}"),
+        None => say!("frames: without end"),
+    }
+    say!("still: {}", if info.still { "yes" } else { "no" });
+    say!("frames per second: {}", known(info.fps));
+    say!("horizontal field of view, degrees: {}", known(info.hfov_deg));
+    let first = source.frame(0)?;
+    say!("non-finite pixels in frame 0: {}", first.nonfinite);
+    let brightest = first.color.pixels().iter().flatten().fold(0.0_f32, |a, &b| a.max(b));
+    say!("brightest channel in frame 0, linear: {brightest}");
+    match &first.depth {
+        None => say!("depth: none"),
+        Some(depth) => {
+            let finite = depth.pixels().iter().filter(|z| z.is_finite() && **z < 1e9);
+            let (near, far) = finite.fold((f32::INFINITY, 0.0_f32), |(a, b), &z| (a.min(z), b.max(z)));
+            say!("depth in frame 0: {near} to {far}");
+        }
+    }
+    if info.still || info.frames == Some(1) {
+        say!("motion: none, it is a still");
+        return Ok(());
+    }
+    let second = source.frame(1)?;
+    let Some(motion) = &second.motion else {
+        say!("motion: none");
+        return Ok(());
+    };
+    let largest = motion.pixels().iter().map(|m| m[0].hypot(m[1])).fold(0.0_f32, f32::max);
+    say!("motion in frame 1: up to {largest:.2} px");
+    let check = motion_check::detect(&first.color, &second.color, motion)?;
+    let explains = |db: f64| format!("frame 0 moved by it explains frame 1 to {db:.1} dB");
+    let best = check.psnr_db.first().map_or(f64::NAN, |p| p.1);
+    match check.verdict {
+        Verdict::Undecidable => say!("motion convention: cannot be told, too little moves"),
+        _ if check.best == Default::default() => {
+            say!("motion convention: as read ({})", explains(best));
+        }
+        verdict => say!(
+            "motion convention: WRONG? Read as {:?}, {} ({verdict:?}); check the channels",
+            check.best,
+            explains(best)
+        ),
+    }
+    Ok(())
+}

@@ -1,0 +1,72 @@
+//! What a scene holds.
+
+use afterimage_lab::error::InputError;
+use afterimage_lab::scene::{Environment, Material, PunctualKind, Scene, SceneLimits};
+use afterimage_lab::trace::effects::Effects;
+
+/// Names that are printed of a kind; a file may have thousands.
+const MOST_NAMES: usize = 20;
+
+pub fn scene_info(input: &str) -> Result<(), InputError> {
+    let scene = Scene::open(input, &SceneLimits::default())?;
+    let pose = scene.pose(0.0);
+    say!("{}", scene.name);
+    say!("triangles: {} ({} of them move)", scene.still().len() + pose.moving.len(), pose.moving.len());
+    match scene.bounds() {
+        Some(b) => {
+            say!("bounds, m: x {} to {}, y {} to {}, z {} to {}", b.min.x, b.max.x, b.min.y, b.max.y, b.min.z, b.max.z)
+        }
+        None => say!("bounds: none"),
+    }
+    let used = used_materials(&scene);
+    say!("materials: {}", named(used.iter().map(|m| m.name.as_str())));
+    let bytes: usize = scene.textures.iter().map(|t| t.texels.len() * 4).sum();
+    say!("textures: {}, {bytes} bytes", scene.textures.len());
+    let kinds = [
+        ("directional", pose.lights.iter().filter(|l| l.kind == PunctualKind::Directional).count()),
+        ("point", pose.lights.iter().filter(|l| l.kind == PunctualKind::Point).count()),
+        ("spot", pose.lights.iter().filter(|l| matches!(l.kind, PunctualKind::Spot { .. })).count()),
+    ];
+    let there: Vec<_> = kinds.iter().filter(|k| k.1 > 0).map(|(kind, count)| format!("{count} {kind}")).collect();
+    say!("lights: {}", if there.is_empty() { "none".to_owned() } else { there.join(", ") });
+    say!(
+        "materials that emit light: {}",
+        named(used.iter().filter(|m| m.emissive != [0.0; 3]).map(|m| m.name.as_str()))
+    );
+    match &scene.environment {
+        Environment::Constant([0.0, 0.0, 0.0]) => say!("environment: none"),
+        Environment::Constant([r, g, b]) => say!("environment: radiance {r},{g},{b}"),
+        Environment::Map(map) => say!("environment: a map of {}x{} px", map.width(), map.height()),
+    }
+    say!("cameras: {}", named(pose.cameras.iter().map(|c| c.name.as_str())));
+    say!("animations: {}", named(scene.animations.iter().map(String::as_str)));
+    if scene.duration_s() > 0.0 {
+        say!("length of the first animation, s: {:.3}", scene.duration_s());
+    }
+    let effects: Vec<_> = Effects::needed(&scene).iter().map(|e| e.name()).collect();
+    say!("effects that it calls for: {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") });
+    for warning in &scene.warnings {
+        say!("warning: {warning}");
+    }
+    Ok(())
+}
+
+/// Materials that some triangle is made of.
+fn used_materials(scene: &Scene) -> Vec<&Material> {
+    let mut used = vec![false; scene.materials.len()];
+    for &material in scene.still().materials.iter().chain(&scene.pose(0.0).moving.materials) {
+        used[material as usize] = true;
+    }
+    scene.materials.iter().zip(used).filter(|(_, used)| *used).map(|(material, _)| material).collect()
+}
+
+/// How many there are, and the names of those that have one, each on one line whatever the file says.
+fn named<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<_> = names.collect();
+    let quoted: Vec<_> = names.iter().filter(|n| !n.is_empty()).map(|n| format!("'{}'", n.escape_debug())).collect();
+    let more = if quoted.len() > MOST_NAMES { ", ..." } else { "" };
+    match quoted.len() {
+        0 => names.len().to_string(),
+        _ => format!("{} ({}{more})", names.len(), quoted[..quoted.len().min(MOST_NAMES)].join(", ")),
+    }
+}

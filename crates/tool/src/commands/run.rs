@@ -1,0 +1,213 @@
+//! `afterimage run`: foveate a frame stream, enhance it, score it.
+
+pub mod plan;
+
+use crate::args::backend::BackendName;
+use crate::args::gaze::GazeArgs;
+use crate::args::input::{InputArgs, SourceName, Tracing};
+use crate::args::pattern::{SamplingArgs, SamplingName};
+use crate::args::{
+    DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
+};
+use crate::clip::ClipReport;
+use crate::clip::run_report::{RunFacts, write_report};
+use crate::failure::Failure;
+use crate::output::Output;
+#[cfg(feature = "ablation")]
+use afterimage_lab::pipeline::ablation::{PARTS, Part};
+use afterimage_lab::trace::sampling::Sampling;
+use clap::{Args, Parser};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Foveate a frame stream, enhance it, score it
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
+    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+)]
+pub struct RunArgs {
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub gaze: GazeArgs,
+    /// Frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
+    #[arg(long, value_parser = parse_frames, value_name = "N")]
+    pub frames: Option<u64>,
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Samples a pixel of the full-rate frames that frames traced with --sampling are held against
+    #[arg(long, default_value_t = 64, value_parser = parse_samples, value_name = "N")]
+    pub reference_spp: u32,
+    #[command(flatten)]
+    pub sampling: SamplingArgs,
+    /// With --sampling and the method smr: trace more samples where its history knows little or nothing and fewer where it is sure, as
+    /// many in all
+    #[arg(long)]
+    pub guided: bool,
+    #[command(flatten)]
+    pub foveation: FoveationArgs,
+    /// Methods, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
+    pub method: Vec<MethodName>,
+    #[command(flatten)]
+    pub wrs: WrsArgs,
+    /// Tell the methods which pixels move without vectors, where the scene knows it (analytic:scroll)
+    #[arg(long)]
+    pub trust: bool,
+    /// What computes the methods: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: BackendName,
+    /// Seed of the random numbers: same seed, same bytes
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// File format of frames: 8-bit sRGB PNG, or linear half-float EXR
+    #[arg(long, value_enum, default_value = "png")]
+    pub format: FormatName,
+    /// Exposure before sRGB encoding, stops
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Also write the full-rate frames
+    #[arg(long)]
+    pub reference: bool,
+    /// Leave FLIP out, which takes a third of a second a megapixel of one core
+    #[arg(long)]
+    pub no_flip: bool,
+    #[cfg(feature = "ablation")]
+    #[command(flatten)]
+    pub ablation: AblationArgs,
+    /// Pixel decisions to write as images, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    pub debug: Vec<DebugName>,
+}
+
+impl RunArgs {
+    /// From what could have been typed after `run`.
+    pub fn from_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Self, Failure> {
+        #[derive(Parser)]
+        #[command(name = "run", no_binary_name = true)]
+        struct Run {
+            #[command(flatten)]
+            args: RunArgs,
+        }
+        Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args)
+    }
+
+    /// How a scene is traced.
+    pub fn tracing(&self) -> Result<Tracing, Failure> {
+        let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
+        Ok(Tracing { backend: self.backend, seed: self.seed, foveated })
+    }
+
+    /// The pattern that frames are traced with, if they are not to be foveated by a simulator.
+    pub fn sampling(&self) -> Result<Option<Sampling>, Failure> {
+        let is_traced = self.input.source == Some(SourceName::Trace);
+        if self.sampling.sampling == SamplingName::Uniform {
+            // Nothing foveates these frames: what is wrong about them is their noise.
+            return Ok((is_traced && self.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
+        }
+        if !is_traced {
+            return Err(Failure::Input(format!(
+                "--sampling {}: only traced frames are sampled; add --source trace, or use --foveation",
+                self.sampling.sampling.name()
+            )));
+        }
+        self.sampling.sampling().map(Some)
+    }
+}
+
+/// Measurements of parts of the passes; in builds with the feature `ablation` alone.
+#[cfg(feature = "ablation")]
+#[derive(Args, Clone, Debug)]
+pub struct AblationArgs {
+    /// Part of the passes that is left out; with --backend gpu
+    #[arg(long, value_parser = parse_part, value_name = "PART")]
+    pub without: Option<&'static Part>,
+    /// Share of the pixels that come in as NaN, infinite, huge or negative in every frame, 0 to 1
+    #[arg(long, default_value_t = 0.0, value_name = "SHARE")]
+    pub poison: f32,
+}
+
+#[cfg(feature = "ablation")]
+fn parse_part(name: &str) -> Result<&'static Part, String> {
+    Part::find(name).ok_or_else(|| {
+        let names: Vec<_> = PARTS.iter().map(|p| format!("{} ({})", p.name, p.instead)).collect();
+        format!("expected one of {}", names.join("; "))
+    })
+}
+
+/// The subcommand.
+pub fn run(args: &RunArgs) -> Result<(), Failure> {
+    let report = execute(args)?;
+    print_summary(args, &report);
+    Ok(())
+}
+
+/// Runs and writes, without a word.
+pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
+    let mut source = args.input.open(&args.tracing()?)?;
+    let plan = plan::plan(args, source.info())?;
+    // Proof that the input can be read, before anything is written.
+    source.frame(0)?;
+    let out = Output::create(&args.out, &folders(args), "report.json")?;
+    let report = plan.clip.run(source.as_mut(), &out)?;
+    let facts = RunFacts {
+        input: &args.input.name,
+        fps: plan.fps,
+        seed: args.seed,
+        simulator: simulator(args),
+        gaze: &args.gaze.gaze,
+        gaze_map: plan.gaze_map,
+        start_s: args.gaze.start,
+    };
+    write_report(&facts, &plan.clip, &report, &out)?;
+    Ok(report)
+}
+
+/// What foveates the frames: a simulator, or the pattern that they are traced with.
+fn simulator(args: &RunArgs) -> &'static str {
+    match args.sampling.sampling {
+        SamplingName::Uniform => args.foveation.filter.name(),
+        pattern => pattern.name(),
+    }
+}
+
+/// Folders that the run writes frames to.
+fn folders(args: &RunArgs) -> Vec<String> {
+    let mut folders: Vec<String> = args.method.iter().map(|m| m.name().to_owned()).collect();
+    for method in args.method.iter().filter(|&&m| m != MethodName::Oracle) {
+        folders.extend(args.debug.iter().map(|d| format!("debug/{}/{}", method.name(), d.name())));
+    }
+    if args.reference {
+        folders.push("reference".into());
+    }
+    folders
+}
+
+fn print_summary(args: &RunArgs, report: &ClipReport) {
+    let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
+    say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
+    say!("method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  ms/frame");
+    for (name, m) in &report.methods {
+        let s = &m.scores;
+        let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
+        say!(
+            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>9}",
+            db(s.whole.psnr_db),
+            s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
+            s.whole.flip.map_or("-".into(), |v| format!("{v:.4}")),
+            bands[0],
+            bands[1],
+            bands[2],
+            db(s.weighted_psnr_db),
+            db(s.retained_psnr_db),
+            db(s.flicker),
+            m.share_of_oracle.and_then(|s| s.psnr).map_or("-".into(), |v| format!("{:.0} %", 100.0 * v)),
+            m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
+        );
+    }
+    say!("weighted: PSNR with errors weighted by the density of the eye's cells, docs/metrics.md");
+    say!("retained: PSNR where the eye has already seen sharp; of oracle: share of the PSNR that reuse could gain");
+    say!("sheet: {}", args.out.join("sheet.png").display());
+}

@@ -1,0 +1,105 @@
+//! Everything about a run that is known before its first frame.
+
+use super::{RunArgs, simulator};
+use crate::args::MethodName;
+use crate::args::backend::BackendName;
+use crate::args::input;
+use crate::args::pattern::SamplingName;
+use crate::clip::{Clip, title};
+use crate::failure::Failure;
+use afterimage::foveation::Foveation;
+use afterimage::settings::Method;
+use afterimage_lab::device::Backend;
+use afterimage_lab::pipeline::LaneKind;
+use afterimage_lab::source::SourceInfo;
+
+/// What is to be done, and facts of it that a report needs.
+pub struct Plan {
+    pub fps: f32,
+    pub clip: Clip,
+    pub gaze_map: &'static str,
+}
+
+/// Plans a run of an input with these facts.
+pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
+        return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
+    }
+    let fps = args.input.fps(info);
+    let geometry = args.input.geometry(info)?;
+    let foveation = foveation(args)?;
+    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
+    for &method in &args.method {
+        if lanes.iter().any(|l| l.0 == method.name()) {
+            return refuse(format!("--method: {} is named twice", method.name()));
+        }
+        lanes.push((method.name(), lane(args, method, info.still)?));
+    }
+    let backend = args.backend.open()?;
+    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
+    Ok(Plan {
+        fps,
+        gaze_map: track.map,
+        clip: Clip {
+            title: title(&info.name, info.size, track.px.len(), fps, &foveation, simulator(args)),
+            geometry,
+            foveation,
+            lanes,
+            gaze: track.px,
+            exposure_ev: args.exposure,
+            format: args.format,
+            write_reference: args.reference,
+            debug: args.debug.clone(),
+            trust: args.trust,
+            guided: args.guided,
+            flip: !args.no_flip,
+            #[cfg(feature = "ablation")]
+            poison: args.ablation.poison,
+            backend_note: match (args.backend, &backend) {
+                (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
+                _ => "",
+            },
+            backend,
+        },
+    })
+}
+
+/// Where frames are how coarse.
+pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
+    let foveation = args.sampling()?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    foveation.validate()?;
+    Ok(foveation)
+}
+
+/// What a method does in a run with these options, of an input that is still or not.
+pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
+    let sampling = args.sampling()?;
+    let method = match method {
+        MethodName::None => Method::None,
+        MethodName::Taa => Method::Taa,
+        MethodName::Smr => Method::Smr,
+        MethodName::Wrs => Method::Wrs,
+        MethodName::Oracle if sampling.is_some() => {
+            let text = "--method oracle: is defined for simulated foveation only; leave out --sampling";
+            return Err(Failure::Input(text.into()));
+        }
+        MethodName::Oracle if is_still => return Ok(LaneKind::Oracle),
+        MethodName::Oracle => {
+            return Err(Failure::Input(format!(
+                "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
+                args.input.name
+            )));
+        }
+    };
+    let settings = args.wrs.settings(method, args.seed, sampling.is_some());
+    settings.validate()?;
+    #[cfg(feature = "ablation")]
+    if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
+        if args.backend != BackendName::Gpu {
+            return Err(Failure::Input("--without: parts are left out of shaders; add --backend gpu".into()));
+        }
+        return Ok(LaneKind::Without(settings, part));
+    }
+    Ok(LaneKind::PostProcess(settings))
+}

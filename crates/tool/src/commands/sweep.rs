@@ -1,0 +1,243 @@
+//! `afterimage sweep`: what accuracy costs in time.
+
+mod batch;
+mod measure;
+mod pick;
+mod plan;
+mod report;
+
+use crate::args::input::InputArgs;
+use crate::failure::Failure;
+use crate::progress;
+use crate::sweep::plan::MAX_POINTS;
+use crate::sweep::{Measurement, Options, Store, Table};
+use afterimage_lab::source::is_scene;
+use afterimage_lab::source::raster::DEFAULT_SIZE;
+use batch::{Batch, batches, concerns, is_random};
+use clap::Args;
+use pick::PickArgs;
+use plan::PresetName;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::path::PathBuf;
+
+/// Measure a grid of methods and options: error against time, and what each switch costs
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  \
+    afterimage sweep frames/ --preset quick --gaze viewing.csv --out out/sweep\n  \
+    afterimage sweep frames/ --axis method=none,wrs,smr --axis fovea=5,10 --switch no-gate --frames 96 --out out/sweep\n  \
+    afterimage sweep --out out/sweep --budget-ms 20\n\n\
+    Writes OUT/report.html (open it), sweep.csv, sweep.json, pareto.svg and pareto.png. What is finished is in OUT/points: the same command\n\
+    again goes on where it was stopped. A plan (--file) in TOML:\n\n  \
+    seeds = 3\n  [common]\n  frames = 96\n  [axes]\n  method = [\"none\", \"smr\"]\n  \"rate-mid+rate-far\" = [\"4+8\", \"8+16\"]\n  \
+    [switches]\n  of = [\"no-flush\", \"smr-tolerance=2\"]")]
+pub struct SweepArgs {
+    /// Stills, folders of .exr frames, scenes, analytic:NAME, as for run; none: only report what is in OUT
+    pub input: Vec<String>,
+    /// Folder for everything that is written, and where a stopped sweep goes on
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// A sweep that is ready; default: quick, unless --file or --axis say what to measure
+    #[arg(long, value_enum)]
+    pub preset: Option<PresetName>,
+    /// A plan of a sweep in TOML, see below
+    #[arg(long, value_name = "FILE.toml")]
+    pub file: Option<PathBuf>,
+    /// An option of run and its values; every combination of the axes is measured. NAME=V,V; options that vary together: N+N=V+V,V+V; values
+    /// with commas: NAME=V;V; flags: NAME=-,on, and - for any option that is left out
+    #[arg(long, value_name = "NAME=VALUES")]
+    pub axis: Vec<String>,
+    /// An option of run that is changed by itself, all else as in the first value of each axis: NAME or NAME=VALUE
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    pub switch: Vec<String>,
+    /// Any other option of run for all points: NAME or NAME=VALUE
+    #[arg(long, value_name = "NAME[=VALUE]")]
+    pub set: Vec<String>,
+    /// Frames of each point, at least 38: 8 that are not timed, and 30 that are
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u64>,
+    /// Scanpath, fixed pixel, or synthetic[:SEED], as for run
+    #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
+    pub gaze: Option<String>,
+    /// Start in the scanpath, seconds
+    #[arg(long, value_name = "S")]
+    pub start: Option<f64>,
+    /// Size of scenes, pixels
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<String>,
+    /// What renders scenes: raster or trace
+    #[arg(long, value_name = "NAME")]
+    pub source: Option<String>,
+    /// Where a scene is seen from, as for run
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub camera: Option<String>,
+    /// What computes the methods: auto, cpu or gpu, as for run
+    #[arg(long, value_name = "NAME")]
+    pub backend: Option<String>,
+    /// Repetitions with seeds of their own, of what is random; default: the plan's, else 1
+    #[arg(long, value_name = "N")]
+    pub seeds: Option<u64>,
+    /// Part I of N of the sweep, 1/N to N/N: as many machines can share it; merge their folders then
+    #[arg(long, value_name = "I/N", value_parser = parse_shard)]
+    pub shard: Option<(u64, u64)>,
+    /// Folders of parts of a sweep, to be put together in OUT
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with = "input")]
+    pub merge: Vec<PathBuf>,
+    #[command(flatten)]
+    pub pick: PickArgs,
+}
+
+impl SweepArgs {
+    /// Options of `run` that were given for all points.
+    fn common(&self) -> Result<Options, Failure> {
+        let mut common = Options::new();
+        let given = [
+            ("frames", self.frames.map(|v| v.to_string())),
+            ("gaze", self.gaze.clone()),
+            ("start", self.start.map(|v| v.to_string())),
+            ("size", self.size.clone()),
+            ("source", self.source.clone()),
+            ("camera", self.camera.clone()),
+            ("backend", self.backend.clone()),
+        ];
+        for (name, value) in given {
+            common.extend(value.map(|value| (name.to_owned(), value)));
+        }
+        for text in &self.set {
+            match crate::sweep::grid::parse_switch(text) {
+                (name, Some(value)) if !name.is_empty() => common.insert(name, value),
+                _ => return Err(Failure::Input(format!("--set {text}: expected NAME or NAME=VALUE"))),
+            };
+        }
+        Ok(common)
+    }
+}
+
+/// `I/N`.
+fn parse_shard(text: &str) -> Result<(u64, u64), String> {
+    let expected = "expected I/N with 1 <= I <= N, such as 2/8";
+    let (part, parts) = text.split_once('/').ok_or(expected)?;
+    match (part.parse(), parts.parse()) {
+        (Ok(part), Ok(parts)) if 1 <= part && part <= parts => Ok((part, parts)),
+        _ => Err(expected.into()),
+    }
+}
+
+/// The subcommand.
+pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    match execute(args)? {
+        Some(table) => pick::print(&args.pick, &table),
+        None => Ok(()),
+    }
+}
+
+/// Measures what there is to measure, and writes what is known then; `None` if that is nothing.
+pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
+    let store = if !args.merge.is_empty() {
+        merge(args)?
+    } else if args.input.is_empty() {
+        Store::open(&args.out)?
+    } else {
+        run(args)?
+    };
+    let measurements = store.load()?;
+    if measurements.is_empty() {
+        say!("nothing is measured yet in {}", args.out.display());
+        return Ok(None);
+    }
+    let table = report::write(args, &store, &measurements)?;
+    report::print_summary(args, &table);
+    Ok(Some(table))
+}
+
+/// Measures what is not measured yet.
+fn run(args: &SweepArgs) -> Result<Store, Failure> {
+    let plan = plan::plan(args)?;
+    let common = plan.common.clone();
+    let points = plan
+        .grid
+        .points(&args.input, plan.seeds, concerns, |method, options| is_random(method, options.iter().chain(&common)));
+    // An input is opened once for all points that take it in the same size.
+    let mut known: BTreeMap<(String, Option<[u32; 2]>), u64> = BTreeMap::new();
+    let batches = batches(points, &common, |args| match known.entry((args.name.clone(), args.size)) {
+        Entry::Occupied(known) => Ok(*known.get()),
+        Entry::Vacant(new) => Ok(*new.insert(pixels(args)?)),
+    })?;
+    let points: usize = batches.iter().map(|b| b.subjects.len()).sum();
+    if points == 0 || points > MAX_POINTS {
+        return Err(Failure::Input(format!("the plan has {points} points; expected 1 to {}", MAX_POINTS)));
+    }
+    batches.iter().flat_map(|b| &b.subjects).try_for_each(measure::check)?;
+    let store = Store::create(&args.out)?;
+    let done = store.load()?;
+    refuse_another_sweep(args, &done, &batches, &common)?;
+    let is_done = |b: &Batch| b.subjects.iter().all(|s| done.iter().any(|m| m.point == s.point));
+    let is_ours = |i: usize| args.shard.is_none_or(|(part, parts)| i as u64 % parts == part - 1);
+    let pending: Vec<&Batch> =
+        batches.iter().enumerate().filter(|(i, b)| is_ours(*i) && !is_done(b)).map(|(_, b)| b).collect();
+    let left: usize = pending.iter().map(|b| b.subjects.len()).sum();
+    say!("{points} points, {left} to measure in {} rounds", pending.len());
+    let bar = progress::bar(pending.iter().map(|b| measure::work(b)).sum(), "{percent} %");
+    for batch in pending {
+        measure::measure(batch, &common, &store, &bar)?;
+    }
+    bar.finish_and_clear();
+    Ok(store)
+}
+
+/// Measurements of other frames, another version or another machine are not to be compared with these.
+fn refuse_another_sweep(
+    args: &SweepArgs,
+    done: &[Measurement],
+    batches: &[Batch],
+    common: &Options,
+) -> Result<(), Failure> {
+    let Some(before) = done.first() else { return Ok(()) };
+    let machine = measure::machine(&batches[0].subjects[0].args.backend.open()?);
+    let differs = if before.common != *common {
+        format!("was made with {:?}, not {:?}", before.common, common)
+    } else if before.version != env!("CARGO_PKG_VERSION") {
+        format!("was made by version {}", before.version)
+    } else if before.machine != machine {
+        format!(
+            "was made on {} ({}), not {} ({})",
+            before.machine.name, before.machine.driver, machine.name, machine.driver
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Input(format!("{}: holds a sweep that {differs}; give --out another folder", args.out.display())))
+}
+
+/// Copies the parts' measurements and pictures into one folder.
+fn merge(args: &SweepArgs) -> Result<Store, Failure> {
+    let parts = args.merge.iter().map(|dir| Store::open(dir)).collect::<Result<Vec<_>, _>>()?;
+    let store = Store::create(&args.out)?;
+    let mut first = store.load()?.into_iter().next();
+    for part in &parts {
+        for measurement in part.load()? {
+            let first = first.get_or_insert_with(|| measurement.clone());
+            if (&first.common, &first.version) != (&measurement.common, &measurement.version) {
+                return Err(Failure::Input(format!(
+                    "{}: is part of another sweep ({:?}, version {}); expected {:?}, version {}",
+                    part.root().display(),
+                    measurement.common,
+                    measurement.version,
+                    first.common,
+                    first.version
+                )));
+            }
+            store.adopt(part, &measurement.point).map_err(|e| Failure::writing(store.root(), e))?;
+        }
+    }
+    Ok(store)
+}
+
+/// Pixels of a frame. What cannot be opened is refused here, before anything is measured; scenes are read when their turn comes.
+fn pixels(args: &InputArgs) -> Result<u64, Failure> {
+    let of = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
+    if is_scene(&args.name) {
+        return Ok(of(args.size.unwrap_or(DEFAULT_SIZE)));
+    }
+    Ok(of(args.read()?.info().size))
+}

@@ -1,0 +1,117 @@
+//! Points that are measured together, on the same frames, one after the other in each.
+
+use crate::args::input::{InputArgs, SourceName};
+use crate::args::pattern::SamplingName;
+use crate::args::{FilterName, MethodName};
+use crate::commands::run::RunArgs;
+use crate::failure::Failure;
+use crate::sweep::{Options, Point};
+use std::collections::BTreeMap;
+
+/// Most points of a batch: what a sweep loses when it is stopped.
+const MAX_POINTS: usize = 24;
+/// Most pixels of a batch, all points together: their histories are in memory at the same time.
+const MAX_PIXELS: u64 = 24_000_000;
+
+/// Options that concern some methods alone, and are no part of the frames that methods get.
+const OF_METHODS: &[(&str, &[MethodName])] = &[
+    ("wrs-sampler", &[MethodName::Wrs]),
+    ("wrs-bias", &[MethodName::Wrs]),
+    ("gate-divisor", &[MethodName::Wrs]),
+    ("gate-offset", &[MethodName::Wrs]),
+    ("gate-metric", &[MethodName::Wrs]),
+    ("no-gate", &[MethodName::Wrs]),
+    ("smr-accumulate", &[MethodName::Smr]),
+    ("smr-tolerance", &[MethodName::Smr]),
+    ("no-relight", &[MethodName::Smr]),
+    ("depth-relative", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("depth-slope", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("no-flush", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+    ("without", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+];
+
+/// Whether an option changes anything for a method; a part that is left out does for the methods that have it.
+pub fn concerns(option: &str, value: &str, method: &str) -> bool {
+    #[cfg(feature = "ablation")]
+    if let ("without", Some(part)) = (option, afterimage_lab::pipeline::ablation::Part::find(value)) {
+        return part.methods.iter().any(|m| format!("{m:?}").to_lowercase() == method);
+    }
+    #[cfg(not(feature = "ablation"))]
+    let _ = value;
+    match OF_METHODS.iter().find(|(name, _)| *name == option) {
+        Some((_, methods)) => methods.iter().any(|m| m.name() == method),
+        // Samples are guided by the history of smr.
+        None => option != "guided" || method == MethodName::Smr.name(),
+    }
+}
+
+/// A point, and what `run` would be given for it.
+pub struct Subject {
+    pub point: Point,
+    pub args: RunArgs,
+    pub method: MethodName,
+}
+
+/// Points that get the same frames.
+pub struct Batch {
+    pub subjects: Vec<Subject>,
+}
+
+impl Subject {
+    fn new(point: Point, common: &Options) -> Result<Self, Failure> {
+        let mut words = vec!["--out=unused".to_owned(), format!("--seed={}", point.seed)];
+        words.push(format!("--method={}", point.method));
+        for (name, value) in common.iter().chain(&point.options) {
+            words.push(if value.is_empty() { format!("--{name}") } else { format!("--{name}={value}") });
+        }
+        words.extend(["--".into(), point.input.clone()]);
+        let args = RunArgs::from_words(&words)?;
+        let &[method] = &args.method[..] else {
+            return Err(Failure::Input(format!("method {}: expected one method a point", point.method)));
+        };
+        Ok(Self { point, args, method })
+    }
+
+    /// Points of the same key get the same frames.
+    fn key(&self) -> (String, Options, Option<u64>) {
+        let mut options = self.point.options.clone();
+        options.retain(|name, _| OF_METHODS.iter().all(|(of_method, _)| of_method != name));
+        let traced = self.args.input.source == Some(SourceName::Trace);
+        (self.point.input.clone(), options, traced.then_some(self.point.seed))
+    }
+
+    /// Samples of a pixel of a full-rate frame as good as the fovea; 1 where a simulator foveates.
+    pub fn full_rate_samples(&self) -> u32 {
+        match self.args.sampling.sampling {
+            SamplingName::Uniform if self.args.foveation.filter != FilterName::Off => 1,
+            _ => self.args.sampling.most_samples(self.args.input.spp),
+        }
+    }
+}
+
+/// Whether seeds change anything for a method with these options.
+pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
+    method == MethodName::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
+}
+
+/// The batches of points, in an order that does not depend on what is done already.
+pub fn batches(
+    points: Vec<Point>,
+    common: &Options,
+    mut pixels: impl FnMut(&InputArgs) -> Result<u64, Failure>,
+) -> Result<Vec<Batch>, Failure> {
+    let mut groups: BTreeMap<_, Vec<Subject>> = BTreeMap::new();
+    for point in points {
+        let subject = Subject::new(point, common)?;
+        groups.entry(subject.key()).or_default().push(subject);
+    }
+    let mut batches = vec![];
+    for subjects in groups.into_values() {
+        let most = (MAX_PIXELS / pixels(&subjects[0].args.input)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
+        let mut rest = subjects.into_iter().peekable();
+        while rest.peek().is_some() {
+            batches.push(Batch { subjects: rest.by_ref().take(most).collect() });
+        }
+    }
+    Ok(batches)
+}

@@ -1,0 +1,206 @@
+//! A batch of points on the same frames: every frame all methods in turn, so that what the machine does else meets all alike.
+
+use super::batch::{Batch, Subject};
+use crate::clip::{Clip, Moment};
+use crate::commands::run::{RunArgs, plan};
+use crate::failure::Failure;
+use crate::report::backend::BackendReport;
+use crate::report::jpeg::write_jpeg;
+use crate::report::tally::Tally;
+use crate::sweep::measurement::{ClipFacts, Machine};
+use crate::sweep::paste::as_rust;
+use crate::sweep::store::{PICTURES, id};
+use crate::sweep::{Measurement, Options, Store};
+use afterimage::foveation::Filter;
+use afterimage::image::Image;
+use afterimage::kernel::debug_view::heat;
+use afterimage::settings::{Method, Settings};
+use afterimage_lab::clock::Quartiles;
+use afterimage_lab::device::{Backend, PassClock, copy_ms_per_byte};
+use afterimage_lab::metric;
+use afterimage_lab::metric::Flip;
+use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::pipeline::{LaneKind, Shown};
+use afterimage_lab::source::FrameSource;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+/// Frames before times count: pipelines compile, caches fill, histories get what they keep.
+pub const WARM_UP: usize = 8;
+/// Fewest frames whose times make a median.
+pub const MIN_TIMED: usize = 30;
+/// Width of the pictures that are kept of each point.
+const PICTURE_WIDTH: u32 = 960;
+
+/// What the batch's frames come to.
+struct Tallies {
+    of_subjects: Vec<Tally>,
+    control_ms: Vec<f64>,
+    render_ms: Vec<f64>,
+    samples_share: f64,
+    samples: Option<u64>,
+    frames: usize,
+}
+
+/// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
+pub fn check(subject: &Subject) -> Result<(), Failure> {
+    plan::foveation(&subject.args)?;
+    if let Some(frames) = subject.args.frames {
+        check_frames(&subject.args, frames)?;
+    }
+    // Whether an oracle's input is still shows when it is opened.
+    plan::lane(&subject.args, subject.method, true).map(|_| ())
+}
+
+fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
+    let least = WARM_UP + MIN_TIMED;
+    if frames >= least as u64 {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
+        args.input.name
+    )))
+}
+
+/// Measures the points and keeps what was measured.
+pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
+    let args = &batch.subjects[0].args;
+    let mut source = args.input.open(&args.tracing()?)?;
+    let plan = plan::plan(args, source.info())?;
+    let mut lanes = vec![("control", control(&batch.subjects[0]))];
+    for subject in &batch.subjects {
+        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info().still)?));
+    }
+    let clip = Clip { lanes, debug: vec![], ..plan.clip };
+    check_frames(args, clip.gaze.len() as u64)?;
+    let copy_ms_per_byte = copy_ms_per_byte(&clip.backend);
+    let (tallies, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
+    let machine = machine(&clip.backend);
+    let facts = ClipFacts {
+        size: clip.geometry.size_px(),
+        frames: clip.gaze.len() as u64,
+        timed_frames: (clip.gaze.len() - WARM_UP) as u64,
+        fps: plan.fps,
+        hfov_deg: clip.geometry.hfov_deg(),
+    };
+    let round = format!("{} and {} more", id(&batch.subjects[0].point), batch.subjects.len() - 1);
+    let pixels = facts.size.iter().map(|&s| f64::from(s)).product::<f64>();
+    for (i, (subject, tally)) in batch.subjects.iter().zip(&tallies.of_subjects).enumerate() {
+        let figures = tally.report(memory_bytes[i] as f64 / pixels);
+        let rust = match clip.lanes[i + 1].1 {
+            LaneKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
+            #[cfg(feature = "ablation")]
+            LaneKind::Without(..) => "no settings: nobody should leave this out".into(),
+            LaneKind::Oracle => "no settings: the upper bound knows what was shown before".into(),
+        };
+        let measurement = Measurement {
+            version: env!("CARGO_PKG_VERSION").into(),
+            point: subject.point.clone(),
+            common: common.clone(),
+            clip: facts.clone(),
+            machine: machine.clone(),
+            pass_ms: timed(&tally.cost_ms()[WARM_UP..]),
+            frame_ms: tally.cost_ms()[WARM_UP..].iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
+            round: round.clone(),
+            control_ms: timed(&tallies.control_ms[WARM_UP..]),
+            render_ms: Quartiles::of(tallies.render_ms.get(WARM_UP..).unwrap_or_default()),
+            samples_share: tallies.samples_share / tallies.frames as f64,
+            samples_per_pixel: tallies.samples.map(|all| all as f64 / (tallies.frames as f64 * pixels)),
+            copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
+            figures,
+            rust,
+        };
+        store.save(&measurement).map_err(|e| Failure::writing(store.root(), e))?;
+    }
+    Ok(())
+}
+
+/// The same in every batch, whatever its points: by it, batches tell what the machine did else.
+fn control(subject: &Subject) -> LaneKind {
+    let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
+    LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
+}
+
+fn timed(times: &[f64]) -> Quartiles {
+    Quartiles::of(times).expect("there are frames beyond the warm-up")
+}
+
+/// Plays the clip. Gives what it came to, and the bytes that each point keeps.
+fn play(
+    batch: &Batch,
+    clip: &Clip,
+    source: &mut dyn FrameSource,
+    store: &Store,
+    bar: &ProgressBar,
+) -> Result<(Tallies, Vec<usize>), Failure> {
+    let mut tallies = Tallies {
+        of_subjects: batch.subjects.iter().map(|_| Tally::default()).collect(),
+        control_ms: vec![],
+        render_ms: vec![],
+        samples_share: 0.0,
+        samples: None,
+        frames: 0,
+    };
+    let flip = Flip::for_view(&clip.geometry);
+    let pipeline = clip.play(source, &mut |moment| {
+        let is_last = moment.index + 1 == clip.gaze.len();
+        tallies.control_ms.push(moment.step.shown[0].cost_ms());
+        tallies.render_ms.extend(moment.render_ms);
+        tallies.samples_share += samples_share(moment, clip, &batch.subjects[0]);
+        tallies.samples = moment.samples.map(|now| tallies.samples.unwrap_or(0) + now).or(tallies.samples);
+        tallies.frames += 1;
+        let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &Shown))| {
+            let encoded = metric::encode(&shown.image, clip.exposure_ev);
+            tally.push(moment.frame, moment.reference, &encoded, shown, moment.step);
+            if is_last { pictures(store, subject, moment.reference.encoded(), &encoded, &flip) } else { Ok(()) }
+        };
+        let subjects = batch.subjects.par_iter().zip(&moment.step.shown[1..]);
+        tallies.of_subjects.par_iter_mut().zip(subjects).try_for_each(of_subject)?;
+        bar.inc(batch.subjects.len() as u64);
+        Ok(())
+    })?;
+    let memory_bytes = (0..batch.subjects.len()).map(|i| pipeline.memory_bytes(i + 1)).collect();
+    Ok((tallies, memory_bytes))
+}
+
+/// Samples of the foveated frame over those of a full-rate frame as good as the fovea.
+fn samples_share(moment: &Moment<'_>, clip: &Clip, subject: &Subject) -> f64 {
+    let lods = moment.step.lods.pixels();
+    match moment.samples {
+        Some(samples) => samples as f64 / (lods.len() as f64 * f64::from(subject.full_rate_samples())),
+        None if clip.foveation.filter == Filter::Off => 1.0,
+        None => lods.iter().map(|lod| f64::from((-2.0 * lod).exp2())).sum::<f64>() / lods.len() as f64,
+    }
+}
+
+/// What a reader of the report sees of a point: the last frame, where FLIP finds it wrong, what it should have been.
+fn pictures(
+    store: &Store,
+    subject: &Subject,
+    reference: &Image<[f32; 3]>,
+    shown: &Image<[f32; 3]>,
+    flip: &Flip,
+) -> Result<(), Failure> {
+    let error = flip.map(reference, shown).map(|v| heat(v).to_array());
+    for (what, picture) in PICTURES.into_iter().zip([shown, &error, reference]) {
+        let path = store.picture(&subject.point, what);
+        write_jpeg(&path, &to_rgb8(picture), PICTURE_WIDTH).map_err(|e| Failure::writing(&path, e))?;
+    }
+    Ok(())
+}
+
+/// What measures on this backend.
+pub fn machine(backend: &Backend) -> Machine {
+    let report = BackendReport::of(backend);
+    let clock = match backend {
+        Backend::Gpu(gpu) => PassClock::new(gpu).name(),
+        Backend::Cpu => "CPU time of the process",
+    };
+    Machine { kind: report.kind.into(), name: report.name, driver: report.driver, clock: clock.into() }
+}
+
+/// The frames of a batch, times its points: what its progress counts.
+pub fn work(batch: &Batch) -> u64 {
+    batch.subjects.len() as u64 * batch.subjects[0].args.frames.unwrap_or(300)
+}

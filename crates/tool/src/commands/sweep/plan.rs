@@ -1,0 +1,61 @@
+//! What a sweep measures: a preset or a file, and what the command line adds to it.
+
+use super::SweepArgs;
+use crate::failure::Failure;
+use crate::sweep::grid::parse_switch;
+use crate::sweep::{Axis, Plan};
+use clap::ValueEnum;
+
+/// Sweeps that are ready.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PresetName {
+    /// Methods, two foveae, the main switches; minutes
+    Quick,
+    /// Foveae, rates, simulators, all switches, three seeds; hours
+    Full,
+    /// Of scenes: sampling patterns, samples, depth of paths
+    Traced,
+    /// Foveae and methods of the paper, three seeds
+    Paper,
+    /// Of scenes: error against samples and time
+    Convergence,
+    /// Parts of the passes left out, on frames with broken pixels
+    #[cfg(feature = "ablation")]
+    Safeguards,
+}
+
+impl PresetName {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Quick => include_str!("presets/quick.toml"),
+            Self::Full => include_str!("presets/full.toml"),
+            Self::Traced => include_str!("presets/traced.toml"),
+            Self::Paper => include_str!("presets/paper.toml"),
+            #[cfg(feature = "ablation")]
+            Self::Safeguards => include_str!("presets/safeguards.toml"),
+            Self::Convergence => include_str!("presets/convergence.toml"),
+        }
+    }
+}
+
+/// What the arguments ask for; the command line goes before the file, and the file before the preset.
+pub fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
+    let preset = args.preset.or((args.file.is_none() && args.axis.is_empty()).then_some(PresetName::Quick));
+    let mut plan = Plan::default();
+    if let Some(preset) = preset {
+        plan.add("the preset", preset.text())?;
+    }
+    if let Some(path) = &args.file {
+        plan.add_file(path)?;
+    }
+    for axis in &args.axis {
+        plan.put(Axis::parse(axis)?);
+    }
+    plan.grid.switches.extend(args.switch.iter().map(|s| parse_switch(s)));
+    for (name, value) in args.common()? {
+        plan.common.insert(name, value);
+    }
+    plan.seeds = args.seeds.unwrap_or(plan.seeds);
+    plan.check()?;
+    Ok(plan)
+}

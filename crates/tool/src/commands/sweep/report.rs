@@ -1,0 +1,55 @@
+//! What a sweep leaves behind: tables, plots, a page.
+
+use super::SweepArgs;
+use crate::failure::Failure;
+use crate::report::page::page;
+use crate::report::pareto;
+use crate::sweep::grid::quoted;
+use crate::sweep::markdown::markdown;
+use crate::sweep::{Measurement, Store, Table};
+use afterimage_lab::picture::write_png;
+use afterimage_lab::whole_file::write_whole;
+use std::io::Write;
+
+/// Writes everything, and gives the table.
+pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, Failure> {
+    let table = Table::new(measurements, args.pick.renderer_ms, command());
+    let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
+    text(store, "sweep.json", &(json + "\n"))?;
+    text(store, "sweep.csv", &table.csv())?;
+    text(store, "sweep.md", &markdown(&table))?;
+    for (i, input) in table.clips.keys().enumerate() {
+        // The first has the name that is promised.
+        let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
+        text(store, &format!("{name}.svg"), &pareto::svg(&table, input, args.pick.by))?;
+        let path = store.root().join(format!("{name}.png"));
+        write_png(&path, &pareto::png(&table, input, args.pick.by)).map_err(|e| Failure::writing(&path, e))?;
+    }
+    let picture =
+        |id: &str, what: &str| std::fs::read(store.root().join("pictures").join(format!("{id}-{what}.jpg"))).ok();
+    text(store, "report.html", &page(&table, &picture))?;
+    Ok(table)
+}
+
+fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
+    let path = store.root().join(name);
+    write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
+}
+
+/// The command, as a shell takes it.
+fn command() -> String {
+    let arguments = std::env::args().skip(1).map(|word| quoted(&word));
+    ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// The frontier, and where to look.
+pub fn print_summary(args: &SweepArgs, table: &Table) {
+    let by = args.pick.by;
+    say!("{} points; best {} for its cost:", table.rows.len(), by.title);
+    say!("  ms/frame  {:>10}  point", by.key);
+    for row in table.rows.iter().filter(|r| r.frontier.contains(&by.key)) {
+        let value = row.values.get(by.key).copied().flatten().map_or("-".into(), |v| format!("{v:.*}", by.digits));
+        say!("{:>10.2}  {value:>10}  {}", row.cost_ms, row.label);
+    }
+    say!("report: {}", args.out.join("report.html").display());
+}

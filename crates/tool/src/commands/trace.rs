@@ -1,0 +1,205 @@
+//! `afterimage trace`: render a scene.
+
+mod eyes;
+mod frames;
+mod report;
+pub mod setup;
+mod shot;
+
+use crate::args::backend::BackendName;
+use crate::args::paths::PathArgs;
+use crate::args::pattern::PatternArgs;
+use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size};
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::progress;
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::trace::sampling::Sampling;
+use afterimage_lab::trace::view::View;
+use clap::{Args, ValueEnum};
+use eyes::{Eyes, below, scanpath_csv};
+use frames::{folders, write};
+use report::Report;
+use setup::Setup;
+use shot::Shot;
+use std::path::PathBuf;
+
+/// Render a scene by path tracing
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "Examples:\n  afterimage trace builtin:cornell --size 512x512 --spp 64 --out out/cornell\n  \
+    afterimage trace scene.glb --frames 60 --aov depth,motion --out out/scene\n  \
+    afterimage trace scene.glb --sampling regions --region-spp 32,8,4 --gaze viewing.csv --frames 60 --out out/foveated\n  \
+    afterimage trace scene.glb --sampling layers --lens-deg 45 --hfov 90 --stereo 0.063 --out out/stereo\n\n\
+    Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... on request, OUT/gaze.csv of foveated frames, OUT/cameras.json\n\
+    and OUT/trace.json.\n\
+    With --aov depth,motion the folder OUT/color is an input for `afterimage run`.\n\n\
+    With --stereo the frames of each eye, its cameras.json, gaze.csv and scanpath.csv (the same for `run --gaze`) are below OUT/left and\n\
+    OUT/right; OUT/cameras.json and OUT/gaze.csv are those of the head between them, which --camera and --gaze speak of. What is looked at\n\
+    is a point in space: the first surface behind the head's pixel, or what is far away where there is none.")]
+pub struct TraceArgs {
+    /// A scene: .gltf, .glb, or builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes,
+    /// mirror-room, courtyard
+    pub scene: String,
+    /// Folder for everything that is written
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Size of the frames, pixels
+    #[arg(long, value_parser = parse_size, default_value = "640x360", value_name = "WxH")]
+    pub size: [u32; 2],
+    /// Frames
+    #[arg(long, default_value_t = 1, value_parser = parse_frames, value_name = "N")]
+    pub frames: u64,
+    /// Frames per second, for animated scenes and camera paths; default: the camera file's, else 60
+    #[arg(long, value_parser = parse_fps, value_name = "F")]
+    pub fps: Option<f32>,
+    /// Horizontal field of view, degrees; default: the camera's
+    #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
+    pub hfov: Option<f32>,
+    /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit; or a file: a
+    /// cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
+    #[arg(long, value_name = "NAME|FILE.json")]
+    pub camera: Option<String>,
+    /// Which of the scene's animations plays, by name or number; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub clip: Option<String>,
+    /// Samples per pixel (of the fovea, where foveated; regions have --region-spp)
+    #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N")]
+    pub spp: u32,
+    #[command(flatten)]
+    pub pattern: PatternArgs,
+    /// Two eyes whose pupils are so many metres apart (people: 0.063; up to 0.2), with parallel axes, half of that to either side of
+    /// the camera; default: one eye, the camera
+    #[arg(long, value_name = "IPD_M", allow_negative_numbers = true)]
+    pub stereo: Option<f64>,
+    #[command(flatten)]
+    pub paths: PathArgs,
+    /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with light of its
+    /// own, else a soft white
+    #[arg(long, value_name = "none|R,G,B|FILE.exr")]
+    pub sky: Option<String>,
+    /// More images, separated by commas; also written into the color's .exr
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    pub aov: Vec<AovName>,
+    /// What traces: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: BackendName,
+    /// Seed of the random numbers: same seed, same bytes
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// File format of the color: linear half-float EXR, 8-bit sRGB PNG; default: both
+    #[arg(long, value_enum)]
+    pub format: Option<crate::args::FormatName>,
+    /// Exposure before tone mapping, stops
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Tone mapping; default: reinhard for png, none for exr
+    #[arg(long, value_enum)]
+    pub tonemap: Option<TonemapName>,
+    /// Say what is compiled in and why
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// Names of further images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AovName {
+    /// Distance along the view axis, metres; 1e10 where there is nothing
+    Depth,
+    /// Pixels, y down, previous minus current
+    Motion,
+    /// Variance of each pixel's mean; of uniform sampling
+    Variance,
+    /// Level of detail, log2 of the distance of samples in pixels
+    Lod,
+}
+
+/// Names of tone mappings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TonemapName {
+    /// x / (1 + x)
+    Reinhard,
+    /// Cut off at 1
+    None,
+}
+
+/// The subcommand.
+pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
+    let mut eyes = Eyes::new(args.stereo, args.size)?;
+    let mut setup = Setup::new(args)?;
+    let parts: Vec<String> = eyes.names().iter().flat_map(|eye| folders(args, eye)).collect();
+    let out = Output::create(&args.out, &parts, "trace.json")?;
+    let mut report = Report::new(eyes.names().len());
+    if args.verbose {
+        report.print_effects(&setup);
+    }
+    let sampling = args.pattern.of.sampling()?;
+    let bar = progress::bar(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]), "{percent} %");
+    let mut previous: Option<View> = None;
+    let mut gaze = GazeOfFrames::default();
+    for frame in 0..args.frames {
+        let time_s = frame as f64 / f64::from(setup.fps);
+        let head = setup.pose(frame, time_s)?;
+        let views = eyes.views(&head);
+        let before = eyes.views(previous.as_ref().unwrap_or(&head));
+        if sampling != Sampling::Uniform {
+            if gaze.head.is_empty() {
+                gaze.head = args.pattern.gaze(head.geometry(), setup.fps, args.frames)?;
+            }
+            let at = gaze.head[frame as usize];
+            gaze.eyes.push(eyes.gaze(&setup, &head, &views, at));
+        }
+        for (eye, name) in eyes.names().iter().enumerate() {
+            let clock = Stopwatch::start();
+            // Eyes have draws of their own: noise that both share would seem to hang in the air.
+            let shot = Shot { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
+            let (picture, counts) = match gaze.eyes.last() {
+                None => shot.uniform(args, &setup, &bar),
+                Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
+            };
+            setup.tracer.check()?;
+            report.count(eye, &counts, &clock);
+            write(args, &out, &setup, name, frame as usize, &picture, [&views[eye], &before[eye]])?;
+        }
+        report.heads.push(head);
+        previous = Some(head);
+    }
+    bar.finish_and_clear();
+    finish(args, &out, &setup, &report, &eyes, &gaze)
+}
+
+/// Where the head looks in each frame, and where its eyes do; empty if that makes no difference.
+#[derive(Default)]
+struct GazeOfFrames {
+    head: Vec<[f32; 2]>,
+    eyes: Vec<Vec<[f32; 2]>>,
+}
+
+/// Writes what is known when all frames are done.
+fn finish(
+    args: &TraceArgs,
+    out: &Output,
+    setup: &Setup,
+    report: &Report,
+    eyes: &Eyes,
+    gaze: &GazeOfFrames,
+) -> Result<(), Failure> {
+    if !gaze.head.is_empty() {
+        out.gaze("gaze.csv", &gaze.head)?;
+    }
+    out.text("cameras.json", &report.cameras_json(args, setup, |head| *head))?;
+    for (eye, name) in eyes.names().iter().enumerate() {
+        let cameras = report.cameras_json(args, setup, |head| eyes.views(head)[eye]);
+        out.text(&below(name, "color/cameras.json"), &cameras)?;
+        if eyes.ipd_m.is_some() {
+            out.text(&below(name, "cameras.json"), &cameras)?;
+            if !gaze.eyes.is_empty() {
+                let of_eye: Vec<_> = gaze.eyes.iter().map(|gaze| gaze[eye]).collect();
+                out.gaze(&below(name, "gaze.csv"), &of_eye)?;
+                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.fps, &of_eye)?)?;
+            }
+        }
+    }
+    out.text("trace.json", &report.json(args, setup, eyes))?;
+    report.print_summary(args, setup, eyes);
+    Ok(())
+}

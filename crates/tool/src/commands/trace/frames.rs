@@ -1,0 +1,95 @@
+//! The files of a frame.
+
+use super::eyes::below;
+use super::setup::Setup;
+use super::{AovName, TonemapName, TraceArgs};
+use crate::args::FormatName;
+use crate::failure::Failure;
+use crate::output::Output;
+use afterimage::image::Image;
+use afterimage::kernel::color::srgb_encode;
+use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::source::exr_file;
+use afterimage_lab::source::exr_file::FrameToWrite;
+use afterimage_lab::trace::surfaces::Surfaces;
+use afterimage_lab::trace::view::View;
+
+/// Depth of what is nothing, in files.
+const NOTHING_M: f32 = 1e10;
+
+/// A frame as it is written.
+pub struct Picture {
+    pub color: Image<[f32; 3]>,
+    pub variance: Option<Image<[f32; 3]>>,
+    pub lod: Image<f32>,
+}
+
+/// Folders of the images, below that of an eye.
+pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
+    let mut folders = vec![below(eye, "color")];
+    for (aov, name) in
+        [(AovName::Depth, "depth"), (AovName::Motion, "motion"), (AovName::Variance, "variance"), (AovName::Lod, "lod")]
+    {
+        if args.aov.contains(&aov) {
+            folders.push(below(eye, name));
+        }
+    }
+    folders
+}
+
+/// Writes frame `index` of an eye: what it sees now, and what it saw a frame ago.
+pub fn write(
+    args: &TraceArgs,
+    out: &Output,
+    setup: &Setup,
+    eye: &str,
+    index: usize,
+    picture: &Picture,
+    [view, previous]: [&View; 2],
+) -> Result<(), Failure> {
+    let color = &picture.color;
+    let wants = |aov| args.aov.contains(&aov);
+    let mut depth = None;
+    let mut motion = None;
+    if wants(AovName::Depth) || wants(AovName::Motion) {
+        let seen = Surfaces::trace(&setup.world, view, previous, setup.tracer.effects(&setup.world));
+        depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { NOTHING_M }));
+        motion = wants(AovName::Motion).then_some(seen.motion);
+    }
+    let scale = args.exposure.exp2();
+    let mapped = |name: Option<TonemapName>, default: TonemapName| {
+        let reinhard = name.unwrap_or(default) == TonemapName::Reinhard;
+        color.map(|c| c.map(|v| if reinhard { v * scale / (1.0 + v * scale) } else { v * scale }))
+    };
+    let wants_format = |format| args.format.is_none_or(|f| f == format);
+    if wants_format(FormatName::Exr) {
+        let color = mapped(args.tonemap, TonemapName::None);
+        let frame = FrameToWrite { depth: depth.as_ref(), motion: motion.as_ref(), ..FrameToWrite::color(&color) };
+        let path = out.path(&below(eye, "color"), index, "exr");
+        exr_file::write(&path, &frame).map_err(|e| Failure::writing(&path, e))?;
+    }
+    if wants_format(FormatName::Png) {
+        let encoded = mapped(args.tonemap, TonemapName::Reinhard).map(|c| c.map(|v| srgb_encode(v.clamp(0.0, 1.0))));
+        out.picture(&below(eye, "color"), index, &to_rgb8(&encoded))?;
+    }
+    let channels = |folder: &str, channels: &[(&str, &Image<f32>)]| {
+        let path = out.path(&below(eye, folder), index, "exr");
+        exr_file::write_channels(&path, channels).map_err(|e| Failure::writing(&path, e))
+    };
+    if let Some(depth) = &depth {
+        channels("depth", &[("Z", depth)])?;
+    }
+    if let Some(motion) = &motion {
+        channels("motion", &[("motion.X", &motion.map(|m| m[0])), ("motion.Y", &motion.map(|m| m[1]))])?;
+    }
+    if wants(AovName::Lod) {
+        channels("lod", &[("lod", &picture.lod)])?;
+    }
+    if wants(AovName::Variance)
+        && let Some(variance) = &picture.variance
+    {
+        let [r, g, b] = [0, 1, 2].map(|i| variance.map(|v| v[i]));
+        channels("variance", &[("R", &r), ("G", &g), ("B", &b)])?;
+    }
+    Ok(())
+}

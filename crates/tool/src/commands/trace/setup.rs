@@ -1,0 +1,112 @@
+//! What a trace needs before its first ray: scene, light, camera, tracer.
+
+use super::TraceArgs;
+use crate::failure::Failure;
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::device::Backend;
+use afterimage_lab::scene::{Environment, Scene, SceneLimits};
+use afterimage_lab::source::raster::DEFAULT_FPS;
+use afterimage_lab::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::world::{World, light_if_dark};
+use std::path::Path;
+
+/// A scene ready to be traced.
+pub struct Setup {
+    pub scene: Scene,
+    pub world: World,
+    pub tracer: Tracer,
+    pub backend: Backend,
+    pub fps: f32,
+    /// Time that reading the scene, and that building its hierarchy took.
+    pub load_ms: f64,
+    pub build_ms: f64,
+    camera: SceneCamera,
+    moves: bool,
+}
+
+/// Largest image: pixel coordinates have 16 bits.
+const MAX_SIDE: u32 = 65_536;
+
+impl Setup {
+    pub fn new(args: &TraceArgs) -> Result<Self, Failure> {
+        check(args)?;
+        let settings = args.paths.settings(args.seed)?;
+        let clock = Stopwatch::start();
+        let mut scene = Scene::open_clip(&args.scene, args.clip.as_deref(), &SceneLimits::default())?;
+        for warning in &scene.warnings {
+            eprintln!("afterimage: warning: {warning}");
+        }
+        light(&mut scene, args)?;
+        let load_ms = clock.wall_ms();
+        let name = args.camera.as_deref().unwrap_or("still");
+        let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
+        let backend = args.backend.open_for_scenes()?;
+        let clock = Stopwatch::start();
+        let world = World::new(&scene);
+        let build_ms = clock.wall_ms();
+        let tracer = Tracer::new(&backend, &world, settings)
+            .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
+        let moves = scene.duration_s() > 0.0;
+        Ok(Self {
+            world,
+            tracer,
+            backend,
+            fps: args.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS),
+            load_ms,
+            build_ms,
+            camera,
+            moves,
+            scene,
+        })
+    }
+
+    /// Moves everything to its place at `time_s`; the view then.
+    pub fn pose(&mut self, frame: u64, time_s: f64) -> Result<View, Failure> {
+        if self.moves {
+            let before = (time_s - 1.0 / f64::from(self.fps)).max(0.0);
+            self.world.pose(&self.scene, time_s, before);
+            self.tracer.update(&self.world).map_err(|e| Failure::Work(e.to_string()))?;
+        }
+        Ok(self.camera.view(&self.scene, frame, time_s))
+    }
+}
+
+fn check(args: &TraceArgs) -> Result<(), Failure> {
+    let refuse = |text: String| Err(Failure::Input(text));
+    let [w, h] = args.size;
+    if w > MAX_SIDE || h > MAX_SIDE || u64::from(w) * u64::from(h) > ReadLimits::default().max_pixels {
+        return refuse(format!("--size {w}x{h}: too large; expected at most 64 million pixels, {MAX_SIDE} a side"));
+    }
+    if args.aov.contains(&super::AovName::Variance)
+        && args.pattern.of.sampling != crate::args::pattern::SamplingName::Uniform
+    {
+        return refuse("--aov variance: filled pixels have none; expected --sampling uniform with it".into());
+    }
+    Ok(())
+}
+
+/// Gives the scene the light that was asked for, or a sky if it has none.
+fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
+    let expected = "expected none, a radiance R,G,B of numbers from 0, or an .exr file";
+    match args.sky.as_deref() {
+        None if !args.scene.starts_with("builtin:") => light_if_dark(scene),
+        None => {}
+        Some("none") => scene.environment = Environment::Constant([0.0; 3]),
+        Some(file) if file.to_lowercase().ends_with(".exr") => {
+            let mut source = StillSource::open(Path::new(file), &ReadLimits::default())?;
+            scene.environment = Environment::Map(source.frame(0)?.color.map(|c| c.map(|v| v.max(0.0))));
+        }
+        Some(text) => {
+            let values: Vec<f32> = text.split(',').filter_map(|v| v.trim().parse().ok()).collect();
+            let sound =
+                values.len() == 3 && text.split(',').count() == 3 && values.iter().all(|v| (0.0..1e9).contains(v));
+            if !sound {
+                return Err(Failure::Input(format!("--sky {text}: {expected}")));
+            }
+            scene.environment = Environment::Constant([values[0], values[1], values[2]]);
+        }
+    }
+    Ok(())
+}

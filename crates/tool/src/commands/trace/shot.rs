@@ -1,0 +1,74 @@
+//! One frame of one eye, traced.
+
+use super::TraceArgs;
+use super::frames::Picture;
+use super::report::Counts;
+use super::setup::Setup;
+use afterimage::image::Image;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::sampling::Sampling;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::Spans;
+use indicatif::ProgressBar;
+use std::ops::Range;
+
+/// Work items that are traced between two looks at the progress bar.
+const STEP_ITEMS: u64 = 1 << 20;
+
+/// A frame as one eye sees it.
+pub struct Shot {
+    pub view: View,
+    pub frame: u64,
+    /// Which draws it is traced with.
+    pub draws: u64,
+}
+
+impl Shot {
+    /// With the same number of samples everywhere.
+    pub fn uniform(&self, args: &TraceArgs, setup: &Setup, bar: &ProgressBar) -> (Picture, Counts) {
+        let mut film = Film::new(args.size);
+        for (rows, samples) in steps(args) {
+            if samples.start == 0 {
+                bar.inc(u64::from(rows.end - rows.start));
+            }
+            let spans = Spans::uniform(args.size[0], rows, samples);
+            setup.tracer.trace(&setup.world, &self.view, self.draws, &spans, &mut film);
+        }
+        let samples = film.moments.pixels().iter().map(|m| u64::from(m.count)).sum();
+        let (rays, nonfinite) = (film.rays, film.nonfinite);
+        let counts = Counts { samples: vec![samples], ideal_samples: Some(samples as f64), rays, nonfinite };
+        let lod = Image::filled(args.size, 0.0);
+        (Picture { color: film.color(), variance: Some(film.variance()), lod }, counts)
+    }
+
+    /// Around a gaze.
+    pub fn foveated(
+        &self,
+        args: &TraceArgs,
+        setup: &Setup,
+        sampling: &Sampling,
+        gaze_px: [f32; 2],
+        bar: &ProgressBar,
+    ) -> (Picture, Counts) {
+        let geometry = self.view.geometry();
+        let plan = sampling.plan(geometry, gaze_px, args.spp, self.frame);
+        let done = plan.trace(&setup.tracer, &setup.world, &self.view, self.draws);
+        bar.inc(u64::from(args.size[1]));
+        let ideal_samples = args.pattern.of.ideal_samples(sampling, geometry, gaze_px, args.spp);
+        let counts = Counts { samples: done.samples, ideal_samples, rays: done.rays, nonfinite: done.nonfinite };
+        (Picture { color: done.color, variance: None, lod: done.lod }, counts)
+    }
+}
+
+/// Rows and samples that are traced together.
+fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
+    let [w, h] = args.size;
+    let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
+    let rows = (STEP_ITEMS / (u64::from(w) * u64::from(samples))).clamp(1, u64::from(h)) as u32;
+    ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
+}
+
+/// 0 to `end`, `step` at a time.
+fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
+    (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
+}

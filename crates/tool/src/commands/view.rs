@@ -1,0 +1,108 @@
+//! `afterimage view`: look at it in a window, where the mouse is the gaze.
+
+mod app;
+mod device;
+mod feed;
+mod figures;
+mod fly;
+mod graph;
+mod lanes;
+mod layout;
+mod on_device;
+mod panel;
+mod pictures;
+mod quality;
+mod record;
+mod screen;
+mod setup;
+mod shader;
+mod state;
+mod surface;
+mod times;
+mod usable;
+mod viewer;
+
+use crate::args::backend::BackendName;
+use crate::args::gaze::GazeMapName;
+use crate::args::input::{InputArgs, Tracing};
+use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
+use crate::failure::Failure;
+use app::App;
+use clap::Args;
+use feed::Feed;
+use setup::Setup;
+use state::Shows;
+use std::path::PathBuf;
+use winit::event_loop::EventLoop;
+
+/// Look at it in a window: the mouse is the gaze
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Keys: 1 to 5 choose what is shown (none, taa, wrs, smr, reference), with Shift on the right side; Tab splits; the divider is \
+    dragged with the left button. F foveation, - and = fovea, V decisions, P scanpath or mouse, G gaze mark, Space freezes, C steers the camera of \
+    a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 writes the picture, Shift F12 the window, H hides the panel, \
+    Ctrl Shift L loses the device (to see it come back), Esc quits.\n\n\
+    Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
+)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// What is shown
+    #[arg(long, value_enum, default_value = "smr", value_name = "NAME")]
+    pub method: Shows,
+    /// Two of none, taa, wrs, smr, reference, side by side
+    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "method", value_name = "A,B")]
+    pub split: Vec<Shows>,
+    /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]. One
+    /// sample a frame, at most --fps a second, so that the pictures are those of run; key P
+    #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
+    pub gaze: Option<String>,
+    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    #[arg(long, value_enum)]
+    pub gaze_map: Option<GazeMapName>,
+    /// Start in the scanpath, seconds
+    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    pub start: f64,
+    /// Quit after so many frames; default: never
+    #[arg(long, value_parser = parse_frames, value_name = "N")]
+    pub frames: Option<u64>,
+    #[command(flatten)]
+    pub foveation: FoveationArgs,
+    #[command(flatten)]
+    pub wrs: WrsArgs,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// Exposure before sRGB encoding, stops
+    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Resolution of everything as a share of the input's, above 0 and at most 1; default: 1, on a software device as much as is usable
+    #[arg(long, value_name = "X")]
+    pub internal_scale: Option<f32>,
+    /// Where F12 writes the picture, as run writes it; with --frames the last one is written
+    #[arg(long, value_name = "FILE.png")]
+    pub screenshot: Option<PathBuf>,
+    /// Where the gaze of every frame since the last fresh start is written, as a scanpath for --gaze: with each picture, and at the end
+    #[arg(long, value_name = "FILE.csv")]
+    pub record: Option<PathBuf>,
+    /// Begin without the panel
+    #[arg(long)]
+    pub no_panel: bool,
+}
+
+/// The subcommand.
+pub fn view(args: &ViewArgs) -> Result<(), Failure> {
+    let tracing = Tracing { backend: BackendName::Auto, seed: args.seed, foveated: None };
+    let source = args.input.open(&tracing)?;
+    let setup = Setup::new(args, source.info())?;
+    let events = EventLoop::new().map_err(|_| {
+        Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
+    })?;
+    let mut app = App::new(setup, Feed::new(source));
+    events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's events broke off ({e})")))?;
+    app.outcome?;
+    match device::messages() {
+        0 => Ok(()),
+        n => Err(Failure::Work(format!("the device found fault {n} times, first as said above; please report it"))),
+    }
+}

@@ -1,0 +1,100 @@
+//! What the panel says: frames a second, times and quality of the last seconds.
+
+use super::graph::Graph;
+use super::panel::{self, Facts};
+use super::state::{Side, State};
+use super::times::{Pass, PassTimes};
+use image::RgbImage;
+use std::time::{Duration, Instant};
+
+/// Between two drawings of the panel, and between two measurements of quality.
+const EVERY: Duration = Duration::from_millis(250);
+/// Share of the newest frame in the mean of frames a second.
+const NEWEST: f64 = 0.1;
+
+/// Colors, the same in every graph.
+const FOVEATION: (&str, [u8; 3]) = ("foveation", [120, 200, 255]);
+const LEFT: (&str, [u8; 3]) = ("left", [250, 190, 80]);
+const RIGHT: (&str, [u8; 3]) = ("right", [235, 120, 160]);
+const SCREEN: (&str, [u8; 3]) = ("screen", [140, 220, 130]);
+
+/// Figures and the panel that shows them.
+pub struct Figures {
+    begun: Instant,
+    last: Option<Instant>,
+    seconds_a_frame: Option<f64>,
+    milliseconds: Graph,
+    periphery_db: Graph,
+    /// Above the rows.
+    pub lines: Vec<String>,
+    pub panel: RgbImage,
+    drawn: Option<Instant>,
+}
+
+impl Figures {
+    pub fn new() -> Self {
+        Self {
+            begun: Instant::now(),
+            last: None,
+            seconds_a_frame: None,
+            milliseconds: Graph::new("milliseconds", &[FOVEATION, LEFT, RIGHT, SCREEN]),
+            periphery_db: Graph::new("periphery, PSNR dB", &[LEFT, RIGHT]),
+            lines: vec![],
+            panel: RgbImage::new(1, 1),
+            drawn: None,
+        }
+    }
+
+    /// Forgets what was.
+    pub fn clear(&mut self) {
+        self.milliseconds.clear();
+        self.periphery_db.clear();
+        (self.last, self.seconds_a_frame, self.drawn) = (None, None, None);
+    }
+
+    /// Seconds since the last frame; 0 before the first.
+    pub fn since_last_s(&self) -> f64 {
+        self.last.map_or(0.0, |last| last.elapsed().as_secs_f64())
+    }
+
+    /// Frames a second.
+    pub fn fps(&self) -> f64 {
+        self.seconds_a_frame.map_or(0.0, |s| 1.0 / s)
+    }
+
+    /// Takes a frame that was shown.
+    pub fn frame(&mut self, times: &PassTimes) {
+        if self.last.is_some() {
+            let seconds = self.since_last_s();
+            let mean = self.seconds_a_frame.get_or_insert(seconds);
+            *mean += NEWEST * (seconds - *mean);
+        }
+        self.last = Some(Instant::now());
+        let now_s = self.begun.elapsed().as_secs_f64();
+        for pass in Pass::ALL {
+            if let Some(ms) = times.ms(pass) {
+                self.milliseconds.push(pass as usize, now_s, ms);
+            }
+        }
+    }
+
+    /// Takes the PSNR of a side's periphery in dB; a picture without error has none.
+    pub fn quality(&mut self, side: Side, psnr_db: Option<f64>) {
+        if let Some(psnr_db) = psnr_db {
+            self.periphery_db.push(side as usize, self.begun.elapsed().as_secs_f64(), psnr_db);
+        }
+    }
+
+    /// Whether the panel is to be drawn again, if it is not `stale` anyway.
+    pub fn is_due(&self) -> bool {
+        self.drawn.is_none_or(|drawn| drawn.elapsed() >= EVERY)
+    }
+
+    /// Draws the panel.
+    pub fn draw(&mut self, state: &State, lines: Vec<String>) {
+        self.lines = lines;
+        self.panel =
+            panel::draw(state, &Facts { lines: &self.lines, graphs: &[&self.milliseconds, &self.periphery_db] });
+        self.drawn = Some(Instant::now());
+    }
+}

@@ -1,0 +1,142 @@
+//! The panel: what is shown, the keys that change it, and the graphs. Its rows can be clicked.
+
+use super::graph::Graph;
+use super::state::{Action, Side, State};
+use crate::report::canvas::Canvas;
+use image::RgbImage;
+
+/// Width of the panel in its own pixels.
+const WIDTH: u32 = 300;
+const MARGIN: u32 = 8;
+const ROW_PX: u32 = 17;
+const BACKGROUND: [u8; 3] = [18, 20, 24];
+const TEXT: [u8; 3] = [225, 225, 225];
+const KEY: [u8; 3] = [240, 200, 70];
+const QUIET: [u8; 3] = [150, 155, 165];
+/// Where the value and the key of a row begin.
+const VALUE_X: u32 = 92;
+const KEY_X: u32 = 216;
+
+/// What is said besides the state.
+pub struct Facts<'a> {
+    /// Input, resolution, device.
+    pub lines: &'a [String],
+    pub graphs: &'a [&'a Graph],
+}
+
+struct Row {
+    name: &'static str,
+    value: String,
+    key: &'static str,
+    action: Action,
+}
+
+fn rows(state: &State) -> Vec<Row> {
+    let row = |name, value: &str, key, action| Row { name, value: value.to_owned(), key, action };
+    let on = |is_on| if is_on { "on" } else { "off" };
+    let mut rows = vec![row(
+        if state.is_split { "left" } else { "method" },
+        state.sides[0].name(),
+        "1..5",
+        Action::Next(Side::Left),
+    )];
+    if state.is_split {
+        rows.push(row("right", state.sides[1].name(), "Shift 1..5", Action::Next(Side::Right)));
+    }
+    rows.extend([
+        row("split", on(state.is_split), "Tab", Action::Split),
+        row("foveation", state.filter.name(), "F", Action::Filter),
+        row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
+        row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
+        row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
+        row("gaze mark", on(state.is_marked), "G", Action::Mark),
+        row("frozen", on(state.is_frozen), "Space", Action::Freeze),
+    ]);
+    if let Some(flies) = state.is_flying {
+        let value = if flies { "WASD, drag" } else { "on its path" };
+        rows.push(row("camera", value, "C", Action::Fly));
+    }
+    rows.extend([
+        row("restart", "", "R", Action::Restart),
+        row("picture", "", "F12", Action::Picture),
+        row("window", "", "Shift F12", Action::Window),
+        row("panel", "", "H", Action::Panel),
+    ]);
+    rows
+}
+
+fn first_row_y(facts_lines: usize) -> u32 {
+    MARGIN + ROW_PX * facts_lines as u32 + 4
+}
+
+/// Draws it.
+pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
+    let rows = rows(state);
+    let y = first_row_y(facts.lines.len());
+    let graphs_y = y + ROW_PX * rows.len() as u32 + MARGIN;
+    let height = graphs_y + facts.graphs.iter().map(|g| g.height() + MARGIN).sum::<u32>();
+    let mut canvas = Canvas::new(WIDTH, height, BACKGROUND);
+    for (i, line) in facts.lines.iter().enumerate() {
+        canvas.small(line, MARGIN, MARGIN + ROW_PX * i as u32, QUIET);
+    }
+    for (i, row) in rows.iter().enumerate() {
+        let y = y + ROW_PX * i as u32;
+        canvas.small(row.name, MARGIN, y, TEXT);
+        canvas.small(&row.value, VALUE_X, y, TEXT);
+        canvas.small(row.key, KEY_X, y, KEY);
+    }
+    let mut y = graphs_y;
+    for graph in facts.graphs {
+        graph.draw(&mut canvas, [MARGIN, y], WIDTH - 2 * MARGIN);
+        y += graph.height() + MARGIN;
+    }
+    canvas.0
+}
+
+/// What a click at a position on the panel asks for; `None` beside the panel, `Some(None)` between its rows.
+pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -> Option<Option<Action>> {
+    let inside = (0..2).all(|i| at[i] >= 0.0 && at[i] < panel[i] as f32);
+    let row = (at[1] - first_row_y(facts_lines) as f32) / ROW_PX as f32;
+    inside.then(|| (row >= 0.0).then(|| rows(state).get(row as usize).map(|r| r.action)).flatten())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::state::{Shows, tests::state};
+    use super::*;
+
+    /// Where the row of that name is clicked.
+    fn click_on(state: &State, name: &str) -> Option<Action> {
+        let row = rows(state).iter().position(|r| r.name == name).unwrap();
+        let at = [40.0, first_row_y(3) as f32 + (row as f32 + 0.5) * ROW_PX as f32];
+        click(state, 3, [300, 400], at).unwrap()
+    }
+
+    #[test]
+    fn rows_do_what_they_say() {
+        let mut state = state();
+        assert_eq!(click_on(&state, "method"), Some(Action::Next(Side::Left)));
+        assert_eq!(click_on(&state, "split"), Some(Action::Split));
+        state.apply(Action::Show(Side::Right, Shows::Wrs));
+        assert_eq!(click_on(&state, "right"), Some(Action::Next(Side::Right)));
+        assert_eq!(click_on(&state, "frozen"), Some(Action::Freeze));
+        assert!(rows(&state).iter().all(|r| r.name != "camera"), "there is none to steer");
+    }
+
+    #[test]
+    fn what_is_beside_the_rows_does_nothing() {
+        let state = state();
+        assert_eq!(click(&state, 3, [300, 400], [301.0, 5.0]), None, "beside the panel is the picture");
+        assert_eq!(click(&state, 3, [300, 400], [5.0, 5.0]), Some(None), "on its heading is nothing");
+        assert_eq!(click(&state, 3, [300, 400], [5.0, 399.0]), Some(None), "on its graphs is nothing");
+    }
+
+    #[test]
+    fn it_is_drawn_as_large_as_its_rows_and_graphs_need() {
+        let graphs = [&Graph::new("ms a frame", &[("screen", [255; 3])])];
+        let lines = ["input".to_owned()];
+        let split = State { is_split: true, ..state() };
+        let [one, two] = [&state(), &split].map(|s| draw(s, &Facts { lines: &lines, graphs: &graphs }).dimensions());
+        assert_eq!((one.0, two.0, two.1 - one.1), (WIDTH, WIDTH, ROW_PX));
+    }
+}

@@ -1,0 +1,197 @@
+//! The error of what is shown in the periphery, added up on the device and read back a few frames late.
+
+use super::device;
+use super::shader::SHADERS;
+use super::state::Side;
+use afterimage::geometry::ViewGeometry;
+use afterimage_lab::device::Headless;
+use afterimage_lab::metric::psnr_db;
+use bytemuck::{Pod, Zeroable};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
+
+/// Where the periphery begins, as of reports, degrees.
+const PERIPHERY_DEG: f32 = 7.5;
+/// Pixels that a workgroup adds up. Also in the shader.
+const TILE: [u32; 2] = [64, 16];
+
+/// `QualityConstants` in `shaders/view/view_quality.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct QualityConstants {
+    /// Slope of rays per pixel, and the ray through pixel (0, 0).
+    ray_scale: [f32; 2],
+    ray_offset: [f32; 2],
+    /// Ray through the gaze.
+    gaze_ray: [f32; 4],
+    size: [u32; 2],
+    /// Factor of the exposure.
+    gain: f32,
+    /// Eccentricity beyond which errors count.
+    from_deg: f32,
+}
+
+/// What is shown to whom.
+pub struct Viewing<'a> {
+    pub geometry: &'a ViewGeometry,
+    pub gaze_px: [f32; 2],
+    pub gain: f32,
+}
+
+/// Adds up errors of both sides.
+pub struct Quality {
+    pipeline: ComputePipeline,
+    sums: Buffer,
+    sides: [Readback; 2],
+}
+
+struct Readback {
+    buffer: Buffer,
+    /// Set when what was measured last is there.
+    done: Option<Arc<AtomicBool>>,
+}
+
+impl Quality {
+    /// For pictures of `size`.
+    pub fn new(gpu: &Headless, size: [u32; 2]) -> Self {
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("view quality"),
+            source: wgpu::ShaderSource::Wgsl(SHADERS.compose("view_quality").source.into()),
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("view quality"),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let bytes = 8 * [0, 1].map(|i| u64::from(size[i].div_ceil(TILE[i]))).iter().product::<u64>();
+        let buffer = |usage| {
+            let label = Some("view quality");
+            gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size: bytes, usage, mapped_at_creation: false })
+        };
+        let readback = || Readback { buffer: buffer(BufferUsages::MAP_READ | BufferUsages::COPY_DST), done: None };
+        Self { pipeline, sums: buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC), sides: [readback(), readback()] }
+    }
+
+    /// Measures a side's picture, unless its last figure is still on its way.
+    pub fn measure(&mut self, gpu: &Headless, side: Side, full: &Texture, shown: &Texture, viewing: &Viewing<'_>) {
+        let readback = &mut self.sides[side as usize];
+        if readback.done.is_some() {
+            return;
+        }
+        let (ray_scale, ray_offset) = viewing.geometry.scale_offset();
+        let size = viewing.geometry.size_px();
+        let constants = QualityConstants {
+            ray_scale,
+            ray_offset,
+            gaze_ray: viewing.geometry.ray(viewing.gaze_px).extend(0.0).to_array(),
+            size,
+            gain: viewing.gain,
+            from_deg: PERIPHERY_DEG,
+        };
+        let constants = device::constants(gpu, "view quality", &constants);
+        let [full, shown] = [full, shown].map(|t| t.create_view(&Default::default()));
+        let resources = [
+            constants.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&full),
+            wgpu::BindingResource::TextureView(&shown),
+            self.sums.as_entire_binding(),
+        ];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("view quality"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(size[0].div_ceil(TILE[0]), size[1].div_ceil(TILE[1]), 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&self.sums, 0, &readback.buffer, 0, self.sums.size());
+        gpu.queue.submit([encoder.finish()]);
+        let done = Arc::new(AtomicBool::new(false));
+        let tell = done.clone();
+        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| tell.store(r.is_ok(), Ordering::Release));
+        readback.done = Some(done);
+    }
+
+    /// The PSNR of a side's periphery in dB, if a measurement of it has come back: `Some(None)` if there was no error.
+    pub fn take(&mut self, gpu: &Headless, side: Side) -> Option<Option<f64>> {
+        let readback = &mut self.sides[side as usize];
+        // A lost device is noticed elsewhere.
+        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        readback.done.take_if(|done| done.load(Ordering::Acquire))?;
+        let sums = readback.buffer.slice(..).get_mapped_range().ok().map(|mapped| {
+            let tiles = mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f32; 2]>);
+            tiles.fold([0.0, 0.0], |sum: [f64; 2], tile| [0, 1].map(|i| sum[i] + f64::from(tile[i])))
+        });
+        readback.buffer.unmap();
+        let [squared, count] = sums?;
+        (count > 0.0).then(|| psnr_db(squared / count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use afterimage::image::Image;
+    use afterimage::kernel::color::srgb_encode;
+    use wgpu::{TextureFormat, TextureUsages};
+
+    const SIZE: [u32; 2] = [150, 70];
+    const GAIN: f32 = 1.5;
+
+    fn pattern(seed: u32) -> Image<[f32; 3]> {
+        let value = |x: u32, y: u32, c: u32| ((x * 31 + y * 57 + c * 91 + seed * 7) % 101) as f32 / 80.0 - 0.1;
+        Image::from_fn(SIZE, |[x, y]| [0, 1, 2].map(|c| value(x, y, c)))
+    }
+
+    /// The formula, pixel by pixel.
+    fn expected_db(full: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, viewing: &Viewing<'_>) -> f64 {
+        let encode = |v: f32| f64::from(srgb_encode((v * GAIN).clamp(0.0, 1.0)));
+        let (mut squared, mut count) = (0.0, 0.0);
+        for (i, (f, s)) in full.pixels().iter().zip(shown.pixels()).enumerate() {
+            let px = [i % SIZE[0] as usize, i / SIZE[0] as usize].map(|v| v as f32);
+            if viewing.geometry.eccentricity_deg(px, viewing.gaze_px) > PERIPHERY_DEG {
+                squared += (0..3).map(|c| (encode(s[c]) - encode(f[c])).powi(2)).sum::<f64>() / 3.0;
+                count += 1.0;
+            }
+        }
+        psnr_db(squared / count).unwrap()
+    }
+
+    #[test]
+    fn the_device_adds_up_what_the_formula_says() {
+        let Some(gpu) = Headless::find(true) else {
+            assert!(std::env::var("AFTERIMAGE_GPU").is_err(), "AFTERIMAGE_GPU is set, but there is no adapter");
+            eprintln!("SKIPPED: no adapter");
+            return;
+        };
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let images = [pattern(0), pattern(1)];
+        let textures = images.each_ref().map(|image| {
+            let texture = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage);
+            gpu.write_rgb(&texture, 0, image);
+            texture
+        });
+        let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+        let viewing = Viewing { geometry: &geometry, gaze_px: [40.0, 30.0], gain: GAIN };
+        let mut quality = Quality::new(&gpu, SIZE);
+        let mut measured = |shown: &Texture| {
+            quality.measure(&gpu, Side::Right, &textures[0], shown, &viewing);
+            gpu.wait();
+            quality.take(&gpu, Side::Right)
+        };
+        let found = measured(&textures[1]).flatten().unwrap();
+        let expected = expected_db(&images[0], &images[1], &viewing);
+        println!("{found} dB, expected {expected}");
+        assert!((found - expected).abs() < 1e-3, "{found} dB, expected {expected}");
+        assert_eq!(measured(&textures[0]), Some(None), "no error has no PSNR");
+    }
+}

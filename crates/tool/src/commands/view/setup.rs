@@ -1,0 +1,90 @@
+//! What is known before the window opens.
+
+use super::ViewArgs;
+use super::state::{Shows, State};
+use crate::args::gaze::GazeArgs;
+use crate::args::input;
+use crate::failure::Failure;
+use afterimage::geometry::ViewGeometry;
+use afterimage::settings::Settings;
+use afterimage_lab::source::SourceInfo;
+
+/// Options and facts of the input.
+pub struct Setup {
+    pub args: ViewArgs,
+    pub info: SourceInfo,
+    pub fps: f32,
+    pub hfov_deg: f32,
+    /// Gaze by frame, in pixels of the input; `None`: lost.
+    pub track: Vec<Option<[f32; 2]>>,
+}
+
+impl Setup {
+    /// Checks everything that can be checked without a device.
+    pub fn new(args: &ViewArgs, info: &SourceInfo) -> Result<Self, Failure> {
+        let refuse = |text: String| Err(Failure::Input(text));
+        if !matches!(args.split.len(), 0 | 2) {
+            return refuse(format!("--split: {} names, expected two, such as none,smr", args.split.len()));
+        }
+        if let Some(scale) = args.internal_scale.filter(|s| !(*s > 0.0 && *s <= 1.0)) {
+            return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
+        }
+        let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
+        let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
+        let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
+        let track = gaze.resolve(&geometry, fps, input::frames(args.frames, info))?.px;
+        let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
+        let state = setup.state();
+        for shows in [Shows::None, Shows::Taa, Shows::Wrs, Shows::Smr] {
+            setup.settings(&state, shows).validate()?;
+        }
+        Ok(setup)
+    }
+
+    /// What is shown first.
+    pub fn state(&self) -> State {
+        let args = &self.args;
+        State {
+            sides: match args.split[..] {
+                [left, right] => [left, right],
+                _ => [args.method, Shows::Reference],
+            },
+            is_split: !args.split.is_empty(),
+            divider: 0.5,
+            filter: args.foveation.filter,
+            fovea_deg: args.foveation.fovea,
+            mid_deg: args.foveation.mid,
+            debug: None,
+            is_frozen: false,
+            is_playing: args.gaze.is_some(),
+            is_flying: None,
+            is_marked: true,
+            has_panel: !args.no_panel,
+        }
+    }
+
+    /// Tunables of what is shown, as of `run`.
+    pub fn settings(&self, state: &State, shows: Shows) -> Settings {
+        let mut foveation = self.args.foveation.clone();
+        (foveation.filter, foveation.fovea) = (state.filter, state.fovea_deg);
+        let method = shows.method().unwrap_or_default();
+        Settings { foveation: foveation.foveation(), ..self.args.wrs.settings(method, self.args.seed, false) }
+    }
+
+    /// Pixels and angles at an internal scale.
+    pub fn geometry(&self, scale: f32) -> Result<ViewGeometry, Failure> {
+        let size = self.info.size.map(|s| ((s as f32 * scale).round() as u32).max(1));
+        Ok(ViewGeometry::flat(size, self.hfov_deg)?)
+    }
+
+    /// Where the eye looks in a frame of playback, in pixels at an internal scale.
+    pub fn played_px(&self, position: u64, scale: f32) -> Option<[f32; 2]> {
+        let px = self.track[(position % self.track.len() as u64) as usize]?;
+        Some(if scale == 1.0 { px } else { px.map(|v| (v + 0.5) * scale - 0.5) })
+    }
+
+    /// Factor of the exposure.
+    pub fn gain(&self) -> f32 {
+        self.args.exposure.exp2()
+    }
+}

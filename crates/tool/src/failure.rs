@@ -1,0 +1,71 @@
+//! How the tool ends when it cannot go on: one line, and an exit code that tells whose turn it is.
+
+use afterimage::error::{CreateError, FrameError, SettingsError};
+use afterimage_lab::error::InputError;
+use std::fmt::Display;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Why the tool stops.
+#[derive(Debug)]
+pub enum Failure {
+    /// Bad usage or input: exit code 2.
+    Input(String),
+    /// The work failed: exit code 1.
+    Work(String),
+}
+
+impl Failure {
+    /// Prints the line and gives the exit code.
+    pub fn report(&self) -> ExitCode {
+        let (text, code) = match self {
+            Self::Input(text) => (text, 2),
+            Self::Work(text) => (text, 1),
+        };
+        eprintln!("afterimage: {}", text.replace('\n', " "));
+        ExitCode::from(code)
+    }
+
+    /// Options that are wrong, in one line.
+    pub fn usage(error: &clap::Error) -> Self {
+        let text = error.render().to_string();
+        let lines: Vec<&str> = text
+            .lines()
+            .map(str::trim)
+            .take_while(|l| !l.starts_with("Usage:"))
+            .filter(|l| !l.is_empty() && !l.starts_with("For more information"))
+            .collect();
+        let line = lines.join(" ");
+        let line = line.strip_prefix("error: ").unwrap_or(&line);
+        Self::Input(format!("{line}; see --help"))
+    }
+
+    /// Something that could not be written while working.
+    pub fn writing(path: &Path, error: impl Display) -> Self {
+        Self::Work(format!("{}: cannot be written ({error}); free space or choose another --out", path.display()))
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<SettingsError> for Failure {
+    fn from(error: SettingsError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<CreateError> for Failure {
+    fn from(error: CreateError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<FrameError> for Failure {
+    fn from(error: FrameError) -> Self {
+        Self::Work(error.to_string())
+    }
+}

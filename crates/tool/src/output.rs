@@ -1,0 +1,138 @@
+//! The output folder: everything is written whole or not at all, and never mixed with the frames of another run.
+
+use crate::failure::Failure;
+#[cfg(feature = "full")]
+use afterimage::image::Image;
+use afterimage_lab::picture::write_png;
+#[cfg(feature = "full")]
+use afterimage_lab::source::exr_file::{self, FrameToWrite};
+use afterimage_lab::whole_file::write_whole;
+use image::RgbImage;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// A folder that a clip is written to.
+pub struct Output {
+    root: PathBuf,
+}
+
+/// A CSV file that grows row by row under a temporary name.
+pub struct Table {
+    path: PathBuf,
+    partial: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Output {
+    /// Makes the folder and a folder in it for each of `parts`. Frames that an earlier run left there are removed, if its
+    /// `report` (`report.json` or `trace.json`) says that they are this tool's.
+    pub fn create(root: &Path, parts: &[String], report: &str) -> Result<Self, Failure> {
+        let refuse = |path: &Path, error: &dyn std::fmt::Display| {
+            Failure::Input(format!(
+                "{}: cannot be written ({error}); give --out a folder that can be made or written",
+                path.display()
+            ))
+        };
+        fs::create_dir_all(root).map_err(|e| refuse(root, &e))?;
+        let ours = fs::read_to_string(root.join(report)).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
+        let mut stale = vec![];
+        for part in parts {
+            stale.extend(numbered_frames(&root.join(part)));
+        }
+        if let (false, Some(first)) = (ours, stale.first()) {
+            return Err(Failure::Input(format!(
+                "{}: holds frames of something else; give --out an empty folder",
+                first.parent().unwrap_or(root).display()
+            )));
+        }
+        // A file that can be made is the proof that the folder can be written.
+        let probe = root.join(".afterimage.partial");
+        File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
+        for path in stale.into_iter().chain(ours.then(|| root.join(report))) {
+            fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
+        }
+        for part in parts {
+            let folder = root.join(part);
+            fs::create_dir_all(&folder).map_err(|e| refuse(&folder, &e))?;
+        }
+        Ok(Self { root: root.to_owned() })
+    }
+
+    /// A linear half-float EXR as frame `index` of `folder`.
+    #[cfg(feature = "full")]
+    pub fn exr(&self, folder: &str, index: usize, linear: &Image<[f32; 3]>) -> Result<(), Failure> {
+        let path = self.path(folder, index, "exr");
+        exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
+    }
+
+    /// Where frame `index` of `folder` goes.
+    pub fn path(&self, folder: &str, index: usize, ending: &str) -> PathBuf {
+        self.root.join(folder).join(format!("{index:06}.{ending}"))
+    }
+
+    /// A PNG as frame `index` of `folder`.
+    pub fn picture(&self, folder: &str, index: usize, picture: &RgbImage) -> Result<(), Failure> {
+        let path = self.path(folder, index, "png");
+        write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
+    }
+
+    /// A PNG in the folder itself.
+    pub fn sheet(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
+        let path = self.root.join(name);
+        write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
+    }
+
+    /// Gaze positions, one a frame.
+    pub fn gaze(&self, name: &str, gaze_px: &[[f32; 2]]) -> Result<(), Failure> {
+        let mut table = self.table(name, "frame,x_px,y_px")?;
+        for (i, [x, y]) in gaze_px.iter().enumerate() {
+            table.row(&format!("{i},{x:.3},{y:.3}"))?;
+        }
+        table.finish()
+    }
+
+    /// A text file.
+    pub fn text(&self, name: &str, text: &str) -> Result<(), Failure> {
+        let path = self.root.join(name);
+        write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
+    }
+
+    /// Starts a table.
+    pub fn table(&self, name: &str, header: &str) -> Result<Table, Failure> {
+        let path = self.root.join(name);
+        let partial = self.root.join(format!("{name}.partial"));
+        let file = File::create(&partial).map_err(|e| Failure::writing(&partial, e))?;
+        let mut table = Table { path, partial, file: BufWriter::new(file) };
+        table.row(header)?;
+        Ok(table)
+    }
+}
+
+impl Table {
+    /// Adds a row.
+    pub fn row(&mut self, row: &str) -> Result<(), Failure> {
+        writeln!(self.file, "{row}").map_err(|e| Failure::writing(&self.partial, e))
+    }
+
+    /// Gives the table its name.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        self.file
+            .flush()
+            .and_then(|()| fs::rename(&self.partial, &self.path))
+            .map_err(|e| Failure::writing(&self.path, e))
+    }
+}
+
+/// Files such as `000000.png` in a folder; none if it does not exist.
+fn numbered_frames(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return vec![];
+    };
+    let is_frame = |path: &PathBuf| {
+        let ending = path.extension().and_then(|e| e.to_str());
+        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
+        matches!(ending, Some("png" | "exr")) && stem.len() == 6 && stem.bytes().all(|b| b.is_ascii_digit())
+    };
+    entries.filter_map(|e| Some(e.ok()?.path())).filter(is_frame).collect()
+}

@@ -1,0 +1,12 @@
+//! What a run leaves behind: figures, pictures, and a contact sheet that shows them at a glance.
+
+pub mod backend;
+pub mod canvas;
+#[cfg(feature = "full")]
+pub mod jpeg;
+#[cfg(feature = "full")]
+pub mod page;
+#[cfg(feature = "full")]
+pub mod pareto;
+pub mod sheet;
+pub mod tally;

@@ -1,0 +1,127 @@
+//! What a method came to over a clip: scores, times, counts.
+
+use afterimage::image::Image;
+use afterimage_lab::clock::Quartiles;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::metric::{FrameErrors, Reference, Scorer, Scores, psnr_db};
+use afterimage_lab::pipeline::{Shown, Step};
+use serde::{Deserialize, Serialize};
+
+/// Figures of a method, as `report.json` has them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodReport {
+    /// How far the method gets from the foveated frame to what any reuse could show; where both were run.
+    pub share_of_oracle: Option<Share>,
+    /// Wall time of the pass a frame.
+    pub ms: Option<Quartiles>,
+    /// Mean CPU time of the pass a frame.
+    pub cpu_ms: Option<f64>,
+    /// How good the frames are.
+    #[serde(flatten)]
+    pub scores: Scores,
+    /// PSNR of the last frame alone.
+    pub psnr_last_frame_db: Option<f64>,
+    /// Pixels that came in NaN or infinite.
+    pub nonfinite_in: u64,
+    /// Pixels that were shown NaN or infinite.
+    pub nonfinite_out: u64,
+    /// Share of pixels that lost their history to occlusion, the border or bad vectors, after the first frame.
+    pub flushed: Option<f64>,
+    /// Share of pixels with a history whose sample was replaced.
+    pub replaced: Option<f64>,
+    /// Bytes that the pass reads and writes a pixel and frame, half-float inputs assumed.
+    pub bytes_per_pixel: Option<u32>,
+    /// Bytes kept between frames a pixel.
+    pub persistent_bytes_per_pixel: f64,
+}
+
+/// A part of the way from `none` (0) to `oracle` (1); below 0 is worse than doing nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// In whole-image PSNR.
+    pub psnr: Option<f64>,
+    /// In whole-image SSIM.
+    pub ssim: Option<f64>,
+}
+
+/// Sums over the frames of a clip.
+#[derive(Default)]
+pub struct Tally {
+    scorer: Scorer,
+    wall_ms: Vec<f64>,
+    cpu_ms: Vec<Option<f64>>,
+    cost_ms: Vec<f64>,
+    nonfinite_in: u64,
+    nonfinite_out: u64,
+    pixels: u64,
+    flushed: u64,
+    with_history: u64,
+    replaced: u64,
+    last: Option<FrameErrors>,
+    traffic: Option<u32>,
+}
+
+impl Tally {
+    /// Takes a frame of the method: what it showed, and the same sRGB-encoded.
+    pub fn push(
+        &mut self,
+        frame: &SourceFrame,
+        reference: &Reference<'_>,
+        encoded: &Image<[f32; 3]>,
+        shown: &Shown,
+        step: &Step,
+    ) {
+        self.last = Some(self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg));
+        self.traffic = shown.traffic_bytes_per_pixel;
+        self.wall_ms.push(shown.wall_ms);
+        self.cpu_ms.push(shown.cpu_ms);
+        self.cost_ms.push(shown.cost_ms());
+        self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
+        let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
+        self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
+        if !frame.cut {
+            self.pixels += shown.stats.pixels;
+            self.flushed += shown.stats.flushed();
+            self.with_history += shown.stats.valid();
+            self.replaced += shown.stats.replaced;
+        }
+    }
+
+    /// The scores so far.
+    pub fn scores(&self) -> Scores {
+        self.scorer.scores()
+    }
+
+    /// What the pass cost in each frame, [`Shown::cost_ms`].
+    pub fn cost_ms(&self) -> &[f64] {
+        &self.cost_ms
+    }
+
+    /// A line of `frames.csv`.
+    pub fn row(&self, index: usize, name: &str) -> String {
+        let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
+        let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
+        let [fovea, mid, periphery] = self.last.map_or_else(Default::default, |e| e.band_mse.map(db));
+        let ms = self.wall_ms.last().copied().unwrap_or_default();
+        format!("{index},{name},{psnr},{retained},{ms:.3},{fovea},{mid},{periphery}")
+    }
+
+    /// The figures, of a method that keeps so much.
+    pub fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
+        let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
+        let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();
+        MethodReport {
+            share_of_oracle: None,
+            ms: Quartiles::of(&self.wall_ms),
+            cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
+            scores: self.scorer.scores(),
+            psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
+            nonfinite_in: self.nonfinite_in,
+            nonfinite_out: self.nonfinite_out,
+            flushed: share(self.flushed, self.pixels),
+            replaced: share(self.replaced, self.with_history),
+            bytes_per_pixel: self.traffic,
+            persistent_bytes_per_pixel,
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Settings as a program has them.
+
+use afterimage::foveation::Foveation;
+use afterimage::settings::{Bias, Settings, Smr};
+
+/// `Settings { .. }` with what differs from the defaults, ready to paste.
+pub fn as_rust(settings: &Settings) -> String {
+    Literal::new("Settings", settings, &Settings::default())
+        .field("method", |s| format!("Method::{:?}", s.method))
+        .field("foveation", |s| foveation(&s.foveation))
+        .field("smr", |s| smr(&s.smr))
+        .field("sampler", |s| format!("Sampler::{:?}", s.sampler))
+        .field("bias", |s| match s.bias {
+            Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
+            other => format!("Bias::{other:?}"),
+        })
+        .field("gate", |s| match s.gate {
+            None => "None".into(),
+            Some(g) => format!(
+                "Some(Gate {{ metric: GateMetric::{:?}, divisor: {:?}, offset: {:?} }})",
+                g.metric, g.divisor, g.offset
+            ),
+        })
+        .field("depth_test", |s| match s.depth_test {
+            None => "None".into(),
+            Some(t) => format!("Some(DepthTest {{ relative: {:?}, slope_px: {:?} }})", t.relative, t.slope_px),
+        })
+        .field("noisy", |s| s.noisy.to_string())
+        .field("seed", |s| s.seed.to_string())
+        .end()
+}
+
+fn foveation(foveation: &Foveation) -> String {
+    Literal::new("Foveation", foveation, &Foveation::default())
+        .field("filter", |f| format!("Filter::{:?}", f.filter))
+        .field("fovea_deg", |f| format!("{:?}", f.fovea_deg))
+        .field("mid_deg", |f| format!("{:?}", f.mid_deg))
+        .field("blend_deg", |f| format!("{:?}", f.blend_deg))
+        .field("rate_mid", |f| f.rate_mid.to_string())
+        .field("rate_far", |f| f.rate_far.to_string())
+        .end()
+}
+
+fn smr(smr: &Smr) -> String {
+    Literal::new("Smr", smr, &Smr::default())
+        .field("accumulate", |s| format!("{:?}", s.accumulate))
+        .field("tolerance", |s| format!("{:?}", s.tolerance))
+        .field("relight", |s| s.relight.to_string())
+        .end()
+}
+
+/// The expression of a struct, field by field, without those that are written as the default's are.
+struct Literal<'a, T> {
+    name: &'static str,
+    value: &'a T,
+    plain: &'a T,
+    fields: Vec<String>,
+}
+
+impl<'a, T> Literal<'a, T> {
+    fn new(name: &'static str, value: &'a T, plain: &'a T) -> Self {
+        Self { name, value, plain, fields: vec![] }
+    }
+
+    fn field(mut self, name: &str, written: impl Fn(&T) -> String) -> Self {
+        let value = written(self.value);
+        if value != written(self.plain) {
+            self.fields.push(format!("{name}: {value}"));
+        }
+        self
+    }
+
+    fn end(self) -> String {
+        let Self { name, fields, .. } = self;
+        if fields.is_empty() {
+            format!("{name}::default()")
+        } else {
+            format!("{name} {{ {}, ..{name}::default() }}", fields.join(", "))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use afterimage::foveation::Filter;
+    use afterimage::settings::{DepthTest, Gate, GateMetric, Method, Sampler};
+
+    /// The text compiles to the settings it was made of: it is a macro's argument and its own expectation.
+    macro_rules! round_trip {
+        ($settings:expr) => {
+            let compact = |text: &str| text.split_whitespace().collect::<String>().replace(",}", "}");
+            assert_eq!(compact(&as_rust(&$settings)), compact(stringify!($settings)));
+        };
+    }
+
+    #[test]
+    fn what_is_pasted_makes_the_same_settings() {
+        round_trip!(Settings::default());
+        round_trip!(Settings { method: Method::Wrs, gate: None, depth_test: None, seed: 3, ..Settings::default() });
+        round_trip!(Settings {
+            method: Method::Taa,
+            foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
+            smr: Smr { accumulate: 0.7, relight: false, ..Smr::default() },
+            sampler: Sampler::AEs,
+            bias: Bias::Exponential { lambda: 0.25 },
+            gate: Some(Gate { metric: GateMetric::Lightness, divisor: 50.0, offset: 2.0 }),
+            depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),
+            noisy: true,
+            ..Settings::default()
+        });
+    }
+}

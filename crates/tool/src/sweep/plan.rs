@@ -1,0 +1,158 @@
+//! What a sweep measures, as a file says it.
+
+use super::grid::{Axis, Grid, Options, parse_switch};
+use afterimage_lab::error::InputError;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Largest file that is read.
+const MAX_BYTES: u64 = 1 << 20;
+/// Most measurements of a sweep.
+pub const MAX_POINTS: usize = 100_000;
+/// Most repetitions with seeds of their own.
+const MAX_SEEDS: u64 = 1000;
+const EXPECTED: &str =
+    "expected seeds = N, [common] option = value, [axes] option = [values], [switches] of = [options]";
+
+/// What a sweep measures.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// What differs between points.
+    pub grid: Grid,
+    /// What is the same for all.
+    pub common: Options,
+    /// Repetitions of what is random.
+    pub seeds: u64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { grid: Grid::default(), common: Options::new(), seeds: 1 }
+    }
+}
+
+/// The file, in TOML.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlanFile {
+    seeds: Option<u64>,
+    #[serde(default)]
+    common: BTreeMap<String, Value>,
+    #[serde(default)]
+    axes: BTreeMap<String, Vec<Value>>,
+    #[serde(default)]
+    switches: Switches,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Switches {
+    #[serde(default)]
+    of: Vec<String>,
+}
+
+/// A value as people write it.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Value {
+    Flag(bool),
+    Integer(i64),
+    Number(f64),
+    Text(String),
+}
+
+impl Value {
+    /// As it is typed for an axis.
+    fn typed(&self) -> String {
+        match self {
+            Self::Flag(true) => "on".into(),
+            Self::Flag(false) => "-".into(),
+            Self::Integer(v) => v.to_string(),
+            Self::Number(v) => v.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+impl Plan {
+    /// Reads a file and adds what it says.
+    ///
+    /// # Errors
+    /// If it cannot be read, is larger than 1 MiB, or as [`Plan::add`].
+    pub fn add_file(&mut self, path: &Path) -> Result<(), InputError> {
+        let name = path.display().to_string();
+        let wrong = |problem: String| InputError::new(&name, problem, "expected a plan of at most 1 MiB");
+        let unreadable = |e: std::io::Error| wrong(format!("cannot be read ({e})"));
+        let length = std::fs::metadata(path).map_err(unreadable)?.len();
+        if length > MAX_BYTES {
+            return Err(wrong(format!("has {length} bytes")));
+        }
+        self.add(&name, &std::fs::read_to_string(path).map_err(unreadable)?)
+    }
+
+    /// Adds what a file's text says; it goes before what was said of the same options. `name` is how errors name it.
+    ///
+    /// # Errors
+    /// If it is no TOML of the form in docs/sweep.md.
+    pub fn add(&mut self, name: &str, text: &str) -> Result<(), InputError> {
+        let wrong = |problem: String| InputError::new(name, problem, EXPECTED);
+        let file: PlanFile = toml::from_str(text).map_err(|e| {
+            let reason = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+            wrong(format!("is no plan of a sweep ({reason})"))
+        })?;
+        self.seeds = file.seeds.unwrap_or(self.seeds);
+        for (names, values) in &file.axes {
+            let typed: Vec<String> = values.iter().map(Value::typed).collect();
+            let axis = Axis::new(names, typed.iter().map(String::as_str));
+            self.put(axis.map_err(|e| wrong(format!("axis {names}: {e}")))?);
+        }
+        for (option, value) in &file.common {
+            if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.typed())) {
+                self.common.insert(name, value);
+            }
+        }
+        self.grid.switches.extend(file.switches.of.iter().map(|s| parse_switch(s)));
+        Ok(())
+    }
+
+    /// An axis takes the place of what was said of its options before.
+    pub fn put(&mut self, axis: Axis) {
+        self.grid.axes.retain(|a| !a.options.iter().any(|o| axis.options.contains(o)));
+        self.common.retain(|name, _| !axis.options.contains(name));
+        self.grid.axes.push(axis);
+    }
+
+    /// Whether it can be measured.
+    ///
+    /// # Errors
+    /// Names what is the sweep's own, said twice, or too much: more than 1000 seeds or 100,000 points.
+    pub fn check(&self) -> Result<(), InputError> {
+        if !(1..=MAX_SEEDS).contains(&self.seeds) {
+            let text = format!("is not in 1 to {MAX_SEEDS}");
+            return Err(InputError::new(format!("--seeds {}", self.seeds), text, format!("expected 1 to {MAX_SEEDS}")));
+        }
+        let axes = &self.grid.axes;
+        for reserved in ["out", "input", "seed", "help"] {
+            let is_taken = self.common.contains_key(reserved)
+                || axes.iter().any(|a| a.options.iter().any(|o| o == reserved))
+                || self.grid.switches.iter().any(|s| s.0 == reserved);
+            if is_taken {
+                return Err(InputError::new(reserved, "is the sweep's own", "expected an option of run, or --seeds N"));
+            }
+        }
+        if let Some(name) = self.common.keys().find(|name| axes.iter().any(|a| a.options.contains(name))) {
+            return Err(InputError::new(
+                name,
+                "is an axis of the sweep and cannot be the same for all points",
+                format!("expected --axis {name}=VALUE"),
+            ));
+        }
+        let combinations = axes.iter().map(|a| a.values.len()).try_fold(1_usize, usize::checked_mul);
+        if combinations.is_none_or(|n| n.saturating_mul(self.seeds as usize) > MAX_POINTS) {
+            let text = format!("have more than {MAX_POINTS} combinations");
+            return Err(InputError::new("the axes", text, "leave some out"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,256 @@
+//! Measurements side by side: seeds together, times made comparable, the frontier marked.
+
+use super::convergence::{Convergence, convergences};
+use super::frontier::{Standing, frontier};
+use super::grid::{Options, Point};
+use super::measurement::{ClipFacts, Machine, Measurement};
+use super::metrics::METRICS;
+use super::prices::{Price, prices};
+use super::store::id;
+use afterimage_lab::clock::Quartiles;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A point with all its seeds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Name of its files in `pictures/`.
+    pub id: String,
+    /// Method, and the options that not all points share.
+    pub label: String,
+    /// The point, with its first seed.
+    #[serde(flatten)]
+    pub point: Point,
+    /// Measurements with seeds of their own.
+    pub seeds: usize,
+    /// Cost of the pass a frame, milliseconds, the machine's drift taken out.
+    pub pass_ms: Quartiles,
+    /// Round and cost of each frame of the first seed.
+    #[serde(skip)]
+    pub frames: (String, Vec<f64>),
+    /// What its times were multiplied with for that, on average.
+    pub drift: f64,
+    /// Cost of rendering the foveated frame, milliseconds: traced, or the share of the samples of what the renderer was said to take.
+    pub render_ms: Option<f64>,
+    /// Both.
+    pub cost_ms: f64,
+    /// Samples of the foveated frame over those of the full-rate one.
+    pub samples_share: f64,
+    /// Camera samples a pixel of the frame, on average, where they were traced for it.
+    pub samples_per_pixel: Option<f64>,
+    /// Time of a copy that moves as many bytes: the roofline.
+    pub copy_ms: f64,
+    /// Bytes that the pass reads and writes a pixel.
+    pub bytes_per_pixel: Option<u32>,
+    /// Bytes kept between frames a pixel.
+    pub memory_bytes_per_pixel: f64,
+    /// Figures by [`METRICS`]' keys, means over the seeds.
+    pub values: BTreeMap<&'static str, Option<f64>>,
+    /// Mean squared error, whole and by band from the gaze outwards, means over the seeds.
+    pub mse: [Option<f64>; 4],
+    /// Least and most over the seeds, where there are several.
+    pub spread: BTreeMap<&'static str, [f64; 2]>,
+    /// Figures for which no other point of the input costs less and is better.
+    pub frontier: Vec<&'static str>,
+    /// Pixels shown NaN or infinite.
+    pub nonfinite_out: u64,
+    /// The command that remakes it.
+    pub command: String,
+    /// The settings, ready to paste into a program.
+    pub rust: String,
+}
+
+/// All that a sweep came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// `afterimage`.
+    pub tool: &'static str,
+    /// Of the tool.
+    pub version: String,
+    /// The command that made it.
+    pub command: String,
+    /// Options that all points share.
+    pub common: Options,
+    /// What was measured on, by input.
+    pub clips: BTreeMap<String, ClipFacts>,
+    /// What measured; several after a merge.
+    pub machines: Vec<Machine>,
+    /// What the renderer was said to take for a full-rate frame.
+    pub renderer_ms: Option<f64>,
+    /// Points, by input and cost.
+    pub rows: Vec<Row>,
+    /// What each switch changes.
+    pub prices: Vec<Price>,
+    /// How fast traced points get better.
+    pub convergences: Vec<Convergence>,
+}
+
+impl Table {
+    /// Of the measurements of one sweep, for a renderer that takes so long for a full-rate frame, if that is known.
+    pub fn new(measurements: &[Measurement], renderer_ms: Option<f64>, command: String) -> Self {
+        let mut groups: BTreeMap<Point, Vec<&Measurement>> = BTreeMap::new();
+        for m in measurements {
+            groups.entry(Point { seed: 0, ..m.point.clone() }).or_default().push(m);
+        }
+        let controls = controls(measurements);
+        let shared = shared_options(groups.keys());
+        let mut rows: Vec<Row> = groups
+            .values()
+            .map(|group| row(group, controls[group[0].point.input.as_str()], renderer_ms, &shared))
+            .collect();
+        mark_frontiers(&mut rows, renderer_ms);
+        rows.sort_by(|a, b| a.point.input.cmp(&b.point.input).then(a.cost_ms.total_cmp(&b.cost_ms)));
+        let mut machines: Vec<Machine> = vec![];
+        for m in measurements {
+            if !machines.contains(&m.machine) {
+                machines.push(m.machine.clone());
+            }
+        }
+        let first = measurements.first();
+        Self {
+            tool: "afterimage",
+            version: first.map_or_else(String::new, |m| m.version.clone()),
+            command,
+            common: first.map_or_else(Options::new, |m| m.common.clone()),
+            clips: measurements.iter().map(|m| (m.point.input.clone(), m.clip.clone())).collect(),
+            machines,
+            renderer_ms,
+            prices: prices(&rows),
+            convergences: convergences(&rows),
+            rows,
+        }
+    }
+
+    /// The table as CSV, one line a point.
+    pub fn csv(&self) -> String {
+        let metrics = METRICS.iter().map(|m| m.key).collect::<Vec<_>>().join(",");
+        let mut text = format!(
+            "input,label,method,seeds,cost_ms,pass_ms,pass_p25_ms,pass_p75_ms,render_ms,copy_ms,drift,samples_share,\
+             bytes_per_pixel,memory_bytes_per_pixel,{metrics},frontier,command\n"
+        );
+        for row in &self.rows {
+            let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
+            let mut cells =
+                vec![quoted(&row.point.input), quoted(&row.label), row.point.method.clone(), row.seeds.to_string()];
+            let times = [row.cost_ms, row.pass_ms.median, row.pass_ms.p25, row.pass_ms.p75].map(Some);
+            let rest = [row.render_ms, Some(row.copy_ms), Some(row.drift), Some(row.samples_share)];
+            cells.extend(times.into_iter().chain(rest).map(number));
+            cells.extend([number(row.bytes_per_pixel.map(f64::from)), row.memory_bytes_per_pixel.to_string()]);
+            cells.extend(METRICS.iter().map(|m| number(row.values.get(m.key).copied().flatten())));
+            cells.extend([row.frontier.join(" "), quoted(&row.command)]);
+            text += &(cells.join(",") + "\n");
+        }
+        text
+    }
+}
+
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
+
+/// Median cost of the control by input.
+fn controls(measurements: &[Measurement]) -> BTreeMap<&str, f64> {
+    let mut by_input: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for m in measurements {
+        by_input.entry(&m.point.input).or_default().push(m.control_ms.median);
+    }
+    by_input.into_iter().filter_map(|(input, times)| Some((input, Quartiles::of(&times)?.median))).collect()
+}
+
+/// Options that all points have with the same value, whatever their method; they need no mention.
+fn shared_options<'a>(points: impl Iterator<Item = &'a Point>) -> Options {
+    let mut points = points.map(|p| &p.options);
+    let Some(first) = points.next() else { return Options::new() };
+    let mut shared = first.clone();
+    points.for_each(|options| shared.retain(|name, value| options.get(name) == Some(value)));
+    shared
+}
+
+fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared: &Options) -> Row {
+    let first = group[0];
+    let count = group.len() as f64;
+    let mean = |of: &dyn Fn(&Measurement) -> f64| group.iter().map(|m| of(m)).sum::<f64>() / count;
+    let drift = |m: &Measurement| if m.control_ms.median > 0.0 { control_ms / m.control_ms.median } else { 1.0 };
+    let pass_ms = Quartiles {
+        median: mean(&|m| drift(m) * m.pass_ms.median),
+        p25: mean(&|m| drift(m) * m.pass_ms.p25),
+        p75: mean(&|m| drift(m) * m.pass_ms.p75),
+    };
+    let samples_share = mean(&|m| m.samples_share);
+    let traced = first.render_ms.map(|_| mean(&|m| m.render_ms.map_or(0.0, |q| drift(m) * q.median)));
+    let render_ms = traced.or(renderer_ms.map(|ms| ms * samples_share));
+    let mut values = BTreeMap::new();
+    let mut spread = BTreeMap::new();
+    for metric in METRICS {
+        let of_seeds: Option<Vec<f64>> = group.iter().map(|m| (metric.of)(&m.figures.scores)).collect();
+        if let Some(seeds) = of_seeds.as_ref().filter(|seeds| seeds.len() > 1) {
+            let most = |a: [f64; 2], &v: &f64| [a[0].min(v), a[1].max(v)];
+            spread.insert(metric.key, seeds.iter().fold([f64::INFINITY, f64::NEG_INFINITY], most));
+        }
+        values.insert(metric.key, of_seeds.map(|seeds| seeds.iter().sum::<f64>() / count));
+    }
+    let options = first.point.options.iter().filter(|(name, value)| shared.get(*name) != Some(*value));
+    let words = options.map(|(name, value)| if value.is_empty() { name.clone() } else { format!("{name} {value}") });
+    Row {
+        id: id(&first.point),
+        label: [first.point.method.clone()].into_iter().chain(words).collect::<Vec<_>>().join(", "),
+        seeds: group.len(),
+        pass_ms,
+        frames: (first.round.clone(), first.frame_ms.clone()),
+        drift: mean(&drift),
+        render_ms,
+        cost_ms: pass_ms.median + render_ms.unwrap_or(0.0),
+        samples_share,
+        samples_per_pixel: first.samples_per_pixel.map(|_| mean(&|m| m.samples_per_pixel.unwrap_or(0.0))),
+        copy_ms: mean(&|m| drift(m) * m.copy_ms),
+        bytes_per_pixel: first.figures.bytes_per_pixel,
+        memory_bytes_per_pixel: first.figures.persistent_bytes_per_pixel,
+        values,
+        mse: [0, 1, 2, 3].map(|i| {
+            let of =
+                |m: &&Measurement| [&m.figures.scores.whole].into_iter().chain(&m.figures.scores.bands).nth(i)?.mse;
+            group.iter().map(of).sum::<Option<f64>>().map(|sum| sum / count)
+        }),
+        spread,
+        frontier: vec![],
+        nonfinite_out: group.iter().map(|m| m.figures.nonfinite_out).sum(),
+        command: first.point.command(&first.common),
+        rust: first.rust.clone(),
+        point: first.point.clone(),
+    }
+}
+
+/// Inputs have frontiers of their own. The oracle, which no renderer can run, is on none.
+fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
+    let inputs: std::collections::BTreeSet<String> = rows.iter().map(|r| r.point.input.clone()).collect();
+    for input in inputs {
+        let runs = |r: &Row| r.point.input == input && r.is_choice();
+        let of_input: Vec<usize> = (0..rows.len()).filter(|&i| runs(&rows[i])).collect();
+        for metric in METRICS {
+            let standings: Vec<Standing> = of_input.iter().map(|&i| rows[i].standing(metric, renderer_ms)).collect();
+            for (&i, is_best) in of_input.iter().zip(frontier(&standings)) {
+                if is_best {
+                    rows[i].frontier.push(metric.key);
+                }
+            }
+        }
+    }
+}
+
+impl Row {
+    /// Whether a program could choose it: the oracle is a bound and no method.
+    pub fn is_choice(&self) -> bool {
+        self.point.method != "oracle"
+    }
+
+    /// Its place by a figure. Samples count where it is not known what they cost.
+    pub fn standing(&self, metric: &super::Metric, renderer_ms: Option<f64>) -> Standing {
+        let priced = renderer_ms.is_some() || self.render_ms.is_some();
+        let error = match self.values.get(metric.key).copied().flatten() {
+            // A figure that no point of the clip has is none to compare.
+            None if !metric.key.ends_with("psnr_db") => f64::NAN,
+            value => metric.error(value),
+        };
+        Standing { cost_ms: self.cost_ms, samples_share: if priced { 0.0 } else { self.samples_share }, error }
+    }
+}

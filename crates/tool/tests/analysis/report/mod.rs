@@ -1,0 +1,6 @@
+//! What a reader gets of a sweep: tables at equal time and equal quality, plots, the page.
+
+mod equal;
+mod page;
+mod pareto;
+mod table;

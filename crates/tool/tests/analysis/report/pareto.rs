@@ -1,0 +1,154 @@
+//! The plot: well-formed, whole, legible, the same every time.
+
+use super::table::{INPUTS, measurements, of, table};
+use afterimage_cli::report::pareto;
+use afterimage_cli::sweep::{METRICS, Metric, Table};
+use resvg::usvg::roxmltree::{Document, Node};
+
+fn flip() -> &'static Metric {
+    Metric::find("flip").unwrap()
+}
+
+fn with_class<'a>(document: &'a Document<'_>, class: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
+    document.descendants().filter(move |n| n.attribute("class").is_some_and(|c| c.split(' ').any(|c| c == class)))
+}
+
+#[test]
+fn every_plot_is_xml_with_a_mark_for_each_point() {
+    for table in [table(Some(12.0)), table(None)] {
+        for (input, metric) in INPUTS.iter().flat_map(|i| METRICS.iter().map(move |m| (*i, m))) {
+            let svg = pareto::svg(&table, input, metric);
+            let document = Document::parse(&svg).unwrap();
+            let known = table.rows.iter().filter(|r| r.point.input == *input && r.values[metric.key].is_some());
+            let mut expected: Vec<&str> = known.clone().map(|r| r.id.as_str()).collect();
+            let mut found: Vec<&str> =
+                with_class(&document, "point").map(|n| n.attribute("data-row").unwrap()).collect();
+            expected.sort_unstable();
+            found.sort_unstable();
+            assert_eq!(found, expected, "{input} {}", metric.key);
+            let best = known.filter(|r| r.frontier.contains(&metric.key)).count();
+            let numbers = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).count();
+            assert_eq!(numbers, best);
+            let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
+            assert!(document.descendants().any(|n| n.text().is_some_and(|t| t.contains(better))));
+        }
+    }
+}
+
+#[test]
+fn better_and_cheaper_are_where_the_axes_say() {
+    let table = table(Some(12.0));
+    for key in ["flip", "psnr_db"] {
+        let metric = Metric::find(key).unwrap();
+        let svg = pareto::svg(&table, INPUTS[0], metric);
+        let document = Document::parse(&svg).unwrap();
+        let at = |id: &str| -> [f64; 2] {
+            let point = with_class(&document, "point").find(|n| n.attribute("data-row") == Some(id)).unwrap();
+            let path = point.descendants().find(|n| n.tag_name().name() == "path").unwrap().attribute("d").unwrap();
+            let [x, y] =
+                path[1..path.find('m').unwrap()].split(' ').map(|v| v.parse().unwrap()).collect::<Vec<f64>>()[..]
+            else {
+                panic!("{path}")
+            };
+            [x, y]
+        };
+        let rows: Vec<_> = table.rows.iter().filter(|r| r.point.input == INPUTS[0]).collect();
+        for pair in rows.windows(2) {
+            let [a, b] = [at(&pair[0].id), at(&pair[1].id)];
+            assert!(a[0] <= b[0], "rows are sorted by cost");
+            let more = pair[1].values[key] > pair[0].values[key];
+            assert!((b[1] - a[1]).abs() < 0.11 || (b[1] < a[1]) == more, "up is more");
+        }
+    }
+}
+
+#[test]
+fn numbers_lie_on_no_other_number() {
+    // Foveae close to each other crowd the frontier.
+    let mut all = measurements();
+    for (i, m) in all.iter_mut().enumerate() {
+        m.pass_ms.median = 0.5 + 0.002 * i as f64;
+        m.figures.scores.whole.flip = Some(0.2 - 0.0004 * i as f64);
+    }
+    let svg = pareto::svg(&of(&all, None), INPUTS[0], flip());
+    let document = Document::parse(&svg).unwrap();
+    let number = |n: &Node<'_, '_>, name: &str| n.attribute(name).unwrap().parse::<f64>().unwrap();
+    let texts: Vec<_> = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).collect();
+    assert!(texts.len() >= 20, "{} numbers crowd", texts.len());
+    for (i, a) in texts.iter().enumerate() {
+        for b in &texts[..i] {
+            let apart = |name: &str| (number(a, name) - number(b, name)).abs();
+            assert!(apart("x") >= 17.0 || apart("y") >= 14.0, "{:?} lies on {:?}", a.text(), b.text());
+        }
+    }
+}
+
+#[test]
+fn labels_that_differ_at_their_ends_are_whole() {
+    let mut all = measurements();
+    for m in &mut all {
+        let fovea = &m.point.options["fovea"];
+        let value = format!("with much to say before it comes to {fovea}");
+        m.point.options.insert("a-long-option".into(), value);
+    }
+    let table = of(&all, None);
+    let svg = pareto::svg(&table, INPUTS[0], flip());
+    let document = Document::parse(&svg).unwrap();
+    let best = table.rows.iter().filter(|r| r.point.input == INPUTS[0] && r.frontier.contains(&flip().key));
+    let mut places = vec![];
+    for row in best {
+        let whole = |n: &Node<'_, '_>| n.text().is_some_and(|t| t.trim().ends_with(&row.label));
+        let note = document.descendants().filter(Node::is_element).find(whole);
+        let note = note.unwrap_or_else(|| panic!("'{}' is cut", row.label));
+        places.push(note.attribute("y").unwrap().parse::<f64>().unwrap());
+    }
+    assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
+    // Even those that have no room are cut before the border.
+    for m in &mut all {
+        let fovea = &m.point.options["fovea"];
+        let value = format!("{fovea} {}", "a much longer value ".repeat(10));
+        m.point.options.insert("a-long-option".into(), value);
+    }
+    let picture = pareto::png(&of(&all, None), INPUTS[0], flip());
+    let paper = *picture.get_pixel(0, 0);
+    assert!((0..picture.height()).all(|y| *picture.get_pixel(picture.width() - 4, y) == paper), "ink at the border");
+}
+
+#[test]
+fn png_has_marks_and_letters_and_is_the_same_again() {
+    let table = table(None);
+    let picture = pareto::png(&table, INPUTS[1], flip());
+    assert_eq!(picture.width(), 1920);
+    assert_eq!(picture, pareto::png(&table, INPUTS[1], flip()));
+    let count = |color: [u8; 3]| picture.pixels().filter(|p| p.0 == color).count();
+    for (method, color) in
+        [("none", [122, 122, 122]), ("taa", [230, 159, 0]), ("wrs", [0, 114, 178]), ("smr", [0, 158, 115])]
+    {
+        assert!(count(color) > 100, "{method} has {} pixels", count(color));
+    }
+    // Ink between the title's line and the frame is letters: the machine's fonts play no part in it.
+    let title = image::imageops::crop_imm(&picture, 150, 16, 1000, 40).to_image();
+    let dark = title.pixels().filter(|p| p.0.iter().all(|v| *v < 128)).count();
+    assert!(dark > 500, "{dark} pixels of letters");
+}
+
+#[test]
+fn odd_tables_make_a_plot() {
+    let nothing: Table = of(&[], None);
+    assert!(Document::parse(&pareto::svg(&nothing, "none", flip())).is_ok());
+    let mut one = measurements()[..1].to_vec();
+    one[0].pass_ms.median = 0.0;
+    one[0].point.input = "a\u{1}<b>&\"'\u{fffe}".into();
+    let table = of(&one, None);
+    let svg = pareto::svg(&table, &one[0].point.input, flip());
+    let document = Document::parse(&svg).unwrap();
+    assert!(document.descendants().any(|n| n.text().is_some_and(|t| t.contains("<b>&\"'"))), "names are text");
+    assert_eq!(with_class(&document, "point").count(), 1);
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    let mut strange = measurements();
+    for m in &mut strange {
+        m.figures.scores.whole.flip = Some(f64::NAN);
+    }
+    let svg = pareto::svg(&of(&strange, None), INPUTS[0], flip());
+    assert!(!svg.contains("NaN"), "what is no number is no point");
+}

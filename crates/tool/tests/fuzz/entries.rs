@@ -1,0 +1,253 @@
+//! What is done with the bytes of a stranger, and what must come of it: a refusal in one line, or something sound. Shared by the fuzzing
+//! targets and by `tests/fuzz_replay.rs`.
+
+#[path = "../../../lab/tests/common/sound_scene.rs"]
+mod sound_scene;
+
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage::settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+use afterimage_cli::sweep::Plan;
+use afterimage_lab::error::InputError;
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, parse_csv, write_csv};
+use afterimage_lab::scene::camera_file::CameraFile;
+use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::source::{ReadLimits, SceneOptions};
+use afterimage_lab::trace::cpu::CpuTracer;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::WorkItem;
+use afterimage_lab::trace::world::World;
+use std::fs;
+use std::path::PathBuf;
+
+/// A kind of input, and what reads it.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All of them, as their folders in `fixtures/fuzz` are called.
+#[allow(dead_code, reason = "a fuzzing target uses one of them")]
+pub const TARGETS: [Target; 7] = [
+    ("scanpath", scanpath),
+    ("exr", exr),
+    ("png", png),
+    ("gltf", gltf),
+    ("camera", camera),
+    ("plan", plan),
+    ("settings", settings),
+];
+
+/// Small enough that what gets through at its claimed size takes little time.
+const IMAGES: ReadLimits = ReadLimits { max_pixels: 1 << 16 };
+const SCENES: SceneLimits =
+    SceneLimits { max_triangles: 2000, max_texels: 1 << 16, max_file_bytes: 1 << 20, max_json_bytes: 1 << 20 };
+
+/// A recorded scanpath.
+pub fn scanpath(bytes: &[u8]) {
+    let Some(path) = sound(parse_csv("fuzz.csv", bytes)) else { return };
+    let samples = path.samples();
+    assert!(samples.iter().all(|s| s.t_s.is_finite()) && samples.is_sorted_by(|a, b| a.t_s < b.t_s));
+    let mut text = Vec::new();
+    write_csv(&path, &mut text).unwrap();
+    let again = parse_csv("again.csv", &text).expect("what was written is read");
+    assert_eq!(again.samples().len(), samples.len());
+    let view = ViewGeometry::flat([64, 36], 70.0).unwrap();
+    for map in [GazeMap::Fit, GazeMap::Angle] {
+        let Some(gaze) = sound(FrameGaze::new(&path, &view, map, 0.0, 60.0)) else { continue };
+        for index in [0, 1, gaze.frames() - 1, gaze.frames(), u64::MAX] {
+            assert!(gaze.px(index).is_none_or(|px| px.iter().all(|v| v.is_finite())));
+            assert!(gaze.age_s(index).is_none_or(|age| age >= 0.0));
+        }
+    }
+}
+
+/// An EXR file as a still.
+pub fn exr(bytes: &[u8]) {
+    image("exr", bytes);
+}
+
+/// A PNG file as a still.
+pub fn png(bytes: &[u8]) {
+    image("png", bytes);
+}
+
+fn image(extension: &str, bytes: &[u8]) {
+    let path = file(extension, bytes);
+    let opened = afterimage_lab::source::open(path.to_str().unwrap(), &IMAGES, &SceneOptions::default());
+    let Some(mut source) = sound(opened) else { return };
+    let [width, height] = source.info().size;
+    assert!(u64::from(width) * u64::from(height) <= IMAGES.max_pixels);
+    let Some(frame) = sound(source.frame(0)) else { return };
+    assert_eq!(frame.color.size(), [width, height]);
+    assert!(frame.color.pixels().iter().flatten().all(|v| v.is_finite()));
+}
+
+/// A scene, in one file with its data.
+pub fn gltf(bytes: &[u8]) {
+    let path = file(if bytes.starts_with(b"glTF") { "glb" } else { "gltf" }, bytes);
+    let Some(scene) = sound(Scene::open(path.to_str().unwrap(), &SCENES)) else { return };
+    sound_scene::assert_sound(&scene);
+    let mut world = World::new(&scene);
+    world.pose(&scene, 0.5, 0.0);
+    let size = [4, 3];
+    let view = View::of_camera(&scene.framing_camera(4.0 / 3.0), size, None).unwrap();
+    let mut film = Film::new(size);
+    let work: Vec<_> = (0..size[0] * size[1]).map(|i| WorkItem::new(i % size[0], i / size[0], 0)).collect();
+    CpuTracer::new(TraceSettings::default()).trace(&world, &view, 0, &work, &mut film);
+    assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite()), "a ray saw what is no number");
+}
+
+/// A camera path, or the cameras of a sequence.
+pub fn camera(bytes: &[u8]) {
+    let Some(camera) = sound(CameraFile::parse("fuzz.json", bytes)) else { return };
+    for (index, time_s) in [(0, 0.0), (1, 0.1), (1000, 1e9), (u64::MAX, -1.0), (0, f64::NAN)] {
+        let pose = camera.world_from_camera(index, time_s);
+        assert!(pose.is_finite() && (pose.determinant().abs() - 1.0).abs() < 0.1, "{pose}");
+    }
+}
+
+/// A plan of a sweep.
+pub fn plan(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let mut plan = Plan::default();
+    if sound(plan.add("fuzz.toml", text)).is_none() || sound(plan.check()).is_none() {
+        return;
+    }
+    let combinations: usize = plan.grid.axes.iter().map(|a| a.values.len()).product();
+    if combinations.saturating_mul(1 + plan.grid.switches.len()) < 256 {
+        let points = plan.grid.points(&["in".into()], plan.seeds.min(2), |_, _, _| true, |_, _| true);
+        assert!(points.iter().all(|p| !p.command(&plan.common).contains('\0')));
+    }
+}
+
+/// Settings, frames and history of any bits through every method: refused, or shown without a pixel that is no number.
+pub fn settings(bytes: &[u8]) {
+    let mut bits = Bits(bytes);
+    let Ok(mut post) = CpuAfterimage::new(ContextDesc::new(SIZE), bits.settings()) else { return };
+    let geometry = ViewGeometry::flat(SIZE, 60.0).unwrap();
+    for index in 0..3 {
+        let color = bits.image(|b| [b.float(), b.float(), b.float()]);
+        let (depth, trust, lod) = (bits.image(Bits::float), bits.image(Bits::float), bits.image(Bits::float));
+        let (motion, noise) = (bits.image(|b| [b.float(), b.float()]), bits.image(|b| [b.float(), b.float()]));
+        let given = bits.word();
+        let has = |bit: u32| given >> bit & 1 == 1;
+        let gaze = if has(0) { Gaze::At { px: [bits.float(), bits.float()] } } else { Gaze::Lost };
+        let row = |bits: &mut Bits| [0; 4].map(|_| bits.float());
+        let previous_from_current = has(8).then(|| [0; 4].map(|_| row(&mut bits)));
+        let facts = ViewFrame { geometry, gaze, previous_from_current };
+        let views = [CpuView {
+            depth: has(1).then_some(&depth),
+            motion: has(2).then_some(&motion),
+            trust: has(3).then_some(&trust),
+            lod: has(4).then_some(&lod),
+            noise: post.settings().noisy.then_some(&noise),
+            ..CpuView::new(facts, &color)
+        }];
+        let frame = CpuFrame {
+            reset: if has(5) { Reset::All } else { Reset::None },
+            exposure: if has(6) { Exposure::Changed { ratio: bits.float() } } else { Exposure::Same },
+            ..CpuFrame::new(&views, index)
+        };
+        let mut shown = [Image::filled(SIZE, [f32::NAN; 3])];
+        if let Err(refused) = post.process(&frame, &mut shown, None) {
+            assert!(!refused.to_string().contains('\n'));
+            continue;
+        }
+        assert!(shown[0].pixels().iter().flatten().all(|v| v.is_finite()), "{:?}", post.settings());
+        if has(7) && post.settings().method == Method::Wrs {
+            let words: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|_| [bits.word(), bits.word(), bits.word()]).collect();
+            post.restore_history(&words);
+        }
+    }
+}
+
+const SIZE: [u32; 2] = [5, 3];
+
+/// Bytes read as words; after their end, zeros.
+struct Bits<'a>(&'a [u8]);
+
+impl Bits<'_> {
+    fn word(&mut self) -> u32 {
+        let (now, rest) = self.0.split_at(self.0.len().min(4));
+        self.0 = rest;
+        let mut word = [0; 4];
+        word[..now.len()].copy_from_slice(now);
+        u32::from_le_bytes(word)
+    }
+
+    fn float(&mut self) -> f32 {
+        f32::from_bits(self.word())
+    }
+
+    /// A number in the range, or anything at all.
+    fn around(&mut self, low: f32, high: f32) -> f32 {
+        let word = self.word();
+        if word & 7 == 0 { self.float() } else { low + (high - low) * ((word >> 8) as f32 / 16_777_215.0) }
+    }
+
+    fn image<T: Copy>(&mut self, mut pixel: impl FnMut(&mut Self) -> T) -> Image<T> {
+        let pixels = (0..SIZE[0] * SIZE[1]).map(|_| pixel(self)).collect();
+        Image::from_pixels(SIZE, pixels).unwrap()
+    }
+
+    fn settings(&mut self) -> Settings {
+        let pick = self.word();
+        Settings {
+            method: [Method::None, Method::Taa, Method::Smr, Method::Wrs][(pick & 3) as usize],
+            foveation: Foveation {
+                filter: [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off][(pick >> 2 & 3) as usize],
+                fovea_deg: self.around(0.0, 20.0),
+                mid_deg: self.around(20.0, 60.0),
+                blend_deg: self.around(0.0, 10.0),
+                rate_mid: 1 << (pick >> 4 & 3),
+                rate_far: 1 << (pick >> 6 & 7),
+            },
+            smr: Smr {
+                accumulate: self.around(0.0, 0.98),
+                tolerance: self.around(0.1, 10.0),
+                relight: pick >> 9 & 1 == 1,
+            },
+            sampler: if pick >> 10 & 1 == 1 { Sampler::AEs } else { Sampler::AChao },
+            bias: match pick >> 11 & 3 {
+                0 => Bias::None,
+                1 => Bias::Exponential { lambda: self.around(0.0, 80.0) },
+                _ => Bias::Bernoulli,
+            },
+            gate: (pick >> 13 & 1 == 1).then(|| Gate {
+                metric: if pick >> 14 & 1 == 1 { GateMetric::Lightness } else { GateMetric::DeltaE94 },
+                divisor: self.around(1e-3, 200.0),
+                offset: self.around(0.0, 50.0),
+            }),
+            depth_test: (pick >> 15 & 1 == 1)
+                .then(|| DepthTest { relative: self.around(1e-4, 0.999), slope_px: self.around(0.0, 64.0) }),
+            noisy: pick >> 16 & 1 == 1,
+            seed: u64::from(pick),
+        }
+    }
+}
+
+/// What was read; a refusal is one line that says what to do.
+fn sound<T>(read: Result<T, InputError>) -> Option<T> {
+    match read {
+        Ok(read) => Some(read),
+        Err(refused) => {
+            let text = refused.to_string();
+            assert!(!text.contains('\n') && !refused.remedy.is_empty(), "{text:?}");
+            None
+        }
+    }
+}
+
+/// A file of this process with the bytes; always the same one for a kind, in memory where the system has such a folder.
+fn file(extension: &str, bytes: &[u8]) -> PathBuf {
+    let memory = PathBuf::from("/dev/shm");
+    let folder = if memory.is_dir() { memory } else { std::env::temp_dir() };
+    let folder = folder.join(format!("afterimage-fuzz-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(format!("fuzz.{extension}"));
+    fs::write(&path, bytes).unwrap();
+    path
+}

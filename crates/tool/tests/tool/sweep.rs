@@ -1,0 +1,349 @@
+//! `afterimage sweep` as other programs use it: what it writes, how it goes on, how it refuses.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Three rounds (foveae) of two methods on small frames; the first fovea has a third point.
+const SMALL: &[&str] = &[
+    "sweep",
+    "analytic:lateral",
+    "--backend",
+    "cpu",
+    "--size",
+    "96x54",
+    "--frames",
+    "38",
+    "--axis",
+    "method=none,smr",
+    "--axis",
+    "fovea=5,10,15",
+    "--switch",
+    "no-flush",
+];
+
+fn tool(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_afterimage"));
+    command.args(args).current_dir(afterimage_testing::workspace());
+    command
+}
+
+#[track_caller]
+fn succeeds(args: &[&str]) -> String {
+    let output = tool(args).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && stderr.is_empty(), "{args:?}: {stderr}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// One clear line that holds `words`, and no panic.
+#[track_caller]
+fn refuses(output: &Output, code: i32, words: &[&str]) {
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    println!("{}", stderr.trim_end());
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert_eq!(stderr.lines().count(), 1, "one line: {stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "'{word}' is missing: {stderr}");
+    }
+}
+
+fn sweep(out: &Path, more: &[&str]) -> Vec<String> {
+    let out = ["--out".to_owned(), out.to_str().unwrap().to_owned()];
+    SMALL.iter().chain(more).map(|a| (*a).to_owned()).chain(out).collect()
+}
+
+#[track_caller]
+fn run(out: &Path, more: &[&str]) -> String {
+    let args = sweep(out, more);
+    succeeds(&args.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+fn table(out: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(out.join("sweep.json")).unwrap()).unwrap()
+}
+
+/// Every point and its figures, without times, which no two runs share.
+fn figures(out: &Path) -> BTreeMap<String, String> {
+    let table = table(out);
+    let rows = table["rows"].as_array().unwrap().iter();
+    rows.map(|row| {
+        let figures =
+            ["values", "samples_share", "bytes_per_pixel", "seeds", "label", "command", "rust"].map(|key| &row[key]);
+        (row["id"].as_str().unwrap().to_owned(), serde_json::to_string(&figures).unwrap())
+    })
+    .collect()
+}
+
+#[test]
+fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, killed) = (folder.path().join("whole"), folder.path().join("killed"));
+    let said = run(&whole, &[]);
+    assert!(said.contains("7 points, 7 to measure in 3 rounds"), "{said}");
+    assert_eq!(figures(&whole).len(), 7);
+    for name in ["sweep.csv", "sweep.json"] {
+        assert!(whole.join(name).exists(), "{name}");
+    }
+
+    let args = sweep(&killed, &[]);
+    let mut child = tool(&args.iter().map(String::as_str).collect::<Vec<_>>())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let points =
+        || fs::read_dir(killed.join("points")).map_or(0, |d| d.filter(|e| is_point(e.as_ref().unwrap())).count());
+    // No round has more points than three, so that one is whole then, however slow the machine is.
+    let patience = Instant::now();
+    while points() < 3 && child.try_wait().unwrap().is_none() {
+        assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = points();
+    println!("killed with {kept} of 7 points");
+    assert!((3..7).contains(&kept), "killed in the middle");
+    assert!(!killed.join("sweep.json").exists());
+    let said = run(&killed, &[]);
+    assert!(!said.contains("7 to measure"), "what was finished is not measured again: {said}");
+    assert_eq!(figures(&killed), figures(&whole));
+    // Once more there is nothing to do.
+    assert!(run(&killed, &[]).contains("0 to measure"));
+    // A round that was killed between the files of its points is measured again as a whole: their times are of one run.
+    let point = fs::read_dir(killed.join("points")).unwrap().map(Result::unwrap).find(is_point).unwrap();
+    fs::remove_file(point.path()).unwrap();
+    let said = run(&killed, &[]);
+    assert!(said.contains("in 1 rounds") && !said.contains(", 1 to measure"), "{said}");
+    assert_eq!(figures(&killed), figures(&whole));
+}
+
+fn is_point(entry: &fs::DirEntry) -> bool {
+    let name = entry.file_name().into_string().unwrap();
+    name.ends_with(".json") && !name.starts_with('.')
+}
+
+#[test]
+fn shards_that_are_merged_are_the_whole_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let parts = ["1/2", "2/2"].map(|shard| {
+        let part = path(&shard.replace('/', "of"));
+        run(&part, &["--shard", shard]);
+        part
+    });
+    let counts = parts.each_ref().map(|part| figures(part).len());
+    assert!(counts.iter().all(|&n| n > 0) && counts.iter().sum::<usize>() == 7, "{counts:?}");
+    let text = |p: &Path| p.to_str().unwrap().to_owned();
+    let merged = path("merged");
+    succeeds(&["sweep", "--merge", &text(&parts[0]), &text(&parts[1]), "--out", &text(&merged)]);
+    run(&path("whole"), &[]);
+    assert_eq!(figures(&merged), figures(&path("whole")));
+    let pictures = |p: &Path| fs::read_dir(p.join("pictures")).unwrap().count();
+    assert_eq!(pictures(&merged), pictures(&path("whole")));
+
+    let other = path("other");
+    run(&other, &["--set", "hfov=50", "--axis", "fovea=5"]);
+    let output =
+        tool(&["sweep", "--merge", &text(&merged), &text(&other), "--out", &text(&path("no"))]).output().unwrap();
+    refuses(&output, 2, &["other", "is part of another sweep"]);
+}
+
+#[test]
+fn it_recommends_what_fits() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let text = out.to_str().unwrap();
+    run(&out, &[]);
+    let said = succeeds(&["sweep", "--out", text, "--budget-ms", "1e9", "--renderer-ms", "0"]);
+    assert!(said.contains("afterimage run analytic:lateral --method smr"), "{said}");
+    assert!(said.contains("let settings = Settings { foveation: Foveation {"), "{said}");
+    let said = succeeds(&["sweep", "--out", text, "--budget-ms", "0"]);
+    assert!(said.contains("nothing costs 0 ms or less; the cheapest, none"), "{said}");
+    let said = succeeds(&["sweep", "--out", text, "--by", "psnr_db", "--target", "1", "--renderer-ms", "0"]);
+    assert!(said.contains("--method none"), "anything reaches 1 dB: {said}");
+    let said = succeeds(&["sweep", "--out", text, "--target-flip", "0", "--renderer-ms", "0"]);
+    assert!(said.contains("nothing is as good; the best is"), "{said}");
+
+    // The command that it prints gives the figures that it promises.
+    let table = table(&out);
+    let row = table["rows"].as_array().unwrap().iter().find(|r| r["method"] == "smr").unwrap();
+    let again = folder.path().join("again");
+    let command = format!("{} --out {}", row["command"].as_str().unwrap(), again.display());
+    succeeds(&command.split(' ').skip(1).collect::<Vec<_>>());
+    let report: Value = serde_json::from_str(&fs::read_to_string(again.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["methods"]["smr"]["flip"], row["values"]["flip"]);
+    assert_eq!(report["methods"]["smr"]["psnr_db"], row["values"]["psnr_db"]);
+}
+
+#[test]
+fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (plan, out) = (path("plan.toml"), path("out"));
+    let text = "seeds = 2\n[common]\nframes = 38\nsize = \"64x36\"\nbackend = \"cpu\"\n[axes]\nmethod = [\"wrs\"]\n\
+                \"rate-mid+rate-far\" = [\"2+4\"]\n[switches]\nof = [\"no-gate\"]\n";
+    fs::write(&plan, text).unwrap();
+    let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &out];
+    succeeds(&args);
+    let table = table(Path::new(&out));
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    assert!(rows.iter().all(|r| r["seeds"] == 2 && r["command"].as_str().unwrap().contains("--rate-far 4")));
+    assert_eq!(table["prices"][0]["switch"], "no-gate");
+
+    let wrong = [
+        ("seeds = 0", "expected 1 to 1000"),
+        ("axis = 3", "is no plan of a sweep"),
+        ("[axes]\nmethod = []", "has no values"),
+        ("[axes]\nout = [\"x\"]", "is the sweep's own"),
+        ("[axes]\nmethod = [\"tsr\"]", "possible values: none, taa"),
+        ("[axes]\nfove = [5]", "unexpected argument '--fove'"),
+        ("[axes]\nmethod = [\"none\"]\n[common]\nframes = 37", "too few; expected at least 38"),
+        (
+            "[axes]\nfovea = [1,2,3,4,5,6,7,8,9,10]\nmid = [1,2,3,4,5,6,7,8,9,10]\nblend = [1,2,3,4,5,6,7,8,9,10]\n\
+          smr-tolerance = [1,2,3,4,5,6,7,8,9,10]\nexposure = [1,2,3,4,5,6,7,8,9,10]\nhfov = [1,2,3]",
+            "more than 100000 combinations",
+        ),
+    ];
+    for (text, words) in wrong {
+        fs::write(&plan, text).unwrap();
+        let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &path("no")];
+        refuses(&tool(&args).output().unwrap(), 2, &[words]);
+    }
+    assert!(!Path::new(&path("no")).exists(), "all points are checked before the first is measured");
+    let missing = path("missing.toml");
+    let args = ["sweep", "analytic:lateral", "--file", &missing, "--out", &path("no")];
+    refuses(&tool(&args).output().unwrap(), 2, &["missing.toml", "cannot be read"]);
+}
+
+/// Traced samples are independent and, where every pixel has them, without bias: the squared error of a frame alone falls with
+/// their number in the fovea of every pattern, and all over a frame of uniform samples. What is filled in between samples is biased,
+/// most of all beside the lamp, whose radiance no picture can show: there more samples help least.
+#[test]
+fn traced_patterns_converge_with_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let small = ["--size", "32x24", "--gaze", "16,12", "--frames", "38", "--backend", "cpu"];
+    let quick = ["--set", "reference-spp=1024", "--set", "no-flip", "--out", out.to_str().unwrap()];
+    succeeds(&[&["sweep", "builtin:cornell", "--preset", "convergence"][..], &small, &quick].concat());
+    let table = table(&out);
+    let all = table["convergences"].as_array().unwrap();
+    assert_eq!(all.len(), 8, "four patterns, with and without history");
+    let slopes = |method: &str, pattern: &str| {
+        let of = |c: &&Value| {
+            c["method"] == method && c["label"].as_str().unwrap().ends_with(&format!("sampling {pattern}"))
+        };
+        let slopes = all.iter().find(of).unwrap()["slope_by_samples"].as_array().unwrap();
+        [slopes[0].as_f64().unwrap(), slopes[1].as_f64().unwrap()]
+    };
+    let uniform = slopes("none", "uniform");
+    for pattern in ["uniform", "regions", "layers", "acuity"] {
+        let [frame, fovea] = slopes("none", pattern);
+        println!("{pattern}: frame {frame:.2}, fovea {fovea:.2}");
+        assert!(fovea < -0.5, "{pattern}");
+        assert!(pattern == "uniform" || frame > uniform[0] + 0.3, "{pattern}: bias stays");
+    }
+    assert!(uniform[0] < -0.5 && slopes("smr", "uniform")[0] < -0.5);
+    let text = fs::read_to_string(out.join("sweep.md")).unwrap();
+    assert!(text.contains("sampling uniform: slopes"), "{text}");
+}
+
+#[test]
+fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    run(&out, &["--axis", "fovea=5", "--axis", "method=none"]);
+    let before = figures(&out);
+    let args = sweep(&out, &["--start", "0.5"]);
+    refuses(
+        &tool(&args.iter().map(String::as_str).collect::<Vec<_>>()).output().unwrap(),
+        2,
+        &["holds a sweep that was made with"],
+    );
+    assert_eq!(figures(&out), before);
+    // More points of the same frames may be added.
+    run(&out, &["--axis", "fovea=5,10", "--axis", "method=none"]);
+    assert_eq!(figures(&out).len(), 2);
+    let empty = folder.path().to_str().unwrap();
+    refuses(&tool(&["sweep", "--out", empty]).output().unwrap(), 2, &["holds no sweep"]);
+    refuses(&tool(&["sweep", "nowhere.exr", "--out", empty]).output().unwrap(), 2, &["nowhere.exr", "does not exist"]);
+    for (shard, words) in [("0/2", "1 <= I <= N"), ("3/2", "1 <= I <= N"), ("x", "2/8")] {
+        refuses(&tool(&["sweep", "x.exr", "--out", empty, "--shard", shard]).output().unwrap(), 2, &[words]);
+    }
+    let by = tool(&["sweep", "--out", empty, "--by", "beauty"]).output().unwrap();
+    refuses(&by, 2, &["expected one of flip, psnr_db"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "x").unwrap();
+    let args = sweep(&file, &[]);
+    let output = tool(&args.iter().map(String::as_str).collect::<Vec<_>>()).output().unwrap();
+    refuses(&output, 2, &["cannot be written", "give --out a folder"]);
+
+    // No file may grow beyond 1 KiB, as if the disk were full; the signal for it is ignored, so that writing fails instead.
+    let out = folder.path().join("out");
+    let command = sweep(&out, &["--axis", "method=none", "--axis", "fovea=5"]).join(" ");
+    let script = format!("trap '' XFSZ; ulimit -f 2; exec {} {command}", env!("CARGO_BIN_EXE_afterimage"));
+    let output =
+        Command::new("sh").args(["-c", &script]).current_dir(afterimage_testing::workspace()).output().unwrap();
+    refuses(&output, 1, &["cannot be written", "free space or choose another --out"]);
+    // Nothing half-written stays, and the sweep goes on when there is space again.
+    let names = |part: &str| -> Vec<_> {
+        fs::read_dir(out.join(part)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
+    };
+    assert!(
+        names("points").is_empty() && names("pictures").is_empty(),
+        "{:?} {:?}",
+        names("points"),
+        names("pictures")
+    );
+    run(&out, &["--axis", "method=none", "--axis", "fovea=5"]);
+    assert_eq!(figures(&out).len(), 1);
+}
+
+/// The rows of the paper's table 1: what stands in them is what the sweep found, beside what the paper says.
+#[test]
+fn the_papers_table_is_written_beside_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let (still, out, markdown) =
+        (folder.path().join("still.png"), folder.path().join("out"), folder.path().join("table.md"));
+    let stripes = |x: u32, y: u32| {
+        image::Rgb([if (x / 3 + y / 2).is_multiple_of(2) { 220 } else { 30 }, (x * 5 % 256) as u8, 90])
+    };
+    image::RgbImage::from_fn(96, 54, stripes).save(&still).unwrap();
+    let path = |path: &Path| path.to_str().unwrap().to_owned();
+    let (still, moving) = (path(&still), "fixtures/sequences/lateral_160x90");
+    let gaze = "fixtures/scanpath_viewing.csv";
+    let files = ["--gaze", gaze, "--out", &path(&out), "--markdown", &path(&markdown)];
+    let numbers = ["--frames", "38", "--seeds", "1", "--backend", "cpu"];
+    succeeds(&[&["bench", "wrs", &still, moving][..], &files, &numbers].concat());
+    let (text, table) = (fs::read_to_string(&markdown).unwrap(), table(&out));
+    let [of_still, of_moving] = [&still, moving].map(|input| {
+        let from = text.find(&format!("`{input}`, ")).unwrap();
+        text[from..].split("\nOver ").next().unwrap()
+    });
+    let mut rows = 0;
+    for row in table["rows"].as_array().unwrap() {
+        let (method, fovea) = (row["method"].as_str().unwrap(), row["options"]["fovea"].as_str().unwrap());
+        let psnr_db = row["values"]["psnr_db"].as_f64().unwrap();
+        let line = format!("| {method} | {fovea} | {psnr_db:.2} | ");
+        let ours = if row["input"] == still.as_str() { of_still } else { of_moving };
+        assert!(ours.contains(&line), "'{line}' is missing: {ours}");
+        rows += 1;
+    }
+    assert_eq!(rows, 2 * 3 * 4, "two clips, three foveae, four methods");
+    // Table 1 of Cantory et al.: stills against nothing, moving cameras against taa.
+    assert!(of_still.contains("| paper, Sponza: wrs | 5 | 26.52 | 0.720 |"), "{of_still}");
+    assert!(of_moving.contains("| paper, Corridor: taa | 5 | 22.27 | 0.736 |"), "{of_moving}");
+    assert!(text.contains("\nOver none, 5 degrees: wrs ") && text.contains("\nOver taa, 5 degrees: wrs "), "{text}");
+    assert!(text.contains("\nRun time, milliseconds a frame"), "{text}");
+}

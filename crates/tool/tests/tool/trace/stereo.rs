@@ -1,0 +1,106 @@
+//! Two eyes.
+
+use super::rig::{Traced, picture, refuses};
+use afterimage_lab::source::{FrameSource, ReadLimits, SequenceSource};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Rows of a gaze.csv.
+fn gaze(path: &Path) -> Vec<[f64; 2]> {
+    let text = fs::read_to_string(path).unwrap();
+    let row = |line: &str| {
+        let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+        [values[1], values[2]]
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
+    const FOVEATED: [&str; 6] = ["--sampling", "regions", "--region-spp", "4,2,1", "--gaze", "12,12"];
+    let more = [&FOVEATED[..], &["--stereo", "0.064", "--frames", "2", "--aov", "depth,motion"]].concat();
+    let t = Traced::new("builtin:cornell", &more);
+    assert_eq!(t.files(""), ["cameras.json", "gaze.csv", "left", "right", "trace.json"]);
+    for eye in ["left", "right"] {
+        let there = ["cameras.json", "color", "depth", "gaze.csv", "motion", "scanpath.csv"];
+        assert_eq!(t.files(eye), there, "{eye}");
+        let frames = ["000000.exr", "000000.png", "000001.exr", "000001.png", "cameras.json"];
+        assert_eq!(t.files(&format!("{eye}/color")), frames, "{eye}");
+    }
+    assert!(t.stdout.contains("2 frames for each of two eyes of 24x16"), "{}", t.stdout);
+
+    // Eyes are where they should be. In the file's axes x is the scene's, and this camera's right is -x.
+    let eye_x = |name: &str| {
+        let cameras: Value = serde_json::from_slice(&t.bytes(name)).unwrap();
+        cameras["frames"][1]["camera_to_world"][0][3].as_f64().unwrap()
+    };
+    let [head, left, right] = ["cameras.json", "left/cameras.json", "right/color/cameras.json"].map(eye_x);
+    assert!((left - right - 0.064).abs() < 1e-9 && (left + right - 2.0 * head).abs() < 1e-9, "{left} {head} {right}");
+
+    // Gazes: apart by ipd f / z, f being half the width over the tangent of half the field of view.
+    let report = t.report();
+    let focal_px = 12.0 / (report["hfov_deg"].as_f64().unwrap().to_radians() / 2.0).tan();
+    let [l, r] = ["left/gaze.csv", "right/gaze.csv"].map(|name| gaze(&t.path(name)));
+    assert_eq!(gaze(&t.path("gaze.csv")), [[12.0, 12.0]; 2]);
+    let apart = l[0][0] - r[0][0];
+    assert!((0.5 * (l[0][0] + r[0][0]) - 12.0).abs() < 2e-3 && (l[0][1] - 12.0).abs() < 2e-3, "{l:?} {r:?}");
+    let z = 0.064 * focal_px / apart;
+    let mono = Traced::new("builtin:cornell", &[&FOVEATED[..], &["--aov", "depth"]].concat());
+    let mut source = SequenceSource::open(&mono.path("color"), &ReadLimits::default()).unwrap();
+    let depth = source.frame(0).unwrap().depth.unwrap().at(12, 12);
+    // Three decimals of a pixel.
+    assert!((z / f64::from(depth) - 1.0).abs() < 0.002 / apart, "{z} m of {depth} m");
+
+    let stereo = &report["stereo"];
+    assert_eq!((&stereo["ipd_m"], stereo["eyes"].as_array().unwrap().len()), (&0.064.into(), 2));
+    let of = |eye: usize, key: &str| stereo["eyes"][eye]["samples"][key].as_u64().unwrap();
+    for key in ["traced", "uniform"] {
+        assert_eq!(report["samples"][key].as_u64().unwrap(), of(0, key) + of(1, key), "{key}");
+    }
+    assert_eq!((&stereo["eyes"][1]["name"], &stereo["eyes"][1]["gaze"]), (&"right".into(), &"right/gaze.csv".into()));
+    assert_eq!(stereo["eyes"][0]["sampling"], "regions");
+    assert!(mono.report()["stereo"].is_null());
+    assert_eq!(of(0, "uniform"), 2 * mono.report()["samples"]["uniform"].as_u64().unwrap());
+
+    // An eye's folder and its scanpath are what `run` reads.
+    let out = t.path("run");
+    let [input, path] = ["right/color", "right/scanpath.csv"].map(|name| t.path(name).to_str().unwrap().to_owned());
+    let args = ["run", &input, "--gaze", &path, "--frames", "2", "--method", "none", "--backend", "cpu", "--out"];
+    let run = Command::new(env!("CARGO_BIN_EXE_afterimage")).args(args).arg(&out).output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    for (a, b) in gaze(&out.join("gaze.csv")).iter().zip(&r) {
+        assert!((a[0] - b[0]).abs() < 2e-3 && (a[1] - b[1]).abs() < 2e-3, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn each_eye_is_sampled_around_its_own_gaze() {
+    let at = |gaze: &str, more: &[&str]| {
+        let pattern = ["--sampling", "regions", "--region-spp", "9,4,1", "--region-deg", "8,17", "--gaze", gaze];
+        Traced::new("builtin:cornell", &[&pattern[..], more].concat())
+    };
+    let t = at("6,8", &["--stereo", "0.2"]);
+    let report = t.report();
+    let of = |eye: usize| report["stereo"]["eyes"][eye]["samples"]["regions"].clone();
+    // Near the edge, where fewer samples lie around the gaze.
+    assert_ne!(of(0), of(1));
+    for (eye, name) in ["left", "right"].iter().enumerate() {
+        let [x, y] = gaze(&t.path(&format!("{name}/gaze.csv")))[0];
+        assert_eq!(at(&format!("{x},{y}"), &[]).report()["samples"]["regions"], of(eye), "{name}: {x}, {y}");
+    }
+}
+
+#[test]
+fn two_eyes_need_no_gaze_but_a_distance() {
+    let t = Traced::new("builtin:cornell", &["--stereo", "0.2"]);
+    assert_eq!(t.files(""), ["cameras.json", "left", "right", "trace.json"]);
+    assert_eq!(t.files("left"), ["cameras.json", "color"]);
+    let [l, r] = ["left", "right"].map(|eye| picture(&t.path(&format!("{eye}/color/000000.exr"))));
+    assert!(l != r && [&l, &r].iter().all(|i| i.pixels().iter().any(|c| c[0] > 0.01)));
+    assert!(t.report()["stereo"]["eyes"][0]["gaze"].is_null());
+    for ipd in ["0", "-0.06", "63", "nan", "wide"] {
+        refuses("builtin:cornell", &["--stereo", ipd], &["--stereo"]);
+    }
+}

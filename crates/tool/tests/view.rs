@@ -1,0 +1,365 @@
+//! The viewer as a person uses it: a window on a display without a screen, a pointer that moves, keys, a window that is resized,
+//! minimised and brought back, a device that is lost. What it shows is held against `run` of the same gaze path.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const TOOL: &str = env!("CARGO_BIN_EXE_afterimage");
+/// For whatever the display or the viewer owes an answer.
+const PATIENCE: Duration = Duration::from_secs(60);
+const SIZE: [u32; 2] = [320, 180];
+
+/// Not eprintln!, which the test harness captures: a skip must be seen in a green run.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// A program that is ended with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A display without a screen, with a window manager that minimises.
+struct Display {
+    name: String,
+    _server: Running,
+    _manager: Running,
+}
+
+impl Display {
+    /// `None`, after saying so, where the programs for it are missing.
+    fn open() -> Option<Self> {
+        let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|program| !is_there(program)).collect();
+        if !missing.is_empty() {
+            say(&format!("SKIPPED the viewer's window: no {} (Debian: xvfb xdotool openbox)", missing.join(", ")));
+            return None;
+        }
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        let (name, server) = (format!(":{}", number.trim()), Running(server));
+        let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
+        let display = Self { name, _server: server, _manager: Running(manager) };
+        // A window that is opened while the manager starts may stay unseen.
+        wait_for("the window manager", || display.xdotool(&["get_num_desktops"]).status.success().then_some(()));
+        Some(display)
+    }
+
+    fn xdotool(&self, words: &[&str]) -> Output {
+        Command::new("xdotool").args(words).env("DISPLAY", &self.name).output().unwrap()
+    }
+}
+
+fn is_there(program: &str) -> bool {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
+}
+
+/// Until it gives something.
+#[track_caller]
+fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}");
+        pause(50);
+    }
+}
+
+fn pause(ms: u64) {
+    std::thread::sleep(Duration::from_millis(ms));
+}
+
+/// A viewer at work, its window, and what it says.
+struct Viewer<'a> {
+    display: &'a Display,
+    folder: PathBuf,
+    child: Running,
+    window: String,
+    /// Pictures that it has said it wrote.
+    pictures: usize,
+}
+
+impl<'a> Viewer<'a> {
+    fn open(display: &'a Display, folder: &Path, words: &[&str]) -> Self {
+        let file = |name| File::create(folder.join(name)).unwrap();
+        let mut child = Command::new(TOOL)
+            .args(["view", "still.png", "--internal-scale", "1", "--record", "gaze.csv", "--screenshot", "shown.png"])
+            .args(words)
+            .current_dir(folder)
+            .env("DISPLAY", &display.name)
+            .env_remove("WAYLAND_DISPLAY")
+            // A layer of Mesa's looks for Wayland, and says so.
+            .env("NODEVICE_SELECT", "1")
+            .stdout(file("said.txt"))
+            .stderr(file("complaints.txt"))
+            .spawn()
+            .unwrap();
+        let window = wait_for("the window", || {
+            if let Some(status) = child.try_wait().unwrap() {
+                let complaints = fs::read_to_string(folder.join("complaints.txt")).unwrap();
+                panic!("the viewer ended before its window opened, {status}: {complaints}");
+            }
+            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^afterimage: "]);
+            String::from_utf8(found.stdout).unwrap().lines().next().map(str::to_owned)
+        });
+        let mut viewer = Self { display, folder: folder.to_owned(), child: Running(child), window, pictures: 0 };
+        viewer.activate();
+        // The first picture is proof that frames are shown.
+        viewer.picture();
+        viewer
+    }
+
+    fn activate(&self) {
+        wait_for("the window's focus", || {
+            self.display.xdotool(&["windowactivate", &self.window]);
+            pause(100);
+            let active = String::from_utf8(self.display.xdotool(&["getactivewindow"]).stdout).unwrap();
+            (active.trim() == self.window).then_some(())
+        });
+    }
+
+    /// Hides it. Window managers may overlook the first wish.
+    fn minimise(&self) {
+        wait_for("the window to be gone", || {
+            self.display.xdotool(&["windowminimize", &self.window]);
+            pause(200);
+            let seen = self.display.xdotool(&["search", "--onlyvisible", "--name", "^afterimage: "]);
+            seen.stdout.is_empty().then_some(())
+        });
+        pause(300);
+    }
+
+    fn key(&self, key: &str) {
+        self.display.xdotool(&["key", key]);
+        pause(80);
+    }
+
+    /// Moves the pointer along points, shares of the window.
+    fn look_along(&self, points: &[[f32; 2]]) {
+        let [width, height] = self.numbers(&["getwindowgeometry", "--shell", &self.window], ["WIDTH=", "HEIGHT="]);
+        for [x, y] in points {
+            let at = [x * width as f32, y * height as f32].map(|v| format!("{v:.0}"));
+            self.display.xdotool(&["mousemove", "--window", &self.window, &at[0], &at[1]]);
+            pause(120);
+        }
+    }
+
+    /// Moves the pointer from the middle of the window by some pixels and presses F12 at once: the next frame, whose picture is written, is
+    /// already that of the new gaze. (Relative moves go the way of keys, so that neither overtakes the other.)
+    fn looks_in_the_next_frame(&mut self, by_px: [i32; 2]) {
+        self.look_along(&[[0.5, 0.5]]);
+        let middle = self.pointer();
+        let [x, y] = by_px.map(|v| v.to_string());
+        self.display.xdotool(&["mousemove_relative", "--", &x, &y, "key", "F12"]);
+        wait_for("a picture", || (self.said() > self.pictures).then_some(()));
+        self.pictures = self.said();
+        let record = self.record();
+        let last: Vec<f32> = record.last().unwrap().split(',').skip(1).take(2).map(|v| v.parse().unwrap()).collect();
+        let now = self.pointer();
+        assert_ne!(middle, now);
+        // The window is four times as large as the picture.
+        let expected = [0, 1].map(|i| (2 * SIZE[i] as i32 + now[i] - middle[i]) as f32 / 4.0);
+        assert_eq!(last, expected, "the picture after a move is for an earlier gaze");
+    }
+
+    /// Where the pointer is on the screen.
+    fn pointer(&self) -> [i32; 2] {
+        self.numbers(&["getmouselocation", "--shell"], ["X=", "Y="])
+    }
+
+    /// Two numbers that xdotool says.
+    fn numbers(&self, words: &[&str], names: [&str; 2]) -> [i32; 2] {
+        let said = String::from_utf8(self.display.xdotool(words).stdout).unwrap();
+        names.map(|name| said.lines().find_map(|line| line.strip_prefix(name)?.parse().ok()).unwrap())
+    }
+
+    /// Lines of the gaze of every frame.
+    fn record(&self) -> Vec<String> {
+        let record = fs::read_to_string(self.folder.join("gaze.csv")).unwrap();
+        record.lines().filter(|l| !l.starts_with('#')).skip(1).map(str::to_owned).collect()
+    }
+
+    fn said(&self) -> usize {
+        fs::read_to_string(self.folder.join("said.txt")).unwrap().lines().count()
+    }
+
+    fn complaints(&self) -> String {
+        fs::read_to_string(self.folder.join("complaints.txt")).unwrap()
+    }
+
+    /// Has it write what it shows; the number of frames since its history started afresh.
+    fn picture(&mut self) -> usize {
+        wait_for("a picture", || {
+            self.key("F12");
+            let complaints = self.complaints();
+            (0..20).find_map(|_| {
+                pause(50);
+                assert!(!complaints.contains("the device says"), "{complaints}");
+                (self.said() > self.pictures).then_some(())
+            })
+        });
+        // Keys that were pressed once more than needed are done with before the next.
+        pause(500);
+        self.pictures = self.said();
+        self.record().len()
+    }
+
+    /// The shown picture is that of `run` with the recorded gaze.
+    fn is_as_of_run(&mut self, method: &str) {
+        let frames = self.picture();
+        let out = Command::new(TOOL)
+            .args(["run", "still.png", "--gaze", "gaze.csv", "--backend", "gpu", "--no-flip", "--out", "run"])
+            .args(["--method", method, "--frames", &frames.to_string()])
+            .current_dir(&self.folder)
+            .output()
+            .unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        let pixels = |path: PathBuf| image::open(path).unwrap().into_rgb8();
+        let shown = pixels(self.folder.join("shown.png"));
+        let expected = pixels(self.folder.join(format!("run/{method}/{:06}.png", frames - 1)));
+        let differ = shown.pixels().zip(expected.pixels()).filter(|(a, b)| a != b).count();
+        say(&format!(
+            "{method}: after {frames} frames {differ} of {} pixels differ from those of run",
+            shown.len() / 3
+        ));
+        assert_eq!((shown.dimensions(), differ), (expected.dimensions(), 0), "{method}");
+    }
+
+    /// Closes it by its key; it has nothing to complain about but `expected`.
+    fn close(mut self, expected: &[&str]) {
+        self.key("Escape");
+        let status = wait_for("the end", || self.child.0.try_wait().unwrap());
+        let complaints = self.complaints();
+        let lines: Vec<&str> = complaints.lines().collect();
+        assert!(status.success() && lines == expected, "{status}: {complaints}");
+    }
+}
+
+/// Stripes and blocks with detail at every level of detail.
+fn write_still(folder: &Path) {
+    let picture = image::RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let hash = (x / 3 * 7 + y / 2 * 13 + (x / 20) * (y / 15) * 31) % 97;
+        image::Rgb([(hash * 2 + 40) as u8, (255 - hash * 2) as u8, ((x * y / 64) % 200) as u8])
+    });
+    picture.save(folder.join("still.png")).unwrap();
+}
+
+#[test]
+fn a_window_shows_what_run_writes_whatever_happens_to_it() {
+    let Some(display) = Display::open() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    write_still(folder.path());
+    let mut viewer = Viewer::open(&display, folder.path(), &["--method", "wrs", "--no-panel"]);
+    viewer.look_along(&[[0.2, 0.3], [0.4, 0.6], [0.8, 0.5], [0.6, 0.2], [0.3, 0.8]]);
+    viewer.is_as_of_run("wrs");
+
+    for by in [[-440, -260], [360, 240], [90, -200]] {
+        viewer.looks_in_the_next_frame(by);
+    }
+
+    // Methods, decisions, filters, split and panel, there and back.
+    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
+        viewer.key(key);
+    }
+    for key in ["v", "v", "v", "v", "v", "Tab", "4"] {
+        viewer.key(key);
+    }
+    viewer.look_along(&[[0.7, 0.7], [0.2, 0.5]]);
+    viewer.is_as_of_run("smr");
+
+    // Whatever happens to the window, its history starts afresh: the record begins where the pointer was then, and not where it was before.
+    let before = viewer.record()[0].clone();
+    viewer.display.xdotool(&["windowsize", "--sync", &viewer.window, "900", "620"]);
+    pause(300);
+    viewer.is_as_of_run("smr");
+    let resized = viewer.record()[0].clone();
+    viewer.look_along(&[[0.5, 0.3], [0.8, 0.4], [0.4, 0.7], [0.1, 0.2], [0.6, 0.6]]);
+    viewer.is_as_of_run("smr");
+    let later = viewer.record()[0].clone();
+    viewer.minimise();
+    viewer.activate();
+    viewer.is_as_of_run("smr");
+    let restored = viewer.record()[0].clone();
+    let gaze = |row: &String| row.split_once(',').unwrap().1.to_owned();
+    assert_ne!(gaze(&before), gaze(&resized), "the record goes on after a resize");
+    assert_eq!(later, resized, "the record goes on where nothing happens");
+    assert_ne!(gaze(&later), gaze(&restored), "the record goes on after the window was minimised");
+
+    viewer.look_along(&[[0.3, 0.3], [0.7, 0.3]]);
+    viewer.key("ctrl+shift+l");
+    viewer.look_along(&[[0.5, 0.5], [0.4, 0.4]]);
+    viewer.is_as_of_run("smr");
+    viewer.close(&["afterimage: the device is lost; another is opened"]);
+}
+
+#[test]
+fn playback_shows_what_run_writes_on_both_sides_of_the_divider() {
+    let Some(display) = Display::open() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    write_still(folder.path());
+    let run = |words: &[&str]| {
+        let tool = Command::new(TOOL).args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
+        let out = tool.unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    };
+    let common = ["still.png", "--gaze", "synthetic:3", "--frames", "40", "--exposure", "-0.5"];
+    let view = ["view", "--internal-scale", "1", "--split", "none,smr", "--screenshot", "shown.png"];
+    run(&[&view[..], &common].concat());
+    run(&[&["run", "--method", "none,smr", "--backend", "gpu", "--no-flip", "--out", "run"], &common[..]].concat());
+    let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
+    let (shown, sides) = (pixels("shown.png"), ["none", "smr"].map(|m| pixels(&format!("run/{m}/000039.png"))));
+    let differ =
+        shown.enumerate_pixels().filter(|&(x, y, p)| p != sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y));
+    assert_eq!(differ.count(), 0);
+}
+
+#[test]
+fn without_a_display_it_says_so_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    write_still(folder.path());
+    for display in [None, Some(":4099")] {
+        let mut tool = Command::new(TOOL);
+        tool.args(["view", "still.png"]).current_dir(folder.path());
+        tool.env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET").env_remove("DISPLAY");
+        let out = tool.envs(display.map(|d| ("DISPLAY", d))).output().unwrap();
+        let text = String::from_utf8(out.stderr).unwrap();
+        assert_eq!((out.status.code(), text.lines().count()), (Some(1), 1), "{text}");
+        assert!(text.contains("there is no display"), "{text}");
+    }
+}
+
+#[test]
+fn what_it_cannot_show_is_refused_before_any_window() {
+    let folder = tempfile::tempdir().unwrap();
+    write_still(folder.path());
+    let refused: [(&[&str], &str); 6] = [
+        (&["none.png"], "does not exist"),
+        (&["still.png", "--split", "smr"], "expected two"),
+        (&["still.png", "--split", "smr,oracle"], "oracle"),
+        (&["still.png", "--internal-scale", "2"], "at most 1"),
+        (&["still.png", "--fovea=-1"], "fovea"),
+        (&["still.png", "--gaze", "none.csv"], "none.csv"),
+    ];
+    for (words, expected) in refused {
+        let out = Command::new(TOOL).arg("view").args(words).current_dir(folder.path()).output().unwrap();
+        let text = String::from_utf8(out.stderr).unwrap();
+        assert_eq!((out.status.code(), text.lines().count()), (Some(2), 1), "{words:?}: {text}");
+        assert!(text.contains(expected), "{words:?}: {text}");
+    }
+}

@@ -1,0 +1,66 @@
+//! How do two eyes share one context? Array textures, one gaze each, one dispatch.
+//!
+//! `cargo run --example 03_stereo` (any adapter; software Vulkan: mesa-vulkan-drivers)
+
+mod headless;
+
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use headless::Headless;
+use wgpu::{TextureFormat, TextureUsages};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Headless::new()?;
+    let size = [256, 256];
+    let context = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
+    let desc = GpuDesc { context, ..GpuDesc::new(size, TextureFormat::Rgba32Float) };
+    let mut post = Afterimage::new(&gpu.device, &desc)?;
+
+    // Two layers: the left eye's, then the right eye's.
+    let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let write = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+    let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
+    let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
+
+    // Each eye of a headset sees more towards its temple; both look at one point, first to the left, then to the right.
+    let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
+    let stripes = |eye: u32, sharp: bool, x: u32| {
+        let light = if sharp { (x % 2) as f32 } else { 0.5 };
+        if eye == 0 { [light, 0.25, 0.25] } else { [0.25, 0.25, light] }
+    };
+    for index in 0..2 {
+        let mut views = vec![];
+        for (eye, (tan_x, offset_m)) in (0..).zip(eyes) {
+            let geometry = ViewGeometry::off_axis(size, tan_x, [-1.1, 1.1])?;
+            let target = glam::Vec3::new(if index == 0 { -0.2 } else { 0.3 } + offset_m, 0.0, 0.6);
+            let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
+            views.push(ViewFrame { geometry, gaze, previous_from_current: None });
+            gpu.write(&color, eye, |x, _| stripes(eye, index == 0, x));
+        }
+        let mut encoder = gpu.encoder();
+        let recorded = post.record(&gpu.device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
+        gpu.submit(encoder);
+        for warning in recorded.warnings() {
+            println!("frame {index}: {warning}");
+        }
+        let column = |eye: usize| match views[eye].gaze {
+            Gaze::At { px } => px[0],
+            Gaze::Lost => f32::NAN,
+        };
+        println!("frame {index}: left eye looks at column {:.0}, right eye at {:.0}", column(0), column(1));
+    }
+    for (eye, name) in [(0, "left"), (1, "right")] {
+        let shown = gpu.read(&output, eye);
+        let sharp = |c: &&[f32; 4]| c[0].max(c[2]) == 1.0 || c[0].min(c[2]) == 0.0;
+        let other = |c: &&[f32; 4]| if eye == 0 { c[2] != 0.25 } else { c[0] != 0.25 };
+        println!(
+            "{name} eye: {} of {} pixels still sharp, {} from the other eye",
+            shown.iter().filter(sharp).count(),
+            shown.len(),
+            shown.iter().filter(other).count()
+        );
+    }
+    println!("{} KiB of history for both", post.memory_bytes() / 1024);
+    Ok(())
+}

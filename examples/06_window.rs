@@ -1,0 +1,191 @@
+//! What is the least that an application with a window needs? Its renderer makes a foveated frame, `record` writes what is shown into a
+//! texture, a blit takes that to the swapchain. The mouse is the gaze.
+//!
+//! What the post-process adds to an application are the fields `post`, `output` and `gaze` of `App` and the four lines marked (1) to (4).
+//!
+//! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
+
+use afterimage::frame::{Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use std::{error::Error, sync::Arc};
+use wgpu::{CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
+use winit::application::ApplicationHandler;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::window::{Window, WindowId};
+
+/// A swapchain's own format is rarely one that a compute shader may write: write this, and draw it to the screen.
+const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+/// The application: a window, its device, and the post-process.
+struct App {
+    window: Arc<Window>,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
+    blitter: TextureBlitter,
+    renderer: Renderer,
+    post: Afterimage,
+    output: wgpu::Texture,
+    gaze: Gaze,
+    index: u64,
+}
+
+/// Stands in for your renderer: a pattern, made coarse where the eye does not look.
+struct Renderer {
+    pattern: wgpu::Texture,
+    foveation: GpuFoveation,
+    color: wgpu::Texture,
+}
+
+fn texture(device: &wgpu::Device, [width, height]: [u32; 2], format: TextureFormat) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+impl Renderer {
+    fn new(device: &wgpu::Device, queue: &wgpu::Queue, size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
+        let pattern = texture(device, size, TextureFormat::Rgba32Float);
+        let pixels: Vec<[f32; 4]> = (0..size[0] * size[1])
+            .map(|i| [i % size[0], i / size[0]].map(|v| v as f32))
+            .map(|[x, y]| 0.5 + 0.5 * (x.hypot(y) * 0.4).sin() * (x * 0.13 + (y * 0.05).sin() * 3.0).sin())
+            .map(|line| [0.9 * line, 0.7 * line, 0.3, 1.0])
+            .collect();
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size[0]), rows_per_image: None };
+        queue.write_texture(pattern.as_image_copy(), bytemuck::cast_slice(&pixels), layout, pattern.size());
+        let foveation = GpuFoveation::new(device, &GpuDesc::new(size, FORMAT))?;
+        Ok(Self { pattern, foveation, color: texture(device, size, FORMAT) })
+    }
+}
+
+impl App {
+    fn new(events: &ActiveEventLoop) -> Result<Self, Box<dyn Error>> {
+        let window = Arc::new(events.create_window(Window::default_attributes().with_title("your application"))?);
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let surface = instance.create_surface(window.clone())?;
+        let options = wgpu::RequestAdapterOptions { compatible_surface: Some(&surface), ..Default::default() };
+        let adapter = pollster::block_on(instance.request_adapter(&options))?;
+        // No features, and no more than WebGPU's limits.
+        let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
+        let size = [window.inner_size().width.max(1), window.inner_size().height.max(1)];
+        let config = surface.get_default_config(&adapter, size[0], size[1]).ok_or("no format for this window")?;
+        surface.configure(&device, &config);
+        Ok(Self {
+            // (1)
+            post: Afterimage::new(&device, &GpuDesc::new(size, FORMAT))?,
+            output: texture(&device, size, FORMAT),
+            blitter: TextureBlitter::new(&device, config.format),
+            renderer: Renderer::new(&device, &queue, size)?,
+            gaze: Gaze::Lost,
+            index: 0,
+            window,
+            device,
+            queue,
+            surface,
+            config,
+        })
+    }
+
+    fn resize(&mut self, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
+        // A minimised window is 0x0: keep what there is.
+        if !size.contains(&0) && size != [self.config.width, self.config.height] {
+            [self.config.width, self.config.height] = size;
+            self.surface.configure(&self.device, &self.config);
+            self.renderer = Renderer::new(&self.device, &self.queue, size)?;
+            self.output = texture(&self.device, size, FORMAT);
+            // (2) The history starts afresh.
+            self.post.resize(&self.device, size)?;
+        }
+        Ok(())
+    }
+
+    fn frame(&mut self) -> Result<(), Box<dyn Error>> {
+        let target = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(target) | CurrentSurfaceTexture::Suboptimal(target) => target,
+            CurrentSurfaceTexture::Outdated => {
+                self.surface.configure(&self.device, &self.config);
+                return Ok(());
+            }
+            CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => return Err("the surface is lost".into()),
+            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let geometry = ViewGeometry::flat([self.config.width, self.config.height], 70.0)?;
+        let views = [ViewFrame { geometry, gaze: self.gaze, previous_from_current: None }];
+        // Here your renderer draws the foveated frame.
+        let Renderer { pattern, foveation, color } = &mut self.renderer;
+        foveation.record(&self.device, &mut encoder, &FoveationFrame::new(pattern, color, &views))?;
+        // (3) The post-process.
+        let frame = Frame::new(color, &self.output, &views, self.index);
+        self.post.record(&self.device, &mut encoder, &frame)?;
+        // Here is your tone mapping.
+        let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
+        self.blitter.copy(&self.device, &mut encoder, &output, &screen);
+        self.queue.submit([encoder.finish()]);
+        self.queue.present(target);
+        self.index += 1;
+        Ok(())
+    }
+}
+
+/// The window's events.
+#[derive(Default)]
+struct Shell {
+    app: Option<App>,
+    frames: Option<u64>,
+    outcome: Option<Box<dyn Error>>,
+}
+
+impl Shell {
+    fn handle(&mut self, events: &ActiveEventLoop, event: &WindowEvent) -> Result<(), Box<dyn Error>> {
+        let Some(app) = &mut self.app else { return Ok(()) };
+        match event {
+            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::Resized(size) => app.resize([size.width, size.height])?,
+            // (4) Pixel centres are whole numbers.
+            WindowEvent::CursorMoved { position, .. } => {
+                app.gaze = Gaze::At { px: [position.x as f32 - 0.5, position.y as f32 - 0.5] };
+            }
+            WindowEvent::RedrawRequested if self.frames.is_some_and(|frames| app.index >= frames) => events.exit(),
+            WindowEvent::RedrawRequested => {
+                app.frame()?;
+                app.window.request_redraw();
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn check<T>(&mut self, events: &ActiveEventLoop, result: Result<T, Box<dyn Error>>) -> Option<T> {
+        result.map_err(|error| (self.outcome = Some(error), events.exit())).ok()
+    }
+}
+
+impl ApplicationHandler for Shell {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        self.app = self.check(events, App::new(events));
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let handled = self.handle(events, &event);
+        self.check(events, handled);
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let frames = std::env::var("AFTERIMAGE_FRAMES").ok().and_then(|n| n.parse().ok());
+    let mut shell = Shell { frames, ..Shell::default() };
+    EventLoop::new()?.run_app(&mut shell)?;
+    shell.outcome.map_or(Ok(()), Err)
+}

@@ -1,0 +1,145 @@
+//! Shaders as text: WGSL modules, put together by their `//#use` lines, each once.
+//!
+//! Every file under `shaders/` is valid WGSL syntax of its own; what it needs of other files it names in comment lines
+//! `//#use name` at its top. `lib/` holds functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` and
+//! `foveation/` hold bindings, overrides and one entry point a file.
+
+/// One WGSL file.
+#[derive(Debug)]
+pub struct Module {
+    /// As `//#use` lines name it.
+    pub name: &'static str,
+    /// As errors name it.
+    pub path: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// A [`Module`] of a crate: `module!("lib", "acuity")` is `shaders/lib/acuity.wgsl` in its folder.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! module {
+    ($folder:literal, $name:literal) => {
+        $crate::shader::Module {
+            name: $name,
+            path: concat!("shaders/", $folder, "/", $name, ".wgsl"),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $folder, "/", $name, ".wgsl")),
+        }
+    };
+}
+
+/// Modules of this crate.
+pub static MODULES: &[Module] = &[
+    module!("foveation", "block_show"),
+    module!("foveation", "foveated_views"),
+    module!("foveation", "gauss_axis"),
+    module!("foveation", "mip_level"),
+    module!("foveation", "mip_show"),
+    module!("lib", "acuity"),
+    module!("lib", "approx"),
+    module!("lib", "color"),
+    module!("lib", "debug_view"),
+    module!("lib", "depth"),
+    module!("lib", "foveate"),
+    module!("lib", "matched"),
+    module!("lib", "noise"),
+    module!("lib", "pack"),
+    module!("lib", "reproject"),
+    module!("lib", "resample"),
+    module!("lib", "reservoir"),
+    module!("lib", "rng"),
+    module!("lib", "scrub"),
+    module!("lib", "surface"),
+    module!("lib", "taa"),
+    module!("lib", "wrs"),
+    module!("pass", "candidate_pass"),
+    module!("pass", "chain_pass"),
+    module!("pass", "inputs"),
+    module!("pass", "remembered"),
+    module!("pass", "smr_pass"),
+    module!("pass", "taa_pass"),
+    module!("pass", "wrs_pass"),
+];
+
+/// This crate's shaders.
+pub static SHADERS: Composer = Composer::new(&[MODULES]);
+
+/// Puts shaders together from the modules of one or more crates.
+#[derive(Clone, Copy, Debug)]
+pub struct Composer {
+    tables: &'static [&'static [Module]],
+}
+
+/// A shader put together, and where each of its lines comes from.
+#[derive(Clone, Debug)]
+pub struct Composed {
+    /// The whole text.
+    pub source: String,
+    origins: Vec<(&'static str, u32)>,
+}
+
+impl Composed {
+    /// File and line (from 1) that line `line` (from 1) of the whole text comes from.
+    pub fn origin(&self, line: u32) -> Option<(&'static str, u32)> {
+        self.origins.get(line.checked_sub(1)? as usize).copied()
+    }
+
+    fn push(&mut self, path: &'static str, text: &str) {
+        for (i, line) in text.lines().enumerate() {
+            self.source.push_str(line);
+            self.source.push('\n');
+            self.origins.push((path, i as u32 + 1));
+        }
+    }
+}
+
+impl Composer {
+    /// A composer of the modules in `tables`. Names are unique over all of them.
+    pub const fn new(tables: &'static [&'static [Module]]) -> Self {
+        Self { tables }
+    }
+
+    /// Names of all modules, table by table.
+    pub fn module_names(&self) -> impl Iterator<Item = &'static str> {
+        self.tables.iter().flat_map(|table| table.iter()).map(|m| m.name)
+    }
+
+    /// The module `name` with everything that it uses, used modules first, each once.
+    ///
+    /// # Panics
+    /// If a name is unknown or modules use each other in a circle: both are mistakes in this project, and tests compose
+    /// every module.
+    pub fn compose(&self, name: &str) -> Composed {
+        self.compose_with(&[name], "")
+    }
+
+    /// The modules `names` with everything that they use, and `extra` WGSL after them.
+    ///
+    /// # Panics
+    /// As for [`compose`](Self::compose).
+    pub fn compose_with(&self, names: &[&str], extra: &str) -> Composed {
+        let mut composed = Composed { source: String::new(), origins: vec![] };
+        let mut done = vec![];
+        for name in names {
+            self.add(name, &mut composed, &mut done, &mut vec![]);
+        }
+        composed.push("(the caller's text)", extra);
+        composed
+    }
+
+    fn add(&self, name: &str, composed: &mut Composed, done: &mut Vec<&'static str>, open: &mut Vec<&'static str>) {
+        let mut modules = self.tables.iter().flat_map(|table| table.iter());
+        let module = modules.find(|m| m.name == name).unwrap_or_else(|| panic!("no shader module '{name}'"));
+        if done.contains(&module.name) {
+            return;
+        }
+        assert!(!open.contains(&module.name), "shader modules use each other in a circle: {open:?}");
+        open.push(module.name);
+        for used in module.text.lines().map_while(|l| l.strip_prefix("//#use ")) {
+            self.add(used.trim(), composed, done, open);
+        }
+        open.pop();
+        composed.push(module.path, module.text);
+        done.push(module.name);
+    }
+}

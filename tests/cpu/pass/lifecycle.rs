@@ -1,0 +1,148 @@
+//! Determinism, reset, resize, refusals.
+
+use super::*;
+use afterimage_testing::holds;
+
+fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
+    frames.map(|i| one(post, i, &Input::still(noise(SIZE, &format!("run {i}")))).0).collect()
+}
+
+#[test]
+fn h29_the_same_bytes_whatever_the_number_of_threads() {
+    for settings in [
+        Settings::paper(),
+        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Settings::paper() },
+    ] {
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut post = context(settings);
+                (run(&mut post, 0..20), post.history().words().to_vec())
+            })
+        };
+        assert_eq!(with(1), with(2));
+        assert_eq!(with(2), with(7));
+        assert_eq!(with(2), with(2));
+    }
+    let other_seed = run(&mut context(Settings { seed: 1, ..Settings::paper() }), 0..20);
+    assert_ne!(other_seed, run(&mut context(Settings::paper()), 0..20));
+    afterimage_testing::holds!("H29", Cpu, "20 frames of two samplers bit-equal on 1, 2 and 7 threads, and again");
+}
+
+#[test]
+fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
+    let settings = Settings { gate: None, ..Settings::paper() };
+    let fresh = run(&mut context(settings), 20..30);
+    let mut used = context(settings);
+    run(&mut used, 0..20);
+    let stale = run(&mut used.clone(), 20..30);
+    assert_ne!(stale, fresh, "the planted error: no reset");
+
+    let mut forgotten = used.clone();
+    forgotten.forget();
+    assert_eq!(run(&mut forgotten, 20..30), fresh);
+
+    // Odd, even, a single pixel and back (another pixel density is another size), with frames between.
+    let mut resized = used.clone();
+    for size in [[3, 5], [64, 64], [1, 1], [65, 47], SIZE] {
+        resized.resize(size).unwrap();
+        if size != SIZE {
+            let input = Input::still(noise(size, "resized"));
+            assert_eq!(one(&mut resized, 0, &input).0, input.color, "the first frame of a size is the candidate");
+            one(&mut resized, 1, &input);
+        }
+    }
+    assert_eq!(run(&mut resized, 20..30), fresh);
+    holds!("H76", Cpu, "wrs: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit");
+
+    let mut cut = used.clone();
+    let input = Input::still(noise(SIZE, "run 20"));
+    for _ in 0..2 {
+        let (out, ..) = step(&mut cut, 20, Reset::All, &[&input]);
+        assert_eq!((&out[0], &out[0]), (&fresh[0], &input.color), "reset two frames running");
+    }
+    assert_eq!(run(&mut cut, 21..30), fresh[1..]);
+    let mut told = context(settings);
+    step(&mut told, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
+    let mut untold = context(settings);
+    run(&mut untold, 0..1);
+    assert_eq!(run(&mut told, 1..10), run(&mut untold, 1..10), "a reset at frame 0");
+    holds!("H77", Cpu, "wrs: the first frame after a cut is the candidate, bit for bit; 9 more as of a fresh context");
+    holds!("H78", Cpu, "wrs: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit");
+}
+
+#[test]
+fn a_frame_that_is_refused_changes_nothing() {
+    let settings = Settings { gate: None, ..Settings::paper() };
+    let (mut good, mut mixed) = (context(settings), context(settings));
+    let expected = run(&mut good, 0..6);
+    let mut got = run(&mut mixed, 0..3);
+    let words = mixed.history().words().to_vec();
+    let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
+    let facts = Input::still(right.clone()).view().facts;
+    let bad = |view: CpuView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
+        let frame = CpuFrame { reset: Reset::All, ..CpuFrame::new(std::slice::from_ref(&view), 3) };
+        mixed.process(&frame, out, None).unwrap_err()
+    };
+    let view = CpuView::new(facts, &right);
+    let depth = Image::filled([3, 4], 1.0);
+    let mut matrix = facts;
+    matrix.previous_from_current = Some([[f32::NAN; 4]; 4]);
+    for (view, out_size) in [
+        (CpuView { color: &small, ..view }, SIZE),
+        (CpuView { depth: Some(&depth), ..view }, SIZE),
+        (CpuView { trust: Some(&depth), ..view }, SIZE),
+        (CpuView { lod: Some(&depth), ..view }, SIZE),
+        (CpuView { facts: matrix, ..view }, SIZE),
+        (view, [9, 9]),
+    ] {
+        let mut out = [Image::filled(out_size, [0.5; 3])];
+        let error = bad(view, &mut out, &mut mixed);
+        println!("{error}");
+        assert!(out[0].pixels().iter().all(|&c| c == [0.5; 3]), "nothing was written");
+    }
+    assert_eq!(bad(view, &mut [], &mut mixed), FrameError::ViewCount { found: 0, expected: 1 });
+    for ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let views = [view];
+        let frame = CpuFrame { exposure: Exposure::Changed { ratio }, ..CpuFrame::new(&views, 3) };
+        let error = mixed.process(&frame, &mut [right.clone()], None).unwrap_err();
+        assert!(matches!(error, FrameError::Value { what: "exposure ratio", .. }), "{error}");
+    }
+    assert_eq!(mixed.history().words(), words);
+    got.extend(run(&mut mixed, 3..6));
+    assert_eq!(got, expected);
+}
+
+#[test]
+fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
+    for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
+        assert!(CpuAfterimage::new(ContextDesc::new(size), Settings::paper()).is_err());
+        let mut post = context(Settings::paper());
+        assert!(matches!(post.resize(size), Err(FrameError::Extent { .. })));
+        assert_eq!(post.desc().size_px, SIZE);
+    }
+    let mut post = CpuAfterimage::new(ContextDesc::new([1, 1]), Settings::paper()).unwrap();
+    let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
+    assert_eq!(one(&mut post, 0, &input).0, input.color);
+    assert_eq!(one(&mut post, 1, &input).0, input.color);
+    holds!("H76", Cpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused, the context stays as it was; 1x1 works");
+}
+
+#[test]
+fn memory_is_what_the_documentation_says() {
+    let pixels = 64 * 48;
+    assert_eq!(context(Settings::paper()).memory_bytes(), 24 * pixels);
+    assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::paper() }).memory_bytes(), 32 * pixels);
+    let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    assert_eq!(CpuAfterimage::new(stereo, Settings::paper()).unwrap().memory_bytes(), 48 * pixels);
+}
+
+#[test]
+fn method_none_shows_the_frame_and_forgets() {
+    let mut post = context(Settings { method: Method::None, ..Settings::paper() });
+    let mut color = noise(SIZE, "none");
+    color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
+    let (out, stats, _) = one(&mut post, 0, &Input::still(color.clone()));
+    assert_eq!((out.pixels()[3], stats.nonfinite, out.pixels()[4]), ([0.0; 3], 1, color.pixels()[4]));
+    assert!(!post.history().is_filled());
+}

@@ -1,0 +1,108 @@
+//! The pass as a whole on the CPU: conventions, flushes, determinism, lifecycle; hard cases H19, H22, H29, H46-H60, H63, H66, H77-H79.
+
+mod depth;
+mod lifecycle;
+mod light;
+mod nan;
+mod properties;
+mod reprojection;
+mod reservoirs;
+mod trust;
+mod views;
+
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::error::FrameError;
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage::kernel::debug_view::PixelTrace;
+use afterimage::kernel::reproject::Verdict;
+use afterimage::settings::{Bias, DepthTest, Method, Sampler, Settings};
+use afterimage::stats::FrameStats;
+use afterimage::warning::Warning;
+use afterimage_testing::Draws;
+use proptest::prelude::*;
+
+const SIZE: [u32; 2] = [64, 48];
+/// Those that find the past by the same rules, each in its own history.
+const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
+type Color = Image<[f32; 3]>;
+
+fn geometry(size: [u32; 2]) -> ViewGeometry {
+    ViewGeometry::flat(size, 70.0).unwrap()
+}
+
+/// Colors that halves hold exactly, different at every pixel.
+fn noise(size: [u32; 2], name: &str) -> Color {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
+}
+
+/// One view with everything given.
+#[derive(Clone)]
+struct Input {
+    color: Color,
+    depth: Option<Image<f32>>,
+    motion: Option<Image<[f32; 2]>>,
+    trust: Option<Image<f32>>,
+    gaze: Gaze,
+    camera: Option<[[f32; 4]; 4]>,
+}
+
+impl Input {
+    fn still(color: Color) -> Self {
+        Self { color, depth: None, motion: None, trust: None, gaze: Gaze::At { px: [20.0, 20.0] }, camera: None }
+    }
+
+    fn without_trust(&self) -> Self {
+        Self { trust: None, ..self.clone() }
+    }
+
+    fn view(&self) -> CpuView<'_> {
+        let geometry = geometry(self.color.size());
+        let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
+        CpuView {
+            depth: self.depth.as_ref(),
+            motion: self.motion.as_ref(),
+            trust: self.trust.as_ref(),
+            ..CpuView::new(facts, &self.color)
+        }
+    }
+}
+
+/// Without a gate, so that only the test in question takes history away.
+fn context_of(method: Method) -> CpuAfterimage {
+    context(Settings { method, gate: None, ..Settings::paper() })
+}
+
+fn context(settings: Settings) -> CpuAfterimage {
+    CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap()
+}
+
+/// Keeps history for certain while its weight is this large: a draw of 2^-24 steps never reaches the candidate's share.
+fn sticky(post: &mut CpuAfterimage) {
+    use afterimage::kernel::pack;
+    let words: Vec<_> =
+        post.history().words().iter().map(|&w| pack::pack(pack::Stored { w_sum: 1e12, ..pack::unpack(w) })).collect();
+    post.restore_history(&words);
+}
+
+fn step(
+    post: &mut CpuAfterimage,
+    index: u64,
+    reset: Reset,
+    inputs: &[&Input],
+) -> (Vec<Color>, FrameStats, Vec<Image<PixelTrace>>) {
+    let size = inputs[0].color.size();
+    let mut out = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
+    let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
+    let views: Vec<_> = inputs.iter().map(|i| i.view()).collect();
+    let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&views, index) }, &mut out, Some(&mut trace)).unwrap();
+    (out, stats, trace)
+}
+
+fn one(post: &mut CpuAfterimage, index: u64, input: &Input) -> (Color, FrameStats, Image<PixelTrace>) {
+    let (mut out, stats, mut trace) = step(post, index, Reset::None, &[input]);
+    (out.remove(0), stats, trace.remove(0))
+}

@@ -1,0 +1,362 @@
+//! Foveation simulators: hard cases H62, H67, H69-H71, and closed forms.
+
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::geometry::ViewGeometry;
+use afterimage::image::Image;
+use afterimage::kernel::foveate;
+use afterimage::simulator::Pyramid;
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
+use approx::assert_abs_diff_eq;
+use proptest::prelude::*;
+
+const FILTERS: [Filter; 4] = [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off];
+
+fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()])
+}
+
+fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
+    let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
+    let ecc = geometry.eccentricity_map(gaze);
+    let lods = foveation.lod_map(&geometry, gaze, &ecc);
+    foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods)
+}
+
+fn mean(image: &Image<[f32; 3]>) -> f64 {
+    let sum: f64 = image.pixels().iter().flatten().map(|&v| f64::from(v)).sum();
+    sum / (3 * image.pixels().len()) as f64
+}
+
+#[test]
+fn h69_a_constant_image_stays_constant_at_any_size() {
+    let mut worst = 0.0_f32;
+    for size in [[1, 1], [17, 1], [1, 33], [4097, 3], [640, 360], [333, 77]] {
+        // At every level and between, the whole picture.
+        let foveation = Foveation { rate_mid: 256, rate_far: 256, ..Foveation::default() };
+        let pyramid = Pyramid::new(Image::filled(size, [0.3, 0.6, 0.9]), foveation.max_level());
+        for lod in (0..=32).map(|l| l as f32 / 4.0) {
+            for c in foveation.render(&pyramid, &Image::filled(size, lod)).pixels() {
+                worst = c.iter().zip([0.3, 0.6, 0.9]).fold(worst, |w, (v, exact)| w.max((v - exact).abs()));
+            }
+        }
+        for filter in FILTERS {
+            let foveation = Foveation { filter, ..Foveation::default() };
+            let out = foveate(&foveation, &Image::filled(size, [0.3, 0.6, 0.9]), [0.0, 0.0]);
+            for c in out.pixels() {
+                for (v, exact) in c.iter().zip([0.3, 0.6, 0.9]) {
+                    assert_abs_diff_eq!(*v, exact, epsilon = 1e-6);
+                }
+            }
+        }
+    }
+    assert!(worst < 1e-6, "{worst}");
+    holds!(
+        "H69",
+        Cpu,
+        "levels 0 to 8 by quarters, 1x1, 17x1, 1x33, 4097x3 and two more: off by {worst:.1e} at the most"
+    );
+}
+
+#[test]
+fn h70_the_mean_is_preserved() {
+    let mut worst = 0.0_f64;
+    // Random pictures, whose mean the borders can move by chance only as far as their share of the picture reaches.
+    for size in [[640, 360], [641, 359], [1023, 257]] {
+        let image = noise(size, "energy");
+        for filter in [Filter::Mip, Filter::Gauss] {
+            let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+            let change = (mean(&foveate(&foveation, &image, [300.0, 100.0])) / mean(&image) - 1.0).abs();
+            println!("{filter:?} {size:?}: mean changes by {change:.1e}");
+            assert!(change <= 1e-3);
+            worst = worst.max(change);
+        }
+    }
+    holds!("H70", Cpu, "mip and gauss, three sizes, odd ones too: the mean changes by {worst:.1e} at the most");
+}
+
+#[test]
+fn mip_levels_are_means_of_the_texels_that_exist() {
+    let image = noise([13, 7], "levels");
+    let pyramid = Pyramid::new(image.clone(), 3);
+    assert_eq!(pyramid.level(1).size(), [7, 4]);
+    assert_eq!(pyramid.level(2).size(), [4, 2]);
+    assert_eq!(pyramid.level(3).size(), [2, 1]);
+    let at = |x: usize, y: usize| image.at(x, y)[0];
+    let level = pyramid.level(1);
+    assert_abs_diff_eq!(level.at(2, 1)[0], (at(4, 2) + at(5, 2) + at(4, 3) + at(5, 3)) / 4.0, epsilon = 1e-6);
+    assert_abs_diff_eq!(level.at(6, 1)[0], (at(12, 2) + at(12, 3)) / 2.0, epsilon = 1e-6);
+    assert_abs_diff_eq!(level.at(6, 3)[0], at(12, 6), epsilon = 1e-6);
+    // A texel's centre is between its pixels.
+    assert_abs_diff_eq!(pyramid.bilinear([4.5, 2.5], 1).x, level.at(2, 1)[0], epsilon = 1e-6);
+    // A linear ramp is reproduced by any level, away from the borders.
+    let ramp = Pyramid::new(Image::from_fn([256, 128], |[x, y]| [x as f32, y as f32, 0.0]), 4);
+    for level in 1..=4 {
+        let c = ramp.bilinear([100.0, 50.0], level);
+        assert_abs_diff_eq!(c.x, 100.0, epsilon = 1e-3);
+        assert_abs_diff_eq!(c.y, 50.0, epsilon = 1e-3);
+    }
+}
+
+#[test]
+fn the_fovea_is_copied_bit_for_bit_and_the_rest_is_coarser() {
+    let image = noise([640, 360], "fovea");
+    let geometry = ViewGeometry::flat([640, 360], 70.0).unwrap();
+    let gaze = [200.0, 150.0];
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, gaze);
+        let mut outside_same = 0;
+        for y in 0..360 {
+            for x in 0..640 {
+                let e = geometry.eccentricity_deg([x as f32, y as f32], gaze);
+                let same = out.at(x, y) == image.at(x, y);
+                if e < 2.4 {
+                    // Blocks are decided by their centres.
+                    assert!(same || filter == Filter::Block && e > 1.0, "{filter:?} at {e} degrees");
+                }
+                outside_same += usize::from(same && e > 8.0);
+            }
+        }
+        assert!(outside_same < 20, "{filter:?}: {outside_same}");
+    }
+}
+
+#[test]
+fn h71_the_level_of_detail_is_continuous_and_monotone() {
+    for filter in [Filter::Mip, Filter::Gauss] {
+        let foveation = Foveation { filter, ..Foveation::default() };
+        let mut before = foveation.lod(0.0);
+        assert_eq!(before, 0.0);
+        for i in 1..=90_000 {
+            let lod = foveation.lod(i as f32 * 1e-3);
+            // At most 3 levels a degree (mip), 2^lod growing by 2.8 a degree from 1 (gauss): 0.005 levels a step.
+            assert!(lod >= before && lod - before < 0.005, "{filter:?} at {}", i as f32 * 1e-3);
+            before = lod;
+        }
+        assert_abs_diff_eq!(before, 4.0, epsilon = 1e-3);
+    }
+    let foveation = Foveation::default();
+    for (e, lod) in [(2.5, 0.0), (3.0, 1.5), (3.5, 3.0), (7.5, 3.0), (8.0, 3.5), (8.5, 4.0), (60.0, 4.0)] {
+        assert_abs_diff_eq!(foveation.lod(e), lod, epsilon = 1e-5);
+    }
+    let hard = Foveation { blend_deg: 0.0, ..foveation };
+    assert_eq!((hard.lod(2.5), hard.lod(2.501)), (0.0, 3.0));
+    let steps = (0..90_000).map(|i| foveation.lod((i + 1) as f32 * 1e-3) - foveation.lod(i as f32 * 1e-3));
+    let steepest = 1000.0 * steps.fold(0.0, f32::max);
+    holds!(
+        "H71",
+        Cpu,
+        "level of detail: continuous, monotone, at the most {steepest:.2} levels a degree (stated: 3, +- rounding)"
+    );
+}
+
+#[test]
+fn h71_the_image_has_no_seam_at_the_rings() {
+    // A smooth ramp: neighbouring pixels may differ by its own step and what the blend adds, never by a jump.
+    let image = Image::from_fn([640, 360], |[x, y]| [x as f32 / 640.0, y as f32 / 360.0, 0.5]);
+    let mut worst = 0.0_f32;
+    for filter in [Filter::Mip, Filter::Gauss] {
+        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [320.0, 180.0]);
+        let jump = |a: [f32; 3], b: [f32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
+        let ramp =
+            (17..343).flat_map(|y| (17..623).map(move |x| (x, y))).map(|(x, y)| jump(out.at(x, y), out.at(x + 1, y)));
+        worst = worst.max(640.0 * ramp.fold(0.0, f32::max));
+        for y in 17..343 {
+            for x in 17..623 {
+                assert!(
+                    jump(out.at(x, y), out.at(x + 1, y)) < 2.0 / 640.0
+                        && jump(out.at(x, y), out.at(x, y + 1)) < 2.0 / 360.0
+                );
+            }
+        }
+    }
+    holds!("H71", Cpu, "mip and gauss over a ramp: the steepest step is {worst:.3} of the ramp's own (bound: 2)");
+}
+
+#[test]
+fn blurs_hold_their_stated_accuracy() {
+    let (mut lod_error, mut sigma_error, mut tap_error) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for i in 0..=20_000 {
+        let sigma = i as f32 * (127.5 / 20_000.0);
+        // One pixel a degree from 0 on: the eccentricity is the width.
+        let lod = f64::from(foveate::blur_lod(sigma, 0.0, 1.0, 1.0, 127.5));
+        let exact = (1.0 + 2.0 * f64::from(sigma)).log2();
+        lod_error = lod_error.max((lod - exact).abs());
+        let lod = i as f32 * (8.0 / 20_000.0);
+        let scale = f64::from(lod).exp2();
+        let error = f64::from(foveate::blur_sigma_px(lod)) - 0.5 * (scale - 1.0);
+        sigma_error = sigma_error.max(error.abs() / scale);
+    }
+    for i in 0..400 {
+        let sigma = 0.125 * 1000.0_f32.powf(i as f32 / 399.0);
+        let mut tap = foveate::gauss_center(sigma);
+        for d in 1..=foveate::gauss_radius(sigma) {
+            tap = foveate::gauss_next(tap);
+            let x = f64::from(d) / f64::from(sigma);
+            let error = (f64::from(tap.weight) - (-0.5 * x * x).exp()).abs();
+            tap_error = tap_error.max(error / (1.0 + f64::from(sigma * sigma)));
+        }
+    }
+    println!("errors: lod {lod_error:.1e}, sigma {sigma_error:.1e} of 2^lod, tap {tap_error:.1e} (1 + sigma^2)");
+    assert!(lod_error < 1e-6 && sigma_error < 5e-7 && tap_error < 1e-7);
+    assert_eq!((foveate::gauss_radius(0.0), foveate::gauss_radius(1.0), foveate::gauss_radius(7.5)), (0, 4, 23));
+}
+
+#[test]
+fn a_blurred_point_is_a_gaussian() {
+    // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard deviations.
+    let mut image = Image::filled([91, 91], [0.0; 3]);
+    image.pixels_mut()[45 * 91 + 45] = [1000.0, 100.0, 1.0];
+    let foveation = Foveation { filter: Filter::Gauss, ..Foveation::default() };
+    let out = foveate(&foveation, &image, [-1e5, 0.0]);
+    let sigma = 7.5_f64;
+    let radius = foveate::gauss_radius(sigma as f32) as i32;
+    let weight = |d: i32| if d.abs() <= radius { (-0.5 * f64::from(d * d) / (sigma * sigma)).exp() } else { 0.0 };
+    let total: f64 = (-radius..=radius).map(weight).sum();
+    for y in 0..91 {
+        for x in 0..91 {
+            let exact = weight(x - 45) * weight(y - 45) / (total * total);
+            for (v, peak) in out.at(x as usize, y as usize).iter().zip([1000.0, 100.0, 1.0]) {
+                assert_abs_diff_eq!(f64::from(*v) / peak, exact, epsilon = 1e-7);
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_are_aligned_nested_and_constant() {
+    let image = noise([320, 180], "blocks");
+    let foveation = Foveation { filter: Filter::Block, ..Foveation::default() };
+    let geometry = ViewGeometry::flat([320, 180], 70.0).unwrap();
+    let gaze = [100.0, 90.0];
+    let lods = foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze));
+    let out = foveation.render(&Pyramid::new(image, 4), &lods);
+    for y in 0..180_usize {
+        for x in 0..320_usize {
+            let level = lods.at(x, y) as usize;
+            let (bx, by) = (x >> level << level, y >> level << level);
+            assert_eq!(lods.at(bx, by) as usize, level);
+            assert_eq!(out.at(x, y), out.at(bx, by));
+        }
+    }
+    for level in 0..=4 {
+        assert!(lods.pixels().contains(&(level as f32)), "level {level} occurs");
+    }
+}
+
+#[test]
+fn h62_angles_follow_rays_not_the_screen() {
+    // 110 degrees wide: the same pixel distance is a smaller angle at the side. 2 atan(tan(55) (x + 0.5 - 500) / 500) by hand.
+    let geometry = ViewGeometry::flat([1000, 500], 110.0).unwrap();
+    let mut worst = 0.0_f64;
+    let angle = |x: f64| (55.0_f64.to_radians().tan() * (x + 0.5 - 500.0) / 500.0).atan().to_degrees();
+    for (a, b) in [(500.0, 550.0), (900.0, 950.0), (0.0, 999.0)] {
+        let got = geometry.eccentricity_deg([a as f32, 249.5], [b as f32, 249.5]);
+        assert_abs_diff_eq!(f64::from(got), (angle(b) - angle(a)).abs(), epsilon = 1e-3);
+        worst = worst.max((f64::from(got) - (angle(b) - angle(a)).abs()).abs());
+    }
+    // Every pixel of the row, for an eye off the middle: the planted error, distance on the screen, is tens of degrees off.
+    let map = geometry.eccentricity_map([900.0, 249.5]);
+    let mut by_screen = 0.0_f64;
+    for x in 0..1000 {
+        let exact = (angle(x as f64) - angle(900.0)).abs();
+        worst = worst.max((f64::from(geometry.eccentricity_deg([x as f32, 249.5], [900.0, 249.5])) - exact).abs());
+        by_screen = by_screen.max(((x as f64 - 900.0).abs() * 110.0 / 1000.0 - exact).abs());
+        assert!((f64::from(map.at(x, 249)) - exact).abs() < 0.2, "the row next to the axis");
+    }
+    assert!(worst < 1e-3 && by_screen > 5.0, "{worst}, {by_screen}");
+    assert_abs_diff_eq!(geometry.hfov_deg(), 110.0, epsilon = 1e-3);
+    let right_eye = ViewGeometry::off_axis([1000, 1000], [-0.8, 1.2], [-1.0, 1.0]).unwrap();
+    assert_abs_diff_eq!(right_eye.ray([399.5, 499.5]).x, 0.0, epsilon = 1e-6);
+    let px = right_eye.project(right_eye.ray([12.0, 34.0]) * 7.0).unwrap();
+    assert_abs_diff_eq!(px[0], 12.0, epsilon = 1e-3);
+    assert!(right_eye.project(glam::Vec3::NEG_Z).is_none());
+    holds!(
+        "H62",
+        Cpu,
+        "110 degrees, eye at the side: off by {worst:.1e} degrees; distance on the screen {by_screen:.0} degrees"
+    );
+}
+
+#[test]
+fn h67_small_gaze_movements_enlarge_the_area_seen_sharp() {
+    let size = [640, 360];
+    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    let foveation = Foveation::default();
+    let sharp = |gazes: &[[f32; 2]]| {
+        let mut seen = Image::filled(size, false);
+        for &gaze in gazes {
+            let ecc = geometry.eccentricity_map(gaze);
+            let lods = foveation.lod_map(&geometry, gaze, &ecc);
+            for (s, &l) in seen.pixels_mut().iter_mut().zip(lods.pixels()) {
+                *s |= l < 0.25;
+            }
+        }
+        seen.pixels().iter().filter(|&&s| s).count() as f64
+    };
+    // Half a degree either way in x: the union of discs of radius r over a segment of length d has area pi r^2 + 2 r d.
+    let still = sharp(&[[320.0, 180.0]]);
+    let px_per_deg = 640.0 / (2.0 * 35.0_f64.to_radians().tan()) * 1.0_f64.to_radians();
+    let gazes: Vec<[f32; 2]> = (-5..=5).map(|i| [320.0 + (0.1 * f64::from(i) * px_per_deg) as f32, 180.0]).collect();
+    let moving = sharp(&gazes);
+    let r = (still / std::f64::consts::PI).sqrt();
+    let predicted = still + 2.0 * r * px_per_deg;
+    println!("sharp area {still} px still, {moving} px with microsaccades, predicted {predicted:.0}");
+    assert!(moving >= 0.98 * predicted);
+}
+
+#[test]
+fn a_bad_pixel_does_not_spread() {
+    let mut image = Image::filled([64, 64], [0.5; 3]);
+    image.pixels_mut()[20 * 64 + 33] = [f32::NAN, 0.5, f32::INFINITY];
+    for filter in FILTERS {
+        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [0.0, 0.0]);
+        for (i, c) in out.pixels().iter().enumerate() {
+            assert!(c.iter().all(|v| v.is_finite()) || i == 20 * 64 + 33, "{filter:?}");
+        }
+    }
+    // Where the frame is coarse, wherever the eye looks, the pixel itself is black or blurred, too.
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        for x in 0..64 {
+            let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+            let geometry = ViewGeometry::flat([64, 64], 70.0).unwrap();
+            let gaze = [x as f32, 0.0];
+            let lods = foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze));
+            let out = foveate(&foveation, &image, gaze);
+            for (c, lod) in out.pixels().iter().zip(lods.pixels()) {
+                assert!(c.iter().all(|v| v.is_finite()) || *lod == 0.0, "{filter:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn settings_that_contradict_are_refused() {
+    let base = Foveation::default();
+    for (foveation, words) in [
+        (Foveation { fovea_deg: 20.0, ..base }, "at most the middle region's 15 degrees"),
+        (Foveation { rate_mid: 3, ..base }, "a power of two"),
+        (Foveation { rate_far: 4, ..base }, "from 8 to"),
+        (Foveation { rate_far: 1 << 20, ..base }, "to 256"),
+        (Foveation { blend_deg: -1.0, ..base }, "0 to 90 degrees"),
+        (Foveation { mid_deg: f32::NAN, ..base }, "0 to 180 degrees"),
+    ] {
+        let message = foveation.validate().unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("foveation", 40))]
+
+    #[test]
+    fn any_gaze_and_size_stays_inside_the_picture_s_range(w in 1u32..90, h in 1u32..90, gx in -1e6f32..1e6, gy in -1e6f32..1e6, pick in 0usize..3) {
+        let image = noise([w, h], "range");
+        let foveation = Foveation { filter: FILTERS[pick], ..Foveation::default() };
+        for gaze in [[gx, gy], [gx % 90.0, gy % 90.0]] {
+            let out = foveate(&foveation, &image, gaze);
+            prop_assert!(out.pixels().iter().flatten().all(|v| (-1e-5..=1.0 + 1e-5).contains(v)));
+        }
+    }
+}

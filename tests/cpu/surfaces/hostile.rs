@@ -1,0 +1,153 @@
+//! Numbers that are none, and light beyond measure.
+
+use super::rig::*;
+use afterimage::kernel::reproject::Verdict;
+use proptest::prelude::*;
+
+const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("nan in surfaces", 48))]
+
+    #[test]
+    fn h18_a_broken_pixel_over_a_history_touches_no_other(x in 0u32..52, y in 0u32..41, channel in 0usize..3, bad in prop::sample::select(BAD.to_vec())) {
+        let mut clean = context(Method::Smr);
+        let first = step(&mut clean, 0, &Input::sharp(noise(SIZE, "h18")));
+        let coarse = LowPass::new(&first.stored(), 4).render(&Image::filled(SIZE, 1.5));
+        let mut hurt = clean.clone();
+        let i = (y * 52 + x) as usize;
+        for index in 1..4 {
+            let mut broken = coarse.clone();
+            if index == 1 {
+                broken.pixels_mut()[i][channel] = bad;
+            }
+            let a = step(&mut clean, index, &Input::at_lod(coarse.clone(), 1.5));
+            let b = step(&mut hurt, index, &Input::at_lod(broken, 1.5));
+            prop_assert_eq!(b.stats.nonfinite, u64::from(index == 1));
+            // What was remembered is shown, there as well.
+            prop_assert_eq!(&a.shown, &b.shown);
+            prop_assert_eq!(&a.words, &b.words);
+        }
+    }
+
+    #[test]
+    fn h18_a_broken_pixel_is_not_taken_for_black_by_its_neighbours(x in 0u32..52, y in 0u32..41, bad in prop::sample::select(BAD.to_vec())) {
+        // Plain surfaces under changed light: neighbours are asked how the light changed (smr), and what colors may be (taa).
+        for method in METHODS {
+            let mut clean = context(method);
+            step(&mut clean, 0, &Input::sharp(Image::filled(SIZE, [0.5, 0.4, 0.3])));
+            let mut hurt = clean.clone();
+            let darker = Image::filled(SIZE, [0.2, 0.16, 0.12]);
+            let mut broken = darker.clone();
+            broken.pixels_mut()[(y * 52 + x) as usize][1] = bad;
+            let a = step(&mut clean, 1, &Input::at_lod(darker, 2.0));
+            let b = step(&mut hurt, 1, &Input::at_lod(broken, 2.0));
+            for (i, (p, q)) in a.shown.pixels().iter().zip(b.shown.pixels()).enumerate() {
+                prop_assert!(p == q || i == (y * 52 + x) as usize, "{:?}: {:?} became {:?}", method, p, q);
+            }
+        }
+    }
+
+    #[test]
+    fn h18_a_broken_pixel_without_a_history_is_black_for_one_frame(x in 0u32..52, y in 0u32..41, bad in prop::sample::select(BAD.to_vec())) {
+        for method in METHODS {
+            let mut clean = context(method);
+            let mut hurt = context(method);
+            let picture = noise(SIZE, "h18 new").map(|c| c.map(|v| 0.4 + 0.2 * v));
+            let mut broken = picture.clone();
+            let i = (y * 52 + x) as usize;
+            broken.pixels_mut()[i][2] = bad;
+            let a = step(&mut clean, 0, &Input::sharp(picture.clone()));
+            let b = step(&mut hurt, 0, &Input::sharp(broken));
+            prop_assert_eq!(b.shown.at(x as usize, y as usize), [0.0; 3]);
+            prop_assert_eq!(b.surfaces()[i], Surface::EMPTY);
+            prop_assert!(a.shown.pixels().iter().zip(b.shown.pixels()).enumerate().all(|(k, (p, q))| p == q || k == i));
+            // The hole counts for nothing in coarser levels, so that the neighbours' history still fits.
+            let coarse = LowPass::new(&a.stored(), 4).render(&Image::filled(SIZE, 1.5));
+            let (a, b) = (step(&mut clean, 1, &Input::at_lod(coarse.clone(), 1.5)), step(&mut hurt, 1, &Input::at_lod(coarse.clone(), 1.5)));
+            prop_assert_eq!(b.trace.at(x as usize, y as usize).verdict, Verdict::Empty);
+            prop_assert_eq!(b.shown.at(x as usize, y as usize), coarse.at(x as usize, y as usize));
+            prop_assert!(a.shown.pixels().iter().zip(b.shown.pixels()).enumerate().all(|(k, (p, q))| p == q || k == i));
+        }
+    }
+}
+
+/// Any bits, or plausible numbers, as `wild` has it.
+fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
+    if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("surfaces from garbage", 150))]
+
+    #[test]
+    fn h19_h54_whatever_comes_the_output_is_finite_and_within_halves(name in any::<u64>(), wild in prop::sample::select(vec![0.02f32, 0.3, 1.0]), brightest in prop::sample::select(vec![1.0f32, 70000.0]), blocks in any::<bool>()) {
+        const SMALL: [u32; 2] = [19, 13];
+        for method in METHODS {
+            let mut draws = Draws::new(&format!("{name}"));
+            let mut settings = settings(method);
+            if blocks {
+                settings.foveation.filter = afterimage::foveation::Filter::Block;
+            }
+            settings.smr.tolerance = 10.0;
+            let mut post = CpuAfterimage::new(ContextDesc::new(SMALL), settings).unwrap();
+            for index in 0..6 {
+                let d = &mut draws;
+                let shift = number(d, wild, -3.0, 3.0);
+                let input = Input {
+                    lod: Some(Image::from_fn(SMALL, |_| number(d, wild, -0.5, 9.0))),
+                    depth: Some(Image::from_fn(SMALL, |_| number(d, wild, 3.0, 3.1))),
+                    motion: Some(Image::from_fn(SMALL, |_| [shift, number(d, wild, -0.2, 0.2)])),
+                    trust: Some(Image::from_fn(SMALL, |_| number(d, wild, 0.5, 1.0))),
+                    gaze: Gaze::At { px: [number(d, wild, 0.0, 19.0), 5.0] },
+                    exposure: Exposure::Changed { ratio: d.range(-40.0, 40.0).exp2() },
+                    ..Input::sharp(Image::from_fn(SMALL, |_| [0; 3].map(|_| number(d, wild, 0.0, brightest))))
+                };
+                let made = step(&mut post, index, &input);
+                for &v in made.shown.pixels().iter().flatten() {
+                    prop_assert!(v.abs() <= 65504.0, "{:?} frame {}: {}", method, index, v);
+                }
+                for s in made.surfaces() {
+                    prop_assert!(s.color.is_finite() && s.color.min_element() >= 0.0);
+                }
+                for t in made.trace.pixels() {
+                    prop_assert!((0.0..=1.0).contains(&t.survival) && (0.0..=1.0).contains(&t.gate) && t.w_sum.is_finite());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn resampled_and_relit_highlights_stay_within_halves() {
+    // A lobe beside the brightest half, and a gain of five on it, both ask for more.
+    let bright = Image::from_fn(SIZE, |[x, y]| [if x / 4 % 2 == 0 || y % 8 == 0 { 65504.0 } else { 100.0 }; 3]);
+    for method in METHODS {
+        let mut post = context(method);
+        step(&mut post, 0, &Input::sharp(bright.map(|c| c.map(|v| 0.6 * v))));
+        for index in 1..4 {
+            let input = Input { motion: Some(Image::filled(SIZE, [0.5, 0.5])), ..Input::at_lod(bright.clone(), 1.0) };
+            let made = step(&mut post, index, &input);
+            let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+            println!("{method:?}, frame {index}: at the most {brightest}");
+            assert!(brightest <= 65504.0);
+            assert!(made.trace.pixels().iter().any(|t| t.survival > 0.0));
+        }
+    }
+}
+
+#[test]
+fn h73_detail_of_bright_pictures_stays() {
+    // Storage alone is off by 2^-10, which near 65504 is a difference of 100 * 256 * 2^-11 = 12 in the gate's units; low-passes are of
+    // many such roundings, which cancel.
+    for scale in [1.0, 100.0, 4_000.0, 60_000.0] {
+        let mut post = context(Method::Smr);
+        let picture = noise(SIZE, "h73").map(|c| c.map(|v| v * scale));
+        let first = step(&mut post, 0, &Input::sharp(picture));
+        let low_pass = LowPass::new(&first.stored(), 4);
+        for index in 1..20 {
+            let input = Input::at_lod(low_pass.render(&Image::filled(SIZE, 2.0)), 2.0);
+            assert_eq!(step(&mut post, index, &input).shown, first.stored(), "scale {scale}, frame {index}");
+        }
+    }
+}

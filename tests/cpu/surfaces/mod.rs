@@ -1,0 +1,16 @@
+//! The methods that remember surfaces, smr and taa, on the CPU: the properties that smr's mathematics promises (S1 to S9), storage,
+//! formulas against f64, hostile input, and what becomes of analytic scenes.
+
+mod antialiasing;
+mod decision;
+mod formulas;
+mod geometry;
+mod hostile;
+mod lifecycle;
+mod light;
+mod noisy;
+mod properties;
+#[allow(dead_code, reason = "the lab's tests on analytic scenes use a part of it")]
+mod rig;
+mod still;
+mod storage;

@@ -1,0 +1,151 @@
+//! Noisy candidates: the mean of many frames is as sure as its weights promise and neither darker nor brighter than the truth; noise is
+//! no change, and change is not noise.
+
+use super::rig::{Draws, Input, SIZE, settings, step};
+use afterimage::cpu::CpuAfterimage;
+use afterimage::frame::ContextDesc;
+use afterimage::image::Image;
+use afterimage::settings::{Method, Settings, Smr};
+use afterimage_testing::{accept, p_of_z, reject};
+
+const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
+
+fn noisy() -> Settings {
+    Settings { noisy: true, ..settings(Method::Smr) }
+}
+
+fn post(settings: Settings) -> CpuAfterimage {
+    CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap()
+}
+
+/// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves suggest.
+fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> Input {
+    let made = Image::from_fn(SIZE, |px| {
+        let drawn: Vec<f32> = (0..samples).map(|_| sample(draws, px)).collect();
+        let mean = drawn.iter().sum::<f32>() / samples as f32;
+        let squares: f32 = drawn.iter().map(|v| (v - mean) * (v - mean)).sum();
+        (mean, (squares / (samples * (samples - 1)) as f32).sqrt())
+    });
+    Input {
+        noise: Some(made.map(|(_, error)| [error, samples as f32])),
+        ..Input::sharp(made.map(|(mean, _)| [mean; 3]))
+    }
+}
+
+/// Mean of the shown pixels, and the variance between them.
+fn moments(shown: &Image<[f32; 3]>) -> (f64, f64) {
+    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / PIXELS;
+    let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
+    (mean, squares / (PIXELS - 1.0))
+}
+
+/// Variance of a still pixel after `frames` of variance 1, by the weights that `docs/method.md` states.
+fn promised(frames: usize, most: f64) -> f64 {
+    let (mut variance, mut known) = (1.0, 1.0);
+    for _ in 1..frames {
+        let share = f64::min(known / (known + 1.0), most);
+        variance = share * share * variance + (1.0 - share) * (1.0 - share);
+        known = 1.0 / (1.0 - share);
+    }
+    variance
+}
+
+#[test]
+fn a_still_view_becomes_as_sure_as_its_weights_promise() {
+    let even = |d: &mut Draws, _| d.range(0.2, 0.8);
+    let of_one_frame = 0.6 * 0.6 / 12.0 / 2.0;
+    for (frames, accumulate) in [(5, 0.9), (60, 0.9), (60, 0.5)] {
+        let mut draws = Draws::new(&format!("still {frames} {accumulate}"));
+        let mut post = post(Settings { smr: Smr { accumulate, ..Smr::default() }, ..noisy() });
+        let shown = (0..frames).map(|i| step(&mut post, i, &sampled(&mut draws, 2, even)).shown).last().unwrap();
+        let (mean, variance) = moments(&shown);
+        let expected = of_one_frame * promised(frames as usize, f64::from(accumulate));
+        println!("{frames} frames, share {accumulate}: variance {variance:.2e}, promised {expected:.2e}");
+        // Rounding of what is stored adds less than a thousandth of the color each frame.
+        let rounding = f64::from(2.0_f32.powi(-10)).powi(2) * 0.25;
+        let z = (variance - expected) / (expected * (2.0 / PIXELS).sqrt());
+        let allowed = rounding / (1.0 - f64::from(accumulate)).powi(2) / (expected * (2.0 / PIXELS).sqrt());
+        accept("variance", p_of_z((z.abs() - allowed).max(0.0)));
+        accept("mean", p_of_z((mean - 0.5) / (expected / PIXELS).sqrt()));
+        if frames > 5 {
+            let other = of_one_frame * promised(frames as usize, 0.8 * f64::from(accumulate));
+            reject("variance, other weights", p_of_z((variance - other) / (other * (2.0 / PIXELS).sqrt())));
+        }
+    }
+}
+
+/// A lamp that one sample in 32 finds: most pixels look dark and sure.
+fn rare(d: &mut Draws, _: [u32; 2]) -> f32 {
+    if d.bits().is_multiple_of(32) { 8.0 } else { 0.05 }
+}
+
+#[test]
+fn rare_bright_samples_are_neither_lost_nor_doubled() {
+    let truth = 8.0 / 32.0 + 0.05 * 31.0 / 32.0;
+    let mut draws = Draws::new("rare");
+    let mut post = post(noisy());
+    // Means over time, from when the average has settled on.
+    let (mut sum, mut squares, mut frames) = (0.0, 0.0, 0.0);
+    for index in 0..400 {
+        let (mean, _) = moments(&step(&mut post, index, &sampled(&mut draws, 2, rare)).shown);
+        if index >= 50 && index % 50 == 0 {
+            (sum, squares, frames) = (sum + mean, squares + mean * mean, frames + 1.0);
+        }
+    }
+    let mean: f64 = sum / frames;
+    let error = ((squares / frames - mean * mean) / (frames - 1.0)).sqrt();
+    println!("shown {mean:.4}, truth {truth:.4}, standard error {error:.4}");
+    // Where the gate lets go of history by chance, nothing is lost: the candidate is as right on average.
+    assert!((mean - truth).abs() < 5.0 * error + 0.01 * truth, "{mean} for {truth}");
+}
+
+#[test]
+fn a_change_beyond_the_noise_is_followed_within_frames() {
+    let mut draws = Draws::new("change");
+    let mut post = post(noisy());
+    let around = |level: f32| move |d: &mut Draws, _: [u32; 2]| level + d.range(-0.1, 0.1);
+    for index in 0..30 {
+        step(&mut post, index, &sampled(&mut draws, 2, around(0.2)));
+    }
+    let after: Vec<f64> =
+        (30..36).map(|index| moments(&step(&mut post, index, &sampled(&mut draws, 2, around(0.6))).shown).0).collect();
+    println!("0.2 becomes 0.6: {after:.3?}");
+    assert!((after[1] - 0.6).abs() < 0.02, "{after:?}");
+    // In half of the picture alone, the other half keeps its history.
+    let half = |d: &mut Draws, [x, _]: [u32; 2]| if x < SIZE[0] / 2 { 0.6 } else { 0.1 } + d.range(-0.05, 0.05);
+    for index in 36..42 {
+        let shown = step(&mut post, index, &sampled(&mut draws, 2, half)).shown;
+        let errors = |range: std::ops::Range<usize>, truth: f32| -> f32 {
+            let row: Vec<f32> = range.map(|x| (shown.at(x, 20)[0] - truth).abs()).collect();
+            row.iter().sum::<f32>() / row.len() as f32
+        };
+        println!(
+            "frame {index}: kept half off by {:.3}, changed half by {:.3}",
+            errors(0..18, 0.6),
+            errors(34..52, 0.1)
+        );
+        assert!(index < 38 || (errors(0..18, 0.6) < 0.02 && errors(34..52, 0.1) < 0.03));
+    }
+}
+
+#[test]
+fn a_picture_without_noise_is_a_fixed_point_and_nan_stays_where_it_is() {
+    let color = super::rig::noise(SIZE, "noisy fixed point");
+    let mut input = Input { noise: Some(Image::filled(SIZE, [0.0, 4.0])), ..Input::sharp(color.clone()) };
+    let mut post = post(noisy());
+    let first = step(&mut post, 0, &input);
+    for index in 1..8 {
+        let made = step(&mut post, index, &input);
+        // As it is stored: what is shown afterwards is a mean of the color and its rounding.
+        let off = |a: [f32; 3], b: [f32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
+        assert!(made.shown.pixels().iter().zip(color.pixels()).all(|(a, b)| off(*a, *b) <= 1.5e-3));
+        assert_eq!(made.surfaces().len(), first.surfaces().len());
+    }
+    input.color.pixels_mut()[700] = [f32::NAN; 3];
+    input.noise.as_mut().unwrap().pixels_mut()[900] = [f32::NAN; 2];
+    let broken = step(&mut post, 8, &input);
+    input.color.pixels_mut()[700] = color.pixels()[700];
+    for (i, (a, b)) in broken.shown.pixels().iter().zip(color.pixels()).enumerate() {
+        assert!((0..3).all(|k| (a[k] - b[k]).abs() < 2e-3), "pixel {i}: {a:?} for {b:?}");
+    }
+}

@@ -1,0 +1,225 @@
+//! S1, S2, S6 and S8 over random frames.
+
+use super::rig::*;
+use afterimage::kernel::reproject::Verdict;
+use afterimage::kernel::surface::MAX_LOD;
+
+/// Coarse, moving, partly distrusted: whatever an engine may hand over. Motion in quarters of a pixel, the same over large areas.
+fn busy(name: &str) -> Input {
+    let mut draws = Draws::new(name);
+    let size = SIZE;
+    let shift = [0; 2].map(|_| (draws.bits() % 17) as f32 * 0.25 - 2.0);
+    let split = draws.range(8.0, 40.0);
+    let lods = Image::from_fn(size, |_| if draws.uniform() < 0.3 { 0.0 } else { draws.range(0.0, 2.0) });
+    let trust = Image::from_fn(size, |_| if draws.uniform() < 0.8 { 1.0 } else { draws.uniform() });
+    let near = |x: u32| (x as f32) < split;
+    Input {
+        lod: Some(lods),
+        depth: Some(Image::from_fn(size, |[x, _]| if near(x) { 2.0 } else { 5.0 })),
+        motion: Some(Image::from_fn(size, |[x, _]| if near(x) { shift } else { [0.0; 2] })),
+        trust: Some(trust),
+        ..Input::sharp(LowPass::new(&noise(size, name), 3).render(&Image::filled(size, 0.5)))
+    }
+}
+
+#[test]
+fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
+    let mut post = context(Method::Smr);
+    let mut foveal = 0;
+    for index in 0..40 {
+        let input = busy(&format!("s1 {index}"));
+        let made = step(&mut post, index, &input);
+        let surfaces = made.surfaces();
+        for (i, lod) in input.lod.as_ref().unwrap().pixels().iter().enumerate().filter(|(_, l)| **l == 0.0) {
+            assert_eq!(bits(made.shown.pixels()[i]), bits(input.color.pixels()[i]), "frame {index}, pixel {i}");
+            foveal += 1;
+            // Stored as sharp, but where a vector leads nowhere.
+            assert!(surfaces[i].lod == 0.0 || surfaces[i].lod == MAX_LOD && lod == &0.0);
+        }
+        assert!(index == 0 || made.trace.pixels().iter().any(|t| t.survival > 0.0), "history is used elsewhere");
+    }
+    assert!(foveal > 10_000);
+}
+
+#[test]
+fn s1_by_gaze_the_fovea_is_a_disc_of_the_settings() {
+    let mut post = context(Method::Smr);
+    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+    for index in 0..10 {
+        let px = [10.0 + 3.0 * index as f32, 20.0];
+        let input =
+            Input { lod: None, gaze: Gaze::At { px }, ..Input::sharp(noise(SIZE, &format!("s1 gaze {index}"))) };
+        let made = step(&mut post, index, &input);
+        for (i, e) in geometry.eccentricity_map(px).pixels().iter().enumerate() {
+            if *e < 2.49 {
+                assert_eq!(bits(made.shown.pixels()[i]), bits(input.color.pixels()[i]));
+                assert_eq!(made.surfaces()[i].lod, 0.0);
+            } else if index == 0 && *e > 2.8 {
+                assert!(made.surfaces()[i].lod > 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored() {
+    let before = Input { depth: Some(Image::filled(SIZE, 4.0)), ..Input::sharp(noise(SIZE, "s2 before")) };
+    let lods = Image::from_fn(SIZE, |[x, y]| ((x + 3 * y) % 40) as f32 * 0.05);
+    let plain = Input {
+        lod: Some(lods.clone()),
+        depth: before.depth.clone(),
+        ..Input::sharp(LowPass::new(&before.color, 3).render(&lods))
+    };
+    let motion = |m: [f32; 2]| Some(Image::filled(SIZE, m));
+    let cases = [
+        (Verdict::Reset, Input { reset: Reset::All, ..plain.clone() }),
+        (Verdict::Distrusted, Input { trust: Some(Image::filled(SIZE, 0.0)), ..plain.clone() }),
+        (Verdict::OffScreen, Input { motion: motion([100.0, 0.0]), ..plain.clone() }),
+        (Verdict::Disoccluded, Input { depth: Some(Image::filled(SIZE, 9.0)), ..plain.clone() }),
+        (Verdict::Disoccluded, Input { depth: Some(Image::filled(SIZE, f32::NAN)), ..plain.clone() }),
+        (Verdict::BadMotion, Input { motion: motion([1e9, 0.0]), ..plain.clone() }),
+        (Verdict::BadMotion, Input { motion: motion([f32::NAN, 0.0]), ..plain.clone() }),
+    ];
+    for method in METHODS {
+        let mut seen = context(method);
+        step(&mut seen, 0, &before);
+        let kept = step(&mut seen.clone(), 1, &plain);
+        assert_ne!(kept.shown, plain.color, "the planted error: a history");
+        for (verdict, input) in &cases {
+            let made = step(&mut seen.clone(), 1, input);
+            assert!(made.trace.pixels().iter().all(|t| t.verdict == *verdict), "{verdict:?}");
+            assert_eq!(made.shown, input.color, "{method:?} {verdict:?}");
+            for (s, &lod) in made.surfaces().iter().zip(lods.pixels()) {
+                // A vector that is NaN is like none of its neighbours'.
+                let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
+                let expected = match method {
+                    Method::Taa => 0.0,
+                    _ if nowhere => MAX_LOD,
+                    _ => stored_lod(lod),
+                };
+                assert!((s.lod - expected).abs() < 1e-6, "{method:?} {verdict:?}: {} for {expected}", s.lod);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
+    let mut post = context(Method::Smr);
+    let picture = noise(SIZE, "coherent");
+    step(&mut post, 0, &Input::sharp(picture.clone()));
+    // Alone; and a row of three, of which the first two share a block of 2x2 pixels and the last has no friend in its own.
+    let odd = [[10, 10], [20, 10], [21, 10], [22, 10]];
+    let motion = Image::from_fn(SIZE, |at| if odd.contains(&at) { [2.0, 0.0] } else { [0.0; 2] });
+    let input = Input {
+        motion: Some(motion),
+        ..Input::at_lod(LowPass::new(&picture, 3).render(&Image::filled(SIZE, 1.0)), 1.0)
+    };
+    let made = step(&mut post, 1, &input);
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let i = (y * SIZE[0] + x) as usize;
+            let nowhere = [[10, 10], [22, 10]].contains(&[x, y]);
+            let verdict = if nowhere { Verdict::Disoccluded } else { Verdict::Valid };
+            assert_eq!(made.trace.pixels()[i].verdict, verdict, "({x}, {y})");
+            if nowhere {
+                assert_eq!(bits(made.shown.pixels()[i]), bits(input.color.pixels()[i]));
+                assert_eq!(made.surfaces()[i].lod, MAX_LOD);
+            } else if ![[20, 10], [21, 10]].contains(&[x, y]) {
+                assert_eq!(made.surfaces()[i].lod, 0.0, "({x}, {y})");
+            }
+        }
+    }
+}
+
+/// A few frames, all colors times `ratio` from frame `from` on; `told` says so as an exposure.
+fn exposed(method: Method, ratio: f32, from: u64, told: bool) -> Vec<Made> {
+    let mut post = context(method);
+    let frame = |index: u64| {
+        let mut input = busy(&format!("exposure {index}"));
+        if index >= from {
+            input.color = input.color.map(|c| c.map(|v| v * ratio));
+        }
+        if told && index == from {
+            input.exposure = Exposure::Changed { ratio };
+        }
+        input
+    };
+    (0..6).map(|index| step(&mut post, index, &frame(index))).collect()
+}
+
+#[test]
+fn s6_an_exposure_that_is_told_is_as_if_it_had_always_been() {
+    for method in METHODS {
+        // Powers of two shift exponents alone, and before the change there was a first frame only, in which nothing is compared: the
+        // gate's differences grow with the square root of light, so that later frames decide by their own exposure.
+        for ratio in [0.25, 0.5, 2.0, 16.0] {
+            let always = exposed(method, ratio, 0, false);
+            let told = exposed(method, ratio, 1, true);
+            let untold = exposed(method, ratio, 1, false);
+            for index in 1..6 {
+                assert_eq!(told[index].shown, always[index].shown, "{method:?}, {ratio}, frame {index}");
+                assert_eq!(told[index].words, always[index].words);
+            }
+            assert_ne!(untold[1].shown, always[1].shown, "the planted error: not told");
+        }
+    }
+}
+
+#[test]
+fn s8_the_index_of_a_frame_and_the_number_of_threads_do_not_matter() {
+    for method in METHODS {
+        let run = |from: u64, seed: u64, threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut post =
+                    CpuAfterimage::new(ContextDesc::new(SIZE), Settings { seed, ..settings(method) }).unwrap();
+                (0..6).map(|i| step(&mut post, from + 7 * i, &busy(&format!("s8 {i}")))).collect::<Vec<_>>()
+            })
+        };
+        let first = run(0, 0, 1);
+        assert!(first == run(1 << 40, 99, 3), "{method:?}");
+        assert!(first.iter().skip(1).all(|m| m.trace.pixels().iter().any(|t| t.survival > 0.0)));
+    }
+}
+
+#[test]
+fn s8_a_picture_16_pixels_further_becomes_the_same_16_pixels_further() {
+    // Each frame borders reach two coarsest texels of 16 pixels further in.
+    const WIDE: [u32; 2] = [208, 224];
+    const MARGIN: usize = 2 * 2 * 16 + 8;
+    for method in METHODS {
+        let run = |offset: [u32; 2]| {
+            let mut post = CpuAfterimage::new(ContextDesc::new(WIDE), settings(method)).unwrap();
+            let mut last = None;
+            for index in 0..3_u32 {
+                let world = noise([WIDE[0] + 64, WIDE[1] + 64], &format!("world {index}"));
+                let window = |[x, y]: [u32; 2]| [x + offset[0], y + offset[1]];
+                let near = |at: [u32; 2]| window(at)[0] / 24 % 2 == 0;
+                let color = Image::from_fn(WIDE, |at| {
+                    let [x, y] = window(at);
+                    world.at(x as usize, y as usize).map(|v| 0.4 + 0.1 * v)
+                });
+                let input = Input {
+                    lod: Some(Image::from_fn(WIDE, |at| (window(at)[1] % 24) as f32 / 12.0 * (index.min(1) as f32))),
+                    depth: Some(Image::from_fn(WIDE, |at| if near(at) { 2.0 } else { 4.0 })),
+                    motion: Some(Image::from_fn(WIDE, |at| if near(at) { [-0.25, 0.75] } else { [1.0, 0.0] })),
+                    ..Input::sharp(color)
+                };
+                last = Some(step(&mut post, index.into(), &input));
+            }
+            last.unwrap()
+        };
+        let (here, there) = (run([0, 0]), run([16, 32]));
+        let mut used = 0;
+        for y in MARGIN..224 - MARGIN - 32 {
+            for x in MARGIN..208 - MARGIN - 16 {
+                let (h, t) = ((y + 32) * 208 + x + 16, y * 208 + x);
+                assert_eq!(here.shown.pixels()[h], there.shown.pixels()[t], "{method:?} ({x}, {y})");
+                assert_eq!(here.words[h], there.words[t]);
+                used += usize::from(there.trace.pixels()[t].survival > 0.0);
+            }
+        }
+        assert!(used > 500, "{used} use history");
+    }
+}

@@ -1,0 +1,301 @@
+//! Views, refusals, several frames in one submission, poison, resizing for ever.
+
+use super::rig::noise_view;
+use super::rig::{Made, Rig, View, make_texture};
+use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::error::{CreateError, FrameError};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::settings::{Method, Sampler, Settings};
+use afterimage_testing::holds;
+use wgpu::{TextureFormat, TextureUsages};
+
+const SIZE: [u32; 2] = [70, 40];
+
+fn agree(desc: ContextDesc, settings: Settings, frames: u64) {
+    let Some(mut rig) = Rig::new(desc, settings) else { return };
+    let mut kept = 0;
+    for index in 0..frames {
+        let views: Vec<View> = (0..desc.view_count).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect();
+        let (cpu, trace) = rig.on_cpu(index, Reset::None, &views);
+        assert_eq!(rig.on_gpu(index, Reset::None, &views), cpu, "{desc:?}, frame {index}");
+        kept += trace.iter().flat_map(|t| t.pixels()).filter(|t| !t.take).count();
+    }
+    assert!(kept > 100, "history must play a part");
+}
+
+#[test]
+fn h27_stereo_is_one_dispatch_without_a_leak() {
+    agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::paper(), 12);
+    let settings = Settings { sampler: Sampler::AEs, ..Settings::paper() };
+    agree(ContextDesc { view_count: 4, ..ContextDesc::new([33, 17]) }, settings, 12);
+    // The planted error: the other eye's history. Layers swapped in the past must show.
+    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
+    let views = |index: u64| -> Vec<View> { (0..2).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect() };
+    rig.on_gpu(0, Reset::None, &views(0));
+    rig.on_cpu(0, Reset::None, &views(0));
+    rig.swap_past_layers();
+    assert_ne!(rig.on_gpu(1, Reset::None, &views(1)), rig.on_cpu(1, Reset::None, &views(1)).0);
+}
+
+#[test]
+fn every_convention_agrees() {
+    for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
+        for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
+            for y_axis in [YAxis::Down, YAxis::Up] {
+                let motion = MotionConvention { unit, direction, y_axis };
+                agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
+            }
+        }
+    }
+    for depth in [
+        DepthConvention::Forward { near: 0.1, far: 100.0 },
+        DepthConvention::Forward { near: 0.1, far: f32::INFINITY },
+        DepthConvention::Reversed { near: 0.1, far: 100.0 },
+        DepthConvention::Reversed { near: 0.1, far: f32::INFINITY },
+        DepthConvention::Orthographic { near: -1.0, far: 50.0 },
+    ] {
+        agree(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::paper(), 6);
+    }
+}
+
+#[test]
+fn odd_sizes_agree() {
+    for size in [[1, 1], [1, 7], [65, 3], [63, 64], [129, 1]] {
+        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings::paper()) else { return };
+        for index in 0..4 {
+            let views = [noise_view(&format!("odd {index}"), &ContextDesc::new(size))];
+            assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0, "{size:?}");
+        }
+    }
+}
+
+#[test]
+fn h79_poisoned_fresh_history_is_never_visible() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    rig.poison();
+    for index in 0..3 {
+        let views = [noise_view(&format!("poison {index}"), &rig.context)];
+        assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
+    }
+    holds!("H79", Gpu, "wrs: fresh textures of NaN words, 3 frames as of the CPU's clean ones, bit for bit");
+}
+
+/// Frames `range`, on both.
+fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
+    let context = rig.context;
+    range.map(|i| rig.both(i, Reset::None, &[noise_view(&format!("run {i}"), &context)]).0).collect()
+}
+
+#[test]
+fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
+    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() });
+    let Some(mut rig) = fresh() else { return };
+    let expected = run(&mut rig, 20..26);
+    let used = || {
+        let mut rig = fresh().unwrap();
+        run(&mut rig, 14..20);
+        rig
+    };
+    assert!(run(&mut used(), 20..26) != expected, "the planted error: no reset");
+
+    let mut forgotten = used();
+    forgotten.cpu.forget();
+    forgotten.gpu.forget();
+    assert!(run(&mut forgotten, 20..26) == expected);
+
+    // Odd, even, a single pixel, and back, with frames between and the new history full of garbage.
+    let mut resized = used();
+    for size in [[3, 5], [64, 64], [1, 1], [65, 41], SIZE] {
+        resized.resize(size);
+        resized.poison();
+        if size != SIZE {
+            run(&mut resized, 0..2);
+        }
+    }
+    assert!(run(&mut resized, 20..26) == expected);
+
+    // A pause or a cut, said twice; the first of them at once shows nothing but the candidate.
+    let mut cut = used();
+    let views = [noise_view("run 20", &cut.context)];
+    for _ in 0..2 {
+        let (made, _) = cut.both(20, Reset::All, &views);
+        let candidate: Vec<[u32; 3]> = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
+        assert!(made.shown == candidate && made == expected[0]);
+    }
+    assert!(run(&mut cut, 21..26) == expected[1..]);
+
+    let Some(mut from_zero) = fresh() else { return };
+    let Some(mut told) = fresh() else { return };
+    let views = [noise_view("run 0", &told.context)];
+    assert!(told.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0], "a reset at frame 0 changes nothing");
+    assert!(run(&mut told, 1..4) == run(&mut from_zero, 1..4));
+    holds!("H76", Gpu, "wrs: 4 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit");
+    holds!("H77", Gpu, "wrs: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit");
+    holds!("H78", Gpu, "wrs: reset twice running, and at frame 0: as a fresh context, bit for bit");
+}
+
+#[test]
+fn h76_a_minimised_window_is_refused_and_changes_nothing() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
+        return;
+    };
+    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
+        return;
+    };
+    run(&mut rig, 0..3);
+    run(&mut other, 0..3);
+    for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
+        let error = rig.gpu.resize(&rig.device, size).unwrap_err();
+        assert!(matches!(error, FrameError::Extent { .. }), "{error}");
+    }
+    assert_eq!(rig.gpu.desc().context.size_px, SIZE);
+    assert!(run(&mut rig, 3..6) == run(&mut other, 3..6), "the history is still there");
+    holds!("H76", Gpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused by a typed error; the history goes on, bit for bit");
+}
+
+#[test]
+fn h77_a_lost_device_is_left_behind_for_a_new_one() {
+    use std::sync::{Arc, OnceLock};
+    for method in [Method::Wrs, Method::Taa, Method::Smr] {
+        let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() });
+        let Some(mut lost) = fresh() else { return };
+        let reason = Arc::new(OnceLock::new());
+        let told = reason.clone();
+        lost.device.set_device_lost_callback(move |why, _| {
+            let _ = told.set(why);
+        });
+        run(&mut lost, 0..4);
+        let desc = wgpu::BufferDescriptor {
+            label: None,
+            size: 16,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        let buffer = lost.device.create_buffer(&desc);
+        lost.device.destroy();
+        // Until the caller hears of it, recording goes on without a panic, whatever the context has to make for it.
+        let facts = [noise_view("lost", &lost.context).facts];
+        let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
+        let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
+        let mut encoder = lost.device.create_command_encoder(&Default::default());
+        lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
+        lost.queue.submit([encoder.finish()]);
+        lost.gpu.resize(&lost.device, [33, 17]).unwrap();
+        lost.gpu.forget();
+        // What it hears are typed errors of wgpu's: the reason, and a readback that does not map.
+        let mapped = Arc::new(OnceLock::new());
+        let result = mapped.clone();
+        buffer.map_async(wgpu::MapMode::Read, .., move |r| {
+            let _ = result.set(r);
+        });
+        let _ = lost.device.poll(wgpu::PollType::wait_indefinitely());
+        assert!(matches!(mapped.get(), Some(Err(wgpu::BufferAsyncError))), "{mapped:?}");
+        assert_eq!(reason.get(), Some(&wgpu::DeviceLostReason::Destroyed));
+        drop(lost);
+        // A new context on a new device knows nothing of the old one's frames: it starts with the candidate.
+        let mut again = fresh().unwrap();
+        let made = run(&mut again, 4..8);
+        let candidate = noise_view("run 4", &again.context).color;
+        assert!(made[0].shown.iter().zip(candidate.pixels()).all(|(a, b)| *a == b.map(f32::to_bits)), "{method:?}");
+        assert!(made == run(&mut fresh().unwrap(), 4..8));
+    }
+    holds!(
+        "H77",
+        Gpu,
+        "wrs, taa, smr: a lost device gives DeviceLostReason and BufferAsyncError, no panic; a new one starts afresh"
+    );
+}
+
+#[test]
+fn two_frames_in_one_submission_see_their_own_constants() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let mut view = noise_view("submission", &rig.context);
+    let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
+    rig.on_cpu(0, Reset::None, &[view.clone()]);
+    view.facts = second;
+    let expected = rig.on_cpu(1, Reset::None, &[view.clone()]).0;
+    assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected);
+}
+
+#[test]
+fn good_bad_good_equals_good_good() {
+    let desc = ContextDesc::new(SIZE);
+    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
+    let Some(mut other) = Rig::new(desc, Settings::paper()) else { return };
+    let frames: Vec<View> = (0..2).map(|i| noise_view(&format!("good {i}"), &desc)).collect();
+    rig.on_gpu(0, Reset::None, &frames[..1]);
+    other.on_gpu(0, Reset::None, &frames[..1]);
+    let texture = |format, usage, size| make_texture(&rig.device, &ContextDesc::new(size), format, usage);
+    let read = TextureUsages::TEXTURE_BINDING;
+    let write = TextureUsages::STORAGE_BINDING;
+    let color = texture(TextureFormat::Rgba16Float, read, SIZE);
+    let output = texture(TextureFormat::Rgba32Float, write, SIZE);
+    let small = texture(TextureFormat::Rgba16Float, read, [8, 8]);
+    let unbound = texture(TextureFormat::Rgba16Float, TextureUsages::COPY_DST, SIZE);
+    let integer = texture(TextureFormat::Rgba16Uint, read, SIZE);
+    let narrow = texture(TextureFormat::R32Float, read, SIZE);
+    let wrong_output = texture(TextureFormat::Rgba16Float, write, SIZE);
+    let facts = [frames[0].facts];
+    let elsewhere = [ViewFrame { geometry: ViewGeometry::flat([9, 9], 70.0).unwrap(), ..facts[0] }];
+    let good = Frame { reset: Reset::All, ..Frame::new(&color, &output, &facts, 7) };
+    let bad = [
+        Frame { color: &small, ..good },
+        Frame { color: &unbound, ..good },
+        Frame { color: &integer, ..good },
+        Frame { color: &narrow, ..good },
+        Frame { motion: Some(&narrow), ..good },
+        Frame { depth: Some(&integer), ..good },
+        Frame { trust: Some(&integer), ..good },
+        Frame { trust: Some(&small), ..good },
+        Frame { lod: Some(&integer), ..good },
+        Frame { lod: Some(&unbound), ..good },
+        Frame { exposure: Exposure::Changed { ratio: 0.0 }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },
+        Frame { exposure: Exposure::Changed { ratio: f32::INFINITY }, ..good },
+        Frame { output: &wrong_output, ..good },
+        Frame { output: &color, ..good },
+        Frame { views: &[], ..good },
+        Frame { views: &elsewhere, ..good },
+    ];
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    for frame in bad {
+        let error: FrameError = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap_err();
+        println!("{error}");
+        assert!(error.to_string().contains("expected"));
+    }
+    rig.queue.submit([encoder.finish()]);
+    assert_eq!(rig.on_gpu(1, Reset::None, &frames[1..]), other.on_gpu(1, Reset::None, &frames[1..]));
+}
+
+#[test]
+fn contexts_that_cannot_be_are_refused() {
+    let Some((device, _)) = afterimage_testing::gpu::device() else { return };
+    let desc = GpuDesc::new(SIZE, TextureFormat::Rgba16Float);
+    let refused = |desc: GpuDesc| Afterimage::new(&device, &desc).unwrap_err();
+    let format = refused(GpuDesc { output_format: TextureFormat::Bgra8Unorm, ..desc });
+    assert!(matches!(format, CreateError::OutputFormat { .. }), "{format}");
+    let many = ContextDesc { view_count: 5, ..desc.context };
+    assert!(refused(GpuDesc { context: many, ..desc }).to_string().contains("at most 4 views"));
+    assert!(refused(GpuDesc { context: ContextDesc::new([0, 3]), ..desc }).to_string().contains("minimised"));
+    let large = refused(GpuDesc { context: ContextDesc::new([16384, 3]), ..desc });
+    assert!(large.to_string().contains("max_texture_dimension_2d"), "{large}");
+}
+
+#[test]
+fn memory_bytes_is_what_is_made() {
+    let Some((device, _)) = afterimage_testing::gpu::device() else { return };
+    let pixels = u64::from(SIZE[0] * SIZE[1]);
+    let mut desc = GpuDesc { settings: Settings::paper(), ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
+    assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 24 * pixels);
+    desc.settings.sampler = Sampler::AEs;
+    assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 32 * pixels);
+    desc.context.view_count = 2;
+    let mut post = Afterimage::new(&device, &desc).unwrap();
+    assert_eq!(post.memory_bytes(), 64 * pixels);
+    post.resize(&device, [7, 5]).unwrap();
+    assert_eq!(post.memory_bytes(), 64 * 35);
+}

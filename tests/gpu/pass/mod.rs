@@ -1,0 +1,13 @@
+//! The pass on the GPU against its twin on the CPU: whole sequences, decisions and stored state bit for bit.
+
+mod gaze;
+mod layout;
+mod lifecycle;
+mod light;
+mod motion;
+mod properties;
+mod reservoirs;
+#[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
+pub mod rig;
+mod surfaces;
+mod surfaces_hard;

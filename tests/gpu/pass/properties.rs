@@ -1,0 +1,137 @@
+//! Whole small frames of any bit patterns, and histories of any bit patterns, on the device: as the CPU in every bit where it has the
+//! same past, finite wherever it comes from, healed in a frame, and one view never the other's.
+
+use super::rig::{Rig, View};
+use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
+use afterimage::frame::{ContextDesc, Reset};
+use afterimage::kernel::pack;
+use afterimage::kernel::surface::unpack_surface;
+use afterimage::settings::{Method, Settings};
+use afterimage::shader::SHADERS;
+use afterimage_testing::Draws;
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::cell::RefCell;
+
+fn view(frame: AnyFrame, settings: &Settings) -> View {
+    View {
+        facts: frame.facts,
+        color: frame.color,
+        depth: Some(frame.depth),
+        motion: Some(frame.motion),
+        trust: Some(frame.trust),
+        lod: Some(frame.lod),
+        noise: settings.noisy.then_some(frame.noise),
+    }
+}
+
+fn stereo() -> ContextDesc {
+    ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }
+}
+
+/// Runs `check` over cases; contexts are made once and reset.
+fn cases(name: &str, count: u32, mut check: impl FnMut(&mut Draws, f32) -> Result<(), TestCaseError>) {
+    let strategy = (any::<u64>(), prop::sample::select(vec![0.02_f32, 0.3, 1.0]));
+    let check = RefCell::new(&mut check);
+    TestRunner::new(afterimage_testing::property(name, count))
+        .run(&strategy, |(seed, wild)| (check.borrow_mut())(&mut Draws::new(&seed.to_string()), wild))
+        .unwrap();
+}
+
+#[test]
+fn any_bits_agree_bit_for_bit_and_are_finite() {
+    for settings in all_settings() {
+        let Some(mut rig) = Rig::new(stereo(), settings) else { return };
+        cases("whole pass on the device", 8, |draws, wild| {
+            for index in 0..3 {
+                let views = [0; 2].map(|_| view(any_frame(draws, wild), &settings));
+                let reset = if index == 0 { Reset::All } else { Reset::None };
+                let (made, _) = rig.both(index, reset, &views);
+                prop_assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
+            }
+            Ok(())
+        });
+    }
+}
+
+#[test]
+fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
+    for settings in all_settings().into_iter().filter(|s| s.method != Method::None) {
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        cases("any history", 8, |draws, _| {
+            let mut frame = || view(any_frame(draws, 0.0), &settings);
+            let frames = [0; 3].map(|_| frame());
+            rig.on_gpu(0, Reset::All, &frames[..1]);
+            for texture in rig.gpu.history_textures() {
+                let words = (texture.width() * texture.height() * texture.format().block_copy_size(None).unwrap()) / 4;
+                let random: Vec<u32> = (0..words).map(|_| draws.bits()).collect();
+                afterimage_testing::gpu::write_layer(&rig.queue, texture, 0, bytemuck::cast_slice(&random));
+                for level in 1..texture.mip_level_count() {
+                    afterimage_testing::gpu::fill_level(&rig.queue, texture, level, draws.bits() as u8);
+                }
+            }
+            for (index, frame) in frames[1..].iter().enumerate() {
+                let made = rig.on_gpu(1 + index as u64, Reset::None, std::slice::from_ref(frame));
+                prop_assert!(
+                    made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0),
+                    "{:?}",
+                    settings
+                );
+                // Every pixel holds a sample again.
+                let healed = made.words.iter().all(|&w| match settings.method {
+                    Method::Wrs => pack::unpack(w).w_sum > 0.0,
+                    _ => unpack_surface([w[0], w[1]]).lod >= 0.0,
+                });
+                prop_assert!(healed, "{:?}, frame {}", settings, index);
+            }
+            Ok(())
+        });
+    }
+}
+
+#[test]
+fn what_one_view_is_given_changes_no_bit_of_the_other() {
+    let leaks = |settings: Settings, source: Option<&str>| -> Option<bool> {
+        let make = || match source {
+            Some(source) => Rig::with_shader(stereo(), settings, source),
+            None => Rig::new(stereo(), settings),
+        };
+        let (mut one, mut other) = (make()?, make()?);
+        let mut leaked = false;
+        cases("two views on the device", 4, |draws, wild| {
+            for index in 0..3 {
+                let [left, a, b] = [0; 3].map(|_| view(any_frame(draws, wild.min(0.3)), &settings));
+                let reset = if index == 0 { Reset::All } else { Reset::None };
+                let (x, y) = (one.on_gpu(index, reset, &[left.clone(), a]), other.on_gpu(index, reset, &[left, b]));
+                let half = |words: &[[u32; 3]]| words[..words.len() / 2].to_vec();
+                leaked |= half(&x.shown) != half(&y.shown) || half(&x.words) != half(&y.words);
+            }
+            Ok(())
+        });
+        Some(leaked)
+    };
+    for settings in all_settings() {
+        let Some(leaked) = leaks(settings, None) else { return };
+        assert!(!leaked, "{settings:?}");
+    }
+    // Planted errors: the other view's past.
+    for (method, pass, right, wrong) in [
+        (
+            Method::Wrs,
+            "wrs_pass",
+            "textureLoad(past_colors, source.at, view, 0)",
+            "textureLoad(past_colors, source.at, 1u - view, 0)",
+        ),
+        (
+            Method::Smr,
+            "smr_pass",
+            "textureLoad(past_surfaces, at, view, 0)",
+            "textureLoad(past_surfaces, at, 1u - view, 0)",
+        ),
+    ] {
+        let source = SHADERS.compose(pass).source;
+        assert!(source.contains(right));
+        let settings = Settings { method, ..Settings::paper() };
+        assert_eq!(leaks(settings, Some(&source.replace(right, wrong))), Some(true), "{method:?}");
+    }
+}

@@ -1,0 +1,417 @@
+//! The same frames through both executors, and what comes back from the device.
+
+use afterimage::convention::DepthConvention;
+use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::image::Image;
+use afterimage::kernel::debug_view::{DebugView, PixelTrace};
+use afterimage::kernel::pack;
+use afterimage::settings::{Method, Settings};
+use afterimage::shader::SHADERS;
+use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use afterimage_testing::Draws;
+use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
+
+/// Images of one view of one frame.
+#[derive(Clone)]
+pub struct View {
+    pub facts: ViewFrame,
+    pub color: Image<[f32; 3]>,
+    pub depth: Option<Image<f32>>,
+    pub motion: Option<Image<[f32; 2]>>,
+    pub trust: Option<Image<f32>>,
+    /// Levels of detail, where the renderer tells them.
+    pub lod: Option<Image<f32>>,
+    /// Standard errors and numbers of samples of noisy frames.
+    pub noise: Option<Image<[f32; 2]>>,
+}
+
+impl View {
+    /// Without optional inputs, under 70 degrees.
+    pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
+        let facts = ViewFrame {
+            geometry: ViewGeometry::flat(color.size(), 70.0).unwrap(),
+            gaze: Gaze::At { px: gaze_px },
+            previous_from_current: None,
+        };
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
+    }
+}
+
+/// A device with textures of one size, and both executors.
+pub struct Rig {
+    pub device: Device,
+    pub queue: Queue,
+    pub context: ContextDesc,
+    pub cpu: CpuAfterimage,
+    pub gpu: Afterimage,
+    /// Of the frames to come.
+    pub exposure: Exposure,
+    textures: Textures,
+    counters: Buffer,
+}
+
+/// Inputs and output of one size.
+struct Textures {
+    color: Texture,
+    depth: Texture,
+    motion: Texture,
+    trust: Texture,
+    lod: Texture,
+    noise: Texture,
+    output: Texture,
+}
+
+impl Textures {
+    fn new(device: &Device, context: &ContextDesc) -> Self {
+        let texture = |format, usage| make_texture(device, context, format, usage);
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        Self {
+            color: texture(TextureFormat::Rgba32Float, read),
+            depth: texture(TextureFormat::R32Float, read),
+            motion: texture(TextureFormat::Rg32Float, read),
+            trust: texture(TextureFormat::R32Float, read),
+            lod: texture(TextureFormat::R32Float, read),
+            noise: texture(TextureFormat::Rg32Float, read),
+            output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+        }
+    }
+}
+
+/// What an executor made of a frame: shown colors and packed reservoirs, view after view.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Made {
+    pub shown: Vec<[u32; 3]>,
+    pub words: Vec<[u32; 3]>,
+    pub stats: FrameStats,
+}
+
+impl Rig {
+    /// `None`, after saying so, without an adapter.
+    pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
+        let pass = match settings.method {
+            Method::None | Method::Wrs => "wrs_pass",
+            Method::Taa => "taa_pass",
+            Method::Smr => "smr_pass",
+        };
+        Self::with_shader(context, settings, &SHADERS.compose(pass).source)
+    }
+
+    /// With another text of the pass on the GPU.
+    pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
+        let made = || Afterimage::from_shader(&device, &desc, source);
+        Some(Self {
+            cpu: CpuAfterimage::new(context, settings).unwrap(),
+            gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
+            textures: Textures::new(&device, &context),
+            counters: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("counters"),
+                size: COUNTERS_BYTES,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            exposure: Exposure::Same,
+            context,
+            device,
+            queue,
+        })
+    }
+
+    /// Changes the size of both executors and of the textures.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        self.cpu.resize(size).unwrap();
+        self.gpu.resize(&self.device, size).unwrap();
+        self.context.size_px = size;
+        self.textures = Textures::new(&self.device, &self.context);
+    }
+
+    /// Stores motion as halves on the device from now on.
+    pub fn halve_motion(&mut self) {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        self.textures.motion = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, usage);
+    }
+
+    /// Gives both executors a past.
+    pub fn restore(&mut self, words: &[[u32; 3]]) {
+        self.cpu.restore_history(words);
+        let (textures, len) = (self.gpu.history_textures(), words.len() / self.context.view_count as usize);
+        for (layer, words) in words.chunks(len).enumerate() {
+            let colors: Vec<[u32; 2]> = words.iter().map(|w| [w[0], w[1]]).collect();
+            let weights: Vec<u32> = words.iter().map(|w| w[2]).collect();
+            self.write(&textures[0], layer, bytemuck::cast_slice(&colors));
+            self.write(&textures[1], layer, bytemuck::cast_slice(&weights));
+        }
+    }
+
+    /// The frame on both, which must agree in every bit of what they show, keep and count.
+    #[track_caller]
+    pub fn both(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
+        let (cpu, trace) = self.on_cpu(index, reset, views);
+        let gpu = self.on_gpu(index, reset, views);
+        if gpu != cpu {
+            let at = (0..cpu.words.len()).find(|&i| gpu.words[i] != cpu.words[i] || gpu.shown[i] != cpu.shown[i]);
+            panic!("frame {index}: GPU and CPU differ, first at pixel {at:?}; {:?}, {:?}", gpu.stats, cpu.stats);
+        }
+        (cpu, trace)
+    }
+
+    pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
+        let size = self.context.size_px;
+        let mut output = vec![Image::filled(size, [0.0; 3]); views.len()];
+        let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
+        let cpu_views: Vec<_> = views
+            .iter()
+            .map(|v| CpuView {
+                depth: v.depth.as_ref(),
+                motion: v.motion.as_ref(),
+                trust: v.trust.as_ref(),
+                lod: v.lod.as_ref(),
+                noise: v.noise.as_ref(),
+                ..CpuView::new(v.facts, &v.color)
+            })
+            .collect();
+        let frame = CpuFrame { reset, exposure: self.exposure, ..CpuFrame::new(&cpu_views, index) };
+        let stats = self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
+        let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
+        (Made { shown, words: held_words(&self.cpu), stats }, trace)
+    }
+
+    pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
+        self.record(index, reset, views, true, None);
+        self.read()
+    }
+
+    /// What both say of a frame that they must refuse.
+    pub fn refusal(&mut self, view: &View) -> String {
+        self.upload(std::slice::from_ref(view));
+        let frame = Frame {
+            noise: view.noise.is_some().then_some(&self.textures.noise),
+            ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(&view.facts), 0)
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let gpu = self.gpu.record(&self.device, &mut encoder, &frame).unwrap_err().to_string();
+        let cpu_view = [CpuView { noise: view.noise.as_ref(), ..CpuView::new(view.facts, &view.color) }];
+        let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
+        let cpu = self.cpu.process(&CpuFrame::new(&cpu_view, 0), &mut output, None).unwrap_err().to_string();
+        assert_eq!(gpu, cpu);
+        cpu
+    }
+
+    /// As `on_gpu`, without counting.
+    pub fn on_gpu_uncounted(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
+        self.record(index, reset, views, false, None);
+        self.read()
+    }
+
+    /// What `on_gpu` would decide; shown colors alone.
+    pub fn decisions(&mut self, index: u64, reset: Reset, views: &[View], view: DebugView) -> Vec<[u32; 3]> {
+        self.record(index, reset, views, true, Some(view));
+        self.read().shown
+    }
+
+    fn record(&mut self, index: u64, reset: Reset, views: &[View], count: bool, view: Option<DebugView>) {
+        self.upload(views);
+        let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
+        let frame = Frame {
+            depth: views[0].depth.is_some().then_some(&self.textures.depth),
+            motion: views[0].motion.is_some().then_some(&self.textures.motion),
+            trust: views[0].trust.is_some().then_some(&self.textures.trust),
+            lod: views[0].lod.is_some().then_some(&self.textures.lod),
+            noise: views[0].noise.is_some().then_some(&self.textures.noise),
+            exposure: self.exposure,
+            counters: count.then_some(&self.counters),
+            reset,
+            ..Frame::new(&self.textures.color, &self.textures.output, &facts, index)
+        };
+        afterimage_testing::gpu::validated(&self.device, "record", || {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            match view {
+                None => self.gpu.record(&self.device, &mut encoder, &frame).unwrap(),
+                Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, view).unwrap(),
+            };
+            self.queue.submit([encoder.finish()]);
+        });
+    }
+
+    /// The same images twice, with different facts, recorded into one encoder.
+    pub fn on_gpu_in_one_submission(&mut self, view: &View, facts: &[ViewFrame]) -> Made {
+        self.upload(std::slice::from_ref(view));
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        for (index, facts) in facts.iter().enumerate() {
+            let frame = Frame {
+                depth: Some(&self.textures.depth),
+                motion: Some(&self.textures.motion),
+                counters: Some(&self.counters),
+                ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(facts), index as u64)
+            };
+            self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
+        }
+        self.queue.submit([encoder.finish()]);
+        self.read()
+    }
+
+    /// Fills the past, all its levels, with words that are NaN as whatever they are read.
+    pub fn poison(&self) {
+        for texture in self.gpu.history_textures() {
+            for level in 0..texture.mip_level_count() {
+                afterimage_testing::gpu::fill_level(&self.queue, texture, level, 0xff);
+            }
+        }
+    }
+
+    /// Gives each of two views the other's past, on the GPU alone.
+    pub fn swap_past_layers(&mut self) {
+        let mut words = self.read().words;
+        let half = words.len() / 2;
+        words.rotate_left(half);
+        let cpu = self.cpu.clone();
+        self.restore(&words);
+        self.cpu = cpu;
+    }
+
+    /// Shown colors and stored reservoirs as they are on the device.
+    pub fn read(&self) -> Made {
+        let shown = self.read_texture(&self.textures.output);
+        let held: Vec<_> =
+            self.gpu.history_textures().iter().take(2).map(|t| (t.format(), self.read_texture(t))).collect();
+        Made {
+            shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
+            words: match &held[..] {
+                [(_, colors), (TextureFormat::R32Uint, weights)] => {
+                    colors.chunks_exact(2).zip(weights).map(|(c, &w)| [c[0], c[1], w]).collect()
+                }
+                [(_, surfaces), ..] => {
+                    let noise = self.gpu.history_textures().get(2).map(|t| self.read_texture(t)).unwrap_or_default();
+                    let noise = noise.into_iter().chain(std::iter::repeat(0));
+                    surfaces.chunks_exact(2).zip(noise).map(|(s, n)| [s[0], s[1], n]).collect()
+                }
+                [] => vec![],
+            },
+            stats: self.read_counters(),
+        }
+    }
+
+    fn read_counters(&self) -> FrameStats {
+        let readback = self.readback(COUNTERS_BYTES);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &readback, 0, COUNTERS_BYTES);
+        FrameStats::from_counters(&self.bytes(encoder, &readback)).unwrap()
+    }
+
+    fn readback(&self, size: u64) -> Buffer {
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let desc = wgpu::BufferDescriptor { label: Some("readback"), size, usage, mapped_at_creation: false };
+        self.device.create_buffer(&desc)
+    }
+
+    /// What a readback buffer holds after what was recorded.
+    fn bytes(&self, encoder: wgpu::CommandEncoder, buffer: &Buffer) -> Vec<u8> {
+        self.queue.submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        buffer.get_mapped_range(..).expect("the readback is mapped").to_vec()
+    }
+
+    fn upload(&self, views: &[View]) {
+        for (layer, view) in views.iter().enumerate() {
+            let color: Vec<[f32; 4]> = view.color.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
+            self.write(&self.textures.color, layer, bytemuck::cast_slice(&color));
+            if let Some(depth) = &view.depth {
+                self.write(&self.textures.depth, layer, bytemuck::cast_slice(depth.pixels()));
+            }
+            if let Some(motion) = &view.motion {
+                let halves: Vec<[u16; 2]> =
+                    motion.pixels().iter().map(|m| m.map(|v| pack::half_bits(v) as u16)).collect();
+                let bytes = match self.textures.motion.format() {
+                    TextureFormat::Rg16Float => bytemuck::cast_slice(&halves),
+                    _ => bytemuck::cast_slice(motion.pixels()),
+                };
+                self.write(&self.textures.motion, layer, bytes);
+            }
+            if let Some(trust) = &view.trust {
+                self.write(&self.textures.trust, layer, bytemuck::cast_slice(trust.pixels()));
+            }
+            if let Some(lod) = &view.lod {
+                self.write(&self.textures.lod, layer, bytemuck::cast_slice(lod.pixels()));
+            }
+            if let Some(noise) = &view.noise {
+                self.write(&self.textures.noise, layer, bytemuck::cast_slice(noise.pixels()));
+            }
+        }
+    }
+
+    fn write(&self, texture: &Texture, layer: usize, bytes: &[u8]) {
+        afterimage_testing::gpu::write_layer(&self.queue, texture, layer, bytes);
+    }
+
+    fn read_texture(&self, texture: &Texture) -> Vec<u32> {
+        afterimage_testing::gpu::read_texture(&self.device, &self.queue, texture)
+    }
+}
+
+pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {
+    let [width, height] = context.size_px;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: context.view_count },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Colors that halves hold exactly, different at every pixel.
+pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
+}
+
+/// Packed reservoirs, or packed surfaces and their noise, 0 where there is none.
+fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
+    let history = cpu.history();
+    let noise = history.noise().iter().copied().chain(std::iter::repeat(0));
+    let surfaces = history.surfaces().iter().zip(noise).map(|(s, n)| [s[0], s[1], n]);
+    history.words().iter().copied().chain(surfaces).collect()
+}
+
+/// Packed reservoirs with another weight sum.
+pub fn with_w_sum(words: &[[u32; 3]], w_sum: f32) -> Vec<[u32; 3]> {
+    words.iter().map(|&w| pack::pack(pack::Stored { w_sum, ..pack::unpack(w) })).collect()
+}
+
+/// Colors that are noise, moving by whole and half pixels, over two depths.
+pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
+    let mut draws = Draws::new(name);
+    let size = desc.size_px;
+    let scale = desc.motion.to_internal(size);
+    let px = [draws.uniform() * size[0] as f32, draws.uniform() * size[1] as f32];
+    let stored = |z: f32| match desc.depth {
+        DepthConvention::Linear => z,
+        DepthConvention::Forward { near, far } => (1.0 / near - 1.0 / z) / (1.0 / near - 1.0 / far),
+        DepthConvention::Reversed { near, far } => (1.0 / z - 1.0 / far) / (1.0 / near - 1.0 / far),
+        DepthConvention::Orthographic { near, far } => (z - near) / (far - near),
+    };
+    View {
+        facts: ViewFrame {
+            geometry: ViewGeometry::flat(size, 70.0).unwrap(),
+            gaze: Gaze::At { px },
+            previous_from_current: None,
+        },
+        color: Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()]),
+        depth: Some(Image::from_fn(size, |[x, _]| stored(if x % 16 < 8 { 2.0 } else { 30.0 }))),
+        motion: Some(Image::from_fn(size, |[x, y]| {
+            let m = if (x / 8 + y / 8) % 2 == 0 { [16.0, -1.0] } else { [-0.5, 2.5] };
+            [m[0] / scale[0], m[1] / scale[1]]
+        })),
+        trust: None,
+        lod: None,
+        noise: None,
+    }
+}

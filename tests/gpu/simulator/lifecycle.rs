@@ -1,0 +1,169 @@
+//! Several frames in one submission, lost gazes, formats, refusals.
+
+use super::rig::*;
+use afterimage::error::{CreateError, FrameError};
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::Gaze;
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::{GpuDesc, Timestamps};
+use afterimage::kernel::pack::half_bits;
+use afterimage::shader::SHADERS;
+use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use wgpu::{TextureFormat, TextureUsages};
+
+const SIZE: [u32; 2] = [97, 61];
+
+#[test]
+fn frames_of_one_submission_see_their_own_gaze() {
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        let foveation = foveation(filter, [4, 16]);
+        let Some(mut rig) = Rig::new(&desc(SIZE, 1, foveation)) else { return };
+        let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+        let image = nasty(SIZE, "twice");
+        rig.upload(std::slice::from_ref(&image));
+        let mut encoder = rig.device.create_command_encoder(&Default::default());
+        let scenes = [[10.0, 10.0], [80.0, 50.0]].map(|gaze| Scene::mono(image.clone(), gaze));
+        let shown = scenes.each_ref().map(|scene| {
+            let output = texture(&rig.device, &rig.post.desc().context, TextureFormat::Rgba32Float, written);
+            rig.post.record(&rig.device, &mut encoder, &FoveationFrame::new(&rig.full, &output, &scene.views)).unwrap();
+            output
+        });
+        rig.queue.submit([encoder.finish()]);
+        for (scene, output) in scenes.iter().zip(&shown) {
+            let words = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, output);
+            let got: Vec<[u32; 3]> = words.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect();
+            assert!(got == scene.on_cpu(&foveation).shown, "{filter:?}");
+        }
+    }
+}
+
+#[test]
+fn a_lost_gaze_is_held() {
+    let foveation = foveation(Filter::Mip, [4, 16]);
+    let Some(mut rig) = Rig::new(&desc(SIZE, 1, foveation)) else { return };
+    let mut scene = Scene::mono(nasty(SIZE, "lost"), [48.0, 30.0]);
+    let middle = scene.on_cpu(&foveation);
+    scene.views[0].gaze = Gaze::Lost;
+    assert_equal("lost from the start: the middle", SIZE, &rig.on_gpu(&scene), &middle);
+    scene.views[0].gaze = Gaze::At { px: [10.0, 50.0] };
+    let seen = rig.on_gpu(&scene);
+    assert!(seen != middle);
+    scene.views[0].gaze = Gaze::At { px: [f32::NAN, 0.0] };
+    assert_equal("held", SIZE, &rig.on_gpu(&scene), &seen);
+}
+
+#[test]
+fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off] {
+        let foveation = Foveation { filter, fovea_deg: 20.0, mid_deg: 30.0, ..Foveation::default() };
+        let desc = GpuDesc { output_format: TextureFormat::Rgba16Float, ..desc(SIZE, 1, foveation) };
+        let Some(mut rig) = Rig::new(&desc) else { return };
+        // All finite halves in turn, denormals and the largest included.
+        let halves: Vec<[u16; 4]> = (0..SIZE[0] * SIZE[1])
+            .map(|i| [i * 11, i * 11 + 1, i * 11 + 2].map(|b| (b % 0x7c00) as u16))
+            .map(|[r, g, b]| [r, g | 0x8000, b, half_bits(1.0) as u16])
+            .collect();
+        afterimage_testing::gpu::write_layer(&rig.queue, &rig.full, 0, bytemuck::cast_slice(&halves));
+        let scene = Scene::mono(nasty(SIZE, "unused"), [40.0, 30.0]);
+        let mut encoder = rig.device.create_command_encoder(&Default::default());
+        let frame = FoveationFrame { lod: Some(&rig.lod), ..FoveationFrame::new(&rig.full, &rig.output, &scene.views) };
+        rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
+        rig.queue.submit([encoder.finish()]);
+        let words = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.output);
+        let shown: &[[u16; 4]] = bytemuck::cast_slice(&words);
+        let lods = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.lod);
+        let (mut sharp, mut changed) = (0, 0);
+        for ((shown, full), lod) in shown.iter().zip(&halves).zip(lods) {
+            if f32::from_bits(lod) <= 0.0 {
+                assert_eq!(shown, full, "{filter:?}");
+                sharp += 1;
+            } else {
+                changed += u32::from(shown != full);
+            }
+        }
+        println!("{filter:?}: {sharp} pixels of level 0, {changed} others changed");
+        assert!(sharp > 20 && (changed > 1000 || filter == Filter::Off));
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_and_nothing_recorded() {
+    let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+    let base = desc(SIZE, 1, Foveation::default());
+    let bad = GpuDesc { output_format: TextureFormat::Bgra8Unorm, ..base };
+    assert!(matches!(GpuFoveation::new(&device, &bad), Err(CreateError::OutputFormat { .. })));
+    let bad = desc(SIZE, 1, Foveation { rate_far: 3, ..Foveation::default() });
+    assert!(matches!(GpuFoveation::new(&device, &bad), Err(CreateError::Settings(_))));
+    let bad = desc(SIZE, 5, Foveation::default());
+    assert!(GpuFoveation::new(&device, &bad).unwrap_err().to_string().contains("at most 4 views"));
+
+    let mut post = GpuFoveation::new(&device, &base).unwrap();
+    let (read, written) = (TextureUsages::TEXTURE_BINDING, TextureUsages::STORAGE_BINDING);
+    let context = base.context;
+    let full = texture(&device, &context, TextureFormat::Rgba16Float, read);
+    let output = texture(&device, &context, TextureFormat::Rgba32Float, written);
+    let half = texture(&device, &context, TextureFormat::Rgba16Float, written | read);
+    let lod = texture(&device, &context, TextureFormat::R32Float, written);
+    let scalar = texture(&device, &context, TextureFormat::R32Float, read);
+    let larger = texture(&device, &desc([98, 61], 1, Foveation::default()).context, TextureFormat::Rgba16Float, read);
+    let views = [looking(ViewGeometry::flat(SIZE, 70.0).unwrap(), [0.0, 0.0])];
+    let other = [looking(ViewGeometry::flat([98, 61], 70.0).unwrap(), [0.0, 0.0])];
+    let good = FoveationFrame { lod: Some(&lod), ..FoveationFrame::new(&full, &output, &views) };
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let mut refused = |frame: FoveationFrame<'_>| post.record(&device, &mut encoder, &frame).unwrap_err();
+    assert!(matches!(refused(FoveationFrame { views: &[], ..good }), FrameError::ViewCount { .. }));
+    assert!(matches!(refused(FoveationFrame { views: &other, ..good }), FrameError::Size { .. }));
+    assert!(matches!(refused(FoveationFrame { full: &larger, ..good }), FrameError::Size { .. }));
+    for (frame, words) in [
+        (FoveationFrame { full: &scalar, ..good }, "the full-rate frame is a texture of format R32Float"),
+        (FoveationFrame { full: &output, ..good }, "TEXTURE_BINDING"),
+        (FoveationFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, not what is written"),
+        (FoveationFrame { lod: Some(&scalar), ..good }, "STORAGE_BINDING"),
+        (FoveationFrame { lod: Some(&half), ..good }, "levels of detail is a texture of format Rgba16Float"),
+    ] {
+        let message = refused(frame).to_string();
+        assert!(message.contains(words), "{message}");
+    }
+    post.record(&device, &mut encoder, &good).unwrap();
+}
+
+#[test]
+fn the_device_times_all_passes_of_a_filter() {
+    let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
+    if !adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        eprintln!("SKIPPED: the adapter has no timestamps");
+        return;
+    }
+    let request = wgpu::DeviceDescriptor {
+        required_features: wgpu::Features::TIMESTAMP_QUERY,
+        ..wgpu::DeviceDescriptor::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
+    let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
+    let mut rig = Rig::with_shaders(device, queue, &desc, |name| SHADERS.compose(name).source);
+    let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
+        label: None,
+        ty: wgpu::QueryType::Timestamp,
+        count: 2,
+    });
+    let buffer = |usage| {
+        rig.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false })
+    };
+    let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+    let readback = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+    let scene = Scene::mono(nasty([640, 360], "timed"), [0.0, 0.0]);
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    let frame = FoveationFrame {
+        timestamps: Some(Timestamps { queries: &queries, begin: 0, end: 1 }),
+        ..FoveationFrame::new(&rig.full, &rig.output, &scene.views)
+    };
+    rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
+    encoder.resolve_query_set(&queries, 0..2, &resolved, 0);
+    encoder.copy_buffer_to_buffer(&resolved, 0, &readback, 0, 16);
+    rig.queue.submit([encoder.finish()]);
+    readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+    rig.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let ticks: Vec<u64> = bytemuck::cast_slice(&readback.get_mapped_range(..).unwrap()).to_vec();
+    println!("{} ticks of {} ns", ticks[1] - ticks[0], rig.queue.get_timestamp_period());
+    assert!(ticks[0] > 0 && ticks[1] > ticks[0]);
+}

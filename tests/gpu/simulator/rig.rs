@@ -1,0 +1,189 @@
+//! The same frame through the simulators on both sides, and what comes back.
+
+use afterimage::foveation::{Filter, Foveation};
+use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
+use afterimage::geometry::ViewGeometry;
+use afterimage::gpu::GpuDesc;
+use afterimage::image::Image;
+use afterimage::settings::Settings;
+use afterimage::shader::SHADERS;
+use afterimage::simulator::Pyramid;
+use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage_testing::Draws;
+use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
+
+/// Full-rate frames and eyes, one a view.
+#[derive(Clone)]
+pub struct Scene {
+    pub images: Vec<Image<[f32; 3]>>,
+    pub views: Vec<ViewFrame>,
+}
+
+/// Bits of foveated colors and levels of detail, view after view.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Made {
+    pub shown: Vec<[u32; 3]>,
+    pub lods: Vec<u32>,
+}
+
+/// A simulator with textures of its size.
+pub struct Rig {
+    pub device: Device,
+    pub queue: Queue,
+    pub post: GpuFoveation,
+    pub full: Texture,
+    pub output: Texture,
+    pub lod: Texture,
+}
+
+pub fn desc(size: [u32; 2], view_count: u32, foveation: Foveation) -> GpuDesc {
+    GpuDesc {
+        context: ContextDesc { view_count, ..ContextDesc::new(size) },
+        output_format: TextureFormat::Rgba32Float,
+        settings: Settings { foveation, ..Settings::default() },
+    }
+}
+
+pub fn looking(geometry: ViewGeometry, px: [f32; 2]) -> ViewFrame {
+    ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None }
+}
+
+impl Scene {
+    /// One flat view, 70 degrees wide.
+    pub fn mono(image: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
+        let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
+        Self { images: vec![image], views: vec![looking(geometry, gaze_px)] }
+    }
+
+    /// Two off-axis eyes with their own frames and gazes.
+    pub fn stereo(size: [u32; 2], gazes: [[f32; 2]; 2]) -> Self {
+        let eyes = [[-1.2, 0.8], [-0.8, 1.2]].map(|tan_x| ViewGeometry::off_axis(size, tan_x, [-0.9, 1.0]).unwrap());
+        Self {
+            images: vec![nasty(size, "left"), nasty(size, "right")],
+            views: (0..2).map(|i| looking(eyes[i], gazes[i])).collect(),
+        }
+    }
+
+    pub fn on_cpu(&self, foveation: &Foveation) -> Made {
+        let mut made = Made { shown: vec![], lods: vec![] };
+        for (image, view) in self.images.iter().zip(&self.views) {
+            let gaze = view.gaze.resolve(None, image.size());
+            let lods = foveation.lod_map(&view.geometry, gaze, &view.geometry.eccentricity_map(gaze));
+            let shown = foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods);
+            made.shown.extend(shown.pixels().iter().map(|c| c.map(f32::to_bits)));
+            made.lods.extend(lods.pixels().iter().map(|l| l.to_bits()));
+        }
+        made
+    }
+}
+
+impl Rig {
+    /// `None`, after saying so, without an adapter.
+    pub fn new(desc: &GpuDesc) -> Option<Self> {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        Some(Self::with_shaders(device, queue, desc, |name| SHADERS.compose(name).source))
+    }
+
+    pub fn with_shaders(device: Device, queue: Queue, desc: &GpuDesc, source: impl Fn(&str) -> String) -> Self {
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+        Self {
+            post: afterimage_testing::gpu::validated(&device, "new", || {
+                GpuFoveation::with_shaders(&device, desc, source)
+            })
+            .unwrap(),
+            full: texture(&device, &desc.context, desc.output_format, read),
+            output: texture(&device, &desc.context, desc.output_format, written),
+            lod: texture(&device, &desc.context, TextureFormat::R32Float, written),
+            device,
+            queue,
+        }
+    }
+
+    pub fn on_gpu(&mut self, scene: &Scene) -> Made {
+        self.upload(&scene.images);
+        afterimage_testing::gpu::validated(&self.device, "record", || {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            let frame =
+                FoveationFrame { lod: Some(&self.lod), ..FoveationFrame::new(&self.full, &self.output, &scene.views) };
+            self.post.record(&self.device, &mut encoder, &frame).unwrap();
+            self.queue.submit([encoder.finish()]);
+        });
+        self.read()
+    }
+
+    pub fn upload(&self, images: &[Image<[f32; 3]>]) {
+        for (layer, image) in images.iter().enumerate() {
+            let texels: Vec<[f32; 4]> = image.pixels().iter().map(|c| [c[0], c[1], c[2], 0.25]).collect();
+            afterimage_testing::gpu::write_layer(&self.queue, &self.full, layer, bytemuck::cast_slice(&texels));
+        }
+    }
+
+    pub fn read(&self) -> Made {
+        let shown = afterimage_testing::gpu::read_texture(&self.device, &self.queue, &self.output);
+        assert!(shown.chunks_exact(4).all(|c| c[3] == 1.0_f32.to_bits()), "alpha is 1");
+        Made {
+            shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
+            lods: afterimage_testing::gpu::read_texture(&self.device, &self.queue, &self.lod),
+        }
+    }
+}
+
+pub fn texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {
+    let [width, height] = context.size_px;
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: context.view_count },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// Noise from dark to the brightest half, with broken pixels.
+pub fn nasty(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(&format!("nasty {name}"));
+    let broken = [f32::NAN, -f32::NAN, f32::from_bits(0x7fc1_2345), f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30];
+    Image::from_fn(size, |_| {
+        let scale = [1.0, 1.0, 1e-4, 100.0, 65504.0][draws.bits() as usize % 5];
+        let low = if scale == 65504.0 { 1e4 / 65504.0 } else { -0.1 };
+        let mut c = [0; 3].map(|_| scale * draws.range(low, 1.0));
+        if draws.uniform() < 0.05 {
+            c[draws.bits() as usize % 3] = broken[draws.bits() as usize % broken.len()];
+        }
+        c
+    })
+}
+
+pub fn foveation(filter: Filter, [rate_mid, rate_far]: [u32; 2]) -> Foveation {
+    Foveation { filter, rate_mid, rate_far, ..Foveation::default() }
+}
+
+/// Fails with the first pixel that differs.
+#[track_caller]
+pub fn assert_equal(what: &str, size: [u32; 2], gpu: &Made, cpu: &Made) {
+    let place = |i: usize| {
+        let view = i / (size[0] * size[1]) as usize;
+        let i = i as u32 % (size[0] * size[1]);
+        format!("{what}: view {view}, pixel ({}, {})", i % size[0], i / size[0])
+    };
+    assert_eq!((gpu.shown.len(), gpu.lods.len()), (cpu.shown.len(), cpu.lods.len()), "{what}");
+    let float = f32::from_bits;
+    for (i, (g, c)) in gpu.lods.iter().zip(&cpu.lods).enumerate() {
+        assert!(g == c, "{}: level {} on the GPU, {} on the CPU", place(i), float(*g), float(*c));
+    }
+    let differ = gpu.shown.iter().zip(&cpu.shown).filter(|(g, c)| g != c).count();
+    for (i, (g, c)) in gpu.shown.iter().zip(&cpu.shown).enumerate() {
+        assert!(
+            g == c,
+            "{}, level {}: {:?} {g:08x?} on the GPU, {:?} {c:08x?} on the CPU; {differ} pixels differ",
+            place(i),
+            float(cpu.lods[i]),
+            g.map(float),
+            c.map(float)
+        );
+    }
+}

@@ -1,0 +1,161 @@
+//! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
+
+use super::probe::caught;
+use super::{decisions, foveation, matching, mathematics, state, surfaces};
+
+#[test]
+fn a_lax_comparison_is_caught() {
+    caught(state::PROBES, "combine", "draw * w_sum < w2", "draw * w_sum <= w2");
+    caught(state::PROBES, "update", "draw * w_sum < w;", "draw * w_sum <= w;");
+    caught(decisions::PROBES, "step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w");
+}
+
+#[test]
+fn h04_a_weight_below_the_normal_range_is_caught() {
+    caught(decisions::PROBES, "step", "weight(past.w_sum * survival)", "past.w_sum * survival");
+}
+
+#[test]
+fn a_weight_one_percent_off_is_caught() {
+    caught(mathematics::PROBES, "candidate_weight", "* inv_density_at_fovea", "* (1.01 * inv_density_at_fovea)");
+}
+
+#[test]
+fn a_flipped_motion_sign_is_caught() {
+    caught(state::PROBES, "nearest", "f32(x) + motion.x", "f32(x) - motion.x");
+    caught(state::PROBES, "nearest", "f32(y) + motion.y", "f32(y) - motion.y");
+}
+
+#[test]
+fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
+    caught(decisions::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
+    caught(state::PROBES, "trust", "return 1.0;", "return t;");
+    caught(
+        decisions::PROBES,
+        "expose",
+        "clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF))",
+        "stored_color * ratio",
+    );
+}
+
+#[test]
+fn a_wrong_color_of_a_decision_is_caught() {
+    caught(decisions::PROBES, "view_color", "srgb_decode(encoded.x)", "encoded.x");
+    caught(decisions::PROBES, "motion_color", "clamp(-motion.x", "clamp(motion.x");
+}
+
+#[test]
+fn draws_without_the_shift_are_caught() {
+    caught(state::PROBES, "unit_draw", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)");
+    caught(state::PROBES, "bits", "v = v ^ (v >> vec4<u32>(16u));", "");
+}
+
+#[test]
+fn swapped_colors_are_caught() {
+    caught(decisions::PROBES, "difference", "delta_e94(reference, stored)", "delta_e94(stored, reference)");
+    caught(decisions::PROBES, "step", "difference(candidate, past.color,", "difference(past.color, candidate,");
+    caught(mathematics::PROBES, "delta_e94", "delta_e94(in_v(0u), in_v(3u))", "delta_e94(in_v(3u), in_v(0u))");
+}
+
+#[test]
+fn one_wrong_last_bit_is_caught() {
+    caught(mathematics::PROBES, "exp", "1.6666665e-1", "1.6666667e-1");
+    caught(mathematics::PROBES, "lab", "0.376224", "0.37622404");
+    caught(
+        mathematics::PROBES,
+        "atan2_upper",
+        "const TAN_PI_8: f32 = 0.41421356;",
+        "const TAN_PI_8: f32 = 0.41421354;",
+    );
+}
+
+#[test]
+fn an_unwritten_word_is_caught() {
+    caught(state::PROBES, "unpack", "out_u(s.age);", "");
+}
+
+#[test]
+fn a_shifted_level_is_caught() {
+    caught(foveation::PROBES, "level_len", "(1u << level) - 1u) >> level", "(1u << level)) >> level");
+    caught(foveation::PROBES, "level_coordinate", "(127u - level)", "(126u - level)");
+    caught(foveation::PROBES, "block_sample", ">> block_sample_level(level)", ">> level");
+}
+
+#[test]
+fn swapped_bilinear_fractions_are_caught() {
+    caught(foveation::PROBES, "bilinear", "blend(top, bottom, fraction.y)", "blend(top, bottom, fraction.x)");
+    caught(foveation::PROBES, "blend", "a + (b - a) * t", "b + (a - b) * t");
+}
+
+#[test]
+fn a_wrong_border_is_caught() {
+    caught(foveation::PROBES, "split", "0.0, f32(len - 1u)", "0.0, f32(len)");
+    caught(foveation::PROBES, "block_center_px", "edge_px - 0.5, f32(len - 1u)", "edge_px - 0.5, f32(len)");
+}
+
+#[test]
+fn a_gaussian_of_another_width_is_caught() {
+    caught(foveation::PROBES, "gauss_center", "exp(-0.5 / (s * s))", "exp(-0.50001 / (s * s))");
+    caught(foveation::PROBES, "gauss_next", "tap.ratio * tap.ratio_step,", "tap.ratio * tap.ratio,");
+    caught(foveation::PROBES, "gauss_radius", "u32(3.0 * sigma_px) + 1u", "u32(3.0 * sigma_px)");
+    caught(foveation::PROBES, "blur_sigma_px", "0.5 * (exp2(", "0.50000006 * (exp2(");
+    caught(foveation::PROBES, "blur_lod", "1.0 + 2.0 * sigma", "1.0 + sigma");
+}
+
+#[test]
+fn a_surface_stored_or_read_wrongly_is_caught() {
+    caught(surfaces::PROBES, "half14_bits", "(h + ((h >> 1u) & 1u)) >> 1u", "h >> 1u");
+    caught(surfaces::PROBES, "half14_bits", ">> 1u, 0x3dffu)", ">> 1u, 0x3e00u)");
+    caught(surfaces::PROBES, "pack_surface", "* LOD_STEPS + 0.5", "* LOD_STEPS");
+    caught(surfaces::PROBES, "unpack_surface", "if lod == EMPTY_LOD", "if lod > EMPTY_LOD");
+    caught(surfaces::PROBES, "chain_texel", "vec4<f32>(s.color, 1.0)", "vec4<f32>(s.color, 0.0)");
+    caught(surfaces::PROBES, "round_chain", "half_value(half_bits(v.w))", "v.w");
+}
+
+#[test]
+fn a_wrong_tap_or_weight_is_caught() {
+    caught(surfaces::PROBES, "tap_at", "tap >= 10u", "tap > 10u");
+    caught(surfaces::PROBES, "catmull_rom", "2.0 - 1.5 * t", "2.0 - 1.51 * t");
+    caught(surfaces::PROBES, "linear_weights", "0.0, 1.0 - t, t, 0.0", "0.0, t, 1.0 - t, 0.0");
+    caught(surfaces::PROBES, "gather", "tap.color * linear", "tap.color * sharp");
+    caught(surfaces::PROBES, "resolve", "g.missing == 0u)", "g.missing <= 1u)");
+    caught(surfaces::PROBES, "resolve", "if g.smooth_sum < 0.01 {", "if g.smooth_sum < 0.0 {");
+}
+
+#[test]
+fn a_wrong_match_is_caught() {
+    caught(matching::PROBES, "smooth_step", "3.0 - 2.0 * t", "3.0 - 2.01 * t");
+    caught(matching::PROBES, "root_difference", "luma * luma + 0.5 * chroma", "luma * luma + chroma");
+    caught(matching::PROBES, "moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within");
+    caught(matching::PROBES, "wanted", "(history_lod - lod) / COARSER_WIDTH", "(lod - history_lod) / COARSER_WIDTH");
+    caught(matching::PROBES, "gain", "(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)");
+    caught(matching::PROBES, "decide", "if relit < d {", "if relit > d {");
+    caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
+    caught(matching::PROBES, "chain_mean", "(a + b + c + d)", "(a + b + c + c)");
+    caught(matching::PROBES, "chain_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
+}
+
+#[test]
+fn a_wrong_antialiasing_is_caught() {
+    caught(surfaces::PROBES, "to_ycocg", "0.5 * (r.x - r.z)", "0.5 * (r.z - r.x)");
+    caught(surfaces::PROBES, "roots_of_ycocg", "outer - y.y", "outer + y.z");
+    caught(surfaces::PROBES, "clip_to_box", "if inside < 1.0", "if inside < 0.5");
+    caught(surfaces::PROBES, "candidate_share", "max(resampled, 1.0 - trust)", "resampled");
+    caught(
+        surfaces::PROBES,
+        "blend_clipped",
+        "(roots(candidate) - clipped) * alpha",
+        "(roots(candidate) - clipped) * (1.01 * alpha)",
+    );
+}
+
+#[test]
+fn a_wrong_turn_or_draw_of_a_path_is_caught() {
+    caught(mathematics::PROBES, "sin_cos_turns", "return vec2<f32>(c, -s);", "return vec2<f32>(c, s);");
+    caught(
+        state::PROBES,
+        "path_draws",
+        "vec4<u32>(pixel, sample, dimension, key)",
+        "vec4<u32>(sample, pixel, dimension, key)",
+    );
+}

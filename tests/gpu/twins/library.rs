@@ -1,0 +1,38 @@
+//! The library under test: the drop-in's.
+
+use super::probe::Probe;
+use super::{decisions, foveation, matching, mathematics, noise, state, surfaces};
+pub use afterimage::shader::SHADERS;
+
+/// Where `shaders/lib` and `src/kernel` are.
+pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
+
+/// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a closure,
+/// and `mix`, which is a builtin of WGSL.
+pub const WGSL_ONLY: &[(&str, &str)] =
+    &[("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
+
+/// (Rust file stem, function there) without a WGSL twin: it takes a closure; the pass has a loop in its place.
+pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope")];
+
+/// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
+pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "pcg4d_mix", "saturating_add"];
+
+/// Every probe.
+pub fn probes() -> impl Iterator<Item = &'static Probe> {
+    let lists = [
+        decisions::PROBES,
+        foveation::PROBES,
+        matching::PROBES,
+        noise::PROBES,
+        mathematics::PROBES,
+        state::PROBES,
+        surfaces::PROBES,
+    ];
+    lists.into_iter().flatten()
+}
+
+/// Words that lie before the rows of a module's probes: what it loads.
+pub fn heap(_module: &str) -> Vec<u32> {
+    vec![]
+}

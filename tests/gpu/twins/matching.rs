@@ -1,0 +1,326 @@
+//! Functions that match the scales of history and candidate: matched.
+
+use super::probe::{Out, Probe, Row, Rows};
+use super::values::*;
+use afterimage::kernel::matched;
+use afterimage::kernel::matched::{Evidence, SmrParams};
+use afterimage_testing::Draws;
+use glam::Vec4;
+
+/// Channels of colors as scrubbing leaves them: nothing, dark, negative, the largest half.
+pub fn channels() -> Vec<u32> {
+    floats(&[0.0, -0.0, 6e-8, 0.002, -0.002, 0.18, 1.0, -0.01, -65504.0, 65504.0])
+}
+
+/// A color that is remembered: at least 0, of all magnitudes a half has.
+pub fn remembered(d: &mut Draws) -> [f32; 3] {
+    let scale = [1.0, 1.0, 1.0, 0.01, 100.0, 65504.0][d.bits() as usize % 6];
+    [0; 3].map(|_| if d.bits().is_multiple_of(16) { 0.0 } else { scale * d.uniform() })
+}
+
+/// A color like `c`: equal, nearly, or another; now and then a little below 0.
+pub fn like(d: &mut Draws, c: [f32; 3]) -> [f32; 3] {
+    let spread = [0.0, 1e-3, 0.01, 0.1, 0.5, 1.1][d.bits() as usize % 6];
+    c.map(|x| x * (1.0 + spread * d.range(-1.0, 1.0)))
+}
+
+pub fn push(row: &mut Vec<u32>, values: &[f32]) {
+    row.extend(values.iter().map(|x| x.to_bits()));
+}
+
+/// Levels of detail as they are stored, and as frames have them.
+fn lod(d: &mut Draws) -> f32 {
+    match d.bits() % 4 {
+        0 => (d.bits() % 63) as f32 / 7.0,
+        1 => (d.bits() % 9) as f32,
+        _ => d.range(0.0, 8.9),
+    }
+}
+
+fn pair_rows(name: &str) -> Rows {
+    let c = channels();
+    Rows::new(6).mixed(name, &[&c, &c, &c, &c, &c, &c]).random(name, |d, row| {
+        let a = remembered(d);
+        let b = like(d, a);
+        push(row, &[a, b].concat());
+    })
+}
+
+fn vec4(r: &Row<'_>, k: usize) -> Vec4 {
+    r.v(k).extend(r.f(k + 3))
+}
+
+/// Texels of the chain: colors times coverage, and coverage.
+fn chain_rows(name: &str, fractions: usize) -> Rows {
+    let width = 16 + fractions;
+    let (c, cover) = (floats(&[0.0, 0.18, 1.0, 65504.0, 6e-5]), floats(&[0.0, 0.25, 0.5, 1.0]));
+    let at = floats(&[0.0, 0.25, 0.5, 0.75, 0.9]);
+    let lists: Vec<&[u32]> = (0..width)
+        .map(|i| {
+            if i >= 16 {
+                &at[..]
+            } else if i % 4 == 3 {
+                &cover
+            } else {
+                &c
+            }
+        })
+        .collect();
+    Rows::new(width).mixed(name, &lists).random(name, |d, row| {
+        for _ in 0..4 {
+            let covered = [0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0][d.bits() as usize % 8];
+            push(row, &remembered(d).map(|x| x * covered));
+            push(row, &[covered]);
+        }
+        (0..fractions).for_each(|_| row.push(range(d, 0.0, 1.0)));
+    })
+}
+
+const EVIDENCE: usize = 24;
+const DECIDE_IN: usize = EVIDENCE + 9;
+
+fn decide(r: &Row<'_>, o: &mut Out) {
+    let e = Evidence {
+        candidate: r.v(0),
+        compared: r.v(3),
+        compared_coarser: r.v(6),
+        lod: r.f(9),
+        history: r.v(10),
+        history_lod: r.f(13),
+        matched: r.v(14),
+        level: r.v(17),
+        next_level: r.v(20),
+        trust: r.f(23),
+        noise: r.f(29),
+        sure: [r.f(31), r.f(32)],
+    };
+    let p = SmrParams {
+        accumulate: r.f(24),
+        accumulate_tolerance: r.f(25),
+        tolerance: r.f(26),
+        blocks: r.u(27) != 0,
+        relight: r.u(28) != 0,
+        noisy: r.u(30) != 0,
+    };
+    let m = matched::decide(&e, &p);
+    o.v(m.color);
+    [m.lod, m.share, m.fit].into_iter().for_each(|x| o.f(x));
+}
+
+/// With these flags, or any.
+fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
+    let (c, l) = (channels(), floats(&[0.0, 1.0 / 7.0, 1.0, 2.0, 3.0, 8.0, 62.0 / 7.0]));
+    let h = floats(&[0.0, 6e-8, 0.002, 0.18, 0.5, 1.0, 65504.0]);
+    let trust = floats(&[0.25, 1.0, 1e-30]);
+    let (share, tolerance) = (floats(&[0.0, 0.5, 0.9, 0.99]), floats(&[0.25, 1.0, 2.0]));
+    let flag = |i: usize| flags.map_or(vec![0, 1], |f| vec![f[i]]);
+    let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
+    let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
+    let sure = floats(&[0.0, 0.25, 1.0]);
+    let mut lists: Vec<&[u32]> = vec![&c; 9];
+    lists.push(&l);
+    lists.extend([&h[..]; 3]);
+    lists.push(&l);
+    lists.extend([&h[..]; 9]);
+    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight, &noise, &noisy, &sure, &sure]);
+    Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
+        let candidate = remembered(d);
+        let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
+        let lit = [1.0, 1.0, 1.2, 0.4, 2.0][d.bits() as usize % 5];
+        let [coarser, history, matched, whole, dimmer] = [0; 5].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
+        let level = lod(d);
+        let past = if d.bits() & 1 == 0 { level } else { lod(d) };
+        push(row, &[candidate, compared, coarser].concat());
+        push(row, &[level]);
+        push(row, &history);
+        push(row, &[past]);
+        push(row, &[matched, whole, dimmer].concat());
+        let trust = if d.bits() & 1 == 0 { 1.0 } else { d.range(0.01, 1.0) };
+        push(row, &[trust, d.range(0.0, 0.99), d.range(0.1, 1.0), d.range(0.2, 3.0)]);
+        row.push(blocks[d.bits() as usize % blocks.len()]);
+        row.push(relight[d.bits() as usize % relight.len()]);
+        let noise = if d.bits() & 1 == 0 { 0.0 } else { d.range(0.0, 20.0) };
+        push(row, &[noise]);
+        row.push(noisy[d.bits() as usize % noisy.len()]);
+        let sure = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
+        push(row, &sure);
+    })
+}
+
+macro_rules! decide_probe {
+    ($blocks:literal, $relight:literal, $noisy:literal, $flags:expr) => {
+        Probe {
+            name: "decide",
+            module: "matched",
+            words: [DECIDE_IN, 6],
+            wgsl: concat!(
+                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
+    let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
+                $blocks,
+                ", ",
+                $relight,
+                ", ",
+                $noisy,
+                "));
+    out_v(m.color); out_f(m.lod); out_f(m.share); out_f(m.fit);"
+            ),
+            rust: decide,
+            rows: || decide_rows($flags),
+        }
+    };
+}
+
+pub const PROBES: &[Probe] = &[
+    Probe {
+        name: "smooth_step",
+        module: "matched",
+        words: [3, 1],
+        wgsl: "out_f(smooth_step(in_f(0u), in_f(1u), in_f(2u)));",
+        rust: |r, o| o.f(matched::smooth_step(r.f(0), r.f(1), r.f(2))),
+        rows: || {
+            let (low, width) = (floats(&[0.0, 0.05, 1.5, 3.0, 48.0]), floats(&[0.1, 1.5, 6.0, 24.0]));
+            let x = [positive(), around(&[0.05, 0.15, 1.5, 3.0, 9.0])].concat();
+            Rows::new(3)
+                .cross(&[&low, &width, &x])
+                .random("smooth_step", |d, row| row.extend([0.0, 0.1, 0.0].map(|l| range(d, l, 20.0))))
+        },
+    },
+    Probe {
+        name: "root_difference",
+        module: "matched",
+        words: [6, 1],
+        wgsl: "out_f(root_difference(in_v(0u), in_v(3u)));",
+        rust: |r, o| o.f(matched::root_difference(r.v(0), r.v(3))),
+        rows: || pair_rows("root_difference"),
+    },
+    Probe {
+        name: "roots",
+        module: "matched",
+        words: [3, 3],
+        wgsl: "out_v(roots(in_v(0u)));",
+        rust: |r, o| o.v(matched::roots(r.v(0))),
+        rows: || {
+            // A root of a denormal is a normal number, unless a device flushes it.
+            let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
+            Rows::new(3)
+                .mixed("roots", &[&c, &c, &c])
+                .random("roots", |d, row| row.extend((0..3).map(|_| signed(d, -24, 17))))
+        },
+    },
+    Probe {
+        name: "moves_alike",
+        module: "matched",
+        words: [4, 1],
+        wgsl: "out_b(moves_alike(vec2<f32>(in_f(0u), in_f(1u)), vec2<f32>(in_f(2u), in_f(3u))));",
+        rust: |r, o| o.b(matched::moves_alike([r.f(0), r.f(1)], [r.f(2), r.f(3)])),
+        rows: || {
+            let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
+            Rows::new(4).mixed("moves_alike", &[&v, &v, &v, &v]).random("moves_alike", |d, row| {
+                let own = [d.range(-40.0, 40.0), d.range(-40.0, 40.0)];
+                let within = 0.5 + 0.1 * (own[0].abs() + own[1].abs());
+                let other = own.map(|x| x + within * d.range(-1.2, 1.2));
+                push(row, &[own, other].concat());
+            })
+        },
+    },
+    Probe {
+        name: "wanted",
+        module: "matched",
+        words: [6, 2],
+        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u, vec2<f32>(in_f(4u), in_f(5u))); out_f(w.finer); out_f(w.share);",
+        rust: |r, o| {
+            let w = matched::wanted(r.f(0), r.f(1), r.f(2), r.u(3) != 0, [r.f(4), r.f(5)]);
+            o.f(w.finer);
+            o.f(w.share);
+        },
+        rows: || {
+            let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
+            let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
+            let (then, one, sure) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
+            Rows::new(6)
+                .cross(&[&l, &then, &shares, &[0, 1], &one, &one])
+                .mixed("wanted", &[&l, &then, &shares, &[0, 1], &sure, &sure])
+                .random("wanted", |d, row| {
+                    let (now, then) = (lod(d), lod(d));
+                    let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
+                    push(row, &[now, near, d.range(0.0, 0.99)]);
+                    row.push(d.bits() & 1);
+                    push(row, &[d.uniform(), d.uniform()]);
+                })
+        },
+    },
+    Probe {
+        name: "gain",
+        module: "matched",
+        words: [3, 1],
+        wgsl: "out_f(gain(in_f(0u), in_f(1u), in_f(2u)));",
+        rust: |r, o| o.f(matched::gain(r.f(0), r.f(1), r.f(2))),
+        rows: || {
+            let h = floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0]);
+            Rows::new(3).cross(&[&channels(), &h, &floats(&[0.0, 0.5, 1.0])]).random("gain", |d, row| {
+                let [h, ..] = remembered(d);
+                let [c, ..] = like(d, [h; 3]);
+                push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
+            })
+        },
+    },
+    Probe {
+        name: "relight_from",
+        module: "matched",
+        words: [3, 1],
+        wgsl: "out_f(relight_from(in_f(0u), in_u(1u) != 0u, in_f(2u)));",
+        rust: |r, o| o.f(matched::relight_from(r.f(0), r.u(1) != 0, r.f(2))),
+        rows: || {
+            Rows::new(3).cross(&[&positive(), &[0, 1], &positive()]).random("relight_from", |d, row| {
+                push(row, &[d.range(0.0, 150.0)]);
+                row.push(d.bits() & 1);
+                push(row, &[d.range(0.0, 150.0)]);
+            })
+        },
+    },
+    Probe {
+        name: "is_changed",
+        module: "matched",
+        words: [13, 1],
+        wgsl: "out_b(is_changed(in_v(0u), in_v(3u), in_v(6u), in_v(9u), in_u(12u) != 0u));",
+        rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9), r.u(12) != 0)),
+        rows: || {
+            Rows::new(13).random("is_changed", |d, row| {
+                let compared = remembered(d);
+                let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
+                push(row, &[compared, matched, level, next].concat());
+                row.push(d.bits() & 1);
+            })
+        },
+    },
+    decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", "in_u(30u) != 0u", None),
+    // As the passes have them: constants of a pipeline, which the compiler folds.
+    decide_probe!("false", "true", "false", Some([0, 1, 0])),
+    decide_probe!("true", "true", "false", Some([1, 1, 0])),
+    decide_probe!("false", "false", "false", Some([0, 0, 0])),
+    decide_probe!("false", "true", "true", Some([0, 1, 1])),
+    Probe {
+        name: "chain_mean",
+        module: "matched",
+        words: [16, 4],
+        wgsl: "let m = chain_mean(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)));
+    out_v(m.xyz); out_f(m.w);",
+        rust: |r, o| {
+            let m = matched::chain_mean(vec4(r, 0), vec4(r, 4), vec4(r, 8), vec4(r, 12));
+            o.v(m.truncate());
+            o.f(m.w);
+        },
+        rows: || chain_rows("chain_mean", 0),
+    },
+    Probe {
+        name: "chain_bilinear",
+        module: "matched",
+        words: [18, 3],
+        wgsl: "out_v(chain_bilinear(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)), vec2<f32>(in_f(16u), in_f(17u))));",
+        rust: |r, o| {
+            let (top, bottom) = ([vec4(r, 0), vec4(r, 4)], [vec4(r, 8), vec4(r, 12)]);
+            o.v(matched::chain_bilinear(top, bottom, [r.f(16), r.f(17)]));
+        },
+        rows: || chain_rows("chain_bilinear", 2),
+    },
+];

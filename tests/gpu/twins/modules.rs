@@ -1,0 +1,121 @@
+//! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
+
+use super::library::{FOLDER, PRIVATE, RUST_ONLY, SHADERS, WGSL_ONLY, probes};
+use afterimage::shader::Composed;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// File and line of the first error, with its message.
+pub fn validate(composed: &Composed) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(&composed.source).map_err(|e| {
+        let line = e.location(&composed.source).map_or(0, |l| l.line_number);
+        let (file, line) = composed.origin(line).unwrap_or(("?", 0));
+        format!("{file}:{line}: {}", e.message())
+    })?;
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    validator.validate(&module).map(|_| ()).map_err(|e| {
+        // The narrowest span: the widest is a whole function.
+        let widths = e.spans().filter_map(|(span, _)| span.to_range().map(|r| (r.len(), *span)));
+        let span = widths.min_by_key(|(width, _)| *width).map(|(_, span)| span);
+        let line = span.map_or(0, |s| s.location(&composed.source).line_number);
+        let (file, line) = composed.origin(line).unwrap_or(("?", 0));
+        let mut message = e.as_inner().to_string();
+        let mut cause = std::error::Error::source(e.as_inner());
+        while let Some(inner) = cause {
+            message = format!("{message}: {inner}");
+            cause = inner.source();
+        }
+        format!("{file}:{line}: {message}")
+    })
+}
+
+#[test]
+fn every_module_composes_and_is_valid() {
+    let names: Vec<_> = SHADERS.module_names().collect();
+    assert!(names.len() >= 11);
+    for name in names {
+        // What a module's users provide: where the heap is, which hits count.
+        let source = SHADERS.compose(name).source;
+        let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
+        let heaps: &[Option<&str>] = if lacks("load") { &[Some("heap_texture"), Some("heap_buffer")] } else { &[None] };
+        let accept = lacks("accept_hit").then_some("accept_all");
+        for heap in heaps {
+            let parts: Vec<&str> = heap.iter().copied().chain(accept).chain([name]).collect();
+            validate(&SHADERS.compose_with(&parts, "")).unwrap_or_else(|e| panic!("{name}: {e}"));
+        }
+    }
+}
+
+pub fn read(path: &str) -> String {
+    std::fs::read_to_string(Path::new(FOLDER).join(path)).unwrap()
+}
+
+/// Names after `fn ` at the start of a line, `pub` or not.
+fn functions(text: &str) -> BTreeSet<String> {
+    text.lines()
+        .filter_map(|l| l.strip_prefix("pub ").unwrap_or(l).strip_prefix("fn "))
+        .map(|l| l.split(['(', '<']).next().unwrap().to_owned())
+        .collect()
+}
+
+fn stems() -> Vec<String> {
+    let folder = Path::new(FOLDER).join("shaders/lib");
+    let mut stems: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    stems.sort();
+    stems
+}
+
+#[test]
+fn twins_have_the_same_functions_and_every_one_is_probed() {
+    let mut wgsl_names = BTreeSet::new();
+    for stem in stems() {
+        let wgsl = functions(&read(&format!("shaders/lib/{stem}.wgsl")));
+        let rust = functions(&read(&format!("src/kernel/{stem}.rs")));
+        let only: BTreeSet<String> =
+            WGSL_ONLY.iter().filter(|(s, _)| *s == stem).map(|(_, name)| (*name).to_owned()).collect();
+        let mut expected: BTreeSet<String> = rust.union(&only).cloned().collect();
+        expected.remove("mix");
+        for (_, name) in RUST_ONLY.iter().filter(|(s, _)| *s == stem) {
+            assert!(expected.remove(*name), "{stem}::{name}");
+        }
+        assert_eq!(wgsl, expected, "{stem}");
+        wgsl_names.extend(wgsl);
+    }
+    let probed = probes().map(|p| p.name);
+    let covered: BTreeSet<String> = probed.chain(PRIVATE.iter().copied()).map(str::to_owned).collect();
+    assert_eq!(wgsl_names, covered);
+}
+
+/// naga reads a literal without suffix as f64 and rounds it again; Rust reads f32 at once.
+#[test]
+fn literals_mean_the_same_bits_in_both_languages() {
+    let mut count = 0;
+    for stem in stems() {
+        for line in read(&format!("shaders/lib/{stem}.wgsl")).lines() {
+            let code = line.split("//").next().unwrap();
+            let mut rest = code;
+            while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+                let named = start > 0 && rest[..start].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+                let body = &rest[start..];
+                let mut end = body.find(|c: char| !(c.is_ascii_alphanumeric() || c == '.')).unwrap_or(body.len());
+                if body[..end].ends_with('e') {
+                    end += 1 + body[end + 1..].find(|c: char| !c.is_ascii_digit()).unwrap_or(body.len() - end - 1);
+                }
+                let token = body[..end].trim_end_matches('f');
+                if !named && token.contains('.') && !token.starts_with("0x") {
+                    let twice = token.parse::<f64>().unwrap() as f32;
+                    let once = token.parse::<f32>().unwrap();
+                    assert_eq!(twice.to_bits(), once.to_bits(), "{stem}: {token}");
+                    count += 1;
+                }
+                rest = &body[end..];
+            }
+        }
+    }
+    println!("{count} literals");
+    assert!(count > 80);
+}

@@ -1,0 +1,184 @@
+//! A probe: one library function over a table of words, on the adapter and by its Rust twin.
+
+use super::library::{SHADERS, heap};
+use glam::Vec3;
+
+/// A function under test.
+pub struct Probe {
+    pub name: &'static str,
+    /// The module it is in, or those it needs, with a space between.
+    pub module: &'static str,
+    /// Words of a row of input and of output.
+    pub words: [usize; 2],
+    /// WGSL statements that read `in_u`, `in_f`, `in_v` (word, float, three floats; by index) and call `out_u`, `out_f`,
+    /// `out_v`, `out_b` in order.
+    pub wgsl: &'static str,
+    /// The same with the Rust twin.
+    pub rust: fn(&Row<'_>, &mut Out),
+    /// The table.
+    pub rows: fn() -> Rows,
+}
+
+/// One row of input.
+pub struct Row<'a>(pub &'a [u32]);
+
+impl Row<'_> {
+    pub fn u(&self, k: usize) -> u32 {
+        self.0[k]
+    }
+    pub fn f(&self, k: usize) -> f32 {
+        f32::from_bits(self.0[k])
+    }
+    pub fn v(&self, k: usize) -> Vec3 {
+        Vec3::new(self.f(k), self.f(k + 1), self.f(k + 2))
+    }
+}
+
+/// Output words.
+#[derive(Default)]
+pub struct Out(pub Vec<u32>);
+
+impl Out {
+    pub fn u(&mut self, x: u32) {
+        self.0.push(x);
+    }
+    pub fn f(&mut self, x: f32) {
+        self.0.push(x.to_bits());
+    }
+    pub fn b(&mut self, x: bool) {
+        self.0.push(x.into());
+    }
+    pub fn v(&mut self, x: Vec3) {
+        x.to_array().into_iter().for_each(|x| self.f(x));
+    }
+}
+
+/// A table of input.
+pub struct Rows {
+    pub width: usize,
+    pub words: Vec<u32>,
+}
+
+impl Probe {
+    /// The library and an entry point `main` that runs one row per invocation.
+    pub fn source(&self) -> String {
+        let [ins, outs] = self.words;
+        let heap = heap(self.module).len();
+        let harness = format!(
+            "@group(0) @binding(0) var<storage, read> probe_in: array<u32>;
+@group(0) @binding(1) var<storage, read_write> probe_out: array<u32>;
+var<private> probe_read: u32;
+var<private> probe_write: u32;
+fn load(i: u32) -> vec4<u32> {{
+    return vec4<u32>(probe_in[4u * i], probe_in[4u * i + 1u], probe_in[4u * i + 2u], probe_in[4u * i + 3u]);
+}}
+fn in_u(k: u32) -> u32 {{ return probe_in[probe_read + k]; }}
+fn in_f(k: u32) -> f32 {{ return bitcast<f32>(in_u(k)); }}
+fn in_v(k: u32) -> vec3<f32> {{ return vec3<f32>(in_f(k), in_f(k + 1u), in_f(k + 2u)); }}
+fn out_u(x: u32) {{ probe_out[probe_write] = x; probe_write += 1u; }}
+fn out_f(x: f32) {{ out_u(bitcast<u32>(x)); }}
+fn out_b(x: bool) {{ out_u(select(0u, 1u, x)); }}
+fn out_v(x: vec3<f32>) {{ out_f(x.x); out_f(x.y); out_f(x.z); }}
+@compute @workgroup_size({workgroup})
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
+    if id.x >= (arrayLength(&probe_in) - {heap}u) / {ins}u {{ return; }}
+    probe_read = {heap}u + id.x * {ins}u;
+    probe_write = id.x * {outs}u;
+    {wgsl}
+}}
+",
+            workgroup = afterimage_testing::gpu::WORKGROUP,
+            wgsl = self.wgsl
+        );
+        SHADERS.compose_with(&self.module.split(' ').collect::<Vec<_>>(), &harness).source
+    }
+
+    /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin.
+    pub fn differences(&self, device: &wgpu::Device, queue: &wgpu::Queue, source: &str) -> (usize, Vec<String>) {
+        self.differences_of(device, queue, source, &(self.rows)())
+    }
+
+    /// The same for `rows`.
+    pub fn differences_of(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        source: &str,
+        rows: &Rows,
+    ) -> (usize, Vec<String>) {
+        let [ins, outs] = self.words;
+        assert_eq!(rows.width, ins, "{}", self.name);
+        let count = rows.words.len() / ins;
+        // The heap comes first, so that where it lies does not depend on the rows.
+        let inputs = [heap(self.module), rows.words.clone()].concat();
+        let got = afterimage_testing::gpu::run_probe(device, queue, source, "main", &inputs, count * outs);
+        let mut lines = vec![];
+        for (input, got) in rows.words.chunks(ins).zip(got.chunks(outs)) {
+            let mut expected = Out::default();
+            (self.rust)(&Row(input), &mut expected);
+            assert_eq!(expected.0.len(), outs, "{}", self.name);
+            if got != expected.0 {
+                let floats: Vec<_> = input.iter().map(|&x| f32::from_bits(x)).collect();
+                lines.push(format!("{input:08x?} {floats:?}: device {got:08x?}, Rust {:08x?}", expected.0));
+            }
+        }
+        (count, lines)
+    }
+
+    /// What the device makes of each row, on a fresh device; Rust makes the same in every bit. `None` without an adapter.
+    #[track_caller]
+    pub fn outputs(&self, rows: &[Vec<u32>]) -> Option<Vec<Vec<u32>>> {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        let outs = self.words[1];
+        let inputs = [heap(self.module), rows.concat()].concat();
+        let got =
+            afterimage_testing::gpu::run_probe(&device, &queue, &self.source(), "main", &inputs, rows.len() * outs);
+        let got: Vec<Vec<u32>> = got.chunks(outs).map(<[u32]>::to_vec).collect();
+        for (input, got) in rows.iter().zip(&got) {
+            assert_eq!(input.len(), self.words[0], "{}", self.name);
+            let mut expected = Out::default();
+            (self.rust)(&Row(input), &mut expected);
+            assert_eq!(*got, expected.0, "{} of {input:08x?}: device, then Rust", self.name);
+        }
+        Some(got)
+    }
+
+    /// Fails unless device and Rust agree in every bit of every row.
+    fn check(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<usize, String> {
+        let (count, lines) = self.differences(device, queue, &self.source());
+        println!("{}::{}: {count} rows, {} differ", self.module, self.name, lines.len());
+        if lines.is_empty() {
+            return Ok(count);
+        }
+        let shown = &lines[..lines.len().min(8)];
+        Err(format!("{}::{}: {} of {count} rows differ\n{}", self.module, self.name, lines.len(), shown.join("\n")))
+    }
+}
+
+/// The probe of that name.
+pub fn named<'a>(probes: &'a [Probe], name: &str) -> &'a Probe {
+    probes.iter().find(|p| p.name == name).unwrap()
+}
+
+/// Checks every probe of `module`, on a fresh device; how many rows agree, or `None` without an adapter.
+pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
+    let (device, queue) = afterimage_testing::gpu::device()?;
+    let chosen: Vec<_> = probes.iter().filter(|p| p.module == module).collect();
+    assert!(!chosen.is_empty());
+    let (counts, failures): (Vec<_>, Vec<_>) = chosen.iter().map(|p| p.check(&device, &queue)).partition(Result::is_ok);
+    let failures: Vec<_> = failures.into_iter().filter_map(Result::err).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+    Some(counts.into_iter().flatten().sum())
+}
+
+/// A planted error: `wrong` instead of `right` in the source of the function `name`. Fails unless the comparison sees it.
+#[track_caller]
+pub fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
+    let probe = probes.iter().find(|p| p.name == name).unwrap();
+    let source = probe.source();
+    assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {name}");
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
+    println!("{name}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
+    assert!(!lines.is_empty(), "planted error not caught: {name}, '{right}' -> '{wrong}'");
+}

@@ -1,0 +1,224 @@
+//! Lab and Delta E 94 against f64 and published values.
+
+use super::*;
+use afterimage_testing::holds;
+
+fn ulps(a: f32, b: f64) -> f64 {
+    let b32 = b as f32;
+    let spacing = f64::from(f32::from_bits(b32.abs().to_bits() + 1)) - f64::from(b32.abs());
+    (f64::from(a) - b).abs() / spacing
+}
+
+#[test]
+fn h38_cbrt_is_within_4_ulp_and_exact_at_0_and_1() {
+    assert_eq!(color::cbrt(0.0).to_bits(), 0);
+    assert_eq!(color::cbrt(1.0), 1.0);
+    assert_eq!(color::cbrt(-1.0), -1.0);
+    let sweep = (0..=400_000).map(|i| (1e-30 * 1e60_f64.powf(f64::from(i) / 4e5)) as f32);
+    let worst = sweep.map(|x| ulps(color::cbrt(x), f64::from(x).cbrt())).fold(0.0, f64::max);
+    assert!(worst <= 2.0);
+    // The planted error: one Halley step is not enough.
+    let x = 0.3_f32;
+    let r = f32::from_bits(x.to_bits() / 3 + 0x2a51_4067);
+    let one_step = r - r * ((r * r * r - x) / (2.0 * r * r * r + x));
+    assert!(ulps(one_step, f64::from(x).cbrt()) > 4.0);
+    holds!("H38", Cpu, "worst error {worst:.2} ulp over 1e-30 to 1e30, exact at 0 and +-1");
+}
+
+#[test]
+fn lab_matches_f64_and_white_is_100() {
+    let white = color::lab(Vec3::ONE);
+    assert_abs_diff_eq!(white.x, 100.0, epsilon = 1e-4);
+    assert!(white.y.abs() < 1e-3 && white.z.abs() < 1e-3);
+    let mut draws = Draws::new("lab");
+    let mut worst = 0.0_f64;
+    for _ in 0..100_000 {
+        let c = Vec3::new(draws.uniform(), draws.uniform(), draws.uniform());
+        worst = worst.max((color::lab(c).as_dvec3() - lab64(c.as_dvec3())).length());
+    }
+    println!("lab: worst distance to f64 {worst:.2e}");
+    assert!(worst < 2e-4);
+}
+
+#[test]
+fn h30_hue_term_never_makes_nan() {
+    let mut draws = Draws::new("same hue");
+    // How often the term under the root is negative before the clamp, and how often the whole sum under it would be.
+    let (mut negative_term, mut negative_sum, mut spread_pairs) = (0, 0, 0);
+    for i in 0..400_000 {
+        let (l, a, b) = (draws.range(0.0, 100.0), draws.range(-80.0, 80.0), draws.range(-80.0, 80.0));
+        // Half of the pairs differ in chroma, half by rounding alone.
+        let s = if i % 2 == 0 { draws.range(0.1, 2.0) } else { 1.0 + draws.range(-4e-7, 4e-7) };
+        let (x, y) = (Vec3::new(l, a, b), Vec3::new(l, a * s, b * s));
+        let d = x - y;
+        let c1 = (x.y * x.y + x.z * x.z).sqrt();
+        let dc = c1 - (y.y * y.y + y.z * y.z).sqrt();
+        let dh2 = d.y * d.y + d.z * d.z - dc * dc;
+        let (sc, sh) = (1.0 + 0.045 * c1, 1.0 + 0.015 * c1);
+        spread_pairs += usize::from(i % 2 == 0 && dh2 < 0.0);
+        negative_term += usize::from(dh2 < 0.0);
+        negative_sum += usize::from(dc * dc / (sc * sc) + dh2 / (sh * sh) < 0.0);
+        let e = color::delta_e94(x, y);
+        assert!(e.is_finite() && e >= 0.0);
+    }
+    println!("negative hue term in {negative_term} of 400000 pairs, negative sum in {negative_sum}");
+    assert!(negative_term > 40_000 && negative_sum > 100, "the case must really occur");
+    let percent = spread_pairs as f64 / 2_000.0;
+    holds!("H30", Cpu, "hue term negative in {percent:.0} % of same-hue pairs, no NaN in 400,000");
+}
+
+#[test]
+fn h31_greys_differ_by_lightness_alone() {
+    let grey = |l| Vec3::new(l, 0.0, 0.0);
+    assert_eq!(color::delta_e94(grey(40.0), grey(65.0)), 25.0);
+    // Its slope towards any chroma is that of a distance: at most 1, and 1 where lightness is equal.
+    let mut steepest = 0.0_f32;
+    for h in (0..=60).map(|e| 2.0_f32.powi(e - 60)) {
+        for way in [Vec3::Y, Vec3::Z, -Vec3::Y, -Vec3::Z] {
+            let from_equal = color::delta_e94(grey(40.0), grey(40.0) + way * h) / h;
+            let from_other = (color::delta_e94(grey(40.0), grey(65.0) + way * h) - 25.0) / h;
+            assert!(from_other.is_finite() && (0.0..1.0).contains(&from_other), "{from_other} at {h:e}");
+            assert!((from_equal - 1.0).abs() < 1e-6, "{from_equal} at {h:e}");
+            steepest = steepest.max(from_equal).max(from_other);
+            assert!(color::delta_e94(grey(40.0) + way * h, grey(40.0)).is_finite(), "no division by a small chroma");
+        }
+    }
+    holds!("H31", Cpu, "25 for L* 40 and 65; slope at most {steepest:.6} for chroma 2^-60 to 1");
+}
+
+#[test]
+fn h32_the_candidate_is_the_reference() {
+    let labs: Vec<Vec3> = srgb_grid().into_iter().map(color::lab).collect();
+    let mut most = 0.0_f32;
+    for &grey in labs.iter().filter(|l| l.y.hypot(l.z) < 0.1) {
+        for &vivid in &labs {
+            let back = color::delta_e94(vivid, grey);
+            // Of clearly different colors.
+            most = if back > 2.0 { most.max(color::delta_e94(grey, vivid) / back) } else { most };
+        }
+    }
+    let (grey, vivid) = (Vec3::new(50.0, 0.0, 0.0), Vec3::new(50.0, 100.0, 0.0));
+    let ratio = color::delta_e94(grey, vivid) / color::delta_e94(vivid, grey);
+    assert_abs_diff_eq!(ratio, 5.5, epsilon = 1e-3);
+    assert!((6.0..7.1).contains(&most), "{most}");
+    let (a, b) = (Vec3::new(0.9, 0.1, 0.1), Vec3::new(0.3, 0.3, 0.3));
+    let reference_first = color::delta_e94(color::lab(a), color::lab(b));
+    assert_eq!(wrs::difference(a, b, DELTA_E), reference_first);
+    assert_ne!(wrs::difference(b, a, DELTA_E), reference_first);
+    holds!("H32", Cpu, "up to {most:.2}x apart in sRGB; the candidate is the reference");
+}
+
+#[test]
+fn h33_lab_is_continuous_at_its_knee() {
+    let knee = 216.0_f32 / 24389.0;
+    let mut off = 0.0_f32;
+    for y in [knee.next_down(), knee, knee.next_up()] {
+        off = off.max((color::lab(Vec3::splat(y)).x - 8.0).abs());
+    }
+    assert!(off < 2e-5);
+    // Slope of 903.3 from both sides, over steps wide enough for f32.
+    let slope = |step: f32| (color::lab(Vec3::splat(knee + step)).x - color::lab(Vec3::splat(knee)).x) / step;
+    let [below, above] = [-1e-5, 1e-5].map(slope);
+    // Above, the curve bends: its mean over the step is (2/3) (step / 2) / knee lower, 0.04 %.
+    assert_abs_diff_eq!(below, 903.3, epsilon = 0.2);
+    assert_abs_diff_eq!(above, 903.3 * (1.0 - 1e-5 / (3.0 * knee)), epsilon = 0.2);
+    holds!("H33", Cpu, "L* 8 within {off:.1e} at the knee +- 1 ulp; slopes {below:.1} and {above:.1}");
+}
+
+#[test]
+fn h36_negative_and_any_other_colors_give_finite_numbers() {
+    use proptest::num::f32::ANY;
+    let cases = 20_000;
+    let mut lowest = 0.0_f32;
+    let mut runner = TestRunner::new(afterimage_testing::property("finite lab", cases));
+    let result = runner.run(&([ANY; 3], [ANY; 3]), |(a, b)| {
+        let (c, valid) = scrub::color(Vec3::from(a));
+        prop_assert_eq!(valid, a.iter().all(|x| x.is_finite()));
+        prop_assert!(c.abs().max_element() <= 65504.0);
+        let d = wrs::difference(c, scrub::color(Vec3::from(b)).0, DELTA_E);
+        prop_assert!(color::lab(c).is_finite() && d.is_finite() && d >= 0.0);
+        Ok(())
+    });
+    result.unwrap();
+    for x in [-0.0, -1e-30, -1e-3, -0.5, -1.0, -65504.0] {
+        let l = color::lab(Vec3::splat(x)).x;
+        let exact = lab64(DVec3::splat(f64::from(x))).x;
+        assert!((f64::from(l) - exact).abs() < 1e-5 * exact.abs().max(1.0), "{x}: {l}");
+        lowest = lowest.min(l);
+    }
+    holds!("H36", Cpu, "no NaN in {cases} pairs of any bits; L* {lowest:.3e} at -65504, on Lab's line");
+}
+
+/// Lab pairs 1 to 34 of Sharma, Wu and Dalal, "The CIEDE2000 color-difference formula", 2005, table 1.
+const SHARMA: [[[f64; 3]; 2]; 34] = [
+    [[50.0, 2.6772, -79.7751], [50.0, 0.0, -82.7485]],
+    [[50.0, 3.1571, -77.2803], [50.0, 0.0, -82.7485]],
+    [[50.0, 2.8361, -74.02], [50.0, 0.0, -82.7485]],
+    [[50.0, -1.3802, -84.2814], [50.0, 0.0, -82.7485]],
+    [[50.0, -1.1848, -84.8006], [50.0, 0.0, -82.7485]],
+    [[50.0, -0.9009, -85.5211], [50.0, 0.0, -82.7485]],
+    [[50.0, 0.0, 0.0], [50.0, -1.0, 2.0]],
+    [[50.0, -1.0, 2.0], [50.0, 0.0, 0.0]],
+    [[50.0, 2.49, -0.001], [50.0, -2.49, 0.0009]],
+    [[50.0, 2.49, -0.001], [50.0, -2.49, 0.001]],
+    [[50.0, 2.49, -0.001], [50.0, -2.49, 0.0011]],
+    [[50.0, 2.49, -0.001], [50.0, -2.49, 0.0012]],
+    [[50.0, -0.001, 2.49], [50.0, 0.0009, -2.49]],
+    [[50.0, -0.001, 2.49], [50.0, 0.001, -2.49]],
+    [[50.0, -0.001, 2.49], [50.0, 0.0011, -2.49]],
+    [[50.0, 2.5, 0.0], [50.0, 0.0, -2.5]],
+    [[50.0, 2.5, 0.0], [73.0, 25.0, -18.0]],
+    [[50.0, 2.5, 0.0], [61.0, -5.0, 29.0]],
+    [[50.0, 2.5, 0.0], [56.0, -27.0, -3.0]],
+    [[50.0, 2.5, 0.0], [58.0, 24.0, 15.0]],
+    [[50.0, 2.5, 0.0], [50.0, 3.1736, 0.5854]],
+    [[50.0, 2.5, 0.0], [50.0, 3.2972, 0.0]],
+    [[50.0, 2.5, 0.0], [50.0, 1.8634, 0.5757]],
+    [[50.0, 2.5, 0.0], [50.0, 3.2592, 0.335]],
+    [[60.2574, -34.0099, 36.2677], [60.4626, -34.1751, 39.4387]],
+    [[63.0109, -31.0961, -5.8663], [62.8187, -29.7946, -4.0864]],
+    [[61.2901, 3.7196, -5.3901], [61.4292, 2.248, -4.962]],
+    [[35.0831, -44.1164, 3.7933], [35.0232, -40.0716, 1.5901]],
+    [[22.7233, 20.0904, -46.694], [23.0331, 14.973, -42.5619]],
+    [[36.4612, 47.858, 18.3852], [36.2715, 50.5065, 21.2231]],
+    [[90.8027, -2.0831, 1.441], [91.1528, -1.6435, 0.0447]],
+    [[90.9257, -0.5406, -0.9208], [88.6381, -0.8985, -0.7239]],
+    [[6.7747, -0.2908, -2.4247], [5.8714, -0.0985, -2.2286]],
+    [[2.0776, 0.0795, -1.135], [0.9033, -0.0636, -0.5514]],
+];
+
+#[test]
+fn h40_delta_e94_matches_f64_and_published_values() {
+    let of = |a: [f64; 3], b: [f64; 3]| color::delta_e94(DVec3::from(a).as_vec3(), DVec3::from(b).as_vec3());
+    let mut worst = 0.0_f64;
+    for [a, b] in SHARMA {
+        for (a, b) in [(a, b), (b, a)] {
+            worst = worst.max((f64::from(of(a, b)) - delta_e94_64(a.into(), b.into())).abs());
+            assert_eq!(of(a, a), 0.0);
+        }
+    }
+    // Values of Lindbloom's calculator of color differences (brucelindbloom.com), graphic arts.
+    for (a, b, published) in [
+        ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0),
+        ([100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 100.0),
+        ([100.0, -50.0, 50.0], [20.0, 10.0, -20.0], 89.358_114),
+        ([10.3454, 3.2151, -189.123], [51.7781, -22.5151, 1.0001], 51.361_909),
+    ] {
+        worst = worst.max((f64::from(of(a, b)) - published).abs());
+    }
+    assert!(worst < 1e-4, "{worst:e}");
+    // Hand calculation: dL = 3, dC = 4 at C1 = 0, so both weights are 1.
+    assert_eq!(of([50.0, 0.0, 0.0], [53.0, 4.0, 0.0]), 5.0);
+    holds!("H40", Cpu, "{worst:.1e} at most from f64 and from published values, 34 pairs both ways");
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("delta e 94", 1000))]
+    #[test]
+    fn delta_e94_matches_f64(l1 in 0f32..100., a1 in -100f32..100., b1 in -100f32..100., l2 in 0f32..100., a2 in -100f32..100., b2 in -100f32..100.) {
+        let (x, y) = (Vec3::new(l1, a1, b1), Vec3::new(l2, a2, b2));
+        let exact = delta_e94_64(x.as_dvec3(), y.as_dvec3());
+        // Near-equal hues lose half the digits of dH^2, whose root then shows.
+        prop_assert!((f64::from(color::delta_e94(x, y)) - exact).abs() < 5e-2_f64.min(1e-4 * exact + 3e-2));
+    }
+}

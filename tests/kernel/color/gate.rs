@@ -1,0 +1,149 @@
+//! The gate: what it lets pass, and what it must not see.
+
+use super::*;
+use afterimage::kernel::reservoir::bernoulli_survival;
+use afterimage::kernel::wrs::{BiasCode, Past, SamplerCode, WrsParams};
+use afterimage_testing::holds;
+
+/// The published gate: closed by a difference of 100.
+fn gate(candidate: Vec3, sample: Vec3) -> f32 {
+    wrs::gate(wrs::difference(candidate, sample, DELTA_E), 0.0, 0.01)
+}
+
+/// What becomes of a history of color `sample` and sum `w_sum`, with a gate that is open up to `offset`.
+fn step(candidate: Vec3, weight: f32, sample: Vec3, w_sum: f32, offset: f32, draw: f32) -> wrs::Decision {
+    let params = WrsParams {
+        sampler: SamplerCode::AChao,
+        bias: BiasCode::Bernoulli,
+        exponential_survival: 1.0,
+        gate: DELTA_E,
+        gate_offset: offset,
+        inv_gate_divisor: 0.01,
+    };
+    wrs::step(candidate, weight, Past { color: sample, w_sum, log_key: f32::MIN }, &params, draw)
+}
+
+#[test]
+fn h20_differences_beyond_100_shut_the_gate_and_no_more() {
+    let grid = srgb_grid();
+    let labs: Vec<Vec3> = grid.iter().map(|&c| color::lab(c)).collect();
+    let (mut most, mut pair) = (0.0_f32, (0, 0));
+    for (i, &a) in labs.iter().enumerate() {
+        for (j, &b) in labs.iter().enumerate() {
+            let d = color::delta_e94(a, b);
+            (most, pair) = if d > most { (d, (i, j)) } else { (most, pair) };
+        }
+    }
+    let bright = Vec3::splat(((276.0_f32 + 16.0) / 116.0).powi(3));
+    let hdr = wrs::difference(Vec3::ZERO, bright, DELTA_E);
+    assert!((most - 150.0).abs() < 2.0 && (hdr - 276.0).abs() < 1e-3, "{most} in sRGB, {hdr} for L* = 276");
+    for (candidate, sample) in [(grid[pair.0], grid[pair.1]), (Vec3::ZERO, bright), (bright, Vec3::ZERO)] {
+        assert_eq!(gate(candidate, sample), 0.0);
+        let d = step(candidate, 0.25, sample, 3.0, 0.0, 0.999);
+        assert_eq!((d.take, d.w_sum, d.survival), (true, 0.25, 0.0));
+    }
+    // The planted error: 1 - d / 100 without a clamp makes the sum negative.
+    assert!(3.0 * (1.0 - most / 100.0) + 0.25 < 0.0);
+    holds!("H20", Cpu, "{most:.1} in sRGB, {hdr:.1} for L* = 276: gate 0, w_sum the candidate's");
+}
+
+#[test]
+fn h34_a_gate_with_an_offset_for_noise_does_not_see_dark_noise() {
+    let differs = |a: f32, b: f32| wrs::difference(Vec3::splat(a), Vec3::splat(b), DELTA_E);
+    let one_sigma = differs(0.0, 0.002);
+    assert_abs_diff_eq!(one_sigma, 1.81, epsilon = 0.01);
+    // Candidates around 0.01 with that noise, at the weight of 10 degrees, over a history of 18 foveal frames: how open the gate
+    // is, how often it all but shuts, and how likely the sample is kept for 25 frames (about half, if nothing but eq. 5 forgets).
+    let run = |offset: f32| {
+        let mut draws = Draws::new("dark noise");
+        let mut normal = || (0..12).map(|_| draws.uniform()).sum::<f32>() - 6.0;
+        let (mut open, mut shut, mut left) = (0_u32, 0_u32, 0.0);
+        for _ in 0..4_000 {
+            let (sample, mut a, mut alive) = (Vec3::splat(0.01 + 0.002 * normal()), 5.42, 1.0);
+            for _ in 0..25 {
+                let d = step(Vec3::splat(0.01 + 0.002 * normal()), 0.157, sample, a, offset, 0.0);
+                alive *= 1.0 - 0.157 / d.w_sum;
+                a = d.w_sum;
+                open += u32::from(d.gate == 1.0);
+                shut += u32::from(d.gate < 0.5);
+            }
+            left += alive / 4_000.0;
+        }
+        (f64::from(open) / 100_000.0, shut, left)
+    };
+    // Three standard deviations of the difference of two such candidates.
+    let (published, offset, ungated) = (run(0.0), run(7.7), run(f32::MAX));
+    println!("open, all but shut, kept: published {published:?}, with an offset {offset:?}, ungated {ungated:?}");
+    assert_eq!((published.1, offset.1), (0, 0), "never flushed");
+    assert!(offset.0 > 0.99 && (offset.2 - ungated.2).abs() < 1e-3, "as if there were no noise");
+    assert!(published.2 < ungated.2 - 0.05, "the case must really occur");
+    holds!(
+        "H34",
+        Cpu,
+        "dL* {one_sigma:.2}, no flush; {:.1} % kept for 25 frames with offset 7.7, {:.1} % without, {:.1} % ungated",
+        100.0 * offset.2,
+        100.0 * published.2,
+        100.0 * ungated.2
+    );
+}
+
+#[test]
+fn h35_an_8_bit_step_near_black_closes_the_gate_by_a_few_percent_or_not_at_all() {
+    let differs = |a: f32, b: f32| wrs::difference(Vec3::splat(a), Vec3::splat(b), DELTA_E);
+    let linear = differs(0.0, 1.0 / 255.0);
+    assert_abs_diff_eq!(linear, 3.54, epsilon = 0.01);
+    assert!(wrs::gate(linear, 0.0, 0.01) > 0.96);
+    assert_eq!(wrs::gate(linear, 3.6, 0.01), 1.0);
+    // Steps of 8-bit sRGB, the usual quantisation, at any level.
+    let code = |i: u32| color::srgb_decode(i as f32 / 255.0);
+    let encoded = (0..255).map(|i| differs(code(i), code(i + 1))).fold(0.0, f32::max);
+    assert!(encoded < 0.6 && wrs::gate(encoded, 0.0, 0.01) > 0.994, "{encoded}");
+    holds!(
+        "H35",
+        Cpu,
+        "dL* {linear:.2}: gate 0.965, with offset 3.6 it is 1; 8-bit sRGB steps are {encoded:.2} at most"
+    );
+}
+
+#[test]
+fn h37_strong_and_hdr_colors_stay_finite_and_clamp_the_gate() {
+    let colors = [0.0, 1.0, 1e4, 65504.0, 1e30, -1.0, -65504.0, -1e30, f32::MAX, f32::MIN];
+    let mut most = 0.0_f32;
+    for a in colors {
+        for b in colors {
+            for (x, y) in [(Vec3::splat(a), Vec3::splat(b)), (Vec3::new(a, b, 0.5), Vec3::new(b, 0.1, a))] {
+                let d = wrs::difference(x, y, DELTA_E);
+                assert!(d.is_finite() && d >= 0.0, "{x} {y}: {d}");
+                most = most.max(d);
+                assert!((0.0..=1.0).contains(&gate(x, y)));
+            }
+        }
+    }
+    assert!(most > 100.0);
+    let of = |x: f32| color::lab(Vec3::splat(x)).x;
+    assert_eq!(of(1e30), of(65504.0), "saturates");
+    holds!("H37", Cpu, "L* {:.0} at 1e4, {:.0} at 65504 and 1e30; Delta E at most {most:.2e}", of(1e4), of(1e30));
+}
+
+#[test]
+fn h39_equal_colors_differ_by_exactly_0() {
+    use proptest::num::f32::ANY;
+    let cases = 20_000;
+    let mut runner = TestRunner::new(afterimage_testing::property("equal colors", cases));
+    let strategy = ([ANY; 3], 1e-3f32..1e3, 1e-3f32..1., 0f32..1.);
+    let result = runner.run(&strategy, |(c, w_sum, weight, draw)| {
+        let c = scrub::color(Vec3::from(c)).0;
+        prop_assert_eq!(wrs::difference(c, c, DELTA_E).to_bits(), 0);
+        prop_assert_eq!(wrs::difference(c, c, GateCode::Lightness).to_bits(), 0);
+        prop_assert_eq!(color::delta_e94(color::lab(c), color::lab(c)).to_bits(), 0);
+        let d = step(c, weight, c, w_sum, 0.0, draw);
+        prop_assert_eq!(d.gate, 1.0);
+        prop_assert_eq!(d.survival, bernoulli_survival(w_sum, weight));
+        Ok(())
+    });
+    result.unwrap();
+    // One ulp apart is not equal, and may be told apart.
+    let near = wrs::difference(Vec3::splat(0.5), Vec3::splat(0.5_f32.next_up()), DELTA_E);
+    assert!(near < 1e-4);
+    holds!("H39", Cpu, "exactly 0 and factor 1 for {cases} colors of any bits");
+}

@@ -1,0 +1,309 @@
+//! Same surface or not: hard cases H41-H45, H48 and H49 on the depth kernel.
+
+use afterimage::convention::DepthConvention as Depth;
+use afterimage::kernel::depth;
+use afterimage::kernel::pack::{disparity_code, disparity_value, half_bits, half_value};
+use afterimage_testing::Draws;
+use afterimage_testing::holds;
+use proptest::prelude::*;
+
+const CONVENTIONS: [(&str, Depth); 8] = [
+    ("linear", Depth::Linear),
+    ("forward", Depth::Forward { near: 0.1, far: 1000.0 }),
+    ("forward, infinite", Depth::Forward { near: 0.1, far: f32::INFINITY }),
+    ("reversed", Depth::Reversed { near: 0.1, far: 1000.0 }),
+    ("reversed, infinite", Depth::Reversed { near: 0.1, far: f32::INFINITY }),
+    ("reversed, close near plane", Depth::Reversed { near: 0.01, far: 1e5 }),
+    ("orthographic", Depth::Orthographic { near: 0.5, far: 1000.0 }),
+    ("orthographic from behind", Depth::Orthographic { near: -10.0, far: 1000.0 }),
+];
+
+/// What a depth buffer of the convention stores for distance `z`, in f64.
+fn stored(convention: Depth, z: f64) -> f64 {
+    match convention {
+        Depth::Linear => z,
+        Depth::Forward { near, far } => {
+            let (n, f) = (f64::from(near), f64::from(far));
+            if f.is_infinite() { 1.0 - n / z } else { f / (f - n) * (1.0 - n / z) }
+        }
+        Depth::Reversed { near, far } => 1.0 - stored(Depth::Forward { near, far }, z),
+        Depth::Orthographic { near, far } => (z - f64::from(near)) / f64::from(far - near),
+    }
+}
+
+/// Distance that a stored value stands for, in conventions that store distances.
+fn stored64(convention: Depth, value: f32) -> f64 {
+    match convention {
+        Depth::Orthographic { near, far } => f64::from(near) + f64::from(value.clamp(0.0, 1.0)) * f64::from(far - near),
+        _ => f64::from(value),
+    }
+}
+
+fn invertible(convention: Depth) -> bool {
+    matches!(convention, Depth::Linear | Depth::Orthographic { .. })
+}
+
+fn same(a: f32, b: f32) -> bool {
+    depth::same_surface(a, b, 0.02, 0.0)
+}
+
+#[test]
+fn every_convention_gives_the_disparity() {
+    for (name, convention) in CONVENTIONS {
+        convention.validate().unwrap();
+        let map = convention.disparity_map();
+        for z in [1.0, 2.5, 10.0, 80.0, 400.0] {
+            let got = f64::from(depth::disparity(stored(convention, z) as f32, map));
+            // A forward buffer holds 24 bits of 1 - near / z: far away little is left of them.
+            let rounding = if name.starts_with("forward") { 1e-6 * z } else { 1e-5 };
+            assert!((got * z - 1.0).abs() < rounding.max(2e-6), "{name}, z = {z}: {got}");
+        }
+    }
+}
+
+#[test]
+fn h41_the_sky_is_the_same_sky_and_never_an_object() {
+    let sky = [
+        (Depth::Linear, f32::INFINITY),
+        (Depth::Linear, 1e38),
+        (Depth::Forward { near: 0.1, far: f32::INFINITY }, 1.0),
+        (Depth::Reversed { near: 0.1, far: f32::INFINITY }, 0.0),
+    ];
+    let mut objects = 0;
+    for (convention, value) in sky {
+        let d = depth::disparity(value, convention.disparity_map());
+        assert_eq!(d, 0.0, "{convention:?}");
+        let remembered = disparity_value(disparity_code(d));
+        assert!(same(d, remembered));
+        for z in [0.1, 1.0, 1e3, 1e6] {
+            let object = depth::disparity(stored(convention, z) as f32, convention.disparity_map());
+            assert!(!same(object, remembered) && !same(d, disparity_value(disparity_code(object))));
+            objects += 1;
+        }
+    }
+    // With a finite far plane the sky is a surface at the far plane: the same as itself.
+    for convention in [Depth::Forward { near: 0.1, far: 1000.0 }, Depth::Orthographic { near: 0.0, far: 10.0 }] {
+        let d = depth::disparity(1.0, convention.disparity_map());
+        assert!(d > 0.0 && same(d, disparity_value(disparity_code(d))));
+    }
+    holds!("H41", Cpu, "sky is disparity 0 exactly in 4 encodings; {objects} objects, 0.1 m to 1000 km, are never it");
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("depth", 4000))]
+
+    #[test]
+    fn h42_h47_any_stored_depth_gives_a_finite_disparity_or_none(bits in any::<u32>()) {
+        let value = f32::from_bits(bits);
+        for (name, convention) in CONVENTIONS {
+            let d = depth::disparity(value, convention.disparity_map());
+            prop_assert!(d.is_finite() && (d >= 0.0 || d == depth::INVALID_DISPARITY), "{name}: {value} gives {d}");
+            let positive = stored64(convention, value) > 0.0;
+            let expect_none = value.is_nan() || (invertible(convention) && !positive);
+            prop_assert!(!expect_none || d < 0.0, "{name}: {value} gives {d}");
+            let back = disparity_value(disparity_code(d));
+            prop_assert!(back.is_finite());
+            if d < 0.0 {
+                prop_assert!(!same(d, d) && !same(1.0, d), "an unknown surface is never the same");
+            }
+        }
+    }
+
+    #[test]
+    fn h43_storage_neither_flushes_nor_accepts_for_ever(z in 1e-3f32..1e5) {
+        let d = depth::disparity(z, Depth::Linear.disparity_map());
+        let remembered = disparity_value(disparity_code(d));
+        prop_assert!(same(d, remembered), "the stored surface is recognised at every distance");
+        for factor in [0.97_f32, 1.03] {
+            let other = depth::disparity(z * factor, Depth::Linear.disparity_map());
+            prop_assert!(!same(other, remembered), "3 % is another surface at every distance");
+        }
+    }
+
+    #[test]
+    fn h45_a_dolly_is_predicted(z in 1.5f32..100., rx in -0.9f32..0.9, ry in -0.6f32..0.6, step in -1f32..1.) {
+        // The camera drives `step` towards the wall: what is at z now was at z + step.
+        let now = 1.0 / z;
+        let expected = depth::previous_disparity(now, 1.0, step);
+        prop_assert!((expected * (z + step) - 1.0).abs() < 1e-5);
+        prop_assert!(same(expected, disparity_value(disparity_code(1.0 / (z + step)))));
+        // A camera that also turned: stretch = m20 rx + m21 ry + m22.
+        let stretch = 0.1 * rx - 0.05 * ry + 0.99;
+        let z_previous = z * stretch + step;
+        if z_previous > 0.1 {
+            prop_assert!((depth::previous_disparity(now, stretch, step) * z_previous - 1.0).abs() < 1e-4);
+        }
+        // Without the prediction a metre at three metres is a flush.
+        if z < 3.0 && step > 0.9 {
+            prop_assert!(!same(now, 1.0 / (z + step)));
+        }
+    }
+}
+
+#[test]
+fn h45_a_metre_towards_a_wall_is_predicted_to_rounding() {
+    let (mut worst, mut unpredicted) = (0.0_f64, 0);
+    for i in 0..10_000 {
+        let z = 1.5 + 100.0 * f64::from(i) / 1e4;
+        let expected = depth::previous_disparity((1.0 / z) as f32, 1.0, 1.0);
+        worst = worst.max((f64::from(expected) * (z + 1.0) - 1.0).abs());
+        let before = disparity_value(disparity_code((1.0 / (z + 1.0)) as f32));
+        assert!(same(expected, before));
+        unpredicted += usize::from(!same((1.0 / z) as f32, before));
+    }
+    assert!(worst < 1e-6 && unpredicted > 4_000);
+    holds!(
+        "H45",
+        Cpu,
+        "1.5 to 101 m, 1 m nearer: off by {worst:.1e}, none flushed; {unpredicted} of 10000 unpredicted"
+    );
+}
+
+#[test]
+fn h42_values_just_outside_the_buffer_s_range_are_clamped() {
+    let map = Depth::Reversed { near: 0.1, far: 1000.0 }.disparity_map();
+    assert_eq!(depth::disparity(1.0 + 1e-6, map), depth::disparity(1.0, map));
+    assert_eq!(depth::disparity(-1e-6, map), depth::disparity(0.0, map));
+    assert!((depth::disparity(1.0, map) - 10.0).abs() < 1e-5);
+    let mut worst = 0.0_f32;
+    for (name, convention) in CONVENTIONS.into_iter().filter(|(_, c)| c.disparity_map().clamp) {
+        let d = |v: f32| depth::disparity(v, convention.disparity_map());
+        for beyond in [f32::EPSILON, 1e-6, 1e-3, 1e30, f32::INFINITY] {
+            assert_eq!((d(1.0 + beyond), d(-beyond)), (d(1.0), d(0.0)), "{name}, by {beyond}");
+        }
+        worst = worst.max(d(0.0)).max(d(1.0));
+    }
+    assert!(worst.is_finite());
+    holds!("H42", Cpu, "7 encodings, by 1 ulp to infinity beyond either end: as at the end; at the most {worst} / m");
+}
+
+#[test]
+fn h43_half_float_depth_neither_flushes_nor_accepts_for_ever() {
+    let half = |v: f32| half_value(half_bits(v));
+    let step = |v: f32| half_value(half_bits(v) + 1) - half(v);
+    assert_eq!((step(100.0), step(1000.0)), (0.0625, 0.5));
+    // One step of the half either way, as noise and jitter of the depth sample make it, is the same surface; 3 % further is not.
+    let farthest = |stored: fn(f32) -> f32, convention: Depth| {
+        let map = convention.disparity_map();
+        let read = |bits: u32| depth::disparity(half_value(bits), map);
+        let distances = (0..50_000).map(|i| 10_f32.powf(5.0 * i as f32 / 50_000.0));
+        let bad = distances.clone().find(|&z| {
+            let bits = half_bits(stored(z));
+            let remembered = disparity_value(disparity_code(read(bits)));
+            let still = [bits - 1, bits, bits + 1].into_iter().all(|b| same(read(b), remembered));
+            let other = [0.97, 1.03].into_iter().any(|k| same(read(half_bits(stored(z * k))), remembered));
+            !still || other
+        });
+        bad.unwrap_or(1e5)
+    };
+    let linear_m = farthest(|z| z, Depth::Linear);
+    let reversed_m = farthest(|z| 0.1 / z, Depth::Reversed { near: 0.1, far: f32::INFINITY });
+    println!("linear halves tell surfaces apart up to {linear_m} m, reversed ones up to {reversed_m} m");
+    // The largest half is 65504: what is further is the sky, which is the same as itself and no object.
+    assert!(linear_m * 1.03 > 65504.0 && reversed_m > 10_000.0);
+    let sky = depth::disparity(f32::INFINITY, Depth::Linear.disparity_map());
+    assert!(same(sky, disparity_value(disparity_code(sky))));
+    assert!(!same(depth::disparity(65504.0, Depth::Linear.disparity_map()), disparity_value(disparity_code(sky))));
+    let (linear_km, reversed_km) = (linear_m / 1000.0, reversed_m / 1000.0);
+    holds!(
+        "H43",
+        Cpu,
+        "steps of 6.25 cm at 100 m, 0.5 m at 1 km; 1 step never flushes, 3 % always, to {linear_km:.1} km (reversed {reversed_km:.1})"
+    );
+}
+
+#[test]
+fn h44_a_grazing_plane_is_never_flushed_by_jitter() {
+    // A plane at up to 89.9 degrees between its normal and the view's axis, rolled any way: disparity is linear over pixels. The depth
+    // sample moves by up to half a pixel from frame to frame, and reprojection rounds by up to half a pixel, along both axes.
+    let mut draws = Draws::new("grazing");
+    let focal_px = 1000.0_f32;
+    let (mut seen, mut without_slope) = (0, 0);
+    for angle_deg in [0.0_f32, 60.0, 85.0, 89.0, 89.9] {
+        for _ in 0..20_000 {
+            let (roll, m) = (draws.range(0.0, std::f32::consts::TAU), draws.range(0.1, 100.0));
+            let per_px = [roll.cos(), roll.sin()].map(|v| v * angle_deg.to_radians().tan() / focal_px);
+            let d = |x: f32, y: f32| ((1.0 + per_px[0] * x + per_px[1] * y) / m).max(0.0);
+            let [x, y] = [draws.range(-400.0, 400.0), draws.range(-400.0, 400.0)];
+            // Up to the horizon: where the pixels around are sky, it is a silhouette.
+            let around = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
+            if around.iter().any(|[i, j]| d(x + i, y + j) <= 0.0) {
+                continue;
+            }
+            seen += 1;
+            let slope = depth::slope(1, 1, [3, 3], |i, j| d(x + i as f32 - 1.0, y + j as f32 - 1.0));
+            let before = disparity_value(disparity_code(d(x + draws.range(-1.0, 1.0), y + draws.range(-1.0, 1.0))));
+            assert!(depth::same_surface(d(x, y), before, 0.02, slope), "{angle_deg} degrees at ({x}, {y})");
+            without_slope += usize::from(!depth::same_surface(d(x, y), before, 0.02, 0.0));
+        }
+    }
+    assert!(seen > 50_000 && without_slope > 1_000, "{seen}; the planted error, no slope, flushes {without_slope}");
+    holds!("H44", Cpu, "{seen} jittered samples at 0 to 89.9 degrees: none flushed ({without_slope} without slope)");
+}
+
+#[test]
+fn a_silhouette_is_not_slope() {
+    // Object (disparity 1) left of background (0.1): on both sides the slope along x is 0.
+    let step = |x: u32, _: u32| if x < 4 { 1.0 } else { 0.1 };
+    assert_eq!(depth::slope(3, 1, [9, 3], step), 0.0);
+    assert_eq!(depth::slope(4, 1, [9, 3], step), 0.0);
+    // A wire, and a single pixel, are no slope either.
+    assert_eq!(depth::slope(4, 1, [9, 3], |x, _| if x == 4 { 1.0 } else { 0.1 }), 0.0);
+    assert_eq!(depth::slope(4, 1, [9, 3], |x, y| if (x, y) == (4, 1) { 0.1 } else { 1.0 }), 0.0);
+    // Invalid neighbours and borders are ignored.
+    assert_eq!(depth::slope(0, 0, [1, 1], |_, _| 0.5), 0.0);
+    assert_eq!(depth::slope(1, 0, [3, 1], |x, _| if x == 1 { 0.5 } else { -1.0 }), 0.0);
+}
+
+#[test]
+fn h48_moving_planes_do_not_change_the_disparity() {
+    let mut worst = 0.0_f32;
+    for z in [0.5, 3.0, 40.0, 300.0, 900.0] {
+        let a = Depth::Reversed { near: 0.1, far: 1000.0 };
+        let b = Depth::Reversed { near: 0.3, far: 5000.0 };
+        let read = |c: Depth| depth::disparity(stored(c, z) as f32, c.disparity_map());
+        worst = worst.max((read(a) / read(b) - 1.0).abs());
+        assert!(same(read(a), disparity_value(disparity_code(read(b)))));
+        // The planted error: the other frame's planes.
+        assert!(!same(depth::disparity(stored(a, z) as f32, b.disparity_map()), read(a)));
+    }
+    assert!(worst < 1e-3);
+    holds!("H48", Cpu, "near 0.1 to 0.3 m, far 1 to 5 km: disparities differ by {worst:.1e} of themselves at the most");
+}
+
+#[test]
+fn h49_orthographic_depth_is_a_distance() {
+    let mut worst = 0.0_f64;
+    for (near, far) in [(0.5, 1000.0), (-10.0, 1000.0), (0.0, 100.0)] {
+        let convention = Depth::Orthographic { near, far };
+        for i in 1..=1000 {
+            let z = f64::from(far) * f64::from(i) / 1000.0;
+            let value = stored(convention, z) as f32;
+            let got = f64::from(depth::disparity(value, convention.disparity_map()));
+            // Distances that near and far are rounded to.
+            worst = worst.max((got * stored64(convention, value) - 1.0).abs());
+        }
+        // The planted error: read as a perspective buffer of the same planes.
+        if near > 0.0 {
+            let wrong = Depth::Forward { near, far };
+            let z = 100.0;
+            assert!(!same(1.0 / 100.0, depth::disparity(stored(convention, z) as f32, wrong.disparity_map())));
+        }
+    }
+    assert!(worst < 1e-4, "{worst}");
+    holds!("H49", Cpu, "1 / (near + d (far - near)), off by {worst:.1e} of it at the most over 3000 distances");
+}
+
+#[test]
+fn bad_planes_are_refused() {
+    for bad in [
+        Depth::Forward { near: 0.0, far: 1.0 },
+        Depth::Reversed { near: 1.0, far: 0.5 },
+        Depth::Reversed { near: f32::NAN, far: 1.0 },
+        Depth::Forward { near: 1.0, far: f32::NAN },
+        Depth::Orthographic { near: 0.0, far: f32::INFINITY },
+    ] {
+        let message = bad.validate().unwrap_err().to_string();
+        assert!(message.contains("near"), "{message}");
+    }
+}

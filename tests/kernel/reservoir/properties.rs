@@ -1,0 +1,137 @@
+//! Laws that hold for any number, and for any bits.
+
+use super::*;
+use afterimage::kernel::scrub;
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("reservoir", 2000))]
+
+    #[test]
+    fn p1_p2_recurrence_and_bounds(a0 in 0f32..100., b in 1e-3f32..1., n in 1usize..300) {
+        let a0 = a0.max(b);
+        let (mut a, mut a64) = (a0, f64::from(a0));
+        let b64 = f64::from(b);
+        for i in 1..=n {
+            let d = step(&PAPER, a, b, 0.5);
+            prop_assert_eq!(d.w_sum.to_bits(), recur(a, b, 1.0).to_bits(), "the scalar reference, bit for bit");
+            prop_assert!(d.w_sum >= b && d.w_sum <= a + b);
+            let growth = f64::from(d.w_sum) - f64::from(a);
+            prop_assert!(growth <= b64 / 2.0 + 1e-5 * f64::from(a));
+            a = d.w_sum;
+            a64 = recur64(a64, b64, 1.0);
+            let rounding = 4.0 * f64::from(f32::EPSILON) * (i as f64 + 1.0);
+            prop_assert!((f64::from(a) / a64 - 1.0).abs() < rounding, "f32 follows f64");
+            let base = (f64::from(a0) + b64).powi(2);
+            let low = (base + 2.0 * b64 * b64 * i as f64).sqrt() - b64;
+            let high = (base + 2.25 * b64 * b64 * i as f64).sqrt() - b64;
+            prop_assert!(a64 >= low * (1.0 - 1e-12) && a64 <= high * (1.0 + 1e-12));
+        }
+    }
+
+    #[test]
+    fn p3_a_constant_gate_leads_to_a_fixed_point(a0 in 1e-2f32..1e3, b in 1e-2f32..1., d in 0.02f32..0.9) {
+        let mut a = a0;
+        for _ in 0..5000 {
+            a = recur(a, b, 1.0 - d);
+        }
+        prop_assert!((a * d.sqrt() / b - 1.0).abs() < 1e-3);
+        prop_assert!((b / a - d.sqrt()).abs() < 1e-3, "replacement rate");
+    }
+
+    #[test]
+    fn p4_weights_may_be_scaled(a in 1e-2f32..1e3, b in 1e-3f32..1., exponent in -8i32..8, draw in 0f32..1.) {
+        let c = 2.0_f32.powi(exponent);
+        for sampler in [SamplerCode::AChao, SamplerCode::AEs] {
+            let params = WrsParams { sampler, ..PAPER };
+            let key = -0.7;
+            let x = wrs::step(Vec3::ONE, b, Past { log_key: key, ..past(a) }, &params, draw);
+            let y = wrs::step(Vec3::ONE, c * b, Past { log_key: key / c, ..past(c * a) }, &params, draw);
+            prop_assert_eq!(x.take, y.take);
+            prop_assert_eq!(x.w_sum * c, y.w_sum);
+        }
+    }
+}
+
+/// Either sampler under any bias with any gate.
+fn any_params() -> impl Strategy<Value = WrsParams> {
+    let sampler = prop::sample::select(vec![SamplerCode::AChao, SamplerCode::AEs]);
+    let bias = prop::sample::select(vec![BiasCode::None, BiasCode::Exponential, BiasCode::Bernoulli]);
+    let gate = prop::sample::select(vec![GateCode::Off, GateCode::DeltaE94, GateCode::Lightness]);
+    (sampler, bias, gate, 0f32..=1.0, 0f32..10.).prop_map(|(sampler, bias, gate, exponential_survival, gate_offset)| {
+        WrsParams { sampler, bias, exponential_survival, gate, gate_offset, ..PAPER }
+    })
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("reservoir, any bits", 20_000))]
+
+    /// One pixel's frame on whatever bits color, weight, trust, key and the stored words have.
+    #[test]
+    fn any_bits_give_finite_output(color in any::<[u32; 3]>(), others in any::<[u32; 3]>(), words in any::<[u32; 3]>(), draw in 0u32..1 << 24, params in any_params()) {
+        let [weight, trust, key] = others.map(f32::from_bits);
+        let (candidate, usable) = scrub::color(Vec3::from(color.map(f32::from_bits)));
+        let weight = if usable { scrub::weight(weight).min(1.0) } else { 0.0 };
+        let history = pack::unpack(words);
+        let past = Past { color: history.color, w_sum: history.w_sum, log_key: key };
+        let past = wrs::believe(past, trust, params.sampler);
+        prop_assert!(past.w_sum >= 0.0 && past.w_sum <= history.w_sum);
+        let d = wrs::step(candidate, weight, past, &params, draw as f32 / 16_777_216.0);
+        prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && d.log_key.is_finite() && d.log_key <= 0.0);
+        prop_assert!((0.0..=1.0).contains(&d.gate) && (0.0..=1.0).contains(&d.survival));
+        let shown = if d.take { candidate } else { past.color };
+        let next = pack::unpack(pack::pack(Stored { color: shown, disparity: history.disparity, w_sum: d.w_sum, age: 1 }));
+        prop_assert!(shown.is_finite() && next.color.is_finite() && next.w_sum.is_finite() && next.w_sum >= 0.0);
+    }
+
+    #[test]
+    fn any_bits_leave_a_reservoir_sound(sums in any::<[u32; 3]>(), counts in any::<[u32; 2]>(), draw in 0u32..1 << 24) {
+        let [a, b, w] = sums.map(f32::from_bits);
+        let draw = draw as f32 / 16_777_216.0;
+        let limited = |x: f32| x.min(pack::MAX_W_SUM);
+        let (merged, _) = reservoir::combine(Reservoir { w_sum: limited(a), count: counts[0] }, Reservoir { w_sum: limited(b), count: counts[1] }, draw);
+        prop_assert!(merged.w_sum.is_finite() && merged.w_sum >= 0.0 && merged.count >= counts[0]);
+        let mut kept = merged;
+        reservoir::update(&mut kept, limited(w), draw);
+        prop_assert!(kept.w_sum.is_finite() && kept.w_sum >= merged.w_sum && kept.count >= merged.count);
+    }
+
+    #[test]
+    fn scaling_every_weight_changes_no_choice(weights in prop::collection::vec(1e-3f32..1., 1..20), exponent in -60i32..60, seed in any::<u32>()) {
+        let c = 2.0_f32.powi(exponent);
+        let mut draws = Draws::new(&format!("scaled {seed}"));
+        let (mut plain, mut scaled) = (Reservoir::default(), Reservoir::default());
+        for w in weights {
+            let draw = draws.uniform();
+            let (merged, second) = reservoir::combine(plain, Reservoir { w_sum: w, count: 1 }, draw);
+            let (merged_scaled, second_scaled) = reservoir::combine(scaled, Reservoir { w_sum: c * w, count: 1 }, draw);
+            prop_assert_eq!((second, merged.w_sum * c), (second_scaled, merged_scaled.w_sum));
+            prop_assert_eq!(reservoir::update(&mut plain, w, draw), reservoir::update(&mut scaled, c * w, draw));
+            prop_assert_eq!(plain.w_sum * c, scaled.w_sum);
+        }
+    }
+
+    /// Each sample's probability is its share of the weights, wherever it stands: the later acceptances telescope.
+    #[test]
+    fn order_is_forgotten_without_bias(weights in prop::collection::vec(1e-3f32..1., 2..20).prop_shuffle()) {
+        let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
+        let mut r = Reservoir::default();
+        let accepted: Vec<f64> = weights.iter().map(|&w| {
+            reservoir::update(&mut r, w, 0.5);
+            f64::from(w) / f64::from(r.w_sum)
+        }).collect();
+        for (i, &w) in weights.iter().enumerate() {
+            let kept: f64 = accepted[i + 1..].iter().map(|p| 1.0 - p).product();
+            prop_assert!((accepted[i] * kept - f64::from(w) / total).abs() < 1e-5);
+        }
+        prop_assert!((f64::from(r.w_sum) / total - 1.0).abs() < 1e-5);
+    }
+
+    /// A smaller draw or a larger weight never loses a candidate that was taken.
+    #[test]
+    fn choices_are_monotone(a in 0f32..100., w in 1e-3f32..1., more in 1f32..4., draw in 0f32..1., less in 0f32..1.) {
+        let taken = |w: f32, draw: f32| reservoir::update(&mut Reservoir { w_sum: a, count: 1 }, w, draw);
+        let combined = |w: f32, draw: f32| reservoir::combine(Reservoir { w_sum: a, count: 1 }, Reservoir { w_sum: w, count: 1 }, draw).1;
+        prop_assert!(!taken(w, draw) || taken(w, draw * less) && taken(w * more, draw));
+        prop_assert!(!combined(w, draw) || combined(w, draw * less) && combined(w * more, draw));
+    }
+}
