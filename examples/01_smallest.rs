@@ -4,9 +4,8 @@
 
 mod headless;
 
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::{Gaze, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{TextureFormat, TextureUsages};
 

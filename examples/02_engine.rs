@@ -5,10 +5,8 @@
 
 mod headless;
 
-use afterimage::frame::{Exposure, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use afterimage::{COUNTERS_BYTES, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 

@@ -4,9 +4,8 @@
 
 mod headless;
 
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{TextureFormat, TextureUsages};
 

@@ -2,11 +2,8 @@
 //!
 //! `cargo run --features cpu --example 05_cpu_stereo`
 
-use afterimage::Settings;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
+use afterimage::{ContextDesc, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [256, 256];

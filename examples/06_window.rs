@@ -5,10 +5,9 @@
 //!
 //! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::{Gaze, ViewFrame, ViewGeometry};
 use std::{error::Error, sync::Arc};
 use wgpu::{CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
 use winit::application::ApplicationHandler;

@@ -5,9 +5,7 @@
 //! ([`Method::Smr`](settings::Method::Smr)). To compare: weighted reservoirs (Cantory et al., MIG 2025) and temporal antialiasing.
 //!
 //! ```
-//! use afterimage::geometry::ViewGeometry;
-//! use afterimage::foveation::Foveation;
-//! use afterimage::frame::{Gaze, ViewFrame};
+//! use afterimage::{Foveation, Gaze, ViewFrame, ViewGeometry};
 //! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 //! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 //! # let texture = |usage| device.create_texture(&wgpu::TextureDescriptor {
@@ -59,27 +57,37 @@
 #[cfg(not(any(feature = "cpu", feature = "gpu")))]
 compile_error!("afterimage without an executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");
 
-pub mod convention;
+mod convention;
 #[cfg(feature = "cpu")]
 pub mod cpu;
-pub mod error;
-pub mod foveation;
-pub mod frame;
-pub mod geometry;
+mod error;
+mod foveation;
+mod frame;
+mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[cfg(feature = "cpu")]
-pub mod image;
+mod image;
 // For this workspace's other crates and for research; promised to nobody.
 #[doc(hidden)]
 pub mod kernel;
-pub mod settings;
+mod settings;
 #[doc(hidden)]
 #[cfg(feature = "gpu")]
 pub mod shader;
 pub mod simulator;
-pub mod stats;
-pub mod warning;
+mod stats;
+mod warning;
 
+pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+pub use error::{CreateError, FrameError, SettingsError};
+pub use foveation::{Filter, Foveation};
+pub use frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+pub use geometry::ViewGeometry;
+#[cfg(feature = "cpu")]
+pub use image::Image;
 pub use kernel::debug_view::DebugView;
-pub use settings::Settings;
+pub use kernel::reproject::Verdict;
+pub use settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+pub use stats::{COUNTERS_BYTES, FrameStats};
+pub use warning::Warning;

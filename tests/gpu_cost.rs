@@ -1,11 +1,8 @@
 //! What a turn of the head costs on the device: hard case H60. Alone in its process, whose CPU time a software device spends; a real one
 //! takes none of it, and there the time until it is done counts.
 
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings};
+use afterimage::{Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use rustix::time::{ClockId, clock_gettime};

@@ -1,8 +1,7 @@
 //! Ten thousand frames with resizes leak nothing. Alone in its file, for a process of its own.
 
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::{Gaze, ViewFrame, ViewGeometry};
 use wgpu::{TextureFormat, TextureUsages};
 
 #[test]

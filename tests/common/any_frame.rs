@@ -1,10 +1,6 @@
 //! Small frames of any bit patterns, for properties of whole passes on either executor.
 
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
-use afterimage::settings::{Bias, Method, Sampler, Settings};
+use afterimage::{Bias, Filter, Foveation, Gaze, Image, Method, Sampler, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [8, 6];

@@ -1,10 +1,8 @@
 //! Foveation simulators: hard cases H62, H67, H69-H71, and closed forms.
 
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::foveate;
 use afterimage::simulator::Pyramid;
+use afterimage::{Filter, Foveation, Image, ViewGeometry};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;

@@ -1,6 +1,6 @@
 //! Same surface or not: hard cases H41-H45, H48 and H49 on the depth kernel.
 
-use afterimage::convention::DepthConvention as Depth;
+use afterimage::DepthConvention as Depth;
 use afterimage::kernel::depth;
 use afterimage::kernel::pack::{disparity_code, disparity_value, half_bits, half_value};
 use afterimage_testing::Draws;

@@ -1,8 +1,8 @@
 //! Where a pixel was: hard cases H51, H54, H55 and H57 on the reprojection kernel.
 
+use afterimage::Verdict;
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::kernel::reproject;
-use afterimage::kernel::reproject::Verdict;
 use afterimage_testing::holds;
 use proptest::prelude::*;
 

@@ -9,9 +9,7 @@ mod pictures;
 mod rig;
 mod witness;
 
-use afterimage::frame::{ContextDesc, Exposure, Reset};
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings};
+use afterimage::{ContextDesc, Exposure, Image, Method, Reset, Settings};
 use events::{Event, Stream};
 use pictures::Pictures;
 use rig::{Made, Rig, View};

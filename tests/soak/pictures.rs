@@ -2,16 +2,13 @@
 
 use super::events::{Event, Moment};
 use super::rig::View;
-use afterimage::foveation::Foveation;
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::simulator::Pyramid;
+use afterimage::{Foveation, Gaze, Image, ViewFrame, ViewGeometry};
 use std::collections::HashMap;
 
 pub const FOVEATION: Foveation = Foveation {
-    filter: afterimage::foveation::Filter::Mip,
+    filter: afterimage::Filter::Mip,
     fovea_deg: 10.0,
     mid_deg: 30.0,
     blend_deg: 2.0,

@@ -2,12 +2,11 @@
 //!
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
-use afterimage::Settings;
-use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
-use afterimage::image::Image;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::{
+    ContextDesc, DepthConvention, Gaze, Image, MotionConvention, MotionDirection, MotionUnit, Reset, Settings, Verdict,
+    ViewFrame, YAxis,
+};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

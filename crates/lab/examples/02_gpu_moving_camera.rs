@@ -2,10 +2,10 @@
 //!
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
-use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::kernel::reproject::Verdict;
+use afterimage::{
+    ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, MotionUnit, Verdict, ViewFrame, YAxis,
+};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use wgpu::{TextureFormat, TextureUsages};

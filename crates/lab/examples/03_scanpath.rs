@@ -2,10 +2,7 @@
 //!
 //! `cargo run --release -p afterimage-lab --example 03_scanpath [INPUT [SCANPATH.csv]]`
 
-use afterimage::Settings;
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::settings::Method;
+use afterimage::{Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{LaneKind, Pipeline};

@@ -2,11 +2,7 @@
 //!
 //! `cargo run -p afterimage-lab --example 04_gpu_scanpath [INPUT [SCANPATH.csv]]`; writes `out/04_gpu_scanpath.png`
 
-use afterimage::Settings;
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
-use afterimage::settings::Method;
+use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};

@@ -2,15 +2,10 @@
 //!
 //! `cargo run -p afterimage-lab --example 05_cpu_fallback`; writes `out/05_cpu_fallback.png`
 
-use afterimage::Settings;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::error::FrameError;
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::image::Image;
 use afterimage::simulator::Pyramid;
+use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};

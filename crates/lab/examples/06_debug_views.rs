@@ -2,12 +2,9 @@
 //!
 //! `cargo run -p afterimage-lab --example 06_debug_views`; writes `out/06_debug_views.png`
 
-use afterimage::DebugView;
-use afterimage::foveation::Foveation;
-use afterimage::frame::{Gaze, ViewFrame};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::image::Image;
 use afterimage::simulator::Pyramid;
+use afterimage::{DebugView, Foveation, Gaze, Image, ViewFrame};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};

@@ -3,10 +3,7 @@
 //!
 //! `cargo run --release -p afterimage-lab --example 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
 
-use afterimage::Settings;
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::geometry::ViewGeometry;
-use afterimage::settings::Method;
+use afterimage::{Filter, Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{LaneKind, Pipeline};

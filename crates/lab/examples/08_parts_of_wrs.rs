@@ -4,10 +4,7 @@
 //!
 //! Prints PSNR over none at several lengths of the clip: whole picture, and where the eye has already seen sharp.
 
-use afterimage::Settings;
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler};
+use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{LaneKind, Pipeline};

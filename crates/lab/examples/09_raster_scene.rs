@@ -3,12 +3,8 @@
 //! `cargo run --release -p afterimage-lab --example 09_raster_scene [SCENE [FRAMES [OUT.png]]]`; SCENE is a .gltf or .glb file, or
 //! builtin:NAME (default builtin:cubes). Needs an adapter; a software one will do.
 
-use afterimage::Settings;
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::color::srgb_encode;
-use afterimage::settings::Method;
+use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::picture::{to_rgb8, write_png};

@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release -p afterimage-lab --example 11_guided_sampling
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::luma;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Guide;

@@ -1,6 +1,6 @@
 //! Frames in memory: what sources hand out, what methods are given.
 
-use afterimage::image::Image;
+use afterimage::Image;
 
 /// One full-rate frame with what a temporal method needs to know about it.
 #[derive(Clone, Debug)]

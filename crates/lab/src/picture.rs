@@ -1,7 +1,7 @@
 //! Images as files people can open: 8-bit PNG, written whole or not at all.
 
 use crate::whole_file::write_whole;
-use afterimage::image::Image;
+use afterimage::Image;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
 use std::io;

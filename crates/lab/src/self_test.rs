@@ -7,11 +7,8 @@ use crate::device::{Backend, Headless};
 use crate::error::InputError;
 use crate::pipeline::{LaneKind, Pipeline};
 use crate::source::{AnalyticSource, FrameSource};
-use afterimage::error::CreateError;
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::image::Image;
 use afterimage::kernel::pack::{half_bits, half_value};
-use afterimage::settings::{Method, Settings};
+use afterimage::{CreateError, Filter, Foveation, Image, Method, Settings};
 use std::sync::Arc;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -89,7 +86,7 @@ pub enum SelfTestError {
     Input(#[from] InputError),
     /// A frame was refused.
     #[error(transparent)]
-    Frame(#[from] afterimage::error::FrameError),
+    Frame(#[from] afterimage::FrameError),
 }
 
 /// What the answers say.
@@ -270,7 +267,7 @@ fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::{Question, arithmetic, difference};
-    use afterimage::image::Image;
+    use afterimage::Image;
     use afterimage::kernel::pack::{half_bits, half_value};
 
     /// An adapter that computes as IEEE 754 says, or in the ways that WGSL admits besides.

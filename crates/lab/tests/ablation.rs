@@ -1,9 +1,6 @@
 //! Every part that can be left out of the passes is there, and leaving it out changes what is shown.
 
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings};
+use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
 use afterimage_lab::pipeline::{LaneKind, Pipeline};

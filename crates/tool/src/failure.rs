@@ -1,6 +1,6 @@
 //! How the tool ends when it cannot go on: one line, and an exit code that tells whose turn it is.
 
-use afterimage::error::{CreateError, FrameError, SettingsError};
+use afterimage::{CreateError, FrameError, SettingsError};
 use afterimage_lab::error::InputError;
 use std::fmt::Display;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 #[cfg(feature = "full")]
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::picture::write_png;
 #[cfg(feature = "full")]
 use afterimage_lab::source::exr_file::{self, FrameToWrite};

@@ -247,9 +247,5 @@ fn h50_z_fighting_shows_only_what_was_presented() {
         assert!(out.pixels().iter().all(|&c| c == a || c == b));
         oldest = trace.pixels().iter().map(|t| t.age).max().unwrap().max(oldest);
     }
-    holds!(
-        "H50",
-        Cpu,
-        "wrs, 100 frames: ages (to {oldest}) and colors as without depth, bit for bit; no third color"
-    );
+    holds!("H50", Cpu, "wrs, 100 frames: ages (to {oldest}) and colors as without depth, bit for bit; no third color");
 }

@@ -10,17 +10,13 @@ mod reservoirs;
 mod trust;
 mod views;
 
-use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::error::FrameError;
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::reproject::Verdict;
-use afterimage::settings::{Bias, DepthTest, Method, Sampler, Settings};
-use afterimage::stats::FrameStats;
-use afterimage::warning::Warning;
+use afterimage::{
+    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, FrameError, FrameStats, Gaze, Image, Method,
+    MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, Verdict, ViewFrame, ViewGeometry, Warning,
+    YAxis,
+};
 use afterimage_testing::Draws;
 use proptest::prelude::*;
 

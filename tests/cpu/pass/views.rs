@@ -1,7 +1,7 @@
 //! Several views, lost gaze, settings.
 
 use super::*;
-use afterimage::foveation::Foveation;
+use afterimage::Foveation;
 use afterimage_testing::holds;
 
 #[test]

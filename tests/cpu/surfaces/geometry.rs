@@ -1,7 +1,7 @@
 //! Surfaces that come, go, move and fight, and gaze that moves: hard cases H50, H59, H60, H66, H67 for smr.
 
 use super::rig::*;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::Verdict;
 use afterimage_testing::holds;
 
 fn smr(size: [u32; 2], settings: Settings) -> CpuAfterimage {
@@ -42,7 +42,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
     let low_pass = LowPass::new(&before, 4);
     let zoomed = |factor: f32| {
         // Samples as they are, not in another light.
-        let plain = afterimage::settings::Smr { relight: false, ..Default::default() };
+        let plain = afterimage::Smr { relight: false, ..Default::default() };
         let mut post = smr(SIZE, Settings { smr: plain, ..settings(Method::Smr) });
         step(&mut post, 0, &Input::sharp(before.clone()));
         let shift = |v: u32, middle: f32| (v as f32 - middle) * (factor - 1.0);

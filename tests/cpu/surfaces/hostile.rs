@@ -1,7 +1,7 @@
 //! Numbers that are none, and light beyond measure.
 
 use super::rig::*;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::Verdict;
 use proptest::prelude::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
@@ -87,7 +87,7 @@ proptest! {
             let mut draws = Draws::new(&format!("{name}"));
             let mut settings = settings(method);
             if blocks {
-                settings.foveation.filter = afterimage::foveation::Filter::Block;
+                settings.foveation.filter = afterimage::Filter::Block;
             }
             settings.smr.tolerance = 10.0;
             let mut post = CpuAfterimage::new(ContextDesc::new(SMALL), settings).unwrap();

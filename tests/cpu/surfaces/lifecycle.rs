@@ -1,8 +1,7 @@
 //! Resets, sizes, views, trust.
 
 use super::rig::*;
-use afterimage::foveation::Filter;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::{Filter, Verdict};
 use afterimage_testing::holds;
 
 /// Frames of a picture that fades, half coarse, so that all they show depends on what came before.

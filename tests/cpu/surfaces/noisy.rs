@@ -3,9 +3,7 @@
 
 use super::rig::{Draws, Input, SIZE, settings, step};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::frame::ContextDesc;
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings, Smr};
+use afterimage::{ContextDesc, Image, Method, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;

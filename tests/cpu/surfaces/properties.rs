@@ -1,7 +1,7 @@
 //! S1, S2, S6 and S8 over random frames.
 
 use super::rig::*;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::Verdict;
 use afterimage::kernel::surface::MAX_LOD;
 
 /// Coarse, moving, partly distrusted: whatever an engine may hand over. Motion in quarters of a pixel, the same over large areas.

@@ -1,14 +1,11 @@
 //! Frames of one view for the methods that remember surfaces, and what became of them.
 
 pub use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-pub use afterimage::foveation::Foveation;
-pub use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-pub use afterimage::geometry::ViewGeometry;
-pub use afterimage::image::Image;
 pub use afterimage::kernel::debug_view::PixelTrace;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
-pub use afterimage::settings::{Method, Settings};
-pub use afterimage::stats::FrameStats;
+pub use afterimage::{
+    ContextDesc, Exposure, Foveation, FrameStats, Gaze, Image, Method, Reset, Settings, ViewFrame, ViewGeometry,
+};
 pub use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [52, 41];

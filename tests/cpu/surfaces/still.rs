@@ -1,7 +1,7 @@
 //! Still pictures and whole shifts of them: S3 and S9.
 
 use super::rig::*;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::Verdict;
 use afterimage_testing::holds;
 
 /// Levels of detail at which sharp history counts wholly: a tenth and more.
@@ -44,7 +44,7 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     let mut post = context(Method::Smr);
     // Nor may it be taken for a change of light.
     post.set_settings(Settings {
-        smr: afterimage::settings::Smr { relight: false, ..Default::default() },
+        smr: afterimage::Smr { relight: false, ..Default::default() },
         ..settings(Method::Smr)
     })
     .unwrap();
@@ -118,7 +118,7 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
 fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
     let [a, b] = [0.25_f32, 0.26];
     for accumulate in [0.0, 0.5, 0.9] {
-        let smr = afterimage::settings::Smr { accumulate, ..Default::default() };
+        let smr = afterimage::Smr { accumulate, ..Default::default() };
         let mut post = CpuAfterimage::new(ContextDesc::new(SIZE), Settings { smr, ..settings(Method::Smr) }).unwrap();
         step(&mut post, 0, &Input::at_lod(Image::filled(SIZE, [a; 3]), 2.0));
         let made = step(&mut post, 1, &Input::at_lod(Image::filled(SIZE, [b; 3]), 2.0));

@@ -1,11 +1,7 @@
 //! Where the eye looks, on the device: hard cases H61 to H66.
 
 use super::rig::{Rig, View, noise};
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Gaze, Reset};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, ViewGeometry};
 use afterimage_testing::holds;
 
 const SIZE: [u32; 2] = [64, 48];

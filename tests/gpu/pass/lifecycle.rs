@@ -2,12 +2,11 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
-use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::error::{CreateError, FrameError};
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::settings::{Method, Sampler, Settings};
+use afterimage::{
+    ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, Method, MotionConvention, MotionDirection,
+    MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, YAxis,
+};
 use afterimage_testing::holds;
 use wgpu::{TextureFormat, TextureUsages};
 

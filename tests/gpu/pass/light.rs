@@ -2,9 +2,7 @@
 //! same in every bit, and the promises are kept.
 
 use super::rig::{Rig, View, noise};
-use afterimage::frame::{ContextDesc, Exposure, Reset};
-use afterimage::image::Image;
-use afterimage::settings::Settings;
+use afterimage::{ContextDesc, Exposure, Image, Reset, Settings};
 use afterimage_testing::holds;
 
 const SIZE: [u32; 2] = [64, 48];

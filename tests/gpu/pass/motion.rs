@@ -2,12 +2,8 @@
 
 use super::rig::{Rig, View, with_w_sum};
 use super::surfaces::{METHODS, PIXELS, SIZE, bits, one, sticky, still, ungated, ungated_of, with_depth, with_motion};
-use afterimage::convention::{MotionConvention, MotionUnit};
-use afterimage::frame::{ContextDesc, Reset};
-use afterimage::image::Image;
 use afterimage::kernel::pack;
-use afterimage::kernel::reproject::Verdict;
-use afterimage::settings::{Method, Settings};
+use afterimage::{ContextDesc, Image, Method, MotionConvention, MotionUnit, Reset, Settings, Verdict};
 use afterimage_testing::holds;
 
 #[test]

@@ -3,11 +3,10 @@
 
 use super::rig::{Rig, View};
 use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
-use afterimage::frame::{ContextDesc, Reset};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
-use afterimage::settings::{Method, Settings};
 use afterimage::shader::SHADERS;
+use afterimage::{ContextDesc, Method, Reset, Settings};
 use afterimage_testing::Draws;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;

@@ -2,12 +2,9 @@
 //! H17 to H19, H22, H26, H29.
 
 use super::rig::{Rig, View, noise, with_w_sum};
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Reset};
-use afterimage::image::Image;
 use afterimage::kernel::pack;
-use afterimage::settings::{Bias, Sampler, Settings};
 use afterimage::shader::SHADERS;
+use afterimage::{Bias, ContextDesc, Foveation, Image, Reset, Sampler, Settings};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 

@@ -1,16 +1,14 @@
 //! The same frames through both executors, and what comes back from the device.
 
-use afterimage::convention::DepthConvention;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::image::Image;
-use afterimage::kernel::debug_view::{DebugView, PixelTrace};
+use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
-use afterimage::settings::{Method, Settings};
 use afterimage::shader::SHADERS;
-use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use afterimage::{
+    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Gaze, Image, Method, Reset,
+    Settings, ViewFrame, ViewGeometry,
+};
 use afterimage_testing::Draws;
 use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 

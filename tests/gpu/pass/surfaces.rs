@@ -1,12 +1,8 @@
 //! Surfaces that come and go, on the device: hard cases H41, H42, H44 to H47, H49 and H50.
 
 use super::rig::{Made, Rig, View, noise, with_w_sum};
-use afterimage::convention::DepthConvention;
-use afterimage::frame::{ContextDesc, Reset};
-use afterimage::image::Image;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::reproject::Verdict;
-use afterimage::settings::{DepthTest, Method, Settings};
+use afterimage::{ContextDesc, DepthConvention, DepthTest, Image, Method, Reset, Settings, Verdict};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 

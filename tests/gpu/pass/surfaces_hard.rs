@@ -2,13 +2,9 @@
 //! does the same in every bit; here the promises are kept on what the device shows.
 
 use super::rig::{Made, Rig, View, noise};
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Exposure, Reset};
-use afterimage::image::Image;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::reproject::Verdict;
-use afterimage::settings::{Method, Settings, Smr};
 use afterimage::simulator::Pyramid;
+use afterimage::{ContextDesc, Exposure, Foveation, Image, Method, Reset, Settings, Smr, Verdict};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 
@@ -189,7 +185,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
         let mut view = View::still(picture.clone(), [0.0; 2]);
         let geometry = view.facts.geometry;
         let px = geometry.project(glam::Vec3::new(e_deg.to_radians().tan(), 0.0, 1.0)).unwrap();
-        view.facts.gaze = afterimage::frame::Gaze::At { px };
+        view.facts.gaze = afterimage::Gaze::At { px };
         let ecc = geometry.eccentricity_map(px);
         view.color = settings().foveation.render(&pyramid, &settings().foveation.lod_map(&geometry, px, &ecc));
         (view, ecc)

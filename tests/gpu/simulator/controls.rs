@@ -2,8 +2,8 @@
 //! planted in tests/shader_twins/controls.rs.
 
 use super::rig::*;
-use afterimage::foveation::{Filter, Foveation};
 use afterimage::shader::SHADERS;
+use afterimage::{Filter, Foveation};
 
 #[track_caller]
 fn caught(filter: Filter, right: &str, wrong: &str) {

@@ -1,7 +1,7 @@
 //! Every filter, size, rate and gaze, over frames with everything in them that frames should not have.
 
 use super::rig::*;
-use afterimage::foveation::{Filter, Foveation};
+use afterimage::{Filter, Foveation};
 
 const RATES: [[u32; 2]; 6] = [[1, 1], [1, 2], [2, 8], [8, 16], [16, 64], [64, 64]];
 

@@ -1,14 +1,11 @@
 //! Several frames in one submission, lost gazes, formats, refusals.
 
 use super::rig::*;
-use afterimage::error::{CreateError, FrameError};
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::Gaze;
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{GpuDesc, Timestamps};
 use afterimage::kernel::pack::half_bits;
 use afterimage::shader::SHADERS;
 use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
 use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [97, 61];

@@ -1,8 +1,7 @@
 //! What the filters owe a picture, on the GPU itself: hard cases H69, H70, H71.
 
 use super::rig::*;
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::image::Image;
+use afterimage::{Filter, Foveation, Image};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;

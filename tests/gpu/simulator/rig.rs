@@ -1,14 +1,10 @@
 //! The same frame through the simulators on both sides, and what comes back.
 
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{ContextDesc, Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::GpuDesc;
-use afterimage::image::Image;
-use afterimage::settings::Settings;
 use afterimage::shader::SHADERS;
 use afterimage::simulator::Pyramid;
 use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 

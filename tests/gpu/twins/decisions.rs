@@ -3,11 +3,10 @@
 use super::probe::{Out, Probe, Row, Rows};
 use super::state::draw;
 use super::values::*;
-use afterimage::DebugView;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::reproject::Verdict;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
 use afterimage::kernel::{debug_view, pack, wrs};
+use afterimage::{DebugView, Verdict};
 use afterimage_testing::Draws;
 
 fn gate_code(code: u32) -> GateCode {

@@ -1,9 +1,7 @@
 //! A device without a window, and frames between it and memory. For experiments; an engine keeps its frames on its device and
 //! calls [`Afterimage`](afterimage::gpu::Afterimage) itself.
 
-use afterimage::error::FrameError;
-use afterimage::image::Image;
-use afterimage::stats::{COUNTERS_BYTES, FrameStats};
+use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};

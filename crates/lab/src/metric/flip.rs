@@ -4,9 +4,8 @@
 //! What the eye cannot resolve at the given distance is filtered out of both; what is left is compared as colors, and the more
 //! so where edges and points come or go.
 
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::color;
+use afterimage::{Image, ViewGeometry};
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;

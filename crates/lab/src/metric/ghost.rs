@@ -1,7 +1,7 @@
 //! Ghosts: how much of what a pixel showed before a change is still in it, and for how long.
 
 use super::{NO_PAST, Tracked};
-use afterimage::image::Image;
+use afterimage::Image;
 use glam::Vec3;
 
 /// Frames after a change that are looked at.

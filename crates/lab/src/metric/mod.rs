@@ -18,7 +18,7 @@ pub use score::{BandScores, FrameErrors, Scorer, Scores};
 pub use ssim::ssim_map;
 pub use track::{NO_PAST, Tracked, Tracker};
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::{acuity, color};
 use glam::Vec3;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use super::flip::{Flip, Seen};
 use super::ghost::{Ghost, Ghosts};
 use super::{Tracked, lab_map};
-use afterimage::image::Image;
+use afterimage::Image;
 use glam::Vec3;
 
 /// Makes the references of a clip, frame after frame.

@@ -4,7 +4,7 @@ use super::ghost::GhostShares;
 use super::mean::{Histogram, Mean};
 use super::track::RETAINED_FROM_DEG;
 use super::{Band, NO_PAST, Reference, Tracked, error_weight, lab_map, psnr_db, ssim_map};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};

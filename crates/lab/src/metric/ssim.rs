@@ -1,6 +1,6 @@
 //! SSIM (Wang et al. 2004: 11x11 Gaussian window, sigma 1.5, on Rec. 709 luma) by the `blazediff-ssim` crate.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color;
 use blazediff_ssim::{Plane, SsimOptions, ssim};
 use glam::Vec3;

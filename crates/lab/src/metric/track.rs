@@ -2,11 +2,8 @@
 //! from the full-rate frames, whatever a method does.
 
 use crate::frame::SourceFrame;
-use afterimage::convention::DepthConvention;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::{depth, reproject};
-use afterimage::settings::DepthTest;
+use afterimage::{DepthConvention, DepthTest, Image, ViewGeometry};
 
 /// Level of detail below which a pixel counts as shown at full rate.
 const SHARP_LOD: f32 = 0.25;

@@ -1,7 +1,7 @@
 //! Passes with a part left out, to see what the part costs and buys. For measurements alone: what is left out is there for a reason.
 
+use afterimage::Method;
 use afterimage::gpu::pass_name;
-use afterimage::settings::Method;
 use afterimage::shader::SHADERS;
 
 /// A part of the passes that can be left out.

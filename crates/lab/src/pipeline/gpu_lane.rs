@@ -3,13 +3,8 @@
 use crate::clock::Stopwatch;
 use crate::device::{Headless, PassClock};
 use afterimage::cpu::CpuView;
-use afterimage::error::{CreateError, FrameError};
-use afterimage::frame::{ContextDesc, Reset};
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::image::Image;
-use afterimage::kernel::debug_view::DebugView;
-use afterimage::settings::{Method, Settings};
-use afterimage::stats::FrameStats;
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, FrameStats, Image, Method, Reset, Settings};
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture, TextureFormat, TextureUsages};
 

@@ -2,11 +2,10 @@
 
 use crate::frame::Guide;
 use crate::frame::SourceFrame;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::color::luma;
 use afterimage::kernel::noise::{Noise, root_slope};
 use afterimage::kernel::reproject;
+use afterimage::{Image, ViewGeometry};
 use glam::Vec3;
 
 /// Relative difference of distance that still is the same surface: the least that the post-process tells apart is 2 %.

@@ -9,21 +9,17 @@ mod guide;
 use crate::clock::Stopwatch;
 use crate::metric::{Tracked, Tracker};
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-#[cfg(feature = "ablation")]
-use afterimage::error::SettingsError;
-use afterimage::error::{CreateError, FrameError};
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::settings::Settings;
 use afterimage::simulator::Pyramid;
+#[cfg(feature = "ablation")]
+use afterimage::{
+    ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, SettingsError,
+    ViewFrame, ViewGeometry,
+};
 
 use crate::device::Backend;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
-use afterimage::stats::FrameStats;
 #[cfg(feature = "full")]
 use gpu_lane::{GpuLane, LaneInput};
 use guide::Knowledge;

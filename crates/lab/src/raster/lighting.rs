@@ -4,7 +4,7 @@ use super::bounce;
 use crate::scene::{Environment, Material, PunctualKind, PunctualLight, Scene, Triangles};
 use crate::trace::effects::{Effect, Effects};
 use crate::trace::shading_records::PunctualRecord;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::luma;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};

@@ -4,7 +4,7 @@ use super::mipmaps::levels;
 use super::pipelines::{Layouts, SLOTS, slot_binding};
 use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
 use crate::trace::shading_records::MaterialRecord;
-use afterimage::image::Image;
+use afterimage::Image;
 use std::collections::HashMap;
 use wgpu::{
     AddressMode, BindGroup, BindGroupEntry, BindingResource, Device, FilterMode, Queue, Sampler, TextureFormat,

@@ -1,7 +1,7 @@
 //! Smaller and smaller copies of images, each texel the mean of those it covers.
 
 use crate::scene::Texture;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
 use rayon::prelude::*;
 use std::sync::LazyLock;

@@ -11,8 +11,8 @@
 //! | depth | `Depth32Float` | reversed, infinite far: [`near`](Raster::near) / distance along the view axis, 0 where there is nothing |
 //! | motion | `Rg32Float` | pixels, y down, previous minus current; 1e6 for what was behind the previous camera |
 //!
-//! Those are [`DepthConvention::Reversed`](afterimage::convention::DepthConvention) and the default
-//! [`MotionConvention`](afterimage::convention::MotionConvention). Motion is of both the camera and the vertices (rigid, skinned,
+//! Those are [`DepthConvention::Reversed`](afterimage::DepthConvention) and the default
+//! [`MotionConvention`](afterimage::MotionConvention). Motion is of both the camera and the vertices (rigid, skinned,
 //! morphing); that of the sky is the camera's rotation.
 //!
 //! - **Alpha.** MASK: with holes by the cutoff; in the color an edge covers samples as far as opacity says. BLEND and what light
@@ -228,7 +228,7 @@ fn vertex_buffer(device: &Device, corners: usize) -> Buffer {
 /// The sky with its blurred copies, and the number of the last of these.
 fn sky(device: &Device, queue: &Queue, environment: &Environment) -> (TextureView, f32) {
     let levels = match environment {
-        Environment::Constant(radiance) => vec![afterimage::image::Image::filled([1, 1], *radiance)],
+        Environment::Constant(radiance) => vec![afterimage::Image::filled([1, 1], *radiance)],
         Environment::Map(map) => mipmaps::sky_levels(map, device.limits().max_texture_dimension_2d),
     };
     let halves: Vec<_> =
@@ -240,7 +240,7 @@ fn scenery(device: &Device, queue: &Queue, layouts: &Layouts, shadow: &TextureVi
     let mut words: Vec<[u32; 4]> = TABLES.words().collect();
     words.resize(words.len().next_multiple_of(TABLE_ROW as usize), Zeroable::zeroed());
     let size = [TABLE_ROW, words.len() as u32 / TABLE_ROW];
-    let table = afterimage::image::Image::from_pixels(size, words).expect("whole rows");
+    let table = afterimage::Image::from_pixels(size, words).expect("whole rows");
     let tables = upload_levels(device, queue, "albedos", &[table], TextureFormat::Rgba32Uint);
     let around = device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("sky"),

@@ -2,7 +2,7 @@
 
 use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT, SAMPLES};
 use crate::device::Headless;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::pack::half_value;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 

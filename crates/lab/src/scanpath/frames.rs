@@ -2,7 +2,7 @@
 
 use super::{Scanpath, Screen};
 use crate::error::InputError;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use glam::Vec3;
 
 /// Slack in seconds when sample and frame times are compared: covers the rounding of `start_s + i / fps` over hours, and is

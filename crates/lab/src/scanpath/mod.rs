@@ -13,7 +13,7 @@ pub use recorded::{MAX_FILE_BYTES, parse_csv, read_csv, write_csv};
 pub use synthetic::{Event, EventKind, Synthetic, SyntheticOptions, generate};
 
 use crate::error::InputError;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 
 /// Header keys with a meaning of their own; a note cannot use them.
 const RESERVED_KEYS: [&str; 5] = ["task", "rate_hz", "screen_px", "screen_cm", "distance_cm"];

@@ -1,6 +1,6 @@
 //! Lights that are not triangles: punctual ones (KHR_lights_punctual) and what surrounds the scene.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use glam::Vec3;
 
 /// A light without extent.

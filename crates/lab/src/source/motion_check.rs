@@ -4,8 +4,7 @@
 //! twelve conventions and comparing tells which one is meant, wherever the scene moves enough.
 
 use crate::error::InputError;
-use afterimage::convention::{MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::image::Image;
+use afterimage::{Image, MotionConvention, MotionDirection, MotionUnit, YAxis};
 
 /// Pixels looked at in search of motion. More finds smaller moving things, and takes longer.
 const SCANNED: usize = 1 << 18;

@@ -3,7 +3,7 @@
 use super::analytic::{self, AnalyticSource};
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
 use crate::error::InputError;
-use afterimage::error::FrameError;
+use afterimage::FrameError;
 use std::path::Path;
 
 /// Whether what the user named is a scene, which a renderer makes frames of ([`RasterSource`]), and not frames.

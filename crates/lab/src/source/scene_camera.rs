@@ -5,7 +5,7 @@ use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene};
 use crate::trace::view::View;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use glam::{DMat4, DQuat, DVec3};
 use std::path::Path;
 

@@ -8,7 +8,7 @@ use crate::error::io_error;
 use crate::error::one_line;
 use crate::frame::SourceFrame;
 use crate::scene::cameras::Cameras;
-use afterimage::image::Image;
+use afterimage::Image;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs;
 use std::io::{Cursor, ErrorKind};

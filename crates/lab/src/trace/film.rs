@@ -1,6 +1,6 @@
 //! Where samples are averaged, and how far their mean can be trusted.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::luma;
 use glam::Vec3;
 

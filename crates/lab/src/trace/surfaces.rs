@@ -5,7 +5,7 @@ use super::view::View;
 use super::world::World;
 use super::{Ray, cpu};
 use crate::kernel::direction::unit;
-use afterimage::image::Image;
+use afterimage::Image;
 use glam::{DVec3, Vec3};
 
 /// Distance and motion of the first surface behind each pixel's centre. Surfaces that light passes through count, those that

@@ -10,7 +10,7 @@ use super::view::View;
 use super::work::Work;
 use super::world::World;
 use crate::device::Backend;
-use afterimage::error::FrameError;
+use afterimage::FrameError;
 use std::time::Duration;
 
 /// On the CPU or on a device: the same paths, the same film.

@@ -2,8 +2,7 @@
 
 use crate::scene::Camera;
 use crate::trace::sampling::Lattice;
-use afterimage::error::SettingsError;
-use afterimage::geometry::ViewGeometry;
+use afterimage::{SettingsError, ViewGeometry};
 use glam::{DMat4, DVec3, Vec3};
 
 /// Where a frame is seen from, and through which pixels.

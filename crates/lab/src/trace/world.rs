@@ -9,7 +9,7 @@ use super::shading_records::{
 use super::{Bvh, Geometry, TriangleFlags, TriangleRecord};
 use crate::kernel::albedo::AlbedoTables;
 use crate::scene::{Environment, PunctualKind, PunctualLight, Scene, Texture};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::{luma, srgb_decode};
 use glam::Vec3;
 use std::f64::consts::PI;

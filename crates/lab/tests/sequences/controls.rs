@@ -2,13 +2,10 @@
 
 use super::rig::{Rig, View, noise, with_w_sum};
 use super::sequences::{SIZE, trust, view};
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Exposure, Reset};
-use afterimage::image::Image;
 use afterimage::kernel::rng;
 use afterimage::kernel::rng::Purpose;
-use afterimage::settings::{Bias, Sampler, Settings};
 use afterimage::shader::SHADERS;
+use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Reset, Sampler, Settings};
 use afterimage_lab::source::AnalyticSource;
 
 /// The pass with one place of its text changed.

@@ -2,15 +2,12 @@
 
 use super::rig::{Rig, View, make_texture};
 use super::sequences::{SIZE, reset, trust, view};
-use afterimage::DebugView;
-use afterimage::error::FrameError;
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
 use afterimage::gpu::{Frame, Recorded};
 use afterimage::kernel::debug_view::view_color;
-use afterimage::kernel::reproject::Verdict;
-use afterimage::settings::{Method, Sampler, Settings};
-use afterimage::stats::{COUNTERS_BYTES, FrameStats};
-use afterimage::warning::Warning;
+use afterimage::{
+    COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
+    Verdict, ViewFrame, Warning,
+};
 use afterimage_lab::source::AnalyticSource;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 

@@ -1,11 +1,10 @@
 //! Analytic scenes, 40 frames each, with resets, broken pixels and garbage vectors, through every variant of the pass.
 
 use super::rig::{Rig, View};
-use afterimage::foveation::Foveation;
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-use afterimage::image::Image;
-use afterimage::settings::{Bias, Gate, GateMetric, Method, Sampler, Settings};
 use afterimage::simulator::Pyramid;
+use afterimage::{
+    Bias, ContextDesc, Exposure, Foveation, Gate, GateMetric, Gaze, Image, Method, Reset, Sampler, Settings, ViewFrame,
+};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use afterimage_testing::Draws;
 

@@ -3,11 +3,8 @@
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
 use super::surfaces_variants::noisy;
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset};
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings};
 use afterimage::shader::SHADERS;
+use afterimage::{ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Method, Reset, Settings};
 use afterimage_lab::source::AnalyticSource;
 
 fn eyes() -> ContextDesc {

@@ -9,7 +9,7 @@ use afterimage_lab::source::{AnalyticSource, FrameSource};
 const VIEW: [u32; 2] = [256, 144];
 /// Wide, because the view is small: a full-rate disc of 24 pixels across among blocks of 4 and 8.
 const FOVEATION: Foveation = Foveation {
-    filter: afterimage::foveation::Filter::Mip,
+    filter: afterimage::Filter::Mip,
     fovea_deg: 7.0,
     mid_deg: 20.0,
     blend_deg: 2.0,

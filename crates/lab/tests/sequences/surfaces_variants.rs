@@ -3,11 +3,10 @@
 use super::rig::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, reset, trust};
-use afterimage::convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{ContextDesc, Exposure, Reset};
-use afterimage::image::Image;
-use afterimage::settings::{Method, Settings, Smr};
+use afterimage::{
+    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MotionConvention, MotionDirection,
+    MotionUnit, Reset, Settings, Smr, YAxis,
+};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::Draws;
 

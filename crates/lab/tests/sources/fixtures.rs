@@ -1,7 +1,6 @@
 //! The fixtures are what their commands write, and are enough to work with.
 
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::source;
 use afterimage_lab::source::exr_file;
 use afterimage_lab::source::exr_file::FrameToWrite;

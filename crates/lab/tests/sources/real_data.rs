@@ -1,10 +1,7 @@
 //! The whole on frames that nobody here made: Sponza by another renderer, a page of text, recorded eyes. Skipped, loudly, where
 //! `../shared/data` is not there.
 
-use afterimage::Settings;
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::settings::Method;
+use afterimage::{Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
 use afterimage_lab::frame::SourceFrame;

@@ -1,6 +1,6 @@
 //! How frames are foveated.
 
-use afterimage::foveation::{Filter, Foveation};
+use afterimage::{Filter, Foveation};
 use clap::{Args, ValueEnum};
 
 /// Where a frame is how coarse.

@@ -1,7 +1,7 @@
 //! `--gaze` and its companions: from what was typed to one position a frame.
 
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
 use clap::{Args, ValueEnum};
 use std::path::Path;

@@ -4,7 +4,7 @@ use crate::args::backend::{BackendName, NO_ADAPTER};
 use crate::args::paths::PathArgs;
 use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::device::Headless;
 use afterimage_lab::source;
 use afterimage_lab::source::{

@@ -1,6 +1,6 @@
 //! Methods and their tunables.
 
-use afterimage::settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+use afterimage::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
 use clap::{Args, ValueEnum};
 
 /// Names of methods.

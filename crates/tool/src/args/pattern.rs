@@ -2,7 +2,7 @@
 
 use crate::args::gaze::GazeArgs;
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 use clap::{Args, ValueEnum};
 

@@ -33,7 +33,7 @@ pub struct ScanpathArgs {
 
 /// The subcommand.
 pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
-    let view = afterimage::geometry::ViewGeometry::flat(args.screen, args.hfov)?;
+    let view = afterimage::ViewGeometry::flat(args.screen, args.hfov)?;
     let options = SyntheticOptions {
         seed: args.seed,
         duration_s: args.seconds,

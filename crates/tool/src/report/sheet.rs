@@ -1,9 +1,8 @@
 //! The contact sheet: reference and methods side by side, their errors, and a close look at a place the eye has left.
 
 use super::canvas::{CHAR_PX, Canvas, LINE_PX};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::debug_view::heat;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::metric::Scores;
 use afterimage_lab::picture::to_rgb8;
 use image::imageops::{self, FilterType};

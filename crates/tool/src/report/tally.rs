@@ -1,6 +1,6 @@
 //! What a method came to over a clip: scores, times, counts.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{FrameErrors, Reference, Scorer, Scores, psnr_db};

@@ -1,7 +1,6 @@
 //! Settings as a program has them.
 
-use afterimage::foveation::Foveation;
-use afterimage::settings::{Bias, Settings, Smr};
+use afterimage::{Bias, Foveation, Settings, Smr};
 
 /// `Settings { .. }` with what differs from the defaults, ready to paste.
 pub fn as_rust(settings: &Settings) -> String {
@@ -83,8 +82,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::foveation::Filter;
-    use afterimage::settings::{DepthTest, Gate, GateMetric, Method, Sampler};
+    use afterimage::{DepthTest, Filter, Gate, GateMetric, Method, Sampler};
 
     /// The text compiles to the settings it was made of: it is a macro's argument and its own expectation.
     macro_rules! round_trip {

@@ -5,11 +5,10 @@
 mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::foveation::{Filter, Foveation};
-use afterimage::frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
-use afterimage::settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+use afterimage::{
+    Bias, ContextDesc, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method, Reset, Sampler,
+    Settings, Smr, ViewFrame, ViewGeometry,
+};
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, parse_csv, write_csv};

@@ -5,7 +5,7 @@ use super::scene::{Placed, Stage};
 use super::shape::{Ray, Shape, Surface};
 use super::texture::Spot;
 use super::tile::{Outline, Tile};
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 

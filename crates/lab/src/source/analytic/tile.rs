@@ -3,7 +3,7 @@
 use super::light;
 use super::scene::{Camera, Placed, Stage, may_shade};
 use super::shape::{Ray, Shape};
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use glam::{Vec2, Vec3};
 
 /// Lists for a square of pixels. They only leave out what cannot matter, so they change no pixel.

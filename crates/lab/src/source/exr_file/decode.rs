@@ -5,8 +5,7 @@ use super::header::{ExrHeader, Vectors, chunk_header_bytes, full_resolution_chun
 use super::{exr_error, guarded};
 use crate::error::InputError;
 use crate::error::io_error;
-use afterimage::error::FrameError;
-use afterimage::image::Image;
+use afterimage::{FrameError, Image};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
 use exr::math::Vec2;

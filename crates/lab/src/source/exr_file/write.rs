@@ -1,7 +1,7 @@
 //! Writing a frame as EXR: all of it, or nothing.
 
 use crate::whole_file::write_whole;
-use afterimage::image::Image;
+use afterimage::Image;
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder, SmallVec,
     WritableImage, f16,

@@ -1,8 +1,7 @@
 //! Samples as dense as the eye's cells.
 
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::acuity::{candidate_weight, cell_density};
+use afterimage::{Image, ViewGeometry};
 
 /// The pattern: every pixel of the fovea, outside it a share of the pixels that falls as the density of retinal cells, another set
 /// every frame.

@@ -2,7 +2,7 @@
 
 use super::lattice::Lattice;
 use crate::trace::film::{Film, Moments};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::resample::catmull_rom;
 use glam::Vec3;
 

@@ -19,10 +19,9 @@ use crate::frame::Guide;
 use crate::trace::cpu::path_key;
 use crate::trace::film::{Film, Moments};
 use crate::trace::work::Spans;
-use afterimage::error::SettingsError;
-use afterimage::image::Image;
 use afterimage::kernel::color::luma;
 use afterimage::kernel::rng::path_draws;
+use afterimage::{Image, SettingsError};
 use rayon::prelude::*;
 
 /// Every sampled point has at least one sample: what has changed is seen.

@@ -5,7 +5,7 @@ use super::fill::Filter;
 use super::lattice::Lattice;
 use super::regions::tangent_px;
 use super::rings::Ring;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use glam::Vec3;
 
 /// The pattern. Defaults are the thesis'.

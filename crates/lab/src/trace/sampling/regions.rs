@@ -5,7 +5,7 @@ use super::circle::Circle;
 use super::fill::Filter;
 use super::lattice::Lattice;
 use super::rings::Ring;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 
 /// The pattern. Defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::circle::{Circle, runs};
 use super::fill::{Filter, value_at};
 use super::lattice::Lattice;
 use crate::trace::film::Film;
-use afterimage::image::Image;
+use afterimage::Image;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use crate::trace::film::Moments;
     use crate::trace::sampling::{Layers, Regions};
-    use afterimage::geometry::ViewGeometry;
+    use afterimage::ViewGeometry;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 

@@ -1,7 +1,7 @@
 //! Every scene at hand: finite, and like what is traced.
 
 use super::rig::{device, draw};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::srgb_encode;
 use afterimage_lab::scene::{Environment, Scene, SceneLimits, builtin};
 use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};

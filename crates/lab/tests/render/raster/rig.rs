@@ -1,6 +1,6 @@
 //! One device for all tests, and frames with what rays say of them.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::device::Headless;
 use afterimage_lab::raster::{Raster, RasterSettings};
 use afterimage_lab::scene::Scene;

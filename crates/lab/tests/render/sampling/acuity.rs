@@ -1,6 +1,6 @@
 //! The continuous density: how many pixels, which ones, when.
 
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Acuity, Regions, Sampling};
 
 fn view() -> ViewGeometry {

@@ -1,7 +1,6 @@
 //! Samples by guide: the budget is met and well spent, means stay what they are, nonsense is harmless.
 
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::Guide;
 use afterimage_lab::scene::{Scene, builtin};

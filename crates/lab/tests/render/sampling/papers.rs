@@ -1,6 +1,6 @@
 //! The patterns against the numbers of the papers that they are from.
 
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Lattice, Layers, Regions, Sampling};
 
 /// The paper's display: 3840x2160 pixels on 70.848 x 39.852 cm, seen from 60 cm.

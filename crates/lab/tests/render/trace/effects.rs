@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, device, differing};
 use super::scenes::DARK;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::scene::{
     Alpha, Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Texture, TextureRef, Triangles,
     Wrap,

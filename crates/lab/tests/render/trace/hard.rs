@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, device, differing};
 use super::scenes::{DARK, builtin, stage};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
 use afterimage_lab::trace::Bvh;
 use afterimage_lab::trace::film::Film;

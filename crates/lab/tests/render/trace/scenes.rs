@@ -1,6 +1,6 @@
 //! What is traced.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::scene::{
     Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, SceneLimits, Texture, TextureRef,
     Triangles, Wrap,

@@ -1,7 +1,7 @@
 //! Two eyes: where they stand, and what they look at.
 
 use super::scenes::builtin;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::device::Backend;
 use afterimage_lab::scene::{Camera, Environment, Pose, Scene, Triangles};
 use afterimage_lab::trace::Tracer;

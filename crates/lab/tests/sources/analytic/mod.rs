@@ -1,7 +1,7 @@
 //! Analytic scenes: their depth and motion against closed forms in f64 that share no code with them, their promises about
 //! what stays the same, and the page of text among the fixtures.
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::{AnalyticSource, LIGHT_STEP};

@@ -1,7 +1,6 @@
 //! FLIP against NVIDIA's own implementation (`fixtures/flip.csv`, written by `fixtures/flip.py`) and its properties.
 
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::metric::Flip;
 use afterimage_testing::Draws;
 use approx::assert_abs_diff_eq;

@@ -3,10 +3,8 @@
 mod flip;
 mod weighted;
 
-use afterimage::foveation::Foveation;
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::simulator::Pyramid;
+use afterimage::{Foveation, Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric;
 use afterimage_lab::metric::{Band, Flip, NO_PAST, References, Scorer, Tracker};

@@ -1,9 +1,8 @@
 //! Weighted error, Delta E 94 and ghosts against brute force and cases by hand.
 
 use super::{noise, source_frame};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
 use afterimage::kernel::color::{delta_e94, lab, srgb_decode};
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{GHOST_FRAMES, References, Scorer, Scores, Tracker, error_weight};
 use afterimage_testing::Draws;

@@ -1,7 +1,7 @@
 //! One gaze point per frame: which sample is held, and where it falls.
 
 use super::{VIEW_PX, any_samples, at, parse, path_of, screen, view};
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::*;
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 //!
 //! `cargo test --features lab --test scanpath -- --ignored write_fixture` makes `fixtures/scanpath_viewing.csv` anew.
 
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::error::InputError;
 use afterimage_lab::scanpath::*;
 use proptest::prelude::*;

@@ -1,8 +1,7 @@
 //! Against frames of another renderer: names, counts, and that every sign is right.
 
 use super::{limits, recorded};
-use afterimage::geometry::ViewGeometry;
-use afterimage::image::Image;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::exr_file::{ExrHeader, Vectors};
 use afterimage_lab::source::motion_check::{Verdict, detect};

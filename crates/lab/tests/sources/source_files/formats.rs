@@ -1,7 +1,7 @@
 //! Every kind of file that is read, written here pixel by pixel and read back.
 
 use super::{ALL, Extras, folder_of, limits, picture, vectors};
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
 use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
 use exr::prelude::*;

@@ -6,7 +6,7 @@ mod formats;
 mod motion;
 mod mutation;
 
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::ReadLimits;
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};

@@ -1,7 +1,6 @@
 //! The convention detector on scenes whose convention is known.
 
-use afterimage::convention::MotionConvention;
-use afterimage::image::Image;
+use afterimage::{Image, MotionConvention};
 use afterimage_lab::source::motion_check::{Verdict, conventions, detect};
 use afterimage_testing::holds;
 use rand::{RngExt, SeedableRng};

@@ -6,7 +6,7 @@ use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
 use crate::report::backend::BackendReport;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::device::Backend;
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};

@@ -3,15 +3,11 @@
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::error::{CreateError, FrameError};
-use afterimage::foveation::Filter;
-use afterimage::frame::{Gaze, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
-use afterimage::settings::{Method, Settings};
 use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::{CreateError, Filter, FrameError, Gaze, Method, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
 use serde::Serialize;

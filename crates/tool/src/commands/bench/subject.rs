@@ -3,7 +3,7 @@
 use super::{BenchArgs, Traces};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::FoveatedFrame;

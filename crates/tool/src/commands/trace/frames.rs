@@ -6,7 +6,7 @@ use super::{AovName, TonemapName, TraceArgs};
 use crate::args::FormatName;
 use crate::failure::Failure;
 use crate::output::Output;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage::kernel::color::srgb_encode;
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::source::exr_file;

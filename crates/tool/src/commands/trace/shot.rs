@@ -4,7 +4,7 @@ use super::TraceArgs;
 use super::frames::Picture;
 use super::report::Counts;
 use super::setup::Setup;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;

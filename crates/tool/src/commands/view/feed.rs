@@ -1,7 +1,7 @@
 //! Frames of the input, read or rendered beside the window's thread, one ahead, at the resolution that is asked for.
 
 use crate::failure::Failure;
-use afterimage::image::Image;
+use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::{FrameSource, Stance};
 use glam::DMat4;

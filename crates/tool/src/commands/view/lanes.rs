@@ -3,12 +3,9 @@
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
-use afterimage::foveation::Filter;
-use afterimage::frame::{ContextDesc, Gaze, Reset, ViewFrame};
-use afterimage::geometry::ViewGeometry;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::settings::Settings;
 use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::{ContextDesc, Filter, Gaze, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use super::device;
 use super::shader::SHADERS;
 use super::state::Side;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::psnr_db;
 use bytemuck::{Pod, Zeroable};
@@ -140,7 +140,7 @@ impl Quality {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::image::Image;
+    use afterimage::Image;
     use afterimage::kernel::color::srgb_encode;
     use wgpu::{TextureFormat, TextureUsages};
 

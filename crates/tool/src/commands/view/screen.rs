@@ -3,7 +3,7 @@
 use super::device;
 use super::layout::Layout;
 use super::shader::SHADERS;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage::gpu::Timestamps;
 use afterimage_lab::device::Headless;
 use bytemuck::{Pod, Zeroable};

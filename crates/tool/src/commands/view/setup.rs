@@ -5,8 +5,7 @@ use super::state::{Shows, State};
 use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
-use afterimage::settings::Settings;
+use afterimage::{Settings, ViewGeometry};
 use afterimage_lab::source::SourceInfo;
 
 /// Options and facts of the input.

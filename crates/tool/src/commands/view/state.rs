@@ -1,7 +1,7 @@
 //! What is shown, and what keys and clicks change about it. No window, no device.
 
 use crate::args::{DebugName, FilterName};
-use afterimage::settings::Method;
+use afterimage::Method;
 use clap::ValueEnum;
 use winit::keyboard::KeyCode;
 

@@ -74,6 +74,6 @@ pub fn refuses(scene: &str, more: &[&str], words: &[&str]) {
     assert!(!out.join("trace.json").exists());
 }
 
-pub fn picture(path: &Path) -> afterimage::image::Image<[f32; 3]> {
+pub fn picture(path: &Path) -> afterimage::Image<[f32; 3]> {
     StillSource::open(path, &ReadLimits::default()).unwrap().frame(0).unwrap().color
 }

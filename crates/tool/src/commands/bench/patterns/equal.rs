@@ -1,7 +1,7 @@
 //! Patterns that take the same number of samples.
 
 use crate::failure::Failure;
-use afterimage::geometry::ViewGeometry;
+use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 
 /// Largest relative difference of the numbers of samples.
