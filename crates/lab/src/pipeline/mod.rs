@@ -13,9 +13,10 @@ use afterimage::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
 #[cfg(feature = "ablation")]
+use afterimage::SettingsError;
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, SettingsError,
-    ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, ViewFrame,
+    ViewGeometry,
 };
 
 use crate::device::Backend;
