@@ -4,8 +4,8 @@
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::{Gaze, ViewFrame, ViewGeometry};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -18,17 +18,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let color = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, read | TextureUsages::COPY_DST);
     let output = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, write | TextureUsages::COPY_SRC);
 
-    let mut post = Afterimage::new(&gpu.device, &GpuDesc::new(SIZE, output.format()))?;
+    let mut post = Afterimage::new(&gpu.device, &ContextDesc::new(SIZE), output.format())?;
     // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the left is blurred.
     for (index, gaze_x, sharp) in [(0, 50.0, true), (1, 200.0, false)] {
         gpu.write(&color, 0, |x, _| [if sharp { (x % 2) as f32 } else { 0.5 }; 3]);
-        let views = [ViewFrame {
-            geometry: ViewGeometry::flat(SIZE, 70.0)?,
-            gaze: Gaze::At { px: [gaze_x, 32.0] },
-            previous_from_current: None,
-        }];
+        let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0)?, Gaze::At { px: [gaze_x, 32.0] })];
         let mut encoder = gpu.encoder();
-        post.record(&gpu.device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
+        post.record(&gpu.device, &mut encoder, &Frame::new(&color, &views, index), &output)?;
         gpu.submit(encoder);
     }
 

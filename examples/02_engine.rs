@@ -5,8 +5,8 @@
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::{COUNTERS_BYTES, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
+use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::{COUNTERS_BYTES, ContextDesc, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
@@ -42,7 +42,7 @@ fn targets(gpu: &Headless, size: [u32; 2]) -> (Texture, Texture) {
 impl Engine {
     fn new(gpu: &Headless, size: [u32; 2]) -> Result<Self, Box<dyn std::error::Error>> {
         let (color, output) = targets(gpu, size);
-        let post = Afterimage::new(&gpu.device, &GpuDesc::new(size, OUTPUT))?;
+        let post = Afterimage::new(&gpu.device, &ContextDesc::new(size), OUTPUT)?;
         let counted = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         Ok(Self { post, color, output, counters: gpu.buffer(COUNTERS_BYTES, counted), size: Some(size) })
     }
@@ -51,7 +51,7 @@ impl Engine {
         // A minimised window is 0x0: skip its frames, and keep what there is.
         if size.contains(&0) {
             self.size = None;
-        } else if self.post.desc().context.size_px == size {
+        } else if self.post.desc().size_px == size {
             self.size = Some(size);
         } else {
             self.post.resize(&gpu.device, size)?;
@@ -70,14 +70,11 @@ impl Engine {
         let mut encoder = gpu.encoder();
         // Here your renderer would draw the foveated frame into `color`. This one clears it.
         draw(&mut encoder, &self.color, if let Event::Brighter(ratio) = event { 0.2 * f64::from(ratio) } else { 0.2 });
-        let views = [ViewFrame {
-            geometry: ViewGeometry::flat(size, 70.0)?,
-            gaze: match event {
-                Event::GazeLost => Gaze::Lost,
-                _ => Gaze::At { px: [0.5 * size[0] as f32, 0.5 * size[1] as f32] },
-            },
-            previous_from_current: None,
-        }];
+        let gaze = match event {
+            Event::GazeLost => Gaze::Lost,
+            _ => Gaze::At { px: [0.5 * size[0] as f32, 0.5 * size[1] as f32] },
+        };
+        let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, gaze)];
         let frame = Frame {
             reset: match event {
                 Event::Cut => Reset::All,
@@ -89,10 +86,10 @@ impl Engine {
                 Event::Brighter(ratio) => Exposure::Changed { ratio },
                 _ => Exposure::Same,
             },
-            counters: Some(&self.counters),
-            ..Frame::new(&self.color, &self.output, &views, index)
+            ..Frame::new(&self.color, &views, index)
         };
-        let recorded = self.post.record(&gpu.device, &mut encoder, &frame)?;
+        let target = Target { counters: Some(&self.counters), ..Target::new(&self.output) };
+        let recorded = self.post.record(&gpu.device, &mut encoder, &frame, target)?;
         // Then your tone mapping would draw `output` to the screen, and the frame goes out.
         gpu.submit(encoder);
         let warnings: Vec<String> = recorded.warnings().map(|w| w.to_string()).collect();

@@ -4,7 +4,7 @@
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::gpu::{Afterimage, Frame};
 use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use headless::Headless;
 use wgpu::{TextureFormat, TextureUsages};
@@ -12,9 +12,8 @@ use wgpu::{TextureFormat, TextureUsages};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::new()?;
     let size = [256, 256];
-    let context = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
-    let desc = GpuDesc { context, ..GpuDesc::new(size, TextureFormat::Rgba32Float) };
-    let mut post = Afterimage::new(&gpu.device, &desc)?;
+    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
+    let mut post = Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba32Float)?;
 
     // Two layers: the left eye's, then the right eye's.
     let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
@@ -32,20 +31,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut views = vec![];
         for (eye, (tan_x, offset_m)) in (0..).zip(eyes) {
             let geometry = ViewGeometry::off_axis(size, tan_x, [-1.1, 1.1])?;
-            let target = glam::Vec3::new(if index == 0 { -0.2 } else { 0.3 } + offset_m, 0.0, 0.6);
+            let target = [if index == 0 { -0.2 } else { 0.3 } + offset_m, 0.0, 0.6];
             let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
-            views.push(ViewFrame { geometry, gaze, previous_from_current: None });
+            views.push(ViewFrame::new(geometry, gaze));
             gpu.write(&color, eye, |x, _| stripes(eye, index == 0, x));
         }
         let mut encoder = gpu.encoder();
-        let recorded = post.record(&gpu.device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
+        let recorded = post.record(&gpu.device, &mut encoder, &Frame::new(&color, &views, index), &output)?;
         gpu.submit(encoder);
         for warning in recorded.warnings() {
             println!("frame {index}: {warning}");
         }
         let column = |eye: usize| match views[eye].gaze {
             Gaze::At { px } => px[0],
-            Gaze::Lost => f32::NAN,
+            _ => f32::NAN,
         };
         println!("frame {index}: left eye looks at column {:.0}, right eye at {:.0}", column(0), column(1));
     }

@@ -2,26 +2,20 @@
 //!
 //! `cargo run --features cpu --example 04_cpu`
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::{ContextDesc, Gaze, Image, Settings, ViewFrame, ViewGeometry};
+use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::{ContextDesc, Gaze, Image, ViewFrame, ViewGeometry};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [320, 180];
-    let mut post = CpuAfterimage::new(ContextDesc::new(size), Settings::default())?;
+    let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
     let mut output = [Image::filled(size, [0.0; 3])];
 
     // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the renderer saves work on the left.
     let sharp = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
     let blurred = Image::filled(size, [0.5; 3]);
-    for (index, (color, gaze_x)) in [(&sharp, 60.0), (&blurred, 260.0)].into_iter().enumerate() {
-        let facts = ViewFrame {
-            geometry: ViewGeometry::flat(size, 70.0)?,
-            gaze: Gaze::At { px: [gaze_x, 90.0] },
-            previous_from_current: None,
-        };
-        let views = [CpuView::new(facts, color)];
-        let frame = CpuFrame::new(&views, index as u64);
-        post.process(&frame, &mut output, None)?;
+    for (index, color, gaze_x) in [(0, &sharp, 60.0), (1, &blurred, 260.0)] {
+        let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [gaze_x, 90.0] })];
+        post.process(&Frame::new(&[color], &views, index), &mut output)?;
     }
 
     let stripes = |x: std::ops::Range<usize>| {

@@ -1,14 +1,13 @@
-//! How do two eyes share one context? One gaze each, off-axis views, nothing leaks from eye to eye.
+//! How do two eyes share one context without a GPU? One image and one gaze each; nothing leaks from eye to eye.
 //!
 //! `cargo run --features cpu --example 05_cpu_stereo`
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::{ContextDesc, Gaze, Image, Settings, ViewFrame, ViewGeometry};
+use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::{ContextDesc, Gaze, Image, ViewFrame, ViewGeometry};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [256, 256];
-    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
-    let mut post = CpuAfterimage::new(desc, Settings::default())?;
+    let mut post = CpuAfterimage::new(&ContextDesc { view_count: 2, ..ContextDesc::new(size) })?;
     let mut output = [Image::filled(size, [0.0; 3]), Image::filled(size, [0.0; 3])];
 
     // Each eye of a headset sees more towards its temple; both look at one point 0.6 m ahead, 64 mm apart.
@@ -16,15 +15,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (left, right) = (Image::filled(size, [0.8, 0.3, 0.3]), Image::filled(size, [0.3, 0.3, 0.8]));
     for index in 0..10 {
         let mut views = vec![];
-        for ((tan_x, offset_m), color) in eyes.into_iter().zip([&left, &right]) {
+        for (tan_x, offset_m) in eyes {
             let geometry = ViewGeometry::off_axis(size, tan_x, [-1.1, 1.1])?;
-            let target = glam::Vec3::new(offset_m, 0.0, 0.6);
-            let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
-            let facts = ViewFrame { geometry, gaze, previous_from_current: None };
-            views.push(CpuView::new(facts, color));
+            let gaze = geometry.project([offset_m, 0.0, 0.6]).map_or(Gaze::Lost, |px| Gaze::At { px });
+            views.push(ViewFrame::new(geometry, gaze));
         }
-        let frame = CpuFrame::new(&views, index);
-        post.process(&frame, &mut output, None)?;
+        post.process(&Frame::new(&[&left, &right], &views, index), &mut output)?;
     }
     println!("left eye shows {:?}, right eye {:?}", output[0].at(128, 128), output[1].at(128, 128));
     println!("{} KiB of history for both", post.memory_bytes() / 1024);

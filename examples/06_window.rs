@@ -5,9 +5,9 @@
 //!
 //! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
-use afterimage::{Gaze, ViewFrame, ViewGeometry};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use std::{error::Error, sync::Arc};
 use wgpu::{CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
 use winit::application::ApplicationHandler;
@@ -36,7 +36,7 @@ struct App {
 /// Stands in for your renderer: a pattern, made coarse where the eye does not look.
 struct Renderer {
     pattern: wgpu::Texture,
-    foveation: GpuFoveation,
+    foveation: GpuSimulator,
     color: wgpu::Texture,
 }
 
@@ -63,7 +63,7 @@ impl Renderer {
             .collect();
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size[0]), rows_per_image: None };
         queue.write_texture(pattern.as_image_copy(), bytemuck::cast_slice(&pixels), layout, pattern.size());
-        let foveation = GpuFoveation::new(device, &GpuDesc::new(size, FORMAT))?;
+        let foveation = GpuSimulator::new(device, &ContextDesc::new(size), FORMAT)?;
         Ok(Self { pattern, foveation, color: texture(device, size, FORMAT) })
     }
 }
@@ -82,7 +82,7 @@ impl App {
         surface.configure(&device, &config);
         Ok(Self {
             // (1)
-            post: Afterimage::new(&device, &GpuDesc::new(size, FORMAT))?,
+            post: Afterimage::new(&device, &ContextDesc::new(size), FORMAT)?,
             output: texture(&device, size, FORMAT),
             blitter: TextureBlitter::new(&device, config.format),
             renderer: Renderer::new(&device, &queue, size)?,
@@ -121,13 +121,13 @@ impl App {
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let geometry = ViewGeometry::flat([self.config.width, self.config.height], 70.0)?;
-        let views = [ViewFrame { geometry, gaze: self.gaze, previous_from_current: None }];
+        let views = [ViewFrame::new(geometry, self.gaze)];
         // Here your renderer draws the foveated frame.
         let Renderer { pattern, foveation, color } = &mut self.renderer;
-        foveation.record(&self.device, &mut encoder, &FoveationFrame::new(pattern, color, &views))?;
+        foveation.record(&self.device, &mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
         // (3) The post-process.
-        let frame = Frame::new(color, &self.output, &views, self.index);
-        self.post.record(&self.device, &mut encoder, &frame)?;
+        let frame = Frame::new(color, &views, self.index);
+        self.post.record(&self.device, &mut encoder, &frame, &self.output)?;
         // Here is your tone mapping.
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&self.device, &mut encoder, &output, &screen);

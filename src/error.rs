@@ -14,6 +14,25 @@ pub struct SettingsError {
     pub expected: String,
 }
 
+/// Refuses a number outside `range`, NaN included.
+pub(crate) fn check(
+    setting: &'static str,
+    value: f32,
+    range: std::ops::RangeInclusive<f32>,
+    unit: &str,
+) -> Result<(), SettingsError> {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        let (low, high) = (range.start(), range.end());
+        Err(SettingsError {
+            setting,
+            found: value.to_string(),
+            expected: format!("{low} to {high} {unit}").trim_end().to_owned(),
+        })
+    }
+}
+
 /// A context that cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]

@@ -4,9 +4,8 @@
 //! filter). A level of detail `l` means blocks of 2^l pixels a side. The post-process is told both by [`Foveation`]; with the
 //! feature `lab` the same description turns a full-rate frame into what such a renderer would have delivered.
 
-use crate::error::SettingsError;
+use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
-use crate::settings::check;
 
 /// How coarse looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

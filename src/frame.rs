@@ -1,15 +1,14 @@
-//! Facts of a frame that CPU and GPU share: gaze, view, reset.
+//! Descriptions that both executors share: of a context, of a frame and of its views.
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
 use crate::geometry::ViewGeometry;
-use crate::kernel::rng;
-use crate::kernel::rng::Purpose;
-use crate::settings::{Sampler, Settings};
-use glam::Vec3;
+use crate::settings::Settings;
+use std::fmt::Debug;
 
-/// Where one eye looks.
+/// Position that one eye looks at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Gaze {
     /// At this position of its view: pixels, (0, 0) is the centre of the top-left pixel, y down. May lie outside the view.
     At {
@@ -34,52 +33,39 @@ impl Gaze {
     }
 }
 
-/// Facts of one view of one frame.
+/// One view of one frame: a screen, or an eye of a headset.
+///
+/// Make it with [`new`](Self::new) and `..`, so that a field that comes later breaks nothing:
+///
+/// ```
+/// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+/// # let camera_motion = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.02], [0.0, 0.0, 0.0, 1.0]];
+/// let geometry = ViewGeometry::flat([1920, 1080], 70.0)?;
+/// let gaze = Gaze::At { px: [1200.0, 500.0] };
+/// let view = ViewFrame { previous_from_current: Some(camera_motion), ..ViewFrame::new(geometry, gaze) };
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewFrame {
-    /// How its pixels map to rays.
+    /// Rays through its pixels.
     pub geometry: ViewGeometry,
-    /// Where its eye looks.
+    /// Position that its eye looks at.
     pub gaze: Gaze,
-    /// Camera motion: takes a point from this frame's view space (x right, y down, z forward) to the previous frame's.
-    /// Row-major, for column vectors. With it, driving towards a wall does not look like disocclusion. `None`: distances are
-    /// expected to stay as they are.
+    /// Camera motion: takes a point from this frame's view space (x right, y down, z forward) to the previous frame's. Row-major,
+    /// for column vectors; perspective views only. `None`: distances are expected to stay as they are, and history on surfaces that
+    /// the camera approaches or leaves fast is rejected.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
 }
 
-/// What a pass needs to know of one view of one frame besides its images, for both executors.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ViewConstants {
-    /// Where the eye is taken to look; to be held if the gaze is lost next.
-    pub gaze_px: [f32; 2],
-    /// Ray through it.
-    pub gaze_ray: Vec3,
-    /// Third row of the current-to-previous view transform: it gives the previous distance.
-    pub depth_row: [f32; 4],
-    /// Key of the view's random stream.
-    pub key: u32,
-}
-
 impl ViewFrame {
-    /// Constants of view `view` of frame `index`, with the gaze `held` from before.
-    pub(crate) fn constants(
-        &self,
-        held: Option<[f32; 2]>,
-        settings: &Settings,
-        view: usize,
-        index: u64,
-    ) -> ViewConstants {
-        let gaze_px = self.gaze.resolve(held, self.geometry.size_px());
-        let purpose = match settings.sampler {
-            Sampler::AChao => Purpose::Select,
-            Sampler::AEs => Purpose::Key,
-        };
-        ViewConstants {
-            gaze_px,
-            gaze_ray: self.geometry.ray(gaze_px),
-            depth_row: self.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2]),
-            key: rng::stream_key(settings.seed, view as u32, purpose, index),
-        }
+    /// A view whose camera motion is not known.
+    pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
+        Self { geometry, gaze, previous_from_current: None }
+    }
+
+    /// Third row of [`previous_from_current`](Self::previous_from_current): it gives the previous distance.
+    pub(crate) fn depth_row(&self) -> [f32; 4] {
+        self.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2])
     }
 
     /// Checks what does not depend on images.
@@ -109,21 +95,23 @@ impl ViewFrame {
     }
 }
 
-/// What of the history is still true.
+/// Whether history survives into this frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reset {
-    /// Everything.
+    /// All history is valid.
     #[default]
     None,
-    /// Nothing: a cut, a teleport, a pause. This frame starts afresh.
+    /// No history is valid, after a cut, a teleport or a pause. This frame starts afresh.
     All,
 }
 
-/// How bright this frame's numbers are against the previous frame's. Engines that multiply an exposure into the colors they
-/// hand over say so here, and history follows.
+/// Exposure of this frame's colors against the previous frame's, for engines that multiply an exposure into the colors that they
+/// hand over. Stored colors are scaled by the ratio.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Exposure {
-    /// As bright: the same surface in the same light has the same numbers.
+    /// Unchanged: the same surface in the same light has the same numbers.
     #[default]
     Same,
     /// This frame's exposure over the previous frame's.
@@ -134,7 +122,7 @@ pub enum Exposure {
 }
 
 impl Exposure {
-    /// Refuses a ratio that is no ratio.
+    /// Refuses a ratio that is not above 0 and finite.
     pub(crate) fn check(self) -> Result<(), FrameError> {
         match self {
             Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => Err(FrameError::Value {
@@ -157,31 +145,163 @@ impl Exposure {
     }
 }
 
-/// Facts that hold from creation on.
+/// An executor of the post-process, by the images that it reads.
+///
+/// Implemented by [`gpu::Afterimage`](crate::gpu::Afterimage), whose images are textures with one array layer a view, and by
+/// [`cpu::CpuAfterimage`](crate::cpu::CpuAfterimage), whose images are slices with one [`Image`](crate::Image) a view.
+pub trait Executor {
+    /// Images of colors.
+    type Colors<'a>: Copy + Debug;
+    /// Images of numbers.
+    type Scalars<'a>: Copy + Debug;
+    /// Images of pairs of numbers.
+    type Vectors<'a>: Copy + Debug;
+}
+
+/// One frame: images of the size that the context was made for, and what the renderer knows about them.
+///
+/// [`gpu::Frame`](crate::gpu::Frame) and [`cpu::Frame`](crate::cpu::Frame) are this type for either executor. Make it with
+/// [`new`](Self::new) and `..`, so that a field that comes later breaks nothing.
+pub struct Frame<'a, E: Executor> {
+    /// The foveated frame: linear color in Rec. 709 primaries, scene-referred. Pixels that are NaN or infinite are dropped and
+    /// counted. On a GPU any float format.
+    pub color: E::Colors<'a>,
+    /// Depth in the context's convention; on a GPU a depth format or `R32Float`. `None` switches the depth test off.
+    pub depth: Option<E::Scalars<'a>>,
+    /// Motion vectors in the context's convention; on a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves.
+    pub motion: Option<E::Vectors<'a>>,
+    /// Confidence in history, 0 to 1: 0 for what moves without vectors (video panels, particles, reflections). About 1 minus FSR2's
+    /// reactive mask. On a GPU any float or normalised format. `None`: 1 everywhere.
+    pub trust: Option<E::Scalars<'a>>,
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels; on a GPU any float format. `None`: computed from the
+    /// gaze as [`Settings::foveation`] says. Its `rate_far` must be the coarsest in either case: history is not matched at coarser
+    /// levels.
+    pub lod: Option<E::Scalars<'a>>,
+    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
+    /// detail; on a GPU `Rg16Float`, `Rg32Float` or wider. Given where, and only where, [`Settings::noisy`] is set.
+    pub noise: Option<E::Vectors<'a>>,
+    /// One entry a view.
+    pub views: &'a [ViewFrame],
+    /// Frame counter. Random numbers follow it: the same index and seed give the same bytes.
+    pub index: u64,
+    /// Whether history still holds.
+    pub reset: Reset,
+    /// Exposure of this frame's colors against the previous frame's.
+    pub exposure: Exposure,
+}
+
+// Not derived: that would ask the executor itself to be `Copy`.
+impl<E: Executor> Clone for Frame<'_, E> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<E: Executor> Copy for Frame<'_, E> {}
+
+impl<E: Executor> Debug for Frame<'_, E> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Frame")
+            .field("color", &self.color)
+            .field("depth", &self.depth)
+            .field("motion", &self.motion)
+            .field("trust", &self.trust)
+            .field("lod", &self.lod)
+            .field("noise", &self.noise)
+            .field("views", &self.views)
+            .field("index", &self.index)
+            .field("reset", &self.reset)
+            .field("exposure", &self.exposure)
+            .finish()
+    }
+}
+
+impl<'a, E: Executor> Frame<'a, E> {
+    /// A frame that continues the previous one, without optional inputs.
+    pub fn new(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
+        Self {
+            color,
+            depth: None,
+            motion: None,
+            trust: None,
+            lod: None,
+            noise: None,
+            views,
+            index,
+            reset: Reset::None,
+            exposure: Exposure::Same,
+        }
+    }
+
+    /// Checks what does not depend on images.
+    pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
+        let (found, expected) = (self.views.len(), desc.view_count as usize);
+        if found != expected {
+            return Err(FrameError::ViewCount { found, expected });
+        }
+        for (i, view) in self.views.iter().enumerate() {
+            view.check(i, desc)?;
+        }
+        self.check_noise(&desc.settings)?;
+        self.exposure.check()
+    }
+
+    /// Refuses noise where none is expected, and the other way round.
+    fn check_noise(&self, settings: &Settings) -> Result<(), FrameError> {
+        let (found, expected) = match (settings.noisy, self.noise.is_some()) {
+            (true, false) => ("None", "images, as Settings::noisy is set"),
+            (false, true) => ("given", "None, or Settings::noisy set"),
+            _ => return Ok(()),
+        };
+        Err(FrameError::Value { what: "noise", view: 0, found: found.into(), expected })
+    }
+}
+
+/// Description of a context: facts that hold from its creation on, and tunables, which can be changed later.
+///
+/// Make it with [`new`](Self::new) and change fields, or with `..`, so that a field that comes later breaks nothing:
+///
+/// ```
+/// use afterimage::{ContextDesc, DepthConvention, MotionConvention};
+///
+/// let mut desc = ContextDesc::new([1920, 1080]);
+/// desc.motion = MotionConvention::BLENDER;
+/// desc.depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
+/// desc.settings.foveation.rate_far = 8;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContextDesc {
-    /// Width and height of each view in pixels, at least 1x1.
+    /// Width and height of each view in pixels, 1 to [`MAX_SIDE`](Self::MAX_SIDE) each.
     pub size_px: [u32; 2],
-    /// Number of views; 2 for stereo.
+    /// Number of views: 2 for stereo, at most 4 on a GPU.
     pub view_count: u32,
-    /// What motion vectors mean.
+    /// Convention of motion vectors.
     pub motion: MotionConvention,
-    /// What depth values mean.
+    /// Convention of depth values.
     pub depth: DepthConvention,
+    /// Tunables.
+    pub settings: Settings,
 }
 
 impl ContextDesc {
     /// Largest accepted side of a view, in pixels.
     pub const MAX_SIDE: u32 = 16384;
 
-    /// One view of `size_px` with the default conventions: motion as previous minus current in pixels with y down, depth as
-    /// linear distance.
+    /// One view of `size_px` with default settings and the default conventions: motion as previous minus current in pixels with y
+    /// down, depth as linear distance.
     pub fn new(size_px: [u32; 2]) -> Self {
-        Self { size_px, view_count: 1, motion: Default::default(), depth: Default::default() }
+        Self {
+            size_px,
+            view_count: 1,
+            motion: MotionConvention::default(),
+            depth: DepthConvention::default(),
+            settings: Settings::default(),
+        }
     }
 
-    /// Checks size, number of views and planes.
+    /// Checks settings, size, number of views and planes.
     pub(crate) fn validate(&self) -> Result<(), SettingsError> {
+        self.settings.validate()?;
         self.depth.validate()?;
         check_size(self.size_px).map_err(|e| SettingsError {
             setting: "size_px",

@@ -4,7 +4,7 @@ use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// A flat view: how pixels map to rays from the eye. Symmetric or off-axis (one eye of a headset).
 ///
@@ -63,16 +63,17 @@ impl ViewGeometry {
         self.size_px
     }
 
-    /// The ray through `px`; pixel centres are integers.
+    /// The ray through `px`, with z = 1; pixel centres are integers.
     #[inline]
-    pub fn ray(&self, px: [f32; 2]) -> Vec3 {
-        (Vec2::from(px) * self.scale + self.offset).extend(1.0)
+    pub fn ray(&self, px: [f32; 2]) -> [f32; 3] {
+        (Vec2::from(px) * self.scale + self.offset).extend(1.0).to_array()
     }
 
-    /// Where a direction meets the view plane, in pixels. Only directions with z > 0 do.
-    pub fn project(&self, direction: Vec3) -> Option<[f32; 2]> {
-        (direction.z > 0.0).then(|| {
-            let tangent = direction.truncate() / direction.z;
+    /// The pixel where a direction (x right, y down, z forward) meets the view plane. `None` unless z > 0.
+    pub fn project(&self, direction: [f32; 3]) -> Option<[f32; 2]> {
+        let [x, y, z] = direction;
+        (z > 0.0).then(|| {
+            let tangent = Vec2::new(x, y) / z;
             ((tangent - self.offset) / self.scale).to_array()
         })
     }
@@ -91,7 +92,7 @@ impl ViewGeometry {
 
     /// True visual angle in degrees between the rays through two pixels.
     pub fn eccentricity_deg(&self, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
-        acuity::eccentricity_deg(self.ray(px), self.ray(gaze_px))
+        acuity::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
     }
 
     #[cfg(feature = "cpu")]

@@ -71,23 +71,26 @@ mod image;
 // For this workspace's other crates and for research; promised to nobody.
 #[doc(hidden)]
 pub mod kernel;
+mod method;
 mod settings;
 #[doc(hidden)]
 #[cfg(feature = "gpu")]
 pub mod shader;
 pub mod simulator;
 mod stats;
+mod uniforms;
 mod warning;
 
 pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 pub use error::{CreateError, FrameError, SettingsError};
 pub use foveation::{Filter, Foveation};
-pub use frame::{ContextDesc, Exposure, Gaze, Reset, ViewFrame};
+pub use frame::{ContextDesc, Executor, Exposure, Frame, Gaze, Reset, ViewFrame};
 pub use geometry::ViewGeometry;
 #[cfg(feature = "cpu")]
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
-pub use settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+pub use method::Method;
+pub use settings::{Bias, DepthTest, Gate, GateMetric, Sampler, Settings, Smr};
 pub use stats::{COUNTERS_BYTES, FrameStats};
 pub use warning::Warning;

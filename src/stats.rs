@@ -1,4 +1,4 @@
-//! What a frame came to, counted pixel by pixel, by either executor.
+//! Counts of a frame, by either executor.
 
 use crate::kernel::reproject::Verdict;
 use crate::warning::Warning;
@@ -45,9 +45,9 @@ impl FrameStats {
         Some(stats)
     }
 
-    /// Pixels that had a history and lost it, or might have: bad motion, off screen, disoccluded, distrusted.
-    pub fn flushed(&self) -> u64 {
-        Verdict::FLUSHED.iter().map(|&v| self.verdicts[v as usize]).sum()
+    /// Pixels whose history was rejected: bad motion, off screen, disoccluded, distrusted.
+    pub fn rejected(&self) -> u64 {
+        Verdict::REJECTED.iter().map(|&v| self.verdicts[v as usize]).sum()
     }
 
     /// Pixels that kept their history, to combine it with the candidate.

@@ -1,8 +1,8 @@
 //! What a turn of the head costs on the device: hard case H60. Alone in its process, whose CPU time a software device spends; a real one
 //! takes none of it, and there the time until it is done counts.
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::{Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::{ContextDesc, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use rustix::time::{ClockId, clock_gettime};
@@ -49,8 +49,8 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
     let mut ratios = vec![];
     for method in [Method::Wrs, Method::Smr] {
         let settings = Settings { method, ..Settings::paper() };
-        let desc = GpuDesc { settings, ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
-        let mut post = Afterimage::new(&device, &desc).unwrap();
+        let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
+        let mut post = Afterimage::new(&device, &desc, output.format()).unwrap();
         let mut times = [vec![], vec![]];
         let mut draws = Draws::new("cost on the device");
         for index in 0..42 {
@@ -63,9 +63,8 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             wait();
             let from = clock_ns(is_software);
             let mut encoder = device.create_command_encoder(&Default::default());
-            let frame =
-                Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &output, &views, index) };
-            post.record(&device, &mut encoder, &frame).unwrap();
+            let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
+            post.record(&device, &mut encoder, &frame, &output).unwrap();
             queue.submit([encoder.finish()]);
             wait();
             // The first of both make pipelines, and have no past.

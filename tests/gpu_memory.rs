@@ -1,14 +1,14 @@
 //! Ten thousand frames with resizes leak nothing. Alone in its file, for a process of its own.
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::{Gaze, ViewFrame, ViewGeometry};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use wgpu::{TextureFormat, TextureUsages};
 
 #[test]
 fn ten_thousand_frames_with_resizes_leak_nothing() {
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let desc = GpuDesc::new([24, 16], TextureFormat::Rgba16Float);
-    let mut post = Afterimage::new(&device, &desc).unwrap();
+    let desc = ContextDesc::new([24, 16]);
+    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
     let mut resident = vec![];
     let mut textures = None;
     for index in 0..10_000_u64 {
@@ -30,11 +30,11 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
             textures = Some((make(TextureUsages::TEXTURE_BINDING), make(TextureUsages::STORAGE_BINDING)));
         }
         let (color, output) = textures.as_ref().unwrap();
-        let geometry = ViewGeometry::flat(post.desc().context.size_px, 70.0).unwrap();
+        let geometry = ViewGeometry::flat(post.desc().size_px, 70.0).unwrap();
         let views = [ViewFrame { geometry, gaze: Gaze::Lost, previous_from_current: None }];
-        let frame = Frame::new(color, output, &views, index);
+        let frame = Frame::new(color, &views, index);
         let mut encoder = device.create_command_encoder(&Default::default());
-        post.record(&device, &mut encoder, &frame).unwrap();
+        post.record(&device, &mut encoder, &frame, output).unwrap();
         queue.submit([encoder.finish()]);
         if index % 50 == 49 {
             device.poll(wgpu::PollType::wait_indefinitely()).unwrap();

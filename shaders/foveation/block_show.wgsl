@@ -1,7 +1,7 @@
 //#use foveate
 //#use foveated_views
-//#use scrub
-// The frame as coarse shading hardware shows it: one point sample a block. Its twin on the CPU is src/foveation/block.rs. One
+//#use sanitize
+// The frame as coarse shading hardware shows it: one point sample a block. Its twin on the CPU is src/simulator/block.rs. One
 // invocation a pixel; z is the view.
 //
 // 1 read and 1 write a pixel, 2 with levels of detail; up to one eccentricity a level. All pixels of a block read the same texel, under

@@ -1,15 +1,9 @@
 //#use acuity
-// What every pass is told that looks where the eye looks: binding 0, and the angle that decides how coarse a pixel is.
+//#use view_uniforms
+// Uniforms of the simulators, and the angle that decides how coarse a pixel is.
 
-// src/foveation/gpu/types.rs: ViewConstants
-struct ViewConstants {
-    ray_scale: vec2<f32>,
-    ray_offset: vec2<f32>,
-    gaze_ray: vec4<f32>,
-}
-
-// src/foveation/gpu/types.rs: FoveationConstants, which explains them
-struct FoveationConstants {
+// src/simulator/gpu/uniforms.rs: FoveationUniforms, which explains them
+struct FoveationUniforms {
     size: vec2<u32>,
     coarsest: u32,
     fovea_radius_deg: f32,
@@ -17,10 +11,10 @@ struct FoveationConstants {
     blend_deg: f32,
     mid: f32,
     far: f32,
-    views: array<ViewConstants, 4>,
+    views: array<ViewUniforms, 4>,
 }
 
-@group(0) @binding(0) var<uniform> frame: FoveationConstants;
+@group(0) @binding(0) var<uniform> frame: FoveationUniforms;
 
 // Angle in degrees between the gaze and the ray through a position in pixels.
 fn eccentricity_at(px: vec2<f32>, view: u32) -> f32 {

@@ -1,8 +1,8 @@
 //#use foveate
 //#use foveated_views
-//#use scrub
+//#use sanitize
 // Gaussian blur along one axis, with the width of the pixel it writes; run along x, then along y. Its twin on the CPU is
-// src/foveation/gaussian.rs: blur_axis. One invocation a pixel; z is the view.
+// src/simulator/gaussian.rs: blur_axis. One invocation a pixel; z is the view.
 //
 // 2 gauss_radius + 1 reads a pixel, 47 at 7.5 pixels; 1 write, 2 with levels of detail. With a frame of 8 bytes a pixel and 16 bytes
 // between the axes, both together read 8 + 16 and write 16 + 8, and 4 more with levels of detail.

@@ -1,7 +1,7 @@
 //#use foveate
-//#use scrub
+//#use sanitize
 // The next mip level: means of 2x2 texels, non-finite ones black. At odd borders a missing texel is replaced by its neighbour. Its
-// twin on the CPU is src/foveation/mip.rs: halve. One invocation a texel of the coarser level; z is the view.
+// twin on the CPU is src/simulator/mip.rs: halve. One invocation a texel of the coarser level; z is the view.
 //
 // 4 reads and 1 write a texel. With a frame of 8 bytes a pixel and levels of 16 bytes a texel, all levels together read 8 + 4 + 1 +
 // ... = 13.3 bytes a pixel and write 4 + 1 + ... = 5.3.

@@ -1,8 +1,8 @@
 //#use foveate
 //#use foveated_views
-//#use scrub
+//#use sanitize
 // The frame as a renderer shows it that shades fewer pixels and upscales: a blend of the two mip levels around each pixel's level of
-// detail. Its twin on the CPU is src/foveation/mip.rs: Pyramid::trilinear. One invocation a pixel; z is the view.
+// detail. Its twin on the CPU is src/simulator/mip.rs: Pyramid::trilinear. One invocation a pixel; z is the view.
 //
 // 9 reads a pixel at most: the pixel itself, 4 texels of each level; 1 write, 2 with levels of detail. Most of the picture reads the
 // two coarsest levels, under 1 byte a pixel; it writes 8, and 4 more with levels of detail.

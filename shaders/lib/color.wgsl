@@ -1,4 +1,4 @@
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/color.rs.
 
 const LAB_EPSILON: f32 = 216.0f / 24389.0f;

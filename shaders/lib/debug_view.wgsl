@@ -1,22 +1,22 @@
 //#use color
 //#use reproject
-//#use scrub
-// Twin of src/kernel/debug_view.rs: what was decided at a pixel, as a color.
+//#use sanitize
+// Twin of src/kernel/debug_view.rs: the decision at a pixel, as a color.
 
 // debug_view::DebugView
-const VIEW_WEIGHT: u32 = 1u;
+const VIEW_QUALITY: u32 = 1u;
 const VIEW_AGE: u32 = 2u;
 const VIEW_SURVIVAL: u32 = 3u;
-const VIEW_FLUSH: u32 = 4u;
+const VIEW_REJECTION: u32 = 4u;
 const VIEW_GATE: u32 = 5u;
 const VIEW_MOTION: u32 = 6u;
 
 struct PixelTrace {
+    verdict: u32,
     weight: f32,
-    w_sum: f32,
+    quality: f32,
     age: u32,
     survival: f32,
-    verdict: u32,
     gate: f32,
     take: bool,
     motion: vec2<f32>,
@@ -72,10 +72,10 @@ fn motion_color(motion: vec2<f32>) -> vec3<f32> {
 fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
     var encoded = vec3<f32>(traced.gate);
     switch view {
-        case VIEW_WEIGHT: { encoded = heat(traced.w_sum / 16.0); }
+        case VIEW_QUALITY: { encoded = heat(traced.quality); }
         case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) / 255.0)); }
         case VIEW_SURVIVAL: { encoded = heat(traced.survival); }
-        case VIEW_FLUSH: { encoded = verdict_color(traced.verdict); }
+        case VIEW_REJECTION: { encoded = verdict_color(traced.verdict); }
         case VIEW_MOTION: { encoded = motion_color(traced.motion); }
         default: {}
     }

@@ -50,18 +50,18 @@ fn moves_alike(own: vec2<f32>, other: vec2<f32>) -> bool {
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
 }
 
-struct Wanted {
+struct ReuseWeight {
     finer: f32,
     share: f32,
 }
 
-// matched::wanted
-fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, sure: vec2<f32>) -> Wanted {
-    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0) * sure.x;
-    let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * sure.y;
+// matched::reuse_weight
+fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2<f32>) -> ReuseWeight {
+    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0) * confidence.x;
+    let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = select(min(lod, 1.0), 1.0, noisy);
-    return Wanted(finer, finer + (alike * calm) * accumulate);
+    return ReuseWeight(finer, finer + (alike * calm) * accumulate);
 }
 
 // matched::gain
@@ -100,7 +100,7 @@ struct Evidence {
     next_level: vec3<f32>,
     trust: f32,
     noise: f32,
-    sure: vec2<f32>,
+    confidence: vec2<f32>,
 }
 
 struct Matched {
@@ -112,7 +112,7 @@ struct Matched {
 
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
-    let want = wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
+    let want = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
@@ -147,13 +147,13 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     return Matched(shown, lod, share, fit);
 }
 
-// matched::chain_mean
-fn chain_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
+// matched::mip_mean
+fn mip_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
     return (a + b + c + d) * 0.25;
 }
 
-// matched::chain_bilinear
-fn chain_bilinear(
+// matched::mip_bilinear
+fn mip_bilinear(
     top_left: vec4<f32>,
     top_right: vec4<f32>,
     bottom_left: vec4<f32>,

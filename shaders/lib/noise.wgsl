@@ -1,6 +1,6 @@
 //#use matched
 //#use pack
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/noise.rs; constants are explained there.
 
 const NOISY_LEVELS: f32 = 3.0;
@@ -91,8 +91,8 @@ fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     return (SIGMAS * root_slope(around)) * sqrt(of_one * numbers * (1.0 / COMPARED));
 }
 
-// noise::sureness
-fn sureness(history: Noise, around: f32) -> f32 {
+// noise::noise_confidence
+fn noise_confidence(history: Noise, around: f32) -> f32 {
     let off = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
     return 1.0 - smooth_step(SURE.x, SURE.y, off);
 }

@@ -1,4 +1,4 @@
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/pack.rs: one reservoir in three words; the layout is tabled there.
 
 const MAX_W_SUM: f32 = 0x1p100;

@@ -1,4 +1,4 @@
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/reproject.rs.
 
 const MAX_MOTION_PX: f32 = 65536.0;

@@ -35,8 +35,8 @@ struct Gathered {
 }
 
 // resample::gather
-fn gather(g: Gathered, tap: Surface, wanted: bool, sharp: f32, linear: f32) -> Gathered {
-    if !wanted {
+fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) -> Gathered {
+    if !same {
         return Gathered(g.sharp, g.sharp_sum, g.smooth_color, g.smooth_sum, g.lod, g.missing + 1u);
     }
     return Gathered(

@@ -1,5 +1,5 @@
 //#use approx
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/reservoir.rs (the paper: Cantory et al., MIG 2025).
 
 // f32::MIN

@@ -49,8 +49,8 @@ fn unpack_surface(words: vec2<u32>) -> Surface {
     return Surface(color, f32(lod) / LOD_STEPS, disparity_value(words.y >> 16u));
 }
 
-// surface::chain_texel
-fn chain_texel(words: vec2<u32>) -> vec4<f32> {
+// surface::mip_texel
+fn mip_texel(words: vec2<u32>) -> vec4<f32> {
     let s = unpack_surface(words);
     if s.lod < 0.0 {
         return vec4<f32>(0.0);
@@ -58,8 +58,8 @@ fn chain_texel(words: vec2<u32>) -> vec4<f32> {
     return vec4<f32>(s.color, 1.0);
 }
 
-// surface::round_chain
-fn round_chain(v: vec4<f32>) -> vec4<f32> {
+// surface::round_mip
+fn round_mip(v: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(
         half_value(half_bits(v.x)),
         half_value(half_bits(v.y)),

@@ -1,6 +1,6 @@
 //#use color
 //#use reservoir
-//#use scrub
+//#use sanitize
 // Twin of src/kernel/wrs.rs: gate, forget, combine.
 
 // wrs::SamplerCode

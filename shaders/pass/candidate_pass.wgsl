@@ -30,5 +30,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         texel(first + vec2<u32>(0u, 1u), group.z),
         texel(first + vec2<u32>(1u, 1u), group.z),
     );
-    textureStore(coarse, id.xy, group.z, round_chain(mean));
+    textureStore(coarse, id.xy, group.z, round_mip(mean));
 }

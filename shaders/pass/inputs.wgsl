@@ -3,11 +3,11 @@
 //#use depth
 //#use noise
 //#use reproject
-//#use scrub
-// What a frame brings to a pixel, in the internal form; what is counted of it and shown. The part that all methods share; its twin on
-// the CPU is src/cpu/inputs.rs.
+//#use sanitize
+//#use view_uniforms
+// Inputs of a pixel in the internal form, its counts and its output: shared by all methods. Twin on the CPU: src/cpu/inputs.rs.
 
-// What the frame brings. A pipeline's constants; switched off means not compiled.
+// Inputs that the frame has, and switches. Constants of a pipeline; switched off means not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 override HAS_TRUST: u32 = 1u;
@@ -15,23 +15,11 @@ override HAS_EXPOSURE: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;
-// 0, or a VIEW_* code: show what would be decided, and decide nothing.
+// 0, or a VIEW_* code: draw what would be decided, and store nothing.
 override VIEW: u32 = 0u;
 
-// src/gpu/types.rs: ViewConstants
-struct ViewConstants {
-    ray_scale: vec2<f32>,
-    ray_offset: vec2<f32>,
-    gaze_ray: vec4<f32>,
-    depth_row: vec4<f32>,
-    key: u32,
-    unused_0: u32,
-    unused_1: u32,
-    unused_2: u32,
-}
-
-// src/gpu/types.rs: FrameConstants
-struct FrameConstants {
+// src/gpu/uniforms.rs: FrameUniforms, which explains them
+struct FrameUniforms {
     size: vec2<u32>,
     reset: u32,
     frame_low: u32,
@@ -54,10 +42,10 @@ struct FrameConstants {
     smr_accumulate: f32,
     smr_accumulate_tolerance: f32,
     smr_tolerance: f32,
-    views: array<ViewConstants, 4>,
+    views: array<ViewUniforms, 4>,
 }
 
-@group(0) @binding(0) var<uniform> frame: FrameConstants;
+@group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
@@ -81,7 +69,7 @@ fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
     return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
-// Where the surface was, minus where it is, in pixels.
+// Motion, previous minus current, in pixels, y down.
 fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     if HAS_MOTION == 0u {
         return vec2<f32>(0.0);
@@ -89,7 +77,7 @@ fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     return textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
 }
 
-// Noise of the candidate. Only where it is noisy.
+// Noise of the candidate; valid only where NOISY is set.
 fn noise_at(px: vec2<u32>, view: u32) -> Noise {
     return candidate_noise(textureLoad(noise_in, px, view, 0).xy);
 }
@@ -102,12 +90,12 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     return disparity(textureLoad(depth_in, px, view, 0).x, map);
 }
 
-// depth::slope with its reader: how much the surface's disparity changes from pixel to pixel, where that is wanted. A loop, because
-// software Vulkan runs the body of an `if` for all pixels, but leaves a loop that no pixel wants after one round.
-fn slope_at(px: vec2<u32>, view: u32, center: f32, wanted: bool) -> f32 {
+// depth::slope with its reader: change of the surface's disparity from pixel to pixel; 0 unless `needed`. A loop with zero iterations for
+// most pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
+fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
     var total = 0.0;
     var before = INVALID_DISPARITY;
-    let taps = select(0u, 4u, wanted);
+    let taps = select(0u, 4u, needed);
     for (var i = 0u; i < taps; i++) {
         // Left, right, up, down.
         let ahead = (i & 1u) == 1u;
@@ -125,20 +113,20 @@ fn slope_at(px: vec2<u32>, view: u32, center: f32, wanted: bool) -> f32 {
     return total;
 }
 
-// Disparity that the surface of a pixel had in the previous frame.
+// Expected disparity of the pixel's surface in the previous frame.
 fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
     let row = frame.views[view].depth_row;
     let stretch = row.x * ray.x + row.y * ray.y + row.z;
     return previous_disparity(disparity_now, stretch, row.w);
 }
 
-// Whether a pixel, `expected` at a disparity, is the surface that was `stored` with one. True without a depth test.
+// Depth test: whether the disparity `stored` is that of the surface `expected` at this pixel. True without a depth test.
 fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
     if DEPTH_TEST == 0u {
         return true;
     }
     let plain = same_surface(expected, stored, frame.depth_relative, 0.0);
-    // Few pixels pay for the four taps.
+    // The four taps of the slope are read by few pixels.
     let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now, !plain);
     return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }
@@ -151,7 +139,7 @@ fn count_if(condition: bool, word: u32) {
     }
 }
 
-// Counts what is odd about a pixel, and what became of its history.
+// Counts a pixel's unusable inputs, and the verdict on its history.
 fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdict: u32) {
     count_if(!usable, COUNT_NONFINITE);
     if HAS_DEPTH != 0u {
@@ -163,7 +151,7 @@ fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdi
     count_if(true, COUNT_VERDICTS + verdict);
 }
 
-// The frame, or what was decided about it.
+// Writes the shown color, or the debug view of the decision.
 fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
     if VIEW != 0u {
         textureStore(color_out, px, view, vec4<f32>(view_color(VIEW, traced), 1.0));
@@ -172,14 +160,14 @@ fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
     }
 }
 
-// Adds a workgroup's counts to the frame's. To be called by all of its invocations.
-fn add_counts(lane: u32) {
+// Adds a workgroup's counts to the frame's. All of its invocations must call it.
+fn add_counts(invocation: u32) {
     if COUNT != 0u {
         workgroupBarrier();
-        if lane < COUNTERS {
-            let n = atomicLoad(&group_counters[lane]);
+        if invocation < COUNTERS {
+            let n = atomicLoad(&group_counters[invocation]);
             if n > 0u {
-                atomicAdd(&counters[lane], n);
+                atomicAdd(&counters[invocation], n);
             }
         }
     }

@@ -1,6 +1,6 @@
 //#use foveate
 //#use matched
-//#use remembered
+//#use surface_history
 // The scale-matched reservoir. Its twin on the CPU is src/cpu/smr_pass.rs, which counts what it reads; docs/method.md has the
 // equations. One invocation a block of 2x2 pixels, so that the next level of what it stores needs no second pass; z is the view.
 
@@ -64,13 +64,13 @@ fn texels_around(at: vec2<f32>, level: u32) -> Texels {
     return Texels(low, min(low + 1u, size - 1u), vec2<f32>(x.fraction, y.fraction));
 }
 
-fn chain_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
+fn past_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
     let four = texels_around(at, level);
-    return chain_bilinear(
-        textureLoad(past_chain, four.low, view, level - 1u),
-        textureLoad(past_chain, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
-        textureLoad(past_chain, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
-        textureLoad(past_chain, four.high, view, level - 1u),
+    return mip_bilinear(
+        textureLoad(past_mips, four.low, view, level - 1u),
+        textureLoad(past_mips, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(past_mips, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(past_mips, four.high, view, level - 1u),
         four.fraction,
     );
 }
@@ -82,27 +82,27 @@ struct Matching {
 }
 
 // The past at a level of detail around a position, and at the whole levels around that. `smooth_color` is its level 0 there.
-fn chain_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
-    let last = textureNumLevels(past_chain);
+fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
+    let last = textureNumLevels(past_mips);
     let limited = min(lod, f32(last));
     let whole = floor(limited);
     let fraction = limited - whole;
     let level = u32(whole);
     var first = smooth_color;
     if level > 0u {
-        first = chain_level(at, level, view);
+        first = past_level(at, level, view);
     }
-    let second = chain_level(at, min(level + 1u, last), view);
+    let second = past_level(at, min(level + 1u, last), view);
     return Matching(first + (second - first) * fraction, first, second);
 }
 
 fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
     let four = texels_around(at, level);
     return candidate_bilinear(
-        textureLoad(candidate_chain, four.low, view, level - 1u),
-        textureLoad(candidate_chain, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
-        textureLoad(candidate_chain, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
-        textureLoad(candidate_chain, four.high, view, level - 1u),
+        textureLoad(candidate_mips, four.low, view, level - 1u),
+        textureLoad(candidate_mips, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(candidate_mips, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(candidate_mips, four.high, view, level - 1u),
         four.fraction,
     );
 }
@@ -116,7 +116,7 @@ struct Around {
 
 // Noisy candidates at a level of detail from 1 on around a position.
 fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
-    let last = textureNumLevels(candidate_chain);
+    let last = textureNumLevels(candidate_mips);
     let limited = min(lod, f32(last));
     let whole = floor(limited);
     let level = u32(whole);
@@ -150,7 +150,7 @@ fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, need
 fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
     // A point sample is noise at its own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
-    let past = chain_read(source.at, lod + shift, history.smooth_color, view);
+    let past = past_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
     let matched = exposed(past.matched);
     let whole_level = exposed(past.level);
@@ -209,15 +209,15 @@ fn averaged_pixel(
     let past_noise = past_noise_of(source, view);
     let shown = exposed(history.sharp);
     let own = Noise(noise.samples, past_noise.variance);
-    let sure = vec2<f32>(sureness(past_noise, luma(shown)), sureness(own, luma(shown)));
+    let confidence = vec2<f32>(noise_confidence(past_noise, luma(shown)), noise_confidence(own, luma(shown)));
     let worth = coarser_worth(past_noise, noise, history.lod - lod);
     let params = params_with(history_share(worth, noise, frame.smr_accumulate));
-    let want = wanted(lod, history.lod, params.accumulate, true, sure);
+    let want = reuse_weight(lod, history.lod, params.accumulate, true, confidence);
     if want.share == 0.0 {
         return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
     }
     let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
-    let past = chain_read(source.at, lod + NOISY_LEVELS, history.smooth_color, view);
+    let past = past_read(source.at, lod + NOISY_LEVELS, history.smooth_color, view);
     let matched = exposed(past.matched);
     let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
     let evidence = Evidence(
@@ -232,7 +232,7 @@ fn averaged_pixel(
         exposed(past.next_level),
         source.trust,
         noise_difference(past_noise, noise_around, luma(matched)),
-        sure,
+        confidence,
     );
     let made = decide(evidence, params);
     let believed = made.fit * source.trust;
@@ -270,19 +270,19 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             let averaged = averaged_pixel(px, view, candidate.color, noise, lod, source, history);
             made = averaged.made;
             noise = averaged.noise;
-        } else if lod > 0.0 && wanted(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0)).share > 0.0 {
+        } else if lod > 0.0 && reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0)).share > 0.0 {
             made = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
     // Gains, and the lobes of the resampling, reach beyond what halves hold.
     made.color = min(made.color, vec3<f32>(MAX_HALF));
     count_if(valid && made.share == 0.0, COUNT_REPLACED);
-    let sharpness = 16.0 * exp2(-max(made.lod, 0.0));
+    let sharpness = exp2(-max(made.lod, 0.0));
     show(
         px,
         view,
         made.color,
-        PixelTrace(exp2(-lod), sharpness, 0u, made.share, source.verdict, made.fit, made.share == 0.0, motion),
+        PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, made.share, made.fit, made.share == 0.0, motion),
     );
     // Colors of a moving silhouette mix two surfaces: shown, but not kept.
     let stored_lod = select(MAX_LOD, made.lod, keep || made.lod < 0.0);
@@ -300,7 +300,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
 fn main(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
+    @builtin(local_invocation_index) invocation: u32,
 ) {
     let first = 2u * id.xy;
     if all(first < frame.size) {
@@ -316,7 +316,7 @@ fn main(
             let row = select(0u, i >> 1u, px.y < frame.size.y);
             var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);
             if all(px < frame.size) {
-                texel = chain_texel(pixel(px, group.z));
+                texel = mip_texel(pixel(px, group.z));
             }
             texels_0 = select(texels_0, texel, i == 0u);
             texels_1 = select(texels_1, texel, i == 1u);
@@ -324,8 +324,8 @@ fn main(
             texels_3 = select(texels_3, texel, i == 3u);
         }
         if VIEW == 0u {
-            textureStore(next_chain, id.xy, group.z, round_chain(chain_mean(texels_0, texels_1, texels_2, texels_3)));
+            textureStore(next_mips, id.xy, group.z, round_mip(mip_mean(texels_0, texels_1, texels_2, texels_3)));
         }
     }
-    add_counts(lane);
+    add_counts(invocation);
 }

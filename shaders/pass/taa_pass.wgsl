@@ -1,4 +1,4 @@
-//#use remembered
+//#use surface_history
 //#use taa
 // Temporal antialiasing of the foveated frame. Its twin on the CPU is src/cpu/taa_pass.rs, which counts what it reads. One invocation a
 // pixel; z is the view.
@@ -48,7 +48,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     // The lobes of the resampling reach beyond what halves hold.
     shown = min(shown, vec3<f32>(MAX_HALF));
-    show(px, view, shown, PixelTrace(1.0 - share, 0.0, 0u, share, source.verdict, 1.0, !valid, motion));
+    show(px, view, shown, PixelTrace(source.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
     if VIEW != 0u {
         return;
     }
@@ -61,10 +61,10 @@ fn pixel(px: vec2<u32>, view: u32) {
 fn main(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
+    @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
         pixel(id.xy, group.z);
     }
-    add_counts(lane);
+    add_counts(invocation);
 }

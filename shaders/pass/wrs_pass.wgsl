@@ -2,12 +2,10 @@
 //#use pack
 //#use rng
 //#use wrs
-// The fused pass of weighted reservoirs: scrub, reproject, flush, expose, gate, bias, combine, store and show. Its twin on the CPU is
+// The fused pass of weighted reservoirs: sanitize, reproject, reject, expose, gate, bias, combine, store and show. Twin on the CPU:
 // src/cpu/wrs_pass.rs. One invocation a pixel; z is the view.
 
-// What the frame brings and the settings ask for. A pipeline's constants; switched off means not compiled.
-override PASS_THROUGH: u32 = 0u;
-override COPY_ONLY: u32 = 0u;
+// Switches of the settings. Constants of a pipeline; switched off means not compiled.
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
@@ -19,7 +17,7 @@ override GATE: u32 = 1u;
 @group(0) @binding(12) var next_weights: texture_storage_2d_array<r32uint, write>;
 @group(0) @binding(13) var next_keys: texture_storage_2d_array<r32float, write>;
 
-// The history side of a pixel.
+// History of a pixel; all but the verdict is valid only if that is VERDICT_VALID.
 struct History {
     verdict: u32,
     past: Past,
@@ -30,7 +28,7 @@ fn no_history(verdict: u32) -> History {
     return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u);
 }
 
-// The reservoir that a pixel continues and the age of its sample, or why it may not.
+// The reservoir that a pixel continues and the age of its sample, or the reason of its rejection.
 fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> History {
     if frame.reset != 0u {
         return no_history(VERDICT_RESET);
@@ -63,34 +61,9 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     return History(VERDICT_VALID, past, stored.age);
 }
 
-// The same bytes in and out without the work between: what benches hold the pass against.
-fn copy_only(px: vec2<u32>, view: u32, shown: vec3<f32>) {
-    let motion = textureLoad(motion_in, px, view, 0).xy;
-    let depth = textureLoad(depth_in, px, view, 0).x;
-    let words = textureLoad(past_colors, px, view, 0).xy;
-    let weight_word = textureLoad(past_weights, px, view, 0).x;
-    // Nothing that was read may be optimised away.
-    let used = bitcast<u32>(motion.x) ^ bitcast<u32>(motion.y) ^ bitcast<u32>(depth);
-    textureStore(next_colors, px, view, vec4<u32>(words, 0u, 0u));
-    textureStore(next_weights, px, view, vec4<u32>(weight_word ^ used, 0u, 0u, 0u));
-    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
-}
-
 fn pixel(px: vec2<u32>, view: u32) {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    if COPY_ONLY != 0u {
-        copy_only(px, view, candidate.color);
-        return;
-    }
     let motion = motion_at(px, view);
-    if PASS_THROUGH != 0u {
-        // Never a constant: compilers fold colors of constants with other roundings.
-        let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
-        count_if(!candidate.usable, COUNT_NONFINITE);
-        count_if(true, COUNT_VERDICTS + verdict);
-        show(px, view, candidate.color, PixelTrace(0.0, 0.0, 0u, 0.0, verdict, 1.0, true, motion));
-        return;
-    }
     let constants = frame.views[view];
     let ray = ray_at(px, view);
     var candidate_w = 0.0;
@@ -116,8 +89,8 @@ fn pixel(px: vec2<u32>, view: u32) {
     let shown = select(history.past.color, candidate.color, decision.take);
     let age = select(min(history.age + 1u, MAX_AGE), 0u, decision.take);
     let survival = select(0.0, decision.survival, valid);
-    let traced =
-        PixelTrace(candidate_w, decision.w_sum, age, survival, history.verdict, decision.gate, decision.take, motion);
+    let quality = decision.w_sum * (1.0 / 16.0);
+    let traced = PixelTrace(history.verdict, candidate_w, quality, age, survival, decision.gate, decision.take, motion);
     show(px, view, shown, traced);
     if VIEW != 0u {
         return;
@@ -134,11 +107,11 @@ fn pixel(px: vec2<u32>, view: u32) {
 fn main(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
+    @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
         // The view from the workgroup, not the invocation: uniform, so that its constants are loaded once.
         pixel(id.xy, group.z);
     }
-    add_counts(lane);
+    add_counts(invocation);
 }

@@ -1,7 +1,8 @@
 //! The state between frames: one type owns both halves of the ping-pong and swaps them itself.
 
-use super::chain::Chain;
-use crate::settings::HistoryLayout;
+use super::mip_chain::MipChain;
+use crate::frame::{ContextDesc, ViewFrame};
+use crate::method::HistoryLayout;
 use glam::Vec4;
 
 /// What is remembered of all views, this frame's and the last one's. What a method does not use is empty.
@@ -12,7 +13,7 @@ pub struct History {
     previous: Plane,
     current: Plane,
     /// Of this frame's candidates, view by view, where they are noisy.
-    candidates: Vec<Chain>,
+    candidates: Vec<MipChain>,
     filled: bool,
     held_gaze: Vec<Option<[f32; 2]>>,
 }
@@ -24,7 +25,7 @@ struct Plane {
     log_keys: Vec<f32>,
     surfaces: Vec<[u32; 2]>,
     noise: Vec<u32>,
-    chains: Vec<Chain>,
+    chains: Vec<MipChain>,
 }
 
 impl Plane {
@@ -47,22 +48,23 @@ impl Plane {
             + size_of_val(&self.log_keys[..])
             + size_of_val(&self.surfaces[..])
             + size_of_val(&self.noise[..])
-            + self.chains.iter().map(Chain::memory_bytes).sum::<usize>()
+            + self.chains.iter().map(MipChain::memory_bytes).sum::<usize>()
     }
 }
 
 /// One for each view, of as many levels as the layout has.
-fn chains(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Vec<Chain> {
+fn chains(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Vec<MipChain> {
     match layout {
         HistoryLayout::Surfaces { levels: levels @ 1.., .. } => {
-            vec![Chain::new(size_px, levels); view_count as usize]
+            vec![MipChain::new(size_px, levels); view_count as usize]
         }
         _ => vec![],
     }
 }
 
 impl History {
-    pub(super) fn new(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Self {
+    pub(super) fn new(desc: &ContextDesc) -> Self {
+        let (size_px, view_count, layout) = (desc.size_px, desc.view_count, desc.settings.history_layout());
         Self {
             layout,
             view_len: size_px[0] as usize * size_px[1] as usize,
@@ -97,8 +99,11 @@ impl History {
         self.filled
     }
 
-    pub(super) fn held_gaze(&mut self, view: usize) -> &mut Option<[f32; 2]> {
-        &mut self.held_gaze[view]
+    /// Position that the eye of a view is taken to look at; held if its gaze is lost next.
+    pub(super) fn look(&mut self, index: usize, view: &ViewFrame) -> [f32; 2] {
+        let px = view.gaze.resolve(self.held_gaze[index], view.geometry.size_px());
+        self.held_gaze[index] = Some(px);
+        px
     }
 
     /// The past reservoirs of `view` to read, and the rows to write.
@@ -165,7 +170,7 @@ impl History {
 
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
-        let candidates: usize = self.candidates.iter().map(Chain::memory_bytes).sum();
+        let candidates: usize = self.candidates.iter().map(MipChain::memory_bytes).sum();
         self.previous.memory_bytes() + self.current.memory_bytes() + candidates
     }
 }
@@ -182,6 +187,6 @@ pub(super) struct PastView<'a> {
 pub(super) struct PastSurfaces<'a> {
     pub words: &'a [[u32; 2]],
     pub noise: &'a [u32],
-    pub chain: Option<&'a Chain>,
-    pub candidates: Option<&'a Chain>,
+    pub chain: Option<&'a MipChain>,
+    pub candidates: Option<&'a MipChain>,
 }

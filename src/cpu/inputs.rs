@@ -1,65 +1,75 @@
-//! What a frame brings to the pixels of one view, in the internal form: read alike by all methods.
+//! Inputs of the pixels of one view, in the internal form: shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
-use super::{CpuFrame, CpuView};
-use crate::frame::{ContextDesc, Reset, ViewConstants};
+use super::Frame;
+use crate::frame::{ContextDesc, Reset};
+use crate::image::Image;
 use crate::kernel::depth;
 use crate::kernel::depth::DisparityMap;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::{acuity, scrub};
-use crate::settings::{DepthTest, Settings};
+use crate::kernel::{acuity, sanitize};
+use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use glam::Vec3;
+use crate::uniforms::ViewUniforms;
+use glam::{Vec2, Vec3};
 
 /// One view of one frame.
 pub(super) struct Inputs<'a> {
-    pub view: &'a CpuView<'a>,
+    pub color: &'a Image<[f32; 3]>,
+    pub lod: Option<&'a Image<f32>>,
+    depth: Option<&'a Image<f32>>,
+    motion: Option<&'a Image<[f32; 2]>>,
+    trust: Option<&'a Image<f32>>,
+    noise: Option<&'a Image<[f32; 2]>>,
     pub size: [u32; 2],
-    pub gaze_ray: Vec3,
+    pub uniforms: ViewUniforms,
+    gaze_ray: Vec3,
     /// Factor on stored colors.
     pub exposure: Option<f32>,
-    /// There is no past.
+    /// There is no history.
     pub reset: bool,
     motion_scale: [f32; 2],
     disparity_map: DisparityMap,
-    /// Third row of the current-to-previous view transform.
-    depth_row: [f32; 4],
     depth_test: Option<DepthTest>,
 }
 
 impl<'a> Inputs<'a> {
-    /// View `index` of `frame`; `is_filled`: there may be a past.
-    pub fn new(
-        desc: &ContextDesc,
-        settings: &Settings,
-        frame: &CpuFrame<'a>,
-        index: usize,
-        constants: &ViewConstants,
-        is_filled: bool,
-    ) -> Self {
-        let view = &frame.views[index];
+    /// View `index` of `frame`, whose eye looks at `gaze_px`; `has_history`: a frame was processed before.
+    pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, gaze_px: [f32; 2], has_history: bool) -> Self {
+        let uniforms = ViewUniforms::new(&frame.views[index], gaze_px, &desc.settings, index, frame.index);
+        let [x, y, z, _] = uniforms.gaze_ray;
         Self {
-            view,
+            color: frame.color[index],
+            lod: frame.lod.map(|l| l[index]),
+            depth: frame.depth.map(|d| d[index]),
+            motion: frame.motion.map(|m| m[index]),
+            trust: frame.trust.map(|t| t[index]),
+            noise: frame.noise.map(|n| n[index]),
             size: desc.size_px,
-            gaze_ray: constants.gaze_ray,
+            uniforms,
+            gaze_ray: Vec3::new(x, y, z),
             exposure: frame.exposure.factor(),
-            reset: frame.reset == Reset::All || !is_filled,
+            reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
             disparity_map: desc.depth.disparity_map(),
-            depth_row: constants.depth_row,
-            depth_test: settings.depth_test.filter(|_| view.depth.is_some()),
+            depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
         }
+    }
+
+    /// Whether the frame has motion vectors.
+    pub fn has_motion(&self) -> bool {
+        self.motion.is_some()
     }
 
     /// The candidate, and whether it may be used.
     #[inline(always)]
     pub fn candidate(&self, x: u32, y: u32) -> (Vec3, bool) {
-        scrub::color(Vec3::from(self.view.color.at(x as usize, y as usize)))
+        sanitize::color(Vec3::from(self.color.at(x as usize, y as usize)))
     }
 
     #[inline(always)]
     pub fn ray(&self, x: u32, y: u32) -> Vec3 {
-        self.view.facts.geometry.ray([x as f32, y as f32])
+        ray(&self.uniforms, x, y)
     }
 
     #[inline(always)]
@@ -69,7 +79,7 @@ impl<'a> Inputs<'a> {
 
     #[inline(always)]
     pub fn disparity(&self, x: u32, y: u32) -> f32 {
-        match self.view.depth {
+        match self.depth {
             Some(depth) => depth::disparity(depth.at(x as usize, y as usize), self.disparity_map),
             None => depth::INVALID_DISPARITY,
         }
@@ -77,7 +87,7 @@ impl<'a> Inputs<'a> {
 
     #[inline(always)]
     pub fn motion(&self, x: u32, y: u32) -> [f32; 2] {
-        self.view.motion.map_or([0.0; 2], |m| {
+        self.motion.map_or([0.0; 2], |m| {
             let v = m.at(x as usize, y as usize);
             [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
         })
@@ -86,13 +96,13 @@ impl<'a> Inputs<'a> {
     /// The candidate's noise, if it has any.
     #[inline(always)]
     pub fn noise(&self, x: u32, y: u32) -> Option<Noise> {
-        self.view.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
+        self.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
     }
 
     /// As given, if it is.
     #[inline(always)]
     pub fn trust(&self, x: u32, y: u32) -> Option<f32> {
-        self.view.trust.map(|t| t.at(x as usize, y as usize))
+        self.trust.map(|t| t.at(x as usize, y as usize))
     }
 
     /// Whether depths are compared.
@@ -104,7 +114,7 @@ impl<'a> Inputs<'a> {
     /// Disparity that the surface of a pixel had in the previous frame.
     #[inline(always)]
     pub fn previous_disparity(&self, ray: Vec3, disparity: f32) -> f32 {
-        let [m20, m21, m22, shift] = self.depth_row;
+        let [m20, m21, m22, shift] = self.uniforms.depth_row;
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
     }
 
@@ -129,8 +139,14 @@ impl<'a> Inputs<'a> {
     pub fn count(&self, x: u32, y: u32, usable: bool, disparity: f32, verdict: Verdict, stats: &mut FrameStats) {
         stats.pixels += 1;
         stats.nonfinite += u64::from(!usable);
-        stats.bad_depth += u64::from(self.view.depth.is_some() && disparity == depth::INVALID_DISPARITY);
-        stats.bad_trust += u64::from(self.trust(x, y).is_some_and(|t| !scrub::is_finite(t)));
+        stats.bad_depth += u64::from(self.depth.is_some() && disparity == depth::INVALID_DISPARITY);
+        stats.bad_trust += u64::from(self.trust(x, y).is_some_and(|t| !sanitize::is_finite(t)));
         stats.verdicts[verdict as usize] += 1;
     }
+}
+
+/// Ray through a pixel.
+#[inline(always)]
+fn ray(uniforms: &ViewUniforms, x: u32, y: u32) -> Vec3 {
+    (Vec2::new(x as f32, y as f32) * Vec2::from(uniforms.ray_scale) + Vec2::from(uniforms.ray_offset)).extend(1.0)
 }

@@ -1,253 +1,210 @@
-//! The CPU executor: the post-process on machines without a GPU, and the oracle of the GPU's passes.
+//! The CPU executor: the post-process on images in memory, for machines without a GPU, and the oracle of the GPU's passes.
 //!
-//! A pass is a loop over pixels plus calls into [`kernel`](crate::kernel). Rows run in parallel; the result does not depend on
-//! the number of threads.
+//! A pass is a loop over pixels plus calls into the kernel. Rows run in parallel; the result does not depend on the number of threads.
 
-mod chain;
 mod history;
 mod inputs;
-mod remembered;
+mod mip_chain;
+mod none_pass;
 mod smr_pass;
+mod surface_history;
 mod surface_pass;
 mod taa_pass;
 mod wrs_pass;
 
+pub use crate::kernel::debug_view::PixelTrace;
+#[doc(hidden)]
 pub use history::History;
+pub(crate) use none_pass::run as none_pass;
+pub(crate) use surface_pass::run as surface_pass;
+pub(crate) use wrs_pass::run as wrs_pass;
 
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Exposure, Reset, ViewFrame, check_size};
+use crate::frame::{ContextDesc, Executor, check_size};
 use crate::image::Image;
-use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::reproject::Verdict;
-use crate::kernel::scrub;
-use crate::settings::{Method, Settings};
+use crate::method::HistoryLayout;
+use crate::settings::Settings;
 use crate::stats::FrameStats;
-use glam::Vec3;
 
-/// Inputs of one view of one frame.
-#[derive(Clone, Copy, Debug)]
-pub struct CpuView<'a> {
-    /// Geometry, gaze and camera motion.
-    pub facts: ViewFrame,
-    /// The foveated frame: linear color in Rec. 709 primaries. Non-finite pixels are dropped and counted.
-    pub color: &'a Image<[f32; 3]>,
-    /// Depth in the context's convention. `None` switches the depth test off.
-    pub depth: Option<&'a Image<f32>>,
-    /// Motion in the context's convention. `None`: nothing moves.
-    pub motion: Option<&'a Image<[f32; 2]>>,
-    /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
-    /// reflections). `None`: 1 everywhere.
-    pub trust: Option<&'a Image<f32>>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels. `None`: as [`Settings::foveation`] has it,
-    /// whose `rate_far` must be the coarsest in either case: history is not matched at coarser levels.
-    pub lod: Option<&'a Image<f32>>,
-    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
-    /// detail. Where, and only where, [`Settings::noisy`] says so.
-    pub noise: Option<&'a Image<[f32; 2]>>,
-}
+/// One frame, with one image a view: `Frame::new(&[&left, &right], &views, index)`.
+pub type Frame<'a> = crate::Frame<'a, CpuAfterimage>;
 
-impl<'a> CpuView<'a> {
-    /// A view without optional inputs.
-    pub fn new(facts: ViewFrame, color: &'a Image<[f32; 3]>) -> Self {
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
-    }
-}
-
-/// One frame.
-#[derive(Clone, Copy, Debug)]
-pub struct CpuFrame<'a> {
-    /// One entry a view.
-    pub views: &'a [CpuView<'a>],
-    /// Frame counter; the random numbers follow it.
-    pub index: u64,
-    /// Whether the history still holds.
-    pub reset: Reset,
-    /// How bright its numbers are against the previous frame's.
-    pub exposure: Exposure,
-}
-
-impl<'a> CpuFrame<'a> {
-    /// A frame that goes on from the previous one.
-    pub fn new(views: &'a [CpuView<'a>], index: u64) -> Self {
-        Self { views, index, reset: Reset::None, exposure: Exposure::Same }
-    }
-}
-
-/// The post-process on the CPU. Owns nothing but settings and history.
+/// The post-process on the CPU. Owns its settings and its history.
+///
+/// ```
+/// use afterimage::cpu::{CpuAfterimage, Frame};
+/// use afterimage::{ContextDesc, Gaze, Image, ViewFrame, ViewGeometry};
+///
+/// let size = [64, 36];
+/// let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
+/// let foveated = Image::filled(size, [0.5, 0.25, 0.125]);
+/// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 18.0] })];
+/// let mut shown = [Image::filled(size, [0.0; 3])];
+/// post.process(&Frame::new(&[&foveated], &views, 0), &mut shown)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct CpuAfterimage {
     desc: ContextDesc,
-    settings: Settings,
     history: History,
+}
+
+impl Executor for CpuAfterimage {
+    type Colors<'a> = &'a [&'a Image<[f32; 3]>];
+    type Scalars<'a> = &'a [&'a Image<f32>];
+    type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
+}
+
+/// A frame on its way through a method's pass.
+pub(crate) struct Pass<'a, 'f> {
+    desc: &'a ContextDesc,
+    history: &'a mut History,
+    frame: &'a Frame<'f>,
+    output: &'a mut [Image<[f32; 3]>],
+    traces: Option<&'a mut [Image<PixelTrace>]>,
 }
 
 impl CpuAfterimage {
     /// A context with an empty history.
     ///
     /// # Errors
-    /// If a setting or the depth convention is out of range, or the size is empty or beyond [`ContextDesc::MAX_SIDE`].
-    pub fn new(desc: ContextDesc, settings: Settings) -> Result<Self, SettingsError> {
-        settings.validate()?;
+    /// [`SettingsError`] if a setting or the depth convention is out of range, or the size is empty or beyond
+    /// [`ContextDesc::MAX_SIDE`].
+    pub fn new(desc: &ContextDesc) -> Result<Self, SettingsError> {
         desc.validate()?;
-        let history = History::new(desc.size_px, desc.view_count, settings.history_layout());
-        Ok(Self { desc, settings, history })
+        Ok(Self { desc: *desc, history: History::new(desc) })
     }
 
-    /// What it was made for.
+    /// The description, with the settings in force.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
     }
 
-    /// The tunables in force.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// Changes the tunables from the next frame on. History survives, unless the sampler or the method changes.
+    /// Changes the tunables from the next frame on. History survives, unless the method, what it keeps or the number of its mip levels
+    /// changes: [`noisy`](Settings::noisy), [`sampler`](Settings::sampler), and of smr `rate_far` and `filter` of the
+    /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// If a setting is out of range; then the old ones stay.
+    /// [`SettingsError`] if a setting is out of range; then the old ones stay.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
+        let same_method = settings.method == self.desc.settings.method;
+        self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
-            self.history = History::new(self.desc.size_px, self.desc.view_count, settings.history_layout());
-        } else if settings.method != self.settings.method {
+            self.history = History::new(&self.desc);
+        } else if !same_method {
             self.history.forget();
         }
-        self.settings = settings;
         Ok(())
     }
 
-    /// Changes the size of the views. The history starts afresh, even if the size is the same.
+    /// Changes the size of the views. History starts afresh, even if the size is the same.
     ///
     /// # Errors
     /// [`FrameError::Extent`]; then nothing changes.
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
-        self.history = History::new(size_px, self.desc.view_count, self.settings.history_layout());
+        self.history = History::new(&self.desc);
         Ok(())
     }
 
-    /// Forgets the history: the next frame starts afresh.
+    /// Empties the history: the next frame starts afresh.
     pub fn forget(&mut self) {
         self.history.forget();
     }
 
-    /// The state between frames.
+    /// The state between frames, for tests and the lab.
+    #[doc(hidden)]
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Overwrites the history with packed reservoirs ([`pack`](crate::kernel::pack)), to start from a known state.
+    /// Overwrites the history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known state.
     ///
     /// # Panics
     /// If `words` has another length than the history's.
+    #[doc(hidden)]
     pub fn restore_history(&mut self, words: &[[u32; 3]]) {
         self.history.restore(words);
     }
 
-    /// Bytes that the pass reads and writes a pixel for such inputs, were they stored as engines store them: half-float color
-    /// (8), half-float motion (4), depth (4), trust (1). The depth test's extra taps are not counted: they are neighbours', and few.
-    pub fn traffic_bytes_per_pixel(&self, view: &CpuView<'_>) -> u32 {
-        let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
-        self.settings.traffic_bytes_per_pixel(given)
-    }
-
-    /// Bytes held between frames.
+    /// Bytes held between frames. Mip chains are floats here and halves on a GPU.
     pub fn memory_bytes(&self) -> usize {
         self.history.memory_bytes()
     }
 
-    /// Processes one frame into `output`, one image of the context's size a view. `trace`, if given, receives what was decided
-    /// at each pixel (one image a view), which [`view_color`](crate::kernel::debug_view::view_color) makes visible.
+    /// Processes one frame into `output`, one image of the context's size a view.
     ///
     /// # Errors
-    /// If sizes or counts do not match the context; then nothing is written and the history is as before.
-    pub fn process(
+    /// [`FrameError`] if sizes, counts or numbers do not fit the context; then nothing is written and no state has moved.
+    pub fn process(&mut self, frame: &Frame<'_>, output: &mut [Image<[f32; 3]>]) -> Result<FrameStats, FrameError> {
+        self.run(frame, output, None)
+    }
+
+    /// As [`process`](Self::process), and writes the decision at each pixel to `traces`, one image a view.
+    ///
+    /// # Errors
+    /// As for `process`.
+    pub fn process_traced(
         &mut self,
-        frame: &CpuFrame<'_>,
+        frame: &Frame<'_>,
         output: &mut [Image<[f32; 3]>],
-        trace: Option<&mut [Image<PixelTrace>]>,
+        traces: &mut [Image<PixelTrace>],
     ) -> Result<FrameStats, FrameError> {
-        self.check(frame, output, trace.as_deref())?;
-        match self.settings.method {
-            Method::None => {
-                self.history.forget();
-                Ok(pass_through(&self.desc, frame, output, trace))
-            }
-            Method::Taa | Method::Smr => {
-                let stats = surface_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
-                self.history.swap();
-                Ok(stats)
-            }
-            Method::Wrs => {
-                let stats = wrs_pass::run(&self.desc, &self.settings, &mut self.history, frame, output, trace);
-                self.history.swap();
-                Ok(stats)
-            }
+        self.run(frame, output, Some(traces))
+    }
+
+    fn run(
+        &mut self,
+        frame: &Frame<'_>,
+        output: &mut [Image<[f32; 3]>],
+        traces: Option<&mut [Image<PixelTrace>]>,
+    ) -> Result<FrameStats, FrameError> {
+        self.check(frame, output, traces.as_deref())?;
+        let pass = Pass { desc: &self.desc, history: &mut self.history, frame, output, traces };
+        let stats = (self.desc.settings.method.entry().run)(pass);
+        if self.history.layout() == HistoryLayout::Nothing {
+            self.history.forget();
+        } else {
+            self.history.swap();
         }
+        Ok(stats)
     }
 
     fn check(
         &self,
-        frame: &CpuFrame<'_>,
+        frame: &Frame<'_>,
         output: &[Image<[f32; 3]>],
-        trace: Option<&[Image<PixelTrace>]>,
+        traces: Option<&[Image<PixelTrace>]>,
     ) -> Result<(), FrameError> {
-        let expected = self.desc.view_count as usize;
-        let trace_count = trace.map_or(expected, <[_]>::len);
-        for found in [frame.views.len(), output.len(), trace_count] {
-            if found != expected {
-                return Err(FrameError::ViewCount { found, expected });
-            }
-        }
-        for (i, view) in frame.views.iter().enumerate() {
-            let sizes = [
-                ("color", Some(view.color.size())),
-                ("depth", view.depth.map(Image::size)),
-                ("motion", view.motion.map(Image::size)),
-                ("trust", view.trust.map(Image::size)),
-                ("lod", view.lod.map(Image::size)),
-                ("noise", view.noise.map(Image::size)),
-                ("output", Some(output[i].size())),
-                ("trace", trace.map(|t| t[i].size())),
-            ];
-            for (input, size) in sizes {
-                if let Some(found) = size.filter(|&s| s != self.desc.size_px) {
-                    return Err(FrameError::Size { input, view: i, found, expected: self.desc.size_px });
-                }
-            }
-            view.facts.check(i, &self.desc)?;
-            self.settings.check_noise(i, view.noise.is_some())?;
-        }
-        frame.exposure.check()
+        frame.check(&self.desc)?;
+        self.check_sizes("color", Some(frame.color.iter().map(|i| i.size())))?;
+        self.check_sizes("depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
+        self.check_sizes("motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
+        self.check_sizes("trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
+        self.check_sizes("lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+        self.check_sizes("noise", frame.noise.map(|n| n.iter().map(|i| i.size())))?;
+        self.check_sizes("output", Some(output.iter().map(Image::size)))?;
+        self.check_sizes("traces", traces.map(|t| t.iter().map(Image::size)))
     }
-}
 
-/// Method `none`: what came, scrubbed.
-fn pass_through(
-    desc: &ContextDesc,
-    frame: &CpuFrame<'_>,
-    output: &mut [Image<[f32; 3]>],
-    mut trace: Option<&mut [Image<PixelTrace>]>,
-) -> FrameStats {
-    let mut stats = FrameStats::default();
-    let [sx, sy] = desc.motion.to_internal(desc.size_px);
-    for (i, (view, out)) in frame.views.iter().zip(output).enumerate() {
-        for (src, dst) in view.color.pixels().iter().zip(out.pixels_mut()) {
-            let (color, valid) = scrub::color(Vec3::from(*src));
-            *dst = color.to_array();
-            stats.nonfinite += u64::from(!valid);
+    /// Refuses images, if there are any, that are not one of the context's size a view.
+    fn check_sizes(
+        &self,
+        input: &'static str,
+        sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
+    ) -> Result<(), FrameError> {
+        let Some(sizes) = sizes else { return Ok(()) };
+        let (found, expected) = (sizes.len(), self.desc.view_count as usize);
+        if found != expected {
+            return Err(FrameError::ViewCount { found, expected });
         }
-        if let Some(trace) = &mut trace {
-            trace[i] = match view.motion {
-                Some(motion) => motion.map(|m| PixelTrace { motion: [m[0] * sx, m[1] * sy], ..PixelTrace::default() }),
-                None => Image::filled(desc.size_px, PixelTrace::default()),
-            };
+        for (view, found) in sizes.enumerate() {
+            if found != self.desc.size_px {
+                return Err(FrameError::Size { input, view, found, expected: self.desc.size_px });
+            }
         }
-        stats.pixels += view.color.pixels().len() as u64;
+        Ok(())
     }
-    stats.verdicts[Verdict::Reset as usize] = stats.pixels;
-    stats
 }

@@ -6,7 +6,7 @@
 //! levels and one color: 48 bytes with half-float color and motion. Where candidates are noisy it reads their noise, the noise of
 //! one surface and eight texels of the candidates' coarser levels, and writes one word of noise: 80 bytes with the making of those.
 
-use super::remembered::{Remembered, Source};
+use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::Pixel;
 use crate::kernel::approx;
 use crate::kernel::color;
@@ -17,8 +17,9 @@ use crate::kernel::matched::{Evidence, Matched, SmrParams};
 use crate::kernel::noise;
 use crate::kernel::noise::{NOISY_LEVELS, Noise, pack_noise};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::scrub::MAX_HALF;
+use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
+use crate::method::smr_params;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use glam::Vec3;
@@ -31,12 +32,12 @@ pub(super) struct Smr {
 
 impl Smr {
     pub fn new(settings: &Settings) -> Self {
-        Self { params: settings.smr_params(), settings: *settings }
+        Self { params: smr_params(settings), settings: *settings }
     }
 
     /// One pixel: what is shown, what is stored and how noisy, what was decided.
     #[inline(always)]
-    pub fn pixel(&self, at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+    pub fn pixel(&self, at: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
         let inputs = &at.inputs;
         let noise = inputs.noise(x, y);
         let (candidate, usable) = inputs.candidate(x, y);
@@ -71,11 +72,11 @@ impl Smr {
         // Colors of a moving silhouette mix two surfaces: shown, but not kept.
         let stored_lod = if coherent || made.lod < 0.0 { made.lod } else { MAX_LOD };
         let trace = PixelTrace {
+            verdict,
             weight: approx::exp2(-lod),
-            w_sum: 16.0 * approx::exp2(-made.lod.max(0.0)),
+            quality: approx::exp2(-made.lod.max(0.0)),
             age: 0,
             survival: made.share,
-            verdict,
             gate: made.fit,
             take: made.share == 0.0,
             motion,
@@ -90,8 +91,8 @@ impl Smr {
 
     /// Level of detail of the candidate.
     #[inline(always)]
-    fn lod(&self, at: &Remembered<'_>, x: u32, y: u32) -> f32 {
-        match at.inputs.view.lod {
+    fn lod(&self, at: &SurfaceHistory<'_>, x: u32, y: u32) -> f32 {
+        match at.inputs.lod {
             // NaN fails the comparison.
             Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
             None => self.settings.foveation.lod(at.inputs.eccentricity_deg(at.inputs.ray(x, y))),
@@ -100,9 +101,9 @@ impl Smr {
 
     /// Whether a neighbour moves as the pixel does.
     #[inline(always)]
-    fn is_coherent(&self, at: &Remembered<'_>, x: u32, y: u32, own: [f32; 2]) -> bool {
+    fn is_coherent(&self, at: &SurfaceHistory<'_>, x: u32, y: u32, own: [f32; 2]) -> bool {
         let inputs = &at.inputs;
-        if inputs.view.motion.is_none() {
+        if !inputs.has_motion() {
             return true;
         }
         let [width, height] = inputs.size;
@@ -112,9 +113,9 @@ impl Smr {
     }
 
     #[inline(always)]
-    fn matched(&self, at: &Remembered<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
+    fn matched(&self, at: &SurfaceHistory<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
         let history = at.resample(source);
-        if matched::wanted(lod, history.lod, self.params.accumulate, false, [1.0; 2]).share == 0.0 {
+        if matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]).share == 0.0 {
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
         }
         // A point sample is noise at its own scale: compare one level coarser.
@@ -142,7 +143,7 @@ impl Smr {
             next_level,
             trust: source.trust,
             noise: 0.0,
-            sure: [1.0; 2],
+            confidence: [1.0; 2],
         };
         matched::decide(&evidence, &self.params)
     }
@@ -151,7 +152,7 @@ impl Smr {
     #[inline(always)]
     fn averaged(
         &self,
-        at: &Remembered<'_>,
+        at: &SurfaceHistory<'_>,
         [x, y]: [u32; 2],
         candidate: Vec3,
         noise: Noise,
@@ -162,12 +163,13 @@ impl Smr {
         let past = at.noise(source);
         let shown = at.expose(history.sharp);
         let luma = color::luma(shown);
-        let sure = [past, Noise { samples: noise.samples, variance: past.variance }].map(|n| noise::sureness(n, luma));
+        let confidence =
+            [past, Noise { samples: noise.samples, variance: past.variance }].map(|n| noise::noise_confidence(n, luma));
         let worth = noise::coarser_worth(past, noise, history.lod - lod);
         let params =
             SmrParams { accumulate: noise::history_share(worth, noise, self.params.accumulate), ..self.params };
-        let wanted = matched::wanted(lod, history.lod, params.accumulate, true, sure);
-        if wanted.share == 0.0 {
+        let reuse = matched::reuse_weight(lod, history.lod, params.accumulate, true, confidence);
+        if reuse.share == 0.0 {
             return (Matched { color: candidate, lod, share: 0.0, fit: 1.0 }, noise);
         }
         let compared_lod = lod + NOISY_LEVELS;
@@ -187,17 +189,17 @@ impl Smr {
             level,
             next_level,
             trust: source.trust,
-            sure,
+            confidence,
             noise: noise::noise_difference(past, around, color::luma(matched)),
         };
         let made = matched::decide(&evidence, &params);
         let believed = made.fit * source.trust;
-        (made, noise::noise_after(past, around, made.share, wanted.finer * believed))
+        (made, noise::noise_after(past, around, made.share, reuse.finer * believed))
     }
 
     /// Mean of four candidates on the diagonals of one that is usable.
     #[inline(always)]
-    fn around(&self, at: &Remembered<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
+    fn around(&self, at: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
         let [width, height] = at.inputs.size.map(|s| (s - 1) as f32);
         let tap = |sx: f32, sy: f32| {
             // The product last, as compilers order such sums.

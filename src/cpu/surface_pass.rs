@@ -1,16 +1,13 @@
 //! The loop over pixels of the methods that remember surfaces.
 
-use super::CpuFrame;
-use super::history::History;
+use super::Pass;
 use super::inputs::Inputs;
-use super::remembered::Remembered;
 use super::smr_pass::Smr;
+use super::surface_history::SurfaceHistory;
 use super::taa_pass;
-use crate::frame::ContextDesc;
-use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
-use crate::settings::{Method, Settings};
+use crate::method::Method;
 use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -33,31 +30,24 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-pub(super) fn run(
-    desc: &ContextDesc,
-    settings: &Settings,
-    history: &mut History,
-    frame: &CpuFrame<'_>,
-    output: &mut [Image<[f32; 3]>],
-    mut trace: Option<&mut [Image<PixelTrace>]>,
-) -> FrameStats {
-    let is_filled = history.is_filled();
+pub(crate) fn run(pass: Pass<'_, '_>) -> FrameStats {
+    let Pass { desc, history, frame, output, mut traces } = pass;
+    let settings = &desc.settings;
+    let has_history = history.is_filled();
     let smr = Smr::new(settings);
     let width = desc.size_px[0] as usize;
     let mut stats = FrameStats::default();
-    for (i, view) in frame.views.iter().enumerate() {
-        let held = history.held_gaze(i);
-        let constants = view.facts.constants(*held, settings, i, frame.index);
-        *held = Some(constants.gaze_px);
-        let inputs = Inputs::new(desc, settings, frame, i, &constants, is_filled);
+    for i in 0..frame.views.len() {
+        let gaze_px = history.look(i, &frame.views[i]);
+        let inputs = Inputs::new(desc, frame, i, gaze_px, has_history);
         history.build_candidates(i, |x, y| {
             let (color, usable) = inputs.candidate(x, y);
             candidate_texel(color, usable, inputs.noise(x, y).expect("a frame is refused that lacks its noise"))
         });
         let (past, surfaces, noise) = history.split_surfaces(i);
-        let at = Remembered { inputs, past };
+        let at = SurfaceHistory { inputs, past };
         let mut noise = noise.chunks_mut(width);
-        let mut traces = trace.as_mut().map(|t| t[i].pixels_mut().chunks_mut(width));
+        let mut trace_rows = traces.as_mut().map(|t| t[i].pixels_mut().chunks_mut(width));
         let mut rows: Vec<_> = surfaces
             .chunks_mut(width)
             .zip(output[i].pixels_mut().chunks_mut(width))
@@ -65,7 +55,7 @@ pub(super) fn run(
                 surfaces,
                 noise: noise.next(),
                 out,
-                trace: traces.as_mut().and_then(Iterator::next),
+                trace: trace_rows.as_mut().and_then(Iterator::next),
             })
             .collect();
         let row = |(y, row): (usize, &mut Row<'_>)| {

@@ -3,11 +3,11 @@
 //! Each pixel reads its motion and depth, nine colors and twelve remembered surfaces (neighbours share most of them), and writes one
 //! surface and one color: 40 bytes with half-float color and motion.
 
-use super::remembered::Remembered;
+use super::surface_history::SurfaceHistory;
 use super::surface_pass::Pixel;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
-use crate::kernel::scrub::MAX_HALF;
+use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
 use crate::stats::FrameStats;
@@ -15,7 +15,7 @@ use glam::Vec3;
 
 /// One pixel: what is shown, what is stored, what was decided.
 #[inline(always)]
-pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+pub(super) fn pixel(at: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
     let inputs = &at.inputs;
     let (candidate, usable) = inputs.candidate(x, y);
     let disparity = inputs.disparity(x, y);
@@ -40,11 +40,11 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
     // The lobes of the resampling reach beyond what halves hold.
     shown = shown.min(Vec3::splat(MAX_HALF));
     let trace = PixelTrace {
+        verdict,
         weight: 1.0 - share,
-        w_sum: 0.0,
+        quality: 0.0,
         age: 0,
         survival: share,
-        verdict,
         gate: 1.0,
         take: verdict != Verdict::Valid,
         motion,
@@ -55,7 +55,7 @@ pub(super) fn pixel(at: &Remembered<'_>, x: u32, y: u32, stats: &mut FrameStats)
 
 /// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Broken ones count as the middle one, whose color is `own`.
 #[inline(always)]
-fn neighbourhood(at: &Remembered<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
+fn neighbourhood(at: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
     let [width, height] = at.inputs.size;
     let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
     for tap in 0..9 {

@@ -3,11 +3,9 @@
 //! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test is close), and
 //! writes one reservoir and one color: 48 bytes with half-float color and motion.
 
-use super::CpuFrame;
-use super::history::{History, PastView};
+use super::Pass;
+use super::history::PastView;
 use super::inputs::Inputs;
-use crate::frame::ContextDesc;
-use crate::image::Image;
 use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
@@ -19,7 +17,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::rng;
 use crate::kernel::wrs;
 use crate::kernel::wrs::{Past, WrsParams};
-use crate::settings::Settings;
+use crate::method::{inv_density_at_fovea, wrs_params};
 use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -32,7 +30,6 @@ struct ViewPass<'a> {
     fovea_radius_deg: f32,
     inv_density_at_fovea: f32,
     frame_low: u32,
-    key: u32,
 }
 
 struct Row<'a> {
@@ -42,31 +39,23 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-pub(super) fn run(
-    desc: &ContextDesc,
-    settings: &Settings,
-    history: &mut History,
-    frame: &CpuFrame<'_>,
-    output: &mut [Image<[f32; 3]>],
-    mut trace: Option<&mut [Image<PixelTrace>]>,
-) -> FrameStats {
-    let is_filled = history.is_filled();
+pub(crate) fn run(pass: Pass<'_, '_>) -> FrameStats {
+    let Pass { desc, history, frame, output, mut traces } = pass;
+    let settings = &desc.settings;
+    let has_history = history.is_filled();
     let mut stats = FrameStats::default();
-    for (i, view) in frame.views.iter().enumerate() {
-        let held = history.held_gaze(i);
-        let constants = view.facts.constants(*held, settings, i, frame.index);
-        *held = Some(constants.gaze_px);
+    for i in 0..frame.views.len() {
+        let gaze_px = history.look(i, &frame.views[i]);
         let (past, words, log_keys) = history.split(i);
         let pass = ViewPass {
-            inputs: Inputs::new(desc, settings, frame, i, &constants, is_filled),
+            inputs: Inputs::new(desc, frame, i, gaze_px, has_history),
             past,
-            params: settings.wrs_params(),
-            fovea_radius_deg: 0.5 * settings.foveation.fovea_deg,
-            inv_density_at_fovea: settings.inv_density_at_fovea(),
+            params: wrs_params(settings),
+            fovea_radius_deg: settings.foveation.fovea_radius_deg(),
+            inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,
-            key: constants.key,
         };
-        let trace = trace.as_mut().map(|t| t[i].pixels_mut());
+        let trace = traces.as_mut().map(|t| t[i].pixels_mut());
         let mut rows = split_rows(desc.size_px, words, output[i].pixels_mut(), log_keys, trace);
         stats = stats.add(
             rows.par_iter_mut()
@@ -127,7 +116,7 @@ impl ViewPass<'_> {
             Ok((past, age)) => (Verdict::Valid, past, age),
             Err(verdict) => (verdict, Past::EMPTY, 0),
         };
-        let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.key));
+        let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
         let decision = wrs::step(candidate, weight, past, &params, draw);
 
         let (color, age) = if decision.take { (candidate, 0) } else { (past.color, (past_age + 1).min(pack::MAX_AGE)) };
@@ -138,11 +127,11 @@ impl ViewPass<'_> {
         }
         if let Some(trace) = &mut row.trace {
             trace[i] = PixelTrace {
+                verdict,
                 weight,
-                w_sum: decision.w_sum,
+                quality: decision.w_sum * (1.0 / 16.0),
                 age,
                 survival: if verdict == Verdict::Valid { decision.survival } else { 0.0 },
-                verdict,
                 gate: decision.gate,
                 take: decision.take,
                 motion,

@@ -1,67 +1,46 @@
 //! What the caller hands over for one frame, and what it hears back at once.
 
-use super::MAX_VIEWS;
-use crate::frame::{Exposure, Gaze, Reset, ViewFrame};
+use super::{Afterimage, MAX_VIEWS};
+use crate::frame::{Gaze, ViewFrame};
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
 /// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), one sample a
 /// pixel, and the usage `TEXTURE_BINDING`.
+pub type Frame<'a> = crate::Frame<'a, Afterimage>;
+
+/// Where [`record`](Afterimage::record) writes. A texture alone makes one: `(&output).into()`.
+///
+/// ```
+/// # fn example<'a>(output: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
+/// use afterimage::gpu::Target;
+///
+/// let target = Target { counters: Some(counters), ..Target::new(output) };
+/// # let _ = target;
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
-    /// The foveated frame: linear color, any float format.
-    pub color: &'a Texture,
-    /// Depth in the context's convention: a depth format or `R32Float`. `None` switches the depth test off.
-    pub depth: Option<&'a Texture>,
-    /// Motion in the context's convention: `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves.
-    pub motion: Option<&'a Texture>,
-    /// How far history may be believed: 1 as usual, 0 not at all, for what moves without vectors (video panels, particles,
-    /// reflections). Any float or normalised format. `None`: 1 everywhere.
-    pub trust: Option<&'a Texture>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels, any float format. `None`: as
-    /// [`Settings::foveation`](crate::Settings::foveation) has it, whose `rate_far` must be the coarsest in either case: history is not
-    /// matched at coarser levels.
-    pub lod: Option<&'a Texture>,
-    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
-    /// detail; `Rg16Float`, `Rg32Float` or wider. Where, and only where, [`Settings::noisy`](crate::Settings::noisy) says so.
-    pub noise: Option<&'a Texture>,
-    /// What the user will see: the context's output format, usage `STORAGE_BINDING`.
+pub struct Target<'a> {
+    /// The frame that the user sees: the context's size, layers and output format, usage `STORAGE_BINDING`. Alpha is 1.
     pub output: &'a Texture,
-    /// One entry a view.
-    pub views: &'a [ViewFrame],
-    /// Frame counter; the random numbers follow it.
-    pub index: u64,
-    /// Whether the history still holds.
-    pub reset: Reset,
-    /// How bright its numbers are against the previous frame's.
-    pub exposure: Exposure,
-    /// Where the device counts what becomes of the pixels, if the caller wants to know: at least
-    /// [`COUNTERS_BYTES`](crate::stats::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back).
-    /// [`FrameStats::from_counters`](crate::stats::FrameStats::from_counters) reads the bytes. `None`: nothing is counted.
+    /// Counters, if the caller wants to know what became of the pixels: at least [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages
+    /// `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read them back). [`FrameStats::from_counters`](crate::FrameStats::from_counters)
+    /// reads the bytes. `None`: nothing is counted, which costs nothing.
     pub counters: Option<&'a Buffer>,
-    /// Where the device writes when the pass begins and ends, if the caller wants to time it. Needs
-    /// `Features::TIMESTAMP_QUERY`.
+    /// Timestamps of the pass, if the caller wants to time it. Needs `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,
 }
 
-impl<'a> Frame<'a> {
-    /// A frame that goes on from the previous one, without optional inputs.
-    pub fn new(color: &'a Texture, output: &'a Texture, views: &'a [ViewFrame], index: u64) -> Self {
-        Self {
-            color,
-            depth: None,
-            motion: None,
-            trust: None,
-            lod: None,
-            noise: None,
-            output,
-            views,
-            index,
-            reset: Reset::None,
-            exposure: Exposure::Same,
-            counters: None,
-            timestamps: None,
-        }
+impl<'a> Target<'a> {
+    /// Without counters and timestamps.
+    pub fn new(output: &'a Texture) -> Self {
+        Self { output, counters: None, timestamps: None }
+    }
+}
+
+impl<'a> From<&'a Texture> for Target<'a> {
+    fn from(output: &'a Texture) -> Self {
+        Self::new(output)
     }
 }
 
@@ -76,23 +55,34 @@ pub struct Timestamps<'a> {
     pub end: u32,
 }
 
-/// What is known of a frame as soon as it is recorded. Free to ignore; what only the pixels know is in
-/// [`FrameStats::warnings`](crate::stats::FrameStats::warnings).
+impl<'a> Timestamps<'a> {
+    /// As a pass descriptor takes them.
+    pub(crate) fn writes(self) -> wgpu::ComputePassTimestampWrites<'a> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: self.queries,
+            beginning_of_pass_write_index: Some(self.begin),
+            end_of_pass_write_index: Some(self.end),
+        }
+    }
+}
+
+/// Warnings that are known as soon as a frame is recorded. Free to ignore; those that only the pixels know are in
+/// [`FrameStats::warnings`](crate::FrameStats::warnings).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recorded {
     gaze: [Option<Warning>; MAX_VIEWS],
 }
 
 impl Recorded {
-    /// What is odd about the frame's description, view by view.
+    /// Warnings about the frame's description, view by view.
     pub fn warnings(&self) -> impl Iterator<Item = Warning> + use<> {
         self.gaze.into_iter().flatten()
     }
 
-    /// What there is to say about the gaze of view `view`; `held` is the one from before.
-    pub(super) fn note(&mut self, view: usize, facts: &ViewFrame, held: Option<[f32; 2]>) {
-        let size = facts.geometry.size_px().map(|s| s as f32);
-        self.gaze[view] = match facts.gaze {
+    /// Notes the gaze of view `view`; `held` is the position from before.
+    pub(super) fn note_gaze(&mut self, view: usize, frame: &ViewFrame, held: Option<[f32; 2]>) {
+        let size = frame.geometry.size_px().map(|s| s as f32);
+        self.gaze[view] = match frame.gaze {
             Gaze::At { px } if px.iter().all(|v| v.is_finite()) => {
                 let inside = |i: usize| (-0.5..size[i] - 0.5).contains(&px[i]);
                 (!(inside(0) && inside(1))).then_some(Warning::GazeOffScreen { view })

@@ -1,10 +1,9 @@
 //! The state between frames: two sets of textures, one the past, one to be written.
 
-use super::candidates::{CandidatePass, Candidates};
-use super::chain::{ChainLevel, ChainPass};
+use super::mip_chain::{self, CandidatePass, Candidates, MipChainPass, MipLevel};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
-use crate::settings::HistoryLayout;
+use crate::method::HistoryLayout;
 use wgpu::{
     Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
     TextureViewDescriptor, TextureViewDimension,
@@ -19,7 +18,7 @@ pub(super) struct Planes {
     /// To write: the first level.
     pub targets: Vec<TextureView>,
     /// Dispatches that fill the other levels.
-    pub chain: Vec<ChainLevel>,
+    pub mip_levels: Vec<MipLevel>,
 }
 
 /// Both frames' textures, and what else is remembered.
@@ -34,12 +33,12 @@ pub(super) struct History {
 }
 
 impl History {
-    /// `chain` fills coarser levels of surfaces and `candidates` of candidates, where the layout has them.
+    /// `mip_chain` fills coarser levels of surfaces and `candidates` those of candidates, where the layout has them.
     pub fn new(
         device: &Device,
         desc: &ContextDesc,
         layout: HistoryLayout,
-        chain: Option<&ChainPass>,
+        mip_chain: Option<&MipChainPass>,
         candidates: Option<&CandidatePass>,
     ) -> Self {
         let planes = || {
@@ -53,15 +52,15 @@ impl History {
                 HistoryLayout::Surfaces { .. } => vec![full(TextureFormat::Rg32Uint)],
             };
             let mut levels = vec![];
-            if let (HistoryLayout::Surfaces { levels: count @ 1.., noisy }, Some(chain)) = (layout, chain) {
-                let texture = chain_texture(device, desc, count);
-                levels = chain.levels(device, &texture, desc.size_px);
+            if let (HistoryLayout::Surfaces { levels: count @ 1.., noisy }, Some(pass)) = (layout, mip_chain) {
+                let texture = mip_chain_texture(device, desc, count);
+                levels = pass.levels(device, &texture, desc.size_px);
                 textures.push(texture);
                 textures.extend(noisy.then(|| full(TextureFormat::R32Uint)));
             }
             let views = textures.iter().map(|t| levels_view(t, 0, None)).collect();
             let targets = textures.iter().map(|t| levels_view(t, 0, Some(1))).collect();
-            Planes { textures, views, targets, chain: levels }
+            Planes { textures, views, targets, mip_levels: levels }
         };
         let candidates = match layout {
             HistoryLayout::Surfaces { levels, noisy: true } => candidates.map(|c| c.levels(device, desc, levels)),
@@ -116,11 +115,11 @@ fn bytes(texture: &Texture) -> u64 {
 }
 
 /// Room for levels 1 to `count` of a chain.
-pub(super) fn chain_texture(device: &Device, desc: &ContextDesc, count: u32) -> Texture {
+pub(super) fn mip_chain_texture(device: &Device, desc: &ContextDesc, count: u32) -> Texture {
     // A texture's levels halve and round down, the chain's round up: padded, they agree.
     let multiple = 1 << (count - 1);
     let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
-    texture(device, desc, TextureFormat::Rgba16Float, size, count)
+    texture(device, desc, mip_chain::FORMAT, size, count)
 }
 
 fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u32; 2], levels: u32) -> Texture {

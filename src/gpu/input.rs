@@ -1,52 +1,43 @@
-//! Everything about a frame that can be wrong, found before anything is recorded.
+//! Checks of a frame, before anything is recorded.
 
-use super::{Frame, GpuDesc};
+use super::{Frame, Target};
 use crate::error::FrameError;
+use crate::frame::ContextDesc;
 use crate::stats::COUNTERS_BYTES;
-use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureSampleType, TextureUsages};
+use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
-/// Checks a frame against what the context was made for.
-pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    let expected = desc.context.view_count as usize;
-    if frame.views.len() != expected {
-        return Err(FrameError::ViewCount { found: frame.views.len(), expected });
-    }
-    for (i, view) in frame.views.iter().enumerate() {
-        view.check(i, &desc.context)?;
-    }
-    let read = TextureUsages::TEXTURE_BINDING;
-    check_texture(desc, "color", frame.color, read)?;
-    check_readable("color", frame.color, 3)?;
-    if let Some(depth) = frame.depth {
-        check_texture(desc, "depth", depth, read)?;
-        check_readable("depth", depth, 1)?;
-    }
-    if let Some(motion) = frame.motion {
-        check_texture(desc, "motion", motion, read)?;
-        check_readable("motion", motion, 2)?;
-    }
-    for (input, texture) in [("trust", frame.trust), ("lod", frame.lod)] {
+/// Checks a frame and its target against what the context was made for.
+pub(super) fn check(
+    desc: &ContextDesc,
+    output_format: TextureFormat,
+    frame: &Frame<'_>,
+    target: &Target<'_>,
+) -> Result<(), FrameError> {
+    frame.check(desc)?;
+    let inputs = [
+        ("color", Some(frame.color), 3),
+        ("depth", frame.depth, 1),
+        ("motion", frame.motion, 2),
+        ("trust", frame.trust, 1),
+        ("lod", frame.lod, 1),
+        ("noise", frame.noise, 2),
+    ];
+    for (input, texture, channels) in inputs {
         if let Some(texture) = texture {
-            check_texture(desc, input, texture, read)?;
-            check_readable(input, texture, 1)?;
+            check_texture(desc, input, texture, TextureUsages::TEXTURE_BINDING)?;
+            check_readable(input, texture, channels)?;
         }
     }
-    desc.settings.check_noise(0, frame.noise.is_some())?;
-    if let Some(noise) = frame.noise {
-        check_texture(desc, "noise", noise, read)?;
-        check_readable("noise", noise, 2)?;
-    }
-    frame.exposure.check()?;
-    if let Some(counters) = frame.counters {
+    if let Some(counters) = target.counters {
         check_counters(counters)?;
     }
-    check_texture(desc, "output", frame.output, TextureUsages::STORAGE_BINDING)?;
-    if frame.output.format() == desc.output_format {
+    check_texture(desc, "output", target.output, TextureUsages::STORAGE_BINDING)?;
+    if target.output.format() == output_format {
         Ok(())
     } else {
         Err(refuse(
             "output",
-            frame.output,
+            target.output,
             "not the context's".into(),
             "the output format that the context was made for",
         ))
@@ -55,17 +46,17 @@ pub(super) fn check(desc: &GpuDesc, frame: &Frame<'_>) -> Result<(), FrameError>
 
 /// Size, layers, samples, usage.
 pub(crate) fn check_texture(
-    desc: &GpuDesc,
+    desc: &ContextDesc,
     input: &'static str,
     texture: &Texture,
     usage: TextureUsages,
 ) -> Result<(), FrameError> {
     let found = [texture.width(), texture.height()];
-    if found != desc.context.size_px {
-        return Err(FrameError::Size { input, view: 0, found, expected: desc.context.size_px });
+    if found != desc.size_px {
+        return Err(FrameError::Size { input, view: 0, found, expected: desc.size_px });
     }
     let layers = texture.depth_or_array_layers();
-    if texture.dimension() != wgpu::TextureDimension::D2 || layers != desc.context.view_count {
+    if texture.dimension() != wgpu::TextureDimension::D2 || layers != desc.view_count {
         return Err(refuse(
             input,
             texture,

@@ -1,6 +1,6 @@
 //! Color: sRGB transfer, CIE Lab and the Delta E 94 difference, from linear Rec. 709.
 
-use super::scrub::MAX_HALF;
+use super::sanitize::MAX_HALF;
 use glam::Vec3;
 
 /// Below this, Lab's f(t) is a line (CIE 15: (6/29)^3).

@@ -1,47 +1,47 @@
-//! What was decided at a pixel, as a color. Ramps and codes are made as they look on screen (sRGB-encoded) and handed out as
-//! linear light, like any frame.
+//! Decisions at a pixel, drawn as colors. Ramps and codes are defined sRGB-encoded, as they look on screen, and returned as linear light.
 
 use super::color::srgb_decode;
 use super::reproject::Verdict;
-use super::scrub::is_finite;
+use super::sanitize::is_finite;
 use glam::Vec3;
 
-/// One view of the decisions of a frame.
+/// A picture of the decisions of a frame: [`record_view`](crate::gpu::Afterimage::record_view) draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
+#[non_exhaustive]
 pub enum DebugView {
-    /// Weight sum of the reservoir: black 0, white 16 or more. Of smr the sharpness of what is stored: white full rate, each level of
-    /// detail half of it. taa has none: black.
-    Weight = 1,
-    /// Frames since the shown sample was shaded: black 0, white 255 or more, by square root. Only wrs remembers it; black otherwise.
+    /// Quality of what is stored, by the method's measure: black 0, white 1. Of wrs the weight sum over 16; of smr the sharpness, where
+    /// full rate is 1 and each level of detail halves it. taa has none: black.
+    Quality = 1,
+    /// Frames since the shown sample was shaded: black 0, white 255 or more, by square root. Only wrs stores it; black otherwise.
     Age = 2,
-    /// Share of the history's weight that survived, of smr and taa history's share in what is shown: black none, white all.
+    /// Share of the history's weight that survived; of smr and taa history's share in what is shown: black none, white all.
     Survival = 3,
-    /// What became of the history: grey valid, blue reset, magenta bad motion, orange off screen, yellow empty, red disoccluded,
-    /// cyan distrusted.
-    Flush = 4,
-    /// Gate value, of smr how well history explains the candidate: white open, black shut. taa has none: white.
+    /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow empty, red
+    /// disoccluded, cyan distrusted.
+    Rejection = 4,
+    /// Gate value; of smr how well history explains the candidate: white open, black shut. taa has none: white.
     Gate = 5,
-    /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full color, green no number.
+    /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full color, green NaN or infinite.
     Motion = 6,
 }
 
-/// What was decided at a pixel; the material of debug views.
+/// Decision at a pixel, from which debug views are drawn. [`process_traced`](crate::cpu::CpuAfterimage::process_traced) writes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
+    /// Verdict on the history.
+    pub verdict: Verdict,
     /// Weight of the candidate, in \[0, 1\].
     pub weight: f32,
-    /// Weight sum after the frame.
-    pub w_sum: f32,
+    /// Quality of what is stored, by the method's measure ([`DebugView::Quality`]); 1 is good.
+    pub quality: f32,
     /// Frames since the shown sample was shaded, up to 255.
     pub age: u32,
     /// Share of the history's weight that survived, in \[0, 1\]; 0 without history.
     pub survival: f32,
-    /// What became of the history.
-    pub verdict: Verdict,
     /// Gate value in \[0, 1\]; 1: candidate and history look alike.
     pub gate: f32,
-    /// The candidate was chosen.
+    /// Whether the candidate replaced the history.
     pub take: bool,
     /// Motion as it was read: previous minus current, in pixels, y down.
     pub motion: [f32; 2],
@@ -51,11 +51,11 @@ impl Default for PixelTrace {
     /// A pixel without history or weight.
     fn default() -> Self {
         Self {
+            verdict: Verdict::Reset,
             weight: 0.0,
-            w_sum: 0.0,
+            quality: 0.0,
             age: 0,
             survival: 0.0,
-            verdict: Verdict::Reset,
             gate: 1.0,
             take: true,
             motion: [0.0; 2],
@@ -63,7 +63,7 @@ impl Default for PixelTrace {
     }
 }
 
-/// Where a number should be and none is; no ramp holds it.
+/// Color of NaN and infinity, which no ramp holds.
 const NO_NUMBER: Vec3 = Vec3::new(0.0, 1.0, 0.0);
 
 /// Stops of a ramp from black over violet and orange to white, of steadily rising lightness.
@@ -120,10 +120,10 @@ pub fn motion_color(motion: [f32; 2]) -> Vec3 {
 #[inline]
 pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {
-        DebugView::Weight => heat(trace.w_sum / 16.0),
+        DebugView::Quality => heat(trace.quality),
         DebugView::Age => heat((trace.age as f32 / 255.0).sqrt()),
         DebugView::Survival => heat(trace.survival),
-        DebugView::Flush => verdict_color(trace.verdict),
+        DebugView::Rejection => verdict_color(trace.verdict),
         DebugView::Gate => Vec3::splat(trace.gate),
         DebugView::Motion => motion_color(trace.motion),
     };

@@ -73,9 +73,9 @@ pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
     (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }
 
-/// How far history is wanted before it is known whether it fits.
+/// Weight of history before it is known whether it fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub struct ReuseWeight {
     /// 1 if history is finer than the candidate, 0 if not, in \[0, 1\].
     pub finer: f32,
     /// Its share in what is shown, if it fits: 1 where finer, `accumulate` where alike, 0 where coarser, and in the fovea unless it is
@@ -83,15 +83,16 @@ pub struct Wanted {
     pub share: f32,
 }
 
-/// See [`Wanted`]. Levels of detail; `sure` is how far history and the candidate are free of
-/// noise, in \[0, 1\]: a noisy finer history is worth no more than an equally coarse one, and a coarser history is better than noise.
+/// Reuse weight of history at `history_lod` for a candidate at `lod` (levels of detail). `confidence`: of history and of the
+/// candidate, in \[0, 1\], 1 without noise. A noisy finer history is worth no more than an equally coarse one, and a coarser history is
+/// better than noise.
 #[inline]
-pub fn wanted(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, sure: [f32; 2]) -> Wanted {
-    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0) * sure[0];
-    let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0) * sure[1];
+pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: [f32; 2]) -> ReuseWeight {
+    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0) * confidence[0];
+    let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0) * confidence[1];
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = if noisy { 1.0 } else { lod.min(1.0) };
-    Wanted { finer, share: finer + (alike * calm) * accumulate }
+    ReuseWeight { finer, share: finer + (alike * calm) * accumulate }
 }
 
 /// A color channel's gain under changed light: the ratio of candidate and history at a coarse level, as far as light `changed`
@@ -143,7 +144,7 @@ pub struct Evidence {
     /// Difference of `compared` and `matched` that noise alone makes; 0 for candidates without noise.
     pub noise: f32,
     /// How far history and the candidate are free of noise, in \[0, 1\].
-    pub sure: [f32; 2],
+    pub confidence: [f32; 2],
 }
 
 /// What was decided.
@@ -159,10 +160,10 @@ pub struct Matched {
     pub fit: f32,
 }
 
-/// Shows history as far as it is wanted and explains the candidate, relit if only the light changed.
+/// Blends history into the candidate by its reuse weight and by how well it explains the candidate; relit if only the light changed.
 #[inline]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
-    let wanted = wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
+    let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     // Detail below the candidate's scale: where it is strong, resampling and aliasing alone make differences.
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
@@ -179,16 +180,16 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
             contrast *= ((gains.x + gains.y + gains.z) * (1.0 / 3.0)).sqrt();
         }
     }
-    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * wanted.finer);
+    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer);
     let scale = if p.blocks { 4.0 } else { 1.0 };
     let fit = 1.0 - smooth_step(tolerance * (GATE[0] * scale + contrast) + e.noise, tolerance * (GATE[1] * scale), d);
     let believed = fit * e.trust;
-    let share = believed * wanted.share;
+    let share = believed * reuse.share;
     let history = k * e.history;
     // A share of 1 gives the history bit for bit, and one of 0 the candidate.
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
-    let lod = if wanted.finer > 0.0 {
-        (e.history_lod + (e.lod - e.history_lod) * (1.0 - wanted.finer * believed)).min(e.lod)
+    let lod = if reuse.finer > 0.0 {
+        (e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * believed)).min(e.lod)
     } else if p.noisy {
         e.lod + (e.history_lod - e.lod).max(0.0) * share
     } else {
@@ -199,13 +200,13 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
 
 /// Mean of four texels of the chain of coarser levels: colors times coverage, and coverage.
 #[inline]
-pub fn chain_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
+pub fn mip_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     (a + b + c + d) * 0.25
 }
 
 /// Color between four texels of the chain, rows first. Black where nothing is covered.
 #[inline]
-pub fn chain_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec3 {
+pub fn mip_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec3 {
     let t = top[0] + (top[1] - top[0]) * fraction[0];
     let b = bottom[0] + (bottom[1] - bottom[0]) * fraction[0];
     let v = t + (b - t) * fraction[1];

@@ -17,7 +17,7 @@ pub mod reproject;
 pub mod resample;
 pub mod reservoir;
 pub mod rng;
-pub mod scrub;
+pub mod sanitize;
 pub mod surface;
 pub mod taa;
 pub mod wrs;

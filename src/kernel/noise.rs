@@ -6,7 +6,7 @@
 
 use super::matched::{COARSER_WIDTH, DARK, smooth_step};
 use super::pack::{half_bits, half_value};
-use super::scrub::MAX_HALF;
+use super::sanitize::MAX_HALF;
 use glam::{Vec3, Vec4};
 
 /// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an eighth of the
@@ -16,7 +16,7 @@ pub const NOISY_LEVELS: f32 = 3.0;
 const COMPARED: f32 = 64.0;
 /// Standard deviations of noise that are no change.
 const SIGMAS: f32 = 3.0;
-/// Noise up to which history is as sure as if it had none, and over how much more it ceases to be, as differences: below what the
+/// Noise up to which confidence in a color is 1, and over how much more it falls to 0, as differences: below what the
 /// eye just sees.
 const SURE: [f32; 2] = [0.5, 1.0];
 /// Frames that a coarser history counts for at the most.
@@ -28,7 +28,7 @@ const MAX_SAMPLES: f32 = 32768.0;
 /// Alpha of a texel of which nothing is known.
 const UNKNOWN: f32 = -1.0;
 
-/// How sure a color is.
+/// Samples and variance of a color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Samples it is a mean of, at least 1 (0 for a history that holds none).
@@ -127,7 +127,7 @@ pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
 
 /// How far what history holds around a luma is free of noise, in \[0, 1\]: only then is a finer sample the better one.
 #[inline]
-pub fn sureness(history: Noise, luma: f32) -> f32 {
+pub fn noise_confidence(history: Noise, luma: f32) -> f32 {
     let off = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
     1.0 - smooth_step(SURE[0], SURE[1], off)
 }

@@ -10,7 +10,7 @@
 //! survival stops growing between 256 w and 363 w, so a replacement probability never falls below 1/364 a frame; a half
 //! float would stop at 63 w, and at 33 w if the arithmetic were half, too.
 
-use super::scrub::{self, MAX_HALF};
+use super::sanitize::{self, MAX_HALF};
 use glam::Vec3;
 
 /// Largest weight sum that is stored: 2^100, exact in the stored bits.
@@ -110,7 +110,7 @@ pub fn unpack(words: [u32; 3]) -> Stored {
     let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;
     let (r, g, b) = (words[0], words[0] >> 16, words[1]);
     let corrupt = infinite(r) || infinite(g) || infinite(b);
-    let w_sum = scrub::weight(f32::from_bits(words[2] & 0xffff_ff00));
+    let w_sum = sanitize::weight(f32::from_bits(words[2] & 0xffff_ff00));
     if corrupt || w_sum > MAX_W_SUM {
         return Stored { color: Vec3::ZERO, disparity: -1.0, w_sum: 0.0, age: 0 };
     }

@@ -1,19 +1,20 @@
-//! Where a pixel was in the previous frame, and why it may have no past.
+//! Reprojection: where a pixel was in the previous frame, and verdicts on its history.
 
-use super::scrub::is_finite;
+use super::sanitize::is_finite;
 
-/// Motion beyond this many pixels is taken for garbage.
+/// Largest motion in pixels; beyond it a vector is invalid.
 pub const MAX_MOTION_PX: f32 = 65536.0;
 
-/// What became of a pixel's history. The discriminants are the codes of debug views.
+/// Verdict on a pixel's history: valid, or the reason why it is missing or rejected. The discriminants are the codes of debug views.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
+#[non_exhaustive]
 pub enum Verdict {
-    /// There is a history sample, and it belongs to this surface.
+    /// History is valid: it belongs to this surface.
     Valid = 0,
-    /// The history was reset: first frame, cut, resize.
+    /// All history was reset: first frame, cut, resize.
     Reset = 1,
-    /// The motion vector is NaN, infinite or absurd.
+    /// The motion vector is NaN, infinite or longer than 65536 pixels.
     BadMotion = 2,
     /// The surface point was outside the previous frame.
     OffScreen = 3,
@@ -21,7 +22,7 @@ pub enum Verdict {
     Empty = 4,
     /// Another surface was there: the depth differs.
     Disoccluded = 5,
-    /// The caller's trust mask forbids it.
+    /// The frame's trust mask is 0 here.
     Distrusted = 6,
 }
 
@@ -29,8 +30,8 @@ impl Verdict {
     /// Number of verdicts; codes are below it.
     pub const COUNT: usize = 7;
 
-    /// Those that take a history away which there may have been: what counts as flushed.
-    pub const FLUSHED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
+    /// Verdicts that reject a history that may have existed.
+    pub const REJECTED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }
 
 /// The texel that holds the history of pixel (`x`, `y`): nearest to where it was. A position is inside the previous frame

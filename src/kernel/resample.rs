@@ -46,10 +46,10 @@ pub struct Gathered {
     pub missing: u32,
 }
 
-/// Adds a texel with its two weights; one that is `wanted` not, because it shows another surface, is counted.
+/// Adds a texel with its two weights, if it shows the `same` surface; else counts it as missing.
 #[inline]
-pub fn gather(g: Gathered, tap: Surface, wanted: bool, sharp: f32, linear: f32) -> Gathered {
-    if !wanted {
+pub fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) -> Gathered {
+    if !same {
         return Gathered { missing: g.missing + 1, ..g };
     }
     Gathered {

@@ -3,7 +3,7 @@
 //! Sources: Cantory et al., "Enhancing Foveated Rendering with Weighted Reservoir Sampling", MIG 2025 (the paper); Chao 1982;
 //! Efraimidis and Spirakis 2006.
 
-use super::{approx, scrub};
+use super::{approx, sanitize};
 
 /// What a reservoir of size one remembers besides its sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Reservoir {
 /// A candidate of weight 0 (or of a weight that is no number) is never taken.
 #[inline]
 pub fn update(reservoir: &mut Reservoir, w: f32, draw: f32) -> bool {
-    let w = scrub::weight(w);
+    let w = sanitize::weight(w);
     reservoir.w_sum += w;
     reservoir.count = reservoir.count.saturating_add(1);
     draw * reservoir.w_sum < w
@@ -31,8 +31,8 @@ pub fn update(reservoir: &mut Reservoir, w: f32, draw: f32) -> bool {
 /// ones keep the second's sample, the newer.
 #[inline]
 pub fn combine(first: Reservoir, second: Reservoir, draw: f32) -> (Reservoir, bool) {
-    let w1 = scrub::weight(first.w_sum);
-    let w2 = scrub::weight(second.w_sum);
+    let w1 = sanitize::weight(first.w_sum);
+    let w2 = sanitize::weight(second.w_sum);
     let w_sum = w1 + w2;
     let merged = Reservoir { w_sum, count: first.count.saturating_add(second.count) };
     (merged, w1 == 0.0 || draw * w_sum < w2)
@@ -58,7 +58,7 @@ pub fn exponential_survival(lambda_per_frame: f32) -> f32 {
 /// A draw of exactly 0 counts as half a step of the generator's grid, or its key would be lost for ever.
 #[inline]
 pub fn a_es_log_key(draw: f32, w: f32) -> f32 {
-    let w = scrub::weight(w);
+    let w = sanitize::weight(w);
     if w == 0.0 {
         return f32::MIN;
     }

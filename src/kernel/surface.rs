@@ -81,14 +81,14 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
 
 /// Texel of level 0 of the chain of coarser levels: the color and a coverage of 1, or nothing.
 #[inline]
-pub fn chain_texel(words: [u32; 2]) -> Vec4 {
+pub fn mip_texel(words: [u32; 2]) -> Vec4 {
     let s = unpack_surface(words);
     if s.lod < 0.0 { Vec4::ZERO } else { s.color.extend(1.0) }
 }
 
 /// A texel of the chain as it is stored: halves, rounded here, so that devices cannot round otherwise.
 #[inline]
-pub fn round_chain(v: Vec4) -> Vec4 {
+pub fn round_mip(v: Vec4) -> Vec4 {
     let round = |x: f32| half_value(half_bits(x));
     Vec4::new(round(v.x), round(v.y), round(v.z), round(v.w))
 }

@@ -1,6 +1,6 @@
 //! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, forget, combine.
 
-use super::scrub::{self, MAX_HALF};
+use super::sanitize::{self, MAX_HALF};
 use super::{color, reservoir};
 use glam::Vec3;
 
@@ -86,16 +86,16 @@ pub struct Decision {
     pub survival: f32,
 }
 
-/// The history as far as it is trusted: all its weights times `trust` ([`scrub::trust`]), before gate and bias. Nothing is left
+/// The history as far as it is trusted: all its weights times `trust` ([`sanitize::trust`]), before gate and bias. Nothing is left
 /// of it (a sum of 0) at a trust of 0.
 #[inline]
 pub fn believe(past: Past, trust: f32, sampler: SamplerCode) -> Past {
-    let share = scrub::trust(trust);
+    let share = sanitize::trust(trust);
     let log_key = match sampler {
         SamplerCode::AChao => past.log_key,
         SamplerCode::AEs => reservoir::a_es_decay(past.log_key, share),
     };
-    Past { color: past.color, w_sum: scrub::weight(past.w_sum * share), log_key }
+    Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
 }
 
 /// A stored color under this frame's exposure: times `ratio`, kept within halves. `ratio` from 2^-40 to 2^40, beyond which
@@ -139,8 +139,8 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
         BiasCode::Bernoulli => reservoir::bernoulli_survival(past.w_sum, weight),
     };
     // Products may fall below the normal range, where some devices flush to zero: by the rule of weights, both do.
-    let survival = scrub::weight(bias * gate_value);
-    let kept = scrub::weight(past.w_sum * survival);
+    let survival = sanitize::weight(bias * gate_value);
+    let kept = sanitize::weight(past.w_sum * survival);
     let w_sum = kept + weight;
     let (take, log_key) = match params.sampler {
         SamplerCode::AChao => (kept == 0.0 || draw * w_sum < weight, 0.0),

@@ -5,7 +5,7 @@ use super::Pyramid;
 use crate::foveation::Foveation;
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
-use crate::kernel::{foveate, scrub};
+use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
 /// Level of the coarsest aligned block around each pixel whose centre is far enough out; whole numbers.
@@ -37,6 +37,6 @@ pub fn render(pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
         }
         let [x, y] = [0, 1].map(|i| foveate::block_sample(px[i] >> level, level, size[i]) as usize);
         let source = pyramid.level(foveate::block_sample_level(level) as usize);
-        scrub::color(Vec3::from(source.at(x, y))).0.to_array()
+        sanitize::color(Vec3::from(source.at(x, y))).0.to_array()
     })
 }

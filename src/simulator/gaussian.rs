@@ -2,7 +2,7 @@
 //! where the width is constant, and close to it where it changes slowly.
 
 use crate::image::Image;
-use crate::kernel::{foveate, scrub};
+use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
 /// The frame blurred by the width that belongs to each pixel's level of detail. Borders are continued by their last pixel; pixels of
@@ -23,7 +23,7 @@ fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, axis: usize) -> Image<[
         let tap = |offset: i64| {
             let mut at = [x, y];
             at[axis] = (i64::from(px[axis]) + offset).clamp(0, last) as usize;
-            scrub::color(Vec3::from(image.at(at[0], at[1]))).0
+            sanitize::color(Vec3::from(image.at(at[0], at[1]))).0
         };
         let sigma_px = foveate::blur_sigma_px(lod);
         let mut gauss = foveate::gauss_center(sigma_px);

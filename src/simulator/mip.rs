@@ -1,7 +1,7 @@
 //! Box mip levels in linear light, right for odd sizes, and their bilinear and trilinear reading.
 
 use crate::image::Image;
-use crate::kernel::{foveate, scrub};
+use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
 /// A full-rate frame and its coarser levels. Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to
@@ -54,7 +54,7 @@ impl Pyramid {
             if fraction == 0.0 {
                 return full;
             }
-            scrub::color(Vec3::from(full)).0
+            sanitize::color(Vec3::from(full)).0
         } else {
             self.bilinear(px, level)
         };
@@ -71,7 +71,7 @@ fn halve(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     let size = image.size();
     let texel = |x: u32, y: u32| {
         let at = image.at(x.min(size[0] - 1) as usize, y.min(size[1] - 1) as usize);
-        scrub::color(Vec3::from(at)).0
+        sanitize::color(Vec3::from(at)).0
     };
     Image::from_fn_parallel(size.map(|s| foveate::level_len(s, 1)), |half| {
         let [x, y] = half.map(|v| 2 * v);

@@ -1,6 +1,7 @@
 //! Simulators of foveation: of a full-rate frame they make what a foveating renderer would have delivered.
 //!
-//! [`Foveation`](crate::foveation::Foveation) describes both. On the device: [`gpu`]; in memory: its methods `lod_map` and `render`.
+//! One [`Foveation`](crate::Foveation) describes renderer and simulator. [`GpuSimulator`] foveates textures; for images in memory
+//! (feature `cpu`) there are the methods `lod_map` and `render` of `Foveation` and their [`Pyramid`].
 
 #[cfg(feature = "cpu")]
 mod block;
@@ -9,9 +10,12 @@ mod cpu;
 #[cfg(feature = "cpu")]
 mod gaussian;
 #[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod gpu;
 #[cfg(feature = "cpu")]
 mod mip;
 
+#[cfg(feature = "gpu")]
+pub use gpu::{GpuSimulator, SimulatorFrame};
 #[cfg(feature = "cpu")]
 pub use mip::Pyramid;

@@ -2,6 +2,8 @@
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;
+#[path = "../common/images.rs"]
+mod images;
 mod pass;
 mod simulator;
 mod twins;

@@ -1,6 +1,6 @@
 //! Elementary functions, sRGB and acuity: f32 kernels against f64, hard cases H17, H18 and H61-H65.
 
-use afterimage::kernel::{acuity, approx, color, scrub};
+use afterimage::kernel::{acuity, approx, color, sanitize};
 use afterimage_testing::holds;
 use approx_crate::assert_abs_diff_eq;
 use glam::DVec3;
@@ -88,17 +88,17 @@ fn srgb_transfer_holds_its_stated_accuracy_and_inverts() {
     assert_eq!(color::srgb_encode(-0.5), -color::srgb_encode(0.5));
 }
 
-// ---- scrub -------------------------------------------------------------------------------------------------------------
+// ---- sanitize ----------------------------------------------------------------------------------------------------------
 
 #[test]
 fn h17_h18_bad_weights_count_as_0() {
     for bad in
         [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, -0.0, 0.0, f32::from_bits(1), f32::from_bits(0xffc0_0001)]
     {
-        assert_eq!(scrub::weight(bad).to_bits(), 0);
+        assert_eq!(sanitize::weight(bad).to_bits(), 0);
     }
     for good in [f32::MIN_POSITIVE, 1e-20, 1.0, f32::MAX] {
-        assert_eq!(scrub::weight(good), good);
+        assert_eq!(sanitize::weight(good), good);
     }
 }
 

@@ -3,6 +3,8 @@
 //! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a process of its own.
 
 mod events;
+#[path = "../common/images.rs"]
+mod images;
 mod pictures;
 #[path = "../gpu/pass/rig.rs"]
 #[allow(dead_code, reason = "the passes' tests use all of it")]

@@ -50,7 +50,7 @@ fn follow(pixel: usize, view: &View) -> (usize, f64, f64) {
     let radius_deg = 0.5 * FOVEATION.fovea_deg;
     let gaze_px = match view.facts.gaze {
         afterimage::Gaze::At { px } => px,
-        afterimage::Gaze::Lost => panic!("nothing is lost in a quiet stretch"),
+        _ => panic!("nothing is lost in a quiet stretch"),
     };
     let e_deg = geometry.eccentricity_deg(px, gaze_px);
     let weight = f64::from(candidate_weight(e_deg, radius_deg, 1.0 / cell_density(radius_deg)));

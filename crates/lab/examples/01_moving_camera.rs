@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         depth: DepthConvention::Reversed { near, far: f32::INFINITY },
         ..ContextDesc::new(size)
     };
-    let mut post = CpuAfterimage::new(desc, Settings::default())?;
+    let mut post = CpuAfterimage::new(&desc)?;
     let mut output = [Image::filled(size, [0.0; 3])];
 
     for index in 0..30 {

@@ -24,7 +24,7 @@ enum Post {
 impl Post {
     fn new(gpu: Option<Arc<Headless>>, settings: Settings) -> Result<Self, Box<dyn std::error::Error>> {
         let Some(gpu) = gpu else {
-            return Ok(Self::Cpu(Box::new(CpuAfterimage::new(ContextDesc::new(SIZE), settings)?)));
+            return Ok(Self::Cpu(Box::new(CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) })?)));
         };
         let desc = GpuDesc { settings, ..GpuDesc::new(SIZE, TextureFormat::Rgba32Float) };
         let texture = |usage| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage);

@@ -12,7 +12,7 @@ use afterimage_lab::source::{AnalyticSource, FrameSource};
 use wgpu::{TextureFormat, TextureUsages};
 
 const VIEWS: [DebugView; 6] =
-    [DebugView::Weight, DebugView::Age, DebugView::Survival, DebugView::Flush, DebugView::Gate, DebugView::Motion];
+    [DebugView::Quality, DebugView::Age, DebugView::Survival, DebugView::Rejection, DebugView::Gate, DebugView::Motion];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::find(true).ok_or("no adapter")?;

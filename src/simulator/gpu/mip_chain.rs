@@ -1,8 +1,8 @@
 //! The coarser levels of a frame on the device.
 
-use super::pass::{Pass, sampled, storage, uniform};
 use super::texture;
 use crate::frame::ContextDesc;
+use crate::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use crate::gpu::filled;
 use crate::kernel::foveate::level_len;
 use wgpu::{
@@ -23,16 +23,16 @@ pub(super) struct MipChain {
     /// Sizes of the levels that each is made of, in pixels or texels, and the buffers that tell the shader.
     fine: Vec<([u32; 2], Buffer)>,
     view_count: u32,
-    pass: Pass,
+    shader: ComputeShader,
 }
 
 impl MipChain {
     /// Levels 1 to `coarsest`; with none, a texture that is bound and not read.
-    pub fn new(device: &Device, context: &ContextDesc, coarsest: u32, source: String) -> Self {
+    pub fn new(device: &Device, desc: &ContextDesc, coarsest: u32, source: String) -> Self {
         let mip_count = coarsest.max(1);
-        let base = context.size_px.map(|s| s.next_multiple_of(1 << mip_count) / 2);
+        let base = desc.size_px.map(|s| s.next_multiple_of(1 << mip_count) / 2);
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
-        let texture = texture(device, base, context.view_count, mip_count, FORMAT, usage);
+        let texture = texture(device, base, desc.view_count, mip_count, FORMAT, usage);
         let view = |base_mip_level, mip_level_count| {
             texture.create_view(&TextureViewDescriptor {
                 label: Some("afterimage mip level"),
@@ -43,17 +43,17 @@ impl MipChain {
             })
         };
         let fine = (0..coarsest).map(|level| {
-            let size = context.size_px.map(|s| level_len(s, level));
+            let size = desc.size_px.map(|s| level_len(s, level));
             let buffer = filled(device, "afterimage mip level", bytemuck::bytes_of(&size), wgpu::BufferUsages::UNIFORM);
             (size, buffer)
         });
-        let types = [uniform(), sampled(), storage(FORMAT)];
+        let types = [uniform(), float_texture(), storage_texture(FORMAT)];
         Self {
             levels: view(0, mip_count),
             mips: (0..coarsest).map(|mip| view(mip, 1)).collect(),
             fine: fine.collect(),
-            view_count: context.view_count,
-            pass: Pass::new(device, "afterimage mip level", source, &types, &[]),
+            view_count: desc.view_count,
+            shader: ComputeShader::new(device, "afterimage mip level", source, &types),
         }
     }
 
@@ -63,7 +63,8 @@ impl MipChain {
         for (mip, (fine_size, buffer)) in self.mips.iter().zip(&self.fine) {
             let resources =
                 [buffer.as_entire_binding(), BindingResource::TextureView(finer), BindingResource::TextureView(mip)];
-            self.pass.record(device, pass, &resources, false, fine_size.map(|s| level_len(s, 1)), self.view_count);
+            let group = self.shader.group(device, resources);
+            self.shader.dispatch(device, pass, &[], &group, fine_size.map(|s| level_len(s, 1)), self.view_count);
             finer = mip;
         }
     }

@@ -1,35 +1,32 @@
-//! The simulators on a GPU: of a full-rate frame they make what a foveating renderer would have delivered, recorded into the caller's
-//! command encoder. Twins of [`Foveation::render`](crate::foveation::Foveation::render) and [`lod_map`](crate::foveation::Foveation::lod_map), bit-equal to
-//! them on software Vulkan.
+//! The simulators on a GPU: recorded into the caller's command encoder. Twins of [`Foveation::render`] and [`Foveation::lod_map`],
+//! bit-equal to them on software Vulkan.
 //!
-//! The caller owns device, queue, encoder, every input and output texture, and submission, as with [`Afterimage`](crate::gpu::Afterimage),
-//! and describes both by one [`GpuDesc`]. Kept on the device: for the mip levels of [`Filter::Mip`] 5.4 bytes a pixel, of
-//! [`Filter::Block`] 5; between the axes of [`Filter::Gauss`] 16.
+//! [`Foveation::render`]: crate::Foveation::render
+//! [`Foveation::lod_map`]: crate::Foveation::lod_map
 
 mod mip_chain;
-mod pass;
-// Public for this package's own tests, which compare struct layouts.
+// For the tests, which compare struct layouts.
 #[doc(hidden)]
-pub mod types;
+pub mod uniforms;
 
 use crate::error::{CreateError, FrameError};
 use crate::foveation::Filter;
-use crate::frame::ViewFrame;
-use crate::gpu::{GpuDesc, Timestamps, array_view, check_readable, check_texture, filled};
+use crate::frame::{ContextDesc, ViewFrame};
+use crate::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
+use crate::gpu::{Timestamps, array_view, check_readable, check_texture, filled, texel, validate};
 use crate::kernel::foveate::block_sample_level;
 use crate::shader::SHADERS;
 use mip_chain::MipChain;
-use pass::{Pass, sampled, storage, uniform};
-use types::{FoveationConstants, ViewConstants};
+use uniforms::FoveationUniforms;
 use wgpu::{
-    BindingResource, CommandEncoder, ComputePassTimestampWrites, Device, Texture, TextureFormat, TextureUsages,
-    TextureView,
+    BindingResource, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat,
+    TextureUsages, TextureView,
 };
 
 /// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), and one sample a
 /// pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct FoveationFrame<'a> {
+pub struct SimulatorFrame<'a> {
     /// The frame at full rate: linear color, any float format, usage `TEXTURE_BINDING`.
     pub full: &'a Texture,
     /// The foveated frame: the context's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied bit for bit if `full` has
@@ -45,54 +42,79 @@ pub struct FoveationFrame<'a> {
     pub timestamps: Option<Timestamps<'a>>,
 }
 
-impl<'a> FoveationFrame<'a> {
+impl<'a> SimulatorFrame<'a> {
     /// A frame without optional outputs.
     pub fn new(full: &'a Texture, output: &'a Texture, views: &'a [ViewFrame]) -> Self {
         Self { full, output, lod: None, views, timestamps: None }
     }
 }
 
-/// A foveation simulator on the GPU.
+/// A foveation simulator on a GPU: of a full-rate frame it makes what a foveating renderer would have delivered.
+///
+/// The caller owns device, queue, encoder, every input and output texture, and submission, as with
+/// [`Afterimage`](crate::gpu::Afterimage). Kept on the device: for the mip levels of [`Filter::Mip`] 5.4 bytes a pixel, of
+/// [`Filter::Block`] 5; between the axes of [`Filter::Gauss`] 16.
+///
+/// ```no_run
+/// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
+/// #     views: &[afterimage::ViewFrame]) -> Result<(), Box<dyn std::error::Error>> {
+/// use afterimage::ContextDesc;
+/// use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+///
+/// let desc = ContextDesc::new([full.width(), full.height()]);
+/// let mut simulator = GpuSimulator::new(device, &desc, foveated.format())?;
+/// simulator.record(device, encoder, &SimulatorFrame::new(full, foveated, views))?;
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
-pub struct GpuFoveation {
-    desc: GpuDesc,
+pub struct GpuSimulator {
+    desc: ContextDesc,
+    output_format: TextureFormat,
     steps: Steps,
     held_gaze: Vec<Option<[f32; 2]>>,
-    /// Bound where no levels of detail are wanted; not written.
+    /// Bound where no levels of detail are asked for; not written.
     no_lod: TextureView,
 }
 
-/// What a filter does, and keeps between its passes.
+/// Passes of a filter, and what lies between them.
 #[derive(Debug)]
 enum Steps {
-    Levels { chain: MipChain, show: Pass },
-    Axes { across: Pass, between: TextureView, down: Pass },
+    Levels { mip_chain: MipChain, show: ComputeShader },
+    Axes { across: ComputeShader, between: TextureView, down: ComputeShader },
 }
 
-impl GpuFoveation {
-    /// A simulator of `desc.settings.foveation` for frames of `desc.context` (of which size and number of views matter here) and
-    /// `desc.output_format`. Makes shaders; pipelines are made at the first frame that needs them.
+impl GpuSimulator {
+    /// A simulator of `desc.settings.foveation` for frames of `desc`, of which size and number of views matter here, and outputs of
+    /// `output_format`. Compiles shaders; pipelines are made at the first frame that needs them.
     ///
     /// # Errors
-    /// If a setting or fact is out of range, or the device cannot do it.
-    pub fn new(device: &Device, desc: &GpuDesc) -> Result<Self, CreateError> {
-        Self::with_shaders(device, desc, |name| SHADERS.compose(name).source)
+    /// [`CreateError`] if a setting or fact is out of range, or the device cannot do it.
+    pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
+        Self::with_shaders(device, desc, output_format, |name| SHADERS.compose(name).source)
     }
 
-    /// The same with shaders from elsewhere: this package's own tests plant errors in them.
+    /// With shaders from elsewhere: tests plant errors in them.
     #[doc(hidden)]
-    pub fn with_shaders(device: &Device, desc: &GpuDesc, source: impl Fn(&str) -> String) -> Result<Self, CreateError> {
-        desc.validate(&device.limits())?;
-        let texel = desc.output_texel()?;
+    pub fn with_shaders(
+        device: &Device,
+        desc: &ContextDesc,
+        output_format: TextureFormat,
+        source: impl Fn(&str) -> String,
+    ) -> Result<Self, CreateError> {
+        validate(desc, output_format, &device.limits())?;
+        let texel = texel(output_format)?;
         // The texel format of a storage texture is part of the text in WGSL.
         let writing = |name, texel| source(name).replace("rgba16float", texel);
-        let context = &desc.context;
         let foveation = desc.settings.foveation;
-        let output = storage(desc.output_format);
-        let lod = storage(TextureFormat::R32Float);
-        let levels = |coarsest, name| Steps::Levels {
-            chain: MipChain::new(device, context, coarsest, source("mip_level")),
-            show: Pass::new(device, name, writing(name, texel), &[uniform(), sampled(), sampled(), output, lod], &[]),
+        let output = storage_texture(output_format);
+        let lod = storage_texture(TextureFormat::R32Float);
+        let levels = |coarsest, name| {
+            let types = [uniform(), float_texture(), float_texture(), output, lod];
+            Steps::Levels {
+                mip_chain: MipChain::new(device, desc, coarsest, source("mip_level")),
+                show: ComputeShader::new(device, name, writing(name, texel), &types),
+            }
         };
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
@@ -102,23 +124,29 @@ impl GpuFoveation {
             Filter::Gauss => {
                 let format = TextureFormat::Rgba32Float;
                 let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
-                let axis = |texel, output, constants| {
-                    let types = [uniform(), sampled(), output, lod];
-                    Pass::new(device, "gauss_axis", writing("gauss_axis", texel), &types, constants)
+                let axis = |texel, output| {
+                    let types = [uniform(), float_texture(), output, lod];
+                    ComputeShader::new(device, "gauss_axis", writing("gauss_axis", texel), &types)
                 };
                 Steps::Axes {
-                    across: axis("rgba32float", storage(format), &[("AXIS", 0.0)]),
-                    between: array_view(&texture(device, context.size_px, context.view_count, 1, format, usage)),
-                    down: axis(texel, output, &[("AXIS", 1.0)]),
+                    across: axis("rgba32float", storage_texture(format)),
+                    between: array_view(&texture(device, desc.size_px, desc.view_count, 1, format, usage)),
+                    down: axis(texel, output),
                 }
             }
         };
         let no_lod = texture(device, [1, 1], 1, 1, TextureFormat::R32Float, TextureUsages::STORAGE_BINDING);
-        Ok(Self { desc: *desc, steps, held_gaze: vec![None; context.view_count as usize], no_lod: array_view(&no_lod) })
+        Ok(Self {
+            desc: *desc,
+            output_format,
+            steps,
+            held_gaze: vec![None; desc.view_count as usize],
+            no_lod: array_view(&no_lod),
+        })
     }
 
-    /// What it was made for.
-    pub fn desc(&self) -> &GpuDesc {
+    /// The description that it was made for.
+    pub fn desc(&self) -> &ContextDesc {
         &self.desc
     }
 
@@ -130,54 +158,52 @@ impl GpuFoveation {
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
-        frame: &FoveationFrame<'_>,
+        frame: &SimulatorFrame<'_>,
     ) -> Result<(), FrameError> {
         self.check(frame)?;
-        let constants = self.constants(frame.views);
-        let (label, bytes) = ("afterimage foveation constants", bytemuck::bytes_of(&constants));
-        let constants = filled(device, label, bytes, wgpu::BufferUsages::UNIFORM);
-        let constants = constants.as_entire_binding();
+        let uniforms = self.uniforms(frame.views);
+        let (label, bytes) = ("afterimage foveation uniforms", bytemuck::bytes_of(&uniforms));
+        let uniforms = filled(device, label, bytes, BufferUsages::UNIFORM);
+        let uniforms = || uniforms.as_entire_binding();
         let view = BindingResource::TextureView;
         let (full, output) = (array_view(frame.full), array_view(frame.output));
         let lod = frame.lod.map_or_else(|| self.no_lod.clone(), array_view);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some("afterimage foveation"),
-            timestamp_writes: frame.timestamps.map(|t| ComputePassTimestampWrites {
-                query_set: t.queries,
-                beginning_of_pass_write_index: Some(t.begin),
-                end_of_pass_write_index: Some(t.end),
-            }),
+            timestamp_writes: frame.timestamps.map(Timestamps::writes),
         });
-        let (size, views, write_lod) = (self.desc.context.size_px, self.desc.context.view_count, frame.lod.is_some());
+        let (size, layers) = (self.desc.size_px, self.desc.view_count);
+        let write_lod = ("WRITE_LOD", u32::from(frame.lod.is_some()));
         match &self.steps {
-            Steps::Levels { chain, show } => {
-                chain.record(device, &mut pass, &full);
-                let resources = [constants, view(&full), view(&chain.levels), view(&output), view(&lod)];
-                show.record(device, &mut pass, &resources, write_lod, size, views);
+            Steps::Levels { mip_chain, show } => {
+                mip_chain.record(device, &mut pass, &full);
+                let resources = [uniforms(), view(&full), view(&mip_chain.levels), view(&output), view(&lod)];
+                let group = show.group(device, resources);
+                show.dispatch(device, &mut pass, &[write_lod], &group, size, layers);
             }
             Steps::Axes { across, between, down } => {
-                let resources = [constants.clone(), view(&full), view(between), view(&self.no_lod)];
-                across.record(device, &mut pass, &resources, false, size, views);
-                let resources = [constants, view(between), view(&output), view(&lod)];
-                down.record(device, &mut pass, &resources, write_lod, size, views);
+                let group = across.group(device, [uniforms(), view(&full), view(between), view(&self.no_lod)]);
+                across.dispatch(device, &mut pass, &[("AXIS", 0), ("WRITE_LOD", 0)], &group, size, layers);
+                let group = down.group(device, [uniforms(), view(between), view(&output), view(&lod)]);
+                down.dispatch(device, &mut pass, &[("AXIS", 1), write_lod], &group, size, layers);
             }
         }
         Ok(())
     }
 
-    fn check(&self, frame: &FoveationFrame<'_>) -> Result<(), FrameError> {
+    fn check(&self, frame: &SimulatorFrame<'_>) -> Result<(), FrameError> {
         let desc = &self.desc;
-        let (found, expected) = (frame.views.len(), desc.context.view_count as usize);
+        let (found, expected) = (frame.views.len(), desc.view_count as usize);
         if found != expected {
             return Err(FrameError::ViewCount { found, expected });
         }
         for (i, view) in frame.views.iter().enumerate() {
-            view.check(i, &desc.context)?;
+            view.check(i, desc)?;
         }
         check_texture(desc, "the full-rate frame", frame.full, TextureUsages::TEXTURE_BINDING)?;
         check_readable("the full-rate frame", frame.full, 3)?;
         let written = [
-            ("output", Some(frame.output), desc.output_format, "the output format that the context was made for"),
+            ("output", Some(frame.output), self.output_format, "the output format that the context was made for"),
             ("levels of detail", frame.lod, TextureFormat::R32Float, "R32Float"),
         ];
         for (input, texture, format, expected) in written {
@@ -196,16 +222,15 @@ impl GpuFoveation {
         Ok(())
     }
 
-    /// The frame's constants. Remembers where the eyes look.
-    fn constants(&mut self, views: &[ViewFrame]) -> FoveationConstants {
-        let size = self.desc.context.size_px;
-        let mut constants = FoveationConstants::new(&self.desc.settings.foveation, size);
-        for ((to, view), held) in constants.views.iter_mut().zip(views).zip(&mut self.held_gaze) {
-            let gaze_px = view.gaze.resolve(*held, size);
-            *held = Some(gaze_px);
-            *to = ViewConstants::new(&view.geometry, gaze_px);
+    /// The frame's uniforms. Remembers where the eyes look.
+    fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
+        let mut gaze_px = vec![];
+        for (view, held) in views.iter().zip(&mut self.held_gaze) {
+            let px = view.gaze.resolve(*held, self.desc.size_px);
+            *held = Some(px);
+            gaze_px.push(px);
         }
-        constants
+        FoveationUniforms::new(&self.desc, views, &gaze_px)
     }
 }
 

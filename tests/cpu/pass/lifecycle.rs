@@ -80,20 +80,20 @@ fn a_frame_that_is_refused_changes_nothing() {
     let words = mixed.history().words().to_vec();
     let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
     let facts = Input::still(right.clone()).view().facts;
-    let bad = |view: CpuView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
-        let frame = CpuFrame { reset: Reset::All, ..CpuFrame::new(std::slice::from_ref(&view), 3) };
-        mixed.process(&frame, out, None).unwrap_err()
+    let bad = |view: OneView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
+        let images = Images::of(&[view]);
+        mixed.process(&Frame { reset: Reset::All, ..images.frame(3) }, out).unwrap_err()
     };
-    let view = CpuView::new(facts, &right);
+    let view = OneView::new(facts, &right);
     let depth = Image::filled([3, 4], 1.0);
     let mut matrix = facts;
     matrix.previous_from_current = Some([[f32::NAN; 4]; 4]);
     for (view, out_size) in [
-        (CpuView { color: &small, ..view }, SIZE),
-        (CpuView { depth: Some(&depth), ..view }, SIZE),
-        (CpuView { trust: Some(&depth), ..view }, SIZE),
-        (CpuView { lod: Some(&depth), ..view }, SIZE),
-        (CpuView { facts: matrix, ..view }, SIZE),
+        (OneView { color: &small, ..view }, SIZE),
+        (OneView { depth: Some(&depth), ..view }, SIZE),
+        (OneView { trust: Some(&depth), ..view }, SIZE),
+        (OneView { lod: Some(&depth), ..view }, SIZE),
+        (OneView { facts: matrix, ..view }, SIZE),
         (view, [9, 9]),
     ] {
         let mut out = [Image::filled(out_size, [0.5; 3])];
@@ -103,9 +103,9 @@ fn a_frame_that_is_refused_changes_nothing() {
     }
     assert_eq!(bad(view, &mut [], &mut mixed), FrameError::ViewCount { found: 0, expected: 1 });
     for ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        let views = [view];
-        let frame = CpuFrame { exposure: Exposure::Changed { ratio }, ..CpuFrame::new(&views, 3) };
-        let error = mixed.process(&frame, &mut [right.clone()], None).unwrap_err();
+        let images = Images::of(&[view]);
+        let frame = Frame { exposure: Exposure::Changed { ratio }, ..images.frame(3) };
+        let error = mixed.process(&frame, &mut [right.clone()]).unwrap_err();
         assert!(matches!(error, FrameError::Value { what: "exposure ratio", .. }), "{error}");
     }
     assert_eq!(mixed.history().words(), words);
@@ -116,12 +116,13 @@ fn a_frame_that_is_refused_changes_nothing() {
 #[test]
 fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
-        assert!(CpuAfterimage::new(ContextDesc::new(size), Settings::paper()).is_err());
+        assert!(CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) }).is_err());
         let mut post = context(Settings::paper());
         assert!(matches!(post.resize(size), Err(FrameError::Extent { .. })));
         assert_eq!(post.desc().size_px, SIZE);
     }
-    let mut post = CpuAfterimage::new(ContextDesc::new([1, 1]), Settings::paper()).unwrap();
+    let mut post =
+        CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..ContextDesc::new([1, 1]) }).unwrap();
     let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);
@@ -134,7 +135,10 @@ fn memory_is_what_the_documentation_says() {
     assert_eq!(context(Settings::paper()).memory_bytes(), 24 * pixels);
     assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::paper() }).memory_bytes(), 32 * pixels);
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    assert_eq!(CpuAfterimage::new(stereo, Settings::paper()).unwrap().memory_bytes(), 48 * pixels);
+    assert_eq!(
+        CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..stereo }).unwrap().memory_bytes(),
+        48 * pixels
+    );
 }
 
 #[test]

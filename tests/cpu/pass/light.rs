@@ -14,8 +14,9 @@ fn exposed(post: &mut CpuAfterimage, index: u64, ratio: f32, color: &Color) -> (
     let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
     let mut trace = [Image::filled(SIZE, PixelTrace::default())];
     let views = [input.view()];
-    let frame = CpuFrame { exposure: Exposure::Changed { ratio }, ..CpuFrame::new(&views, index) };
-    let stats = post.process(&frame, &mut out, Some(&mut trace)).unwrap();
+    let images = Images::of(&views);
+    let frame = Frame { exposure: Exposure::Changed { ratio }, ..images.frame(index) };
+    let stats = post.process_traced(&frame, &mut out, &mut trace).unwrap();
     let ([out], [trace]) = (out, trace);
     (out, stats, trace)
 }
@@ -57,7 +58,7 @@ fn h72_with_the_ratio_history_follows_the_exposure_at_once() {
         }
         let bright = frame(0, ratio);
         let (out, stats, trace) = exposed(&mut post, 10, ratio, &bright);
-        assert_eq!((out, stats.flushed()), (bright, 0));
+        assert_eq!((out, stats.rejected()), (bright, 0));
         assert!(trace.pixels().iter().all(|t| t.gate == 1.0));
         assert!(share(&trace, |_, t| !t.take) > 0.7, "and is kept");
     }
@@ -98,7 +99,7 @@ fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
         let mut stale = vec![];
         for index in 30..180 {
             let (_, stats, trace) = one(&mut post, index, &Input::still(frame(index, ratio)));
-            assert_eq!(stats.flushed(), 0);
+            assert_eq!(stats.rejected(), 0);
             stale.push(share(&trace, |_, t| u64::from(t.age) > index - 30));
         }
         let until = |limit: f64| stale.iter().rposition(|&s| s > limit).map_or(0, |last| last + 1);

@@ -10,7 +10,8 @@ mod reservoirs;
 mod trust;
 mod views;
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use crate::images::{Images, OneView};
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{
     Bias, ContextDesc, DepthConvention, DepthTest, Exposure, FrameError, FrameStats, Gaze, Image, Method,
@@ -55,14 +56,14 @@ impl Input {
         Self { trust: None, ..self.clone() }
     }
 
-    fn view(&self) -> CpuView<'_> {
+    fn view(&self) -> OneView<'_> {
         let geometry = geometry(self.color.size());
         let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
-        CpuView {
+        OneView {
             depth: self.depth.as_ref(),
             motion: self.motion.as_ref(),
             trust: self.trust.as_ref(),
-            ..CpuView::new(facts, &self.color)
+            ..OneView::new(facts, &self.color)
         }
     }
 }
@@ -73,7 +74,7 @@ fn context_of(method: Method) -> CpuAfterimage {
 }
 
 fn context(settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap()
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
 /// Keeps history for certain while its weight is this large: a draw of 2^-24 steps never reaches the candidate's share.
@@ -94,7 +95,9 @@ fn step(
     let mut out = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
     let views: Vec<_> = inputs.iter().map(|i| i.view()).collect();
-    let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&views, index) }, &mut out, Some(&mut trace)).unwrap();
+    let images = Images::of(&views);
+    let frame = Frame { reset, ..images.frame(index) };
+    let stats = post.process_traced(&frame, &mut out, &mut trace).unwrap();
     (out, stats, trace)
 }
 

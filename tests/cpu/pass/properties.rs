@@ -11,25 +11,25 @@ const FRAMES: u64 = 3;
 const WILD: [f32; 4] = [0.0, 0.02, 0.3, 1.0];
 
 fn new(settings: Settings, view_count: u32) -> CpuAfterimage {
-    CpuAfterimage::new(ContextDesc { view_count, ..ContextDesc::new(SIZE) }, settings).unwrap()
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc { view_count, ..ContextDesc::new(SIZE) } }).unwrap()
 }
 
 fn show(post: &mut CpuAfterimage, index: u64, frames: &[&AnyFrame]) -> (Vec<Color>, Vec<Image<PixelTrace>>) {
-    let noisy = post.settings().noisy;
+    let noisy = post.desc().settings.noisy;
     let views: Vec<_> = frames
         .iter()
-        .map(|f| CpuView {
+        .map(|f| OneView {
             depth: Some(&f.depth),
             motion: Some(&f.motion),
             trust: Some(&f.trust),
             lod: Some(&f.lod),
             noise: noisy.then_some(&f.noise),
-            ..CpuView::new(f.facts, &f.color)
+            ..OneView::new(f.facts, &f.color)
         })
         .collect();
     let mut out = vec![Image::filled(SIZE, [f32::NAN; 3]); frames.len()];
     let mut trace = vec![Image::filled(SIZE, PixelTrace::default()); frames.len()];
-    post.process(&CpuFrame::new(&views, index), &mut out, Some(&mut trace)).unwrap();
+    post.process_traced(&Images::of(&views).frame(index), &mut out, &mut trace).unwrap();
     (out, trace)
 }
 
@@ -42,7 +42,7 @@ fn words(post: &CpuAfterimage) -> Vec<u32> {
 
 /// A color as it comes out: itself, and as wrs stores it.
 fn presented(c: [f32; 3]) -> [[u32; 3]; 2] {
-    let (color, _) = afterimage::kernel::scrub::color(glam::Vec3::from(c));
+    let (color, _) = afterimage::kernel::sanitize::color(glam::Vec3::from(c));
     let stored = pack::unpack(pack::pack(pack::Stored { color, disparity: 1.0, w_sum: 1.0, age: 0 })).color;
     [color, stored].map(|c| c.to_array().map(f32::to_bits))
 }

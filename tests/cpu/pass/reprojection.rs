@@ -17,7 +17,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
             ..Input::still(noise(SIZE, &format!("still {index}")))
         };
         let (out, stats, trace) = one(&mut post, index, &input);
-        assert_eq!(stats.flushed(), 0);
+        assert_eq!(stats.rejected(), 0);
         for (i, colors) in seen.iter_mut().enumerate() {
             colors.insert(input.color.pixels()[i].map(f32::to_bits));
             assert!(colors.contains(&out.pixels()[i].map(f32::to_bits)), "frame {index}, pixel {i}");
@@ -67,7 +67,9 @@ fn every_motion_convention_means_the_same_shift() {
                 let scale = convention.to_internal(SIZE);
                 let vector = [3.0 / scale[0], -2.0 / scale[1]];
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
-                let mut post = CpuAfterimage::new(desc, Settings { gate: None, ..Settings::paper() }).unwrap();
+                let mut post =
+                    CpuAfterimage::new(&ContextDesc { settings: Settings { gate: None, ..Settings::paper() }, ..desc })
+                        .unwrap();
                 one(&mut post, 0, &Input::still(before.clone()));
                 sticky(&mut post);
                 let input = Input { motion: Some(Image::filled(SIZE, vector)), ..Input::still(noise(SIZE, "later")) };
@@ -124,7 +126,7 @@ fn h54_garbage_motion_shows_the_candidate() {
         let input = Input { motion: Some(motion), ..Input::still(noise(SIZE, "b")) };
         let (out, stats, _) = one(&mut post, 1 + i as u64, &input);
         assert_eq!(stats.verdicts[Verdict::BadMotion as usize], 2);
-        assert_eq!(stats.flushed(), 2);
+        assert_eq!(stats.rejected(), 2);
         assert_eq!((out.at(7, 5), out.at(7, 6)), (input.color.at(7, 5), input.color.at(7, 6)));
     }
     holds!("H54", Cpu, "wrs: NaN, infinities, 1e9 and -1e9 on either axis show the candidate, bit for bit");
@@ -157,7 +159,7 @@ fn h59_a_zoom_leaves_no_hole() {
                 }
             }
         }
-        assert_eq!(stats.flushed(), 64 * 48 - kept);
+        assert_eq!(stats.rejected(), 64 * 48 - kept);
         [kept, sources.len() as u64]
     };
     let ([near, originals], [far, all]) = (zoomed(0.5), zoomed(2.0));
@@ -176,7 +178,7 @@ fn h60_a_turn_is_a_full_reset() {
         one(&mut post, 0, &Input::still(noise(SIZE, "turn 0")));
         let turn = Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..Input::still(noise(SIZE, "turn")) };
         let (out, stats, _) = one(&mut post, 1, &turn);
-        assert_eq!((out, stats.flushed()), (turn.color, 64 * 48), "{method:?}");
+        assert_eq!((out, stats.rejected()), (turn.color, 64 * 48), "{method:?}");
     }
 }
 
@@ -202,7 +204,11 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             ..Input::still(noise(LARGE, name))
         };
         let (normal, turn) = (frame("cost", 0.25), frame("cost", 5000.0));
-        let mut start = CpuAfterimage::new(ContextDesc::new(LARGE), Settings { method, ..Settings::paper() }).unwrap();
+        let mut start = CpuAfterimage::new(&ContextDesc {
+            settings: Settings { method, ..Settings::paper() },
+            ..ContextDesc::new(LARGE)
+        })
+        .unwrap();
         one(&mut start, 0, &frame("before", 0.0));
         let time = |input: &Input| {
             let mut post = start.clone();

@@ -28,10 +28,10 @@ fn trust_of_1_changes_nothing_and_of_0_is_a_reset_of_that_pixel() {
         for (i, &t) in mask.pixels().iter().enumerate() {
             let like = if t == 0.0 { &afresh } else { &expected };
             assert_eq!(out.pixels()[i], like.0.pixels()[i]);
-            assert_eq!(trace.pixels()[i].w_sum, like.2.pixels()[i].w_sum);
+            assert_eq!(trace.pixels()[i].quality, like.2.pixels()[i].quality);
         }
         let half = 64 * 48 / 2;
-        assert_eq!((stats.verdicts[Verdict::Distrusted as usize], stats.flushed(), stats.valid()), (half, half, half));
+        assert_eq!((stats.verdicts[Verdict::Distrusted as usize], stats.rejected(), stats.valid()), (half, half, half));
     }
 }
 
@@ -43,7 +43,7 @@ fn half_the_trust_is_half_the_weight_before_gate_and_bias() {
     let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..Input::still(noise(SIZE, "b")) };
     let (_, _, trace) = one(&mut post, 1, &input);
     for (t, w) in trace.pixels().iter().zip(before) {
-        assert_eq!(t.w_sum, 0.5 * w + t.weight);
+        assert_eq!(16.0 * t.quality, 0.5 * w + t.weight);
     }
 }
 
@@ -59,6 +59,6 @@ fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
     let distrusted = |x: usize| (0..48).all(|y| trace.at(x, y).verdict == Verdict::Distrusted);
     let kept = |x: usize| (0..48).all(|y| trace.at(x, y).verdict == Verdict::Valid && !trace.at(x, y).take);
     assert!((0..40).all(distrusted) && (40..64).all(kept));
-    assert_eq!((stats.bad_trust, stats.flushed()), (2 * 8 * 48, 40 * 48));
+    assert_eq!((stats.bad_trust, stats.rejected()), (2 * 8 * 48, 40 * 48));
     assert!(stats.warnings().any(|w| w == Warning::BadTrust { pixels: 2 * 8 * 48 }));
 }

@@ -8,7 +8,7 @@ use afterimage_testing::holds;
 fn h27_stereo_views_never_read_each_other() {
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     let settings = Settings { gate: None, ..Settings::paper() };
-    let fresh = || CpuAfterimage::new(stereo, settings).unwrap();
+    let fresh = || CpuAfterimage::new(&ContextDesc { settings, ..stereo }).unwrap();
     let [mut both, mut left_only, mut right_only] = [fresh(), fresh(), fresh()];
     let mut mono = context(settings);
     let junk = Input { gaze: Gaze::Lost, ..Input::still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9])) };
@@ -72,8 +72,12 @@ fn h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says() {
     // Degrees are 6 pixels, so that a fovea of 5 degrees is some 700 of them.
     const WIDE: [u32; 2] = [480, 48];
     let view = geometry(WIDE);
-    let [old, new] = [20.0_f32, 0.0].map(|e| view.project(glam::Vec3::new(-e.to_radians().tan(), 0.0, 1.0)).unwrap());
-    let mut post = CpuAfterimage::new(ContextDesc::new(WIDE), Settings { gate: None, ..Settings::paper() }).unwrap();
+    let [old, new] = [20.0_f32, 0.0].map(|e| view.project([-e.to_radians().tan(), 0.0, 1.0]).unwrap());
+    let mut post = CpuAfterimage::new(&ContextDesc {
+        settings: Settings { gate: None, ..Settings::paper() },
+        ..ContextDesc::new(WIDE)
+    })
+    .unwrap();
     let frame = |index: u64, px| Input { gaze: Gaze::At { px }, ..Input::still(noise(WIDE, &format!("h66 {index}"))) };
     for index in 0..18 {
         one(&mut post, index, &frame(index, old));
@@ -138,10 +142,10 @@ fn settings_are_checked_and_named() {
         (Settings { bias: Bias::Exponential { lambda: -0.1 }, ..base }, "bias lambda"),
         (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
     ] {
-        let error = CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap_err();
+        let error = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap_err();
         assert_eq!(error.setting, name);
         let mut post = context(base);
         assert!(post.set_settings(settings).is_err());
-        assert_eq!(*post.settings(), base);
+        assert_eq!(post.desc().settings, base);
     }
 }

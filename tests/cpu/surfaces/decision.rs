@@ -39,7 +39,7 @@ fn evidence(draws: &mut Draws) -> Evidence {
         next_level: near(draws, matched),
         trust: if draws.uniform() < 0.5 { 1.0 } else { draws.range(0.01, 1.0) },
         noise: if draws.uniform() < 0.5 { 0.0 } else { draws.range(0.0, 20.0) },
-        sure: [1.0; 2],
+        confidence: [1.0; 2],
     }
 }
 
@@ -94,12 +94,13 @@ fn s4_the_level_of_detail_lies_between_both_and_falls_with_the_share() {
 }
 
 #[test]
-fn s4_the_share_is_trust_times_fit_times_what_is_wanted() {
+fn s4_the_share_is_trust_times_fit_times_the_reuse_weight() {
     over("s4 share", |draws| {
         let (e, p) = (evidence(draws), params(draws));
         let m = decide(&e, &p);
-        let wanted = afterimage::kernel::matched::wanted(e.lod, e.history_lod, p.accumulate, p.noisy, e.sure);
-        assert!((m.share - m.fit * e.trust * wanted.share).abs() < 1e-6);
+        let reuse =
+            afterimage::kernel::matched::reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
+        assert!((m.share - m.fit * e.trust * reuse.share).abs() < 1e-6);
         m.share > 0.0
     });
 }
@@ -144,7 +145,7 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
         next_level: coarser,
         trust: 1.0,
         noise: 0.0,
-        sure: [1.0; 2],
+        confidence: [1.0; 2],
     }
 }
 
@@ -223,7 +224,7 @@ fn s7_relighting_explains_no_change_of_structure() {
             next_level: ground,
             trust: 1.0,
             noise: 0.0,
-            sure: [1.0; 2],
+            confidence: [1.0; 2],
         };
         assert!(shows_the_candidate(&e, &decide(&e, &PARAMS)));
         true

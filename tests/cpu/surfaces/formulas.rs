@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use afterimage::kernel::matched::{
-    chain_bilinear, chain_mean, gain, moves_alike, root_difference, smooth_step, wanted,
+    gain, mip_bilinear, mip_mean, moves_alike, reuse_weight, root_difference, smooth_step,
 };
 use afterimage::kernel::resample::{Gathered, TAPS, catmull_rom, gather, linear_weights, resolve, tap_at};
 use afterimage::kernel::taa;
@@ -148,7 +148,7 @@ fn smooth_step_gain_and_wanted_agree_with_f64() {
         let finer = ((f64::from(lod) - f64::from(history)) / 0.1).clamp(0.0, 1.0);
         let coarser = ((f64::from(history) - f64::from(lod)) / 0.25).clamp(0.0, 1.0);
         let share = finer + (1.0 - finer) * (1.0 - coarser) * f64::from(lod).min(1.0) * f64::from(accumulate);
-        let w = wanted(lod, history, accumulate, false, [1.0; 2]);
+        let w = reuse_weight(lod, history, accumulate, false, [1.0; 2]);
         assert!((f64::from(w.finer) - finer).abs() < 1e-5 && (f64::from(w.share) - share).abs() < 1e-5);
         assert!((0.0..=1.0).contains(&w.share));
     }
@@ -157,10 +157,10 @@ fn smooth_step_gain_and_wanted_agree_with_f64() {
         assert_eq!(gain(1.03, 1.0, changed), 1.0, "nor are a few percent");
     }
     assert_eq!((smooth_step(3.0, 6.0, 3.0), smooth_step(3.0, 6.0, 9.0)), (0.0, 1.0));
-    assert_eq!(wanted(2.0, 1.0, 0.9, false, [1.0; 2]).share, 1.0, "finer history is wanted wholly");
-    assert_eq!(wanted(1.0, 1.5, 0.9, false, [1.0; 2]).share, 0.0, "coarser history never");
+    assert_eq!(reuse_weight(2.0, 1.0, 0.9, false, [1.0; 2]).share, 1.0, "finer history is reused wholly");
+    assert_eq!(reuse_weight(1.0, 1.5, 0.9, false, [1.0; 2]).share, 0.0, "coarser history never");
     for history in [0.0, 0.1, 3.0] {
-        assert_eq!(wanted(0.0, history, 0.98, false, [1.0; 2]).share, 0.0, "nor any in the fovea");
+        assert_eq!(reuse_weight(0.0, history, 0.98, false, [1.0; 2]).share, 0.0, "nor any in the fovea");
     }
 }
 
@@ -195,17 +195,17 @@ fn the_chain_reads_the_mean_of_what_is_covered() {
             *t = (c * coverage).extend(coverage);
         }
         let [a, b, d, e] = texels;
-        let mean = chain_mean(a, b, d, e);
+        let mean = mip_mean(a, b, d, e);
         assert!((mean - (a + b + d + e) / 4.0).abs().max_element() < 1e-6);
         let at = [draws.uniform(), draws.uniform()];
-        let read = chain_bilinear([a, b], [d, e], at);
+        let read = mip_bilinear([a, b], [d, e], at);
         let weights = [(1.0 - at[0]) * (1.0 - at[1]), at[0] * (1.0 - at[1]), (1.0 - at[0]) * at[1], at[0] * at[1]];
         let coverage: f32 = texels.iter().zip(weights).map(|(t, w)| t.w * w).sum();
         if coverage > 0.002 {
             assert!((read - c).abs().max_element() < 1e-3, "holes take nothing away: {read} for {c}");
         }
     }
-    assert_eq!(chain_bilinear([Vec4::ZERO; 2], [Vec4::ZERO; 2], [0.3, 0.6]), Vec3::ZERO);
+    assert_eq!(mip_bilinear([Vec4::ZERO; 2], [Vec4::ZERO; 2], [0.3, 0.6]), Vec3::ZERO);
 }
 
 #[test]

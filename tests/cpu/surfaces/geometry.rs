@@ -5,7 +5,11 @@ use afterimage::Verdict;
 use afterimage_testing::holds;
 
 fn smr(size: [u32; 2], settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(ContextDesc::new(size), Settings { method: Method::Smr, ..settings }).unwrap()
+    CpuAfterimage::new(&ContextDesc {
+        settings: Settings { method: Method::Smr, ..settings },
+        ..ContextDesc::new(size)
+    })
+    .unwrap()
 }
 
 #[test]
@@ -76,7 +80,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
                 assert!(shown.iter().all(|v| (0.45..0.7).contains(v)), "{shown:?}");
             }
         }
-        [kept, made.stats.flushed()]
+        [kept, made.stats.rejected()]
     };
     let ([near, none], [far, border]) = (zoomed(0.5), zoomed(2.0));
     assert!(near > 300 && none == 0 && far > 300 && border > 1000, "{near} {none} {far} {border}");
@@ -90,7 +94,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
     step(&mut post, 0, &Input::sharp(before));
     let later = Input::at_lod(Image::filled(SIZE, [0.5; 3]), 2.0);
     let made = step(&mut post, 1, &Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..later.clone() });
-    assert!(made.shown == later.color && made.stats.flushed() == 52 * 41);
+    assert!(made.shown == later.color && made.stats.rejected() == 52 * 41);
     holds!("H60", Cpu, "smr: all 2132 pixels are the candidate, bit for bit");
 }
 
@@ -107,7 +111,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
     const WIDE: [u32; 2] = [320, 40];
     let settings = settings(Method::Smr);
     let view = ViewGeometry::flat(WIDE, 70.0).unwrap();
-    let at = |e: f32| view.project(glam::Vec3::new(e.to_radians().tan(), 0.0, 1.0)).unwrap();
+    let at = |e: f32| view.project([e.to_radians().tan(), 0.0, 1.0]).unwrap();
     let sharp = noise(WIDE, "h66");
     let picture = LowPass::new(&sharp, 3);
     let mut post = smr(WIDE, settings);

@@ -90,7 +90,7 @@ proptest! {
                 settings.foveation.filter = afterimage::Filter::Block;
             }
             settings.smr.tolerance = 10.0;
-            let mut post = CpuAfterimage::new(ContextDesc::new(SMALL), settings).unwrap();
+            let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap();
             for index in 0..6 {
                 let d = &mut draws;
                 let shift = number(d, wild, -3.0, 3.0);
@@ -111,7 +111,7 @@ proptest! {
                     prop_assert!(s.color.is_finite() && s.color.min_element() >= 0.0);
                 }
                 for t in made.trace.pixels() {
-                    prop_assert!((0.0..=1.0).contains(&t.survival) && (0.0..=1.0).contains(&t.gate) && t.w_sum.is_finite());
+                    prop_assert!((0.0..=1.0).contains(&t.survival) && (0.0..=1.0).contains(&t.gate) && t.quality.is_finite());
                 }
             }
         }

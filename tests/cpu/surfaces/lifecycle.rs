@@ -97,7 +97,7 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
             for method in METHODS {
                 let mut settings = settings(method);
                 settings.foveation.filter = filter;
-                let mut post = CpuAfterimage::new(ContextDesc::new(size), settings).unwrap();
+                let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) }).unwrap();
                 for index in 0..3 {
                     let input = Input {
                         lod: None,
@@ -113,7 +113,11 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
         }
     }
     // Two words of two frames, and for smr levels 1 to 4 of eight bytes a texel: a quarter, a sixteenth, ...
-    let bytes = |method| CpuAfterimage::new(ContextDesc::new([64, 48]), settings(method)).unwrap().memory_bytes();
+    let bytes = |method| {
+        CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new([64, 48]) })
+            .unwrap()
+            .memory_bytes()
+    };
     let texels = 32 * 24 + 16 * 12 + 8 * 6 + 4 * 3;
     assert_eq!((bytes(Method::Taa), bytes(Method::Smr)), (16 * 64 * 48, 16 * (64 * 48 + texels)));
 }
@@ -122,8 +126,10 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
 fn views_know_nothing_of_each_other() {
     for method in METHODS {
         let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-        let (mut both, mut swapped) =
-            (CpuAfterimage::new(desc, settings(method)).unwrap(), CpuAfterimage::new(desc, settings(method)).unwrap());
+        let (mut both, mut swapped) = (
+            CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap(),
+            CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap(),
+        );
         let (mut left, mut right) = (context(method), context(method));
         for index in 0..5 {
             let a = Input { lod: None, gaze: Gaze::At { px: [10.0, 10.0] }, ..frame(index) };

@@ -14,7 +14,7 @@ fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
             Input { exposure: Exposure::Changed { ratio }, ..Input::at_lod(coarse.map(|c| c.map(|v| v * ratio)), 2.0) };
         let told = step(&mut post.clone(), 1, &exposed);
         assert_eq!(told.shown, made.stored().map(|c| c.map(|v| v * ratio)), "x{ratio}");
-        assert_eq!(told.stats.flushed(), 0);
+        assert_eq!(told.stats.rejected(), 0);
         // Not told, it is another picture: what came is shown until nothing is left of the old one.
         let untold = Input { exposure: Exposure::Same, ..exposed };
         for index in 1..20 {

@@ -1,4 +1,4 @@
-//! Noisy candidates: the mean of many frames is as sure as its weights promise and neither darker nor brighter than the truth; noise is
+//! Noisy candidates: the mean of many frames is as confidence as its weights promise and neither darker nor brighter than the truth; noise is
 //! no change, and change is not noise.
 
 use super::rig::{Draws, Input, SIZE, settings, step};
@@ -13,7 +13,7 @@ fn noisy() -> Settings {
 }
 
 fn post(settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(ContextDesc::new(SIZE), settings).unwrap()
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
 /// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves suggest.
@@ -72,7 +72,7 @@ fn a_still_view_becomes_as_sure_as_its_weights_promise() {
     }
 }
 
-/// A lamp that one sample in 32 finds: most pixels look dark and sure.
+/// A lamp that one sample in 32 finds: most pixels look dark and confidence.
 fn rare(d: &mut Draws, _: [u32; 2]) -> f32 {
     if d.bits().is_multiple_of(32) { 8.0 } else { 0.05 }
 }

@@ -1,6 +1,7 @@
 //! Frames of one view for the methods that remember surfaces, and what became of them.
 
-pub use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+pub use crate::images::{Images, OneView};
+pub use afterimage::cpu::{CpuAfterimage, Frame};
 pub use afterimage::kernel::debug_view::PixelTrace;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
 pub use afterimage::{
@@ -19,7 +20,7 @@ pub fn settings(method: Method) -> Settings {
 }
 
 pub fn context(method: Method) -> CpuAfterimage {
-    CpuAfterimage::new(ContextDesc::new(SIZE), settings(method)).unwrap()
+    CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new(SIZE) }).unwrap()
 }
 
 /// Colors that halves hold exactly, different at every pixel.
@@ -66,10 +67,10 @@ impl Input {
         Self { lod, ..Self::sharp(color) }
     }
 
-    pub fn view(&self) -> CpuView<'_> {
+    pub fn view(&self) -> OneView<'_> {
         let geometry = ViewGeometry::flat(self.color.size(), 70.0).unwrap();
         let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
-        CpuView {
+        OneView {
             facts,
             color: &self.color,
             depth: self.depth.as_ref(),
@@ -108,8 +109,9 @@ pub fn step_views(post: &mut CpuAfterimage, index: u64, inputs: &[&Input]) -> Ve
     let mut shown = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
     let views: Vec<_> = inputs.iter().map(|i| i.view()).collect();
-    let frame = CpuFrame { reset: inputs[0].reset, exposure: inputs[0].exposure, ..CpuFrame::new(&views, index) };
-    let stats = post.process(&frame, &mut shown, Some(&mut trace)).unwrap();
+    let images = Images::of(&views);
+    let frame = Frame { reset: inputs[0].reset, exposure: inputs[0].exposure, ..images.frame(index) };
+    let stats = post.process_traced(&frame, &mut shown, &mut trace).unwrap();
     let words = post.history().surfaces().chunks(shown[0].pixels().len());
     let made = shown.into_iter().zip(words).zip(trace);
     made.map(|((shown, words), trace)| Made { shown, words: words.to_vec(), trace, stats }).collect()

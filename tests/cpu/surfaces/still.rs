@@ -119,7 +119,11 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
     let [a, b] = [0.25_f32, 0.26];
     for accumulate in [0.0, 0.5, 0.9] {
         let smr = afterimage::Smr { accumulate, ..Default::default() };
-        let mut post = CpuAfterimage::new(ContextDesc::new(SIZE), Settings { smr, ..settings(Method::Smr) }).unwrap();
+        let mut post = CpuAfterimage::new(&ContextDesc {
+            settings: Settings { smr, ..settings(Method::Smr) },
+            ..ContextDesc::new(SIZE)
+        })
+        .unwrap();
         step(&mut post, 0, &Input::at_lod(Image::filled(SIZE, [a; 3]), 2.0));
         let made = step(&mut post, 1, &Input::at_lod(Image::filled(SIZE, [b; 3]), 2.0));
         for shown in made.shown.pixels() {
@@ -187,7 +191,8 @@ fn h53_200_steps_of_half_a_pixel_blur_no_more_than_stated() {
     let mtf = 1.125 * f.cos() - 0.125 * (3.0 * f).cos();
     let wave = |x: f64| 0.5 + 0.3 * (2.0 * f * x).sin();
     let picture = |shift: f64| Image::from_fn(WIDE, |[x, _]| [wave(f64::from(x) - shift) as f32; 3]);
-    let mut post = CpuAfterimage::new(ContextDesc::new(WIDE), settings(Method::Smr)).unwrap();
+    let mut post =
+        CpuAfterimage::new(&ContextDesc { settings: settings(Method::Smr), ..ContextDesc::new(WIDE) }).unwrap();
     step(&mut post, 0, &Input::sharp(picture(0.0)));
     let (mut kept, mut coarse) = (0.0, 0.0);
     for index in 1..=200 {

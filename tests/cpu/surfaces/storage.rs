@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use afterimage::kernel::pack::disparity_value;
-use afterimage::kernel::surface::{MAX_LOD, chain_texel, half14_value, pack_surface, round_chain};
+use afterimage::kernel::surface::{MAX_LOD, half14_value, mip_texel, pack_surface, round_mip};
 use glam::{Vec3, Vec4};
 use proptest::prelude::*;
 
@@ -82,13 +82,13 @@ fn texels_of_the_chain_are_halves_and_rounding_them_again_changes_nothing() {
     let mut draws = Draws::new("chain texels");
     for _ in 0..100_000 {
         let words = [draws.bits(), draws.bits()];
-        let texel = chain_texel(words);
+        let texel = mip_texel(words);
         let s = unpack_surface(words);
         assert_eq!(texel, if s.lod < 0.0 { Vec4::ZERO } else { s.color.extend(1.0) });
-        assert_eq!(round_chain(texel), texel, "what is stored is a half already");
+        assert_eq!(round_mip(texel), texel, "what is stored is a half already");
         let v = Vec4::new(draws.range(0.0, 70000.0), draws.uniform(), draws.uniform() * 1e-6, draws.uniform());
-        let rounded = round_chain(v);
-        assert!(rounded.is_finite() && round_chain(rounded) == rounded);
+        let rounded = round_mip(v);
+        assert!(rounded.is_finite() && round_mip(rounded) == rounded);
         for i in 0..4 {
             assert!((rounded[i] - v[i].min(65504.0)).abs() <= (v[i] / 2048.0).max(2.0_f32.powi(-25)));
         }

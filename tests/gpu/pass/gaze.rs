@@ -42,7 +42,8 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
                 // Angles from weights, by f64: bisected, where the fovea is nothing and weights fall everywhere.
                 if fovea_deg == 0.0 {
                     for (i, t) in trace[0].pixels().iter().enumerate().step_by(97) {
-                        let [g, r] = [px, [(i % 64) as f32, (i / 64) as f32]].map(|p| geometry.ray(p).as_dvec3());
+                        let [g, r] = [px, [(i % 64) as f32, (i / 64) as f32]]
+                            .map(|p| glam::DVec3::from(geometry.ray(p).map(f64::from)));
                         let exact = r.cross(g).length().atan2(r.dot(g));
                         let (mut low, mut high) = (0.0_f64, 180.0_f64);
                         for _ in 0..60 {

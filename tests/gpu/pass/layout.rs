@@ -1,15 +1,17 @@
 //! The structs that Rust fills are the structs that shaders read: names, order, offsets, sizes.
 
-use afterimage::gpu::types::{FrameConstants, MAX_VIEWS, ViewConstants};
+use afterimage::gpu::uniforms::{FrameUniforms, MAX_VIEWS, ViewUniforms};
 use afterimage::shader::SHADERS;
-use afterimage::simulator::gpu::types as foveation;
+use afterimage::simulator::gpu::uniforms::FoveationUniforms;
 use std::mem::offset_of;
 
 /// Name and offset of each member of a WGSL struct, and its size.
 fn wgsl(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
     let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap();
     let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
-    let list = members.iter().map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
+    // Three words of padding in WGSL are one array in Rust.
+    let members = members.iter().filter(|m| !m.name.as_ref().unwrap().starts_with("unused"));
+    let list = members.map(|m| (m.name.clone().unwrap(), m.offset as usize)).collect();
     (list, *span as usize)
 }
 
@@ -23,30 +25,24 @@ macro_rules! rust {
 fn constants_have_one_layout() {
     let composed = SHADERS.compose("wrs_pass");
     let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
-    // Three words of padding in WGSL are one array in Rust.
-    let without_padding = |name| {
-        let (mut members, size) = wgsl(&module, name);
-        members.retain(|m| !m.0.starts_with("unused"));
-        (members, size)
-    };
-    let frame = rust!(FrameConstants: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
+    let frame = rust!(FrameUniforms: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, disparity_a, motion_scale, disparity_b,
         disparity_flags, exposure, mid_radius_deg, blend_deg, coarse_mid, coarse_far, smr_accumulate,
         smr_accumulate_tolerance, smr_tolerance, views);
-    assert_eq!(without_padding("FrameConstants"), frame);
-    let view = rust!(ViewConstants: ray_scale, ray_offset, gaze_ray, depth_row, key);
-    assert_eq!(without_padding("ViewConstants"), view);
-    assert!(composed.source.contains(&format!("array<ViewConstants, {MAX_VIEWS}>")));
+    assert_eq!(wgsl(&module, "FrameUniforms"), frame);
+    let view = rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key);
+    assert_eq!(wgsl(&module, "ViewUniforms"), view);
+    assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
 }
 
 #[test]
 fn constants_of_the_foveation_have_one_layout() {
     let composed = SHADERS.compose("foveated_views");
     let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
-    let frame = rust!(foveation::FoveationConstants: size, coarsest, fovea_radius_deg, mid_radius_deg, blend_deg, mid, far,
+    let frame = rust!(FoveationUniforms: size, coarsest, fovea_radius_deg, mid_radius_deg, blend_deg, mid, far,
         views);
-    assert_eq!(wgsl(&module, "FoveationConstants"), frame);
-    let view = rust!(foveation::ViewConstants: ray_scale, ray_offset, gaze_ray);
-    assert_eq!(wgsl(&module, "ViewConstants"), view);
-    assert!(composed.source.contains(&format!("array<ViewConstants, {MAX_VIEWS}>")));
+    assert_eq!(wgsl(&module, "FoveationUniforms"), frame);
+    let view = rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key);
+    assert_eq!(wgsl(&module, "ViewUniforms"), view);
+    assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
 }

@@ -2,7 +2,7 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::gpu::{Afterimage, Frame};
 use afterimage::{
     ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, Method, MotionConvention, MotionDirection,
     MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, YAxis,
@@ -150,7 +150,7 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
         let error = rig.gpu.resize(&rig.device, size).unwrap_err();
         assert!(matches!(error, FrameError::Extent { .. }), "{error}");
     }
-    assert_eq!(rig.gpu.desc().context.size_px, SIZE);
+    assert_eq!(rig.gpu.desc().size_px, SIZE);
     assert!(run(&mut rig, 3..6) == run(&mut other, 3..6), "the history is still there");
     holds!("H76", Gpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused by a typed error; the history goes on, bit for bit");
 }
@@ -180,7 +180,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
         let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
         let mut encoder = lost.device.create_command_encoder(&Default::default());
-        lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &output, &facts, 4)).unwrap();
+        lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &facts, 4), &output).unwrap();
         lost.queue.submit([encoder.finish()]);
         lost.gpu.resize(&lost.device, [33, 17]).unwrap();
         lost.gpu.forget();
@@ -239,7 +239,7 @@ fn good_bad_good_equals_good_good() {
     let wrong_output = texture(TextureFormat::Rgba16Float, write, SIZE);
     let facts = [frames[0].facts];
     let elsewhere = [ViewFrame { geometry: ViewGeometry::flat([9, 9], 70.0).unwrap(), ..facts[0] }];
-    let good = Frame { reset: Reset::All, ..Frame::new(&color, &output, &facts, 7) };
+    let good = Frame { reset: Reset::All, ..Frame::new(&color, &facts, 7) };
     let bad = [
         Frame { color: &small, ..good },
         Frame { color: &unbound, ..good },
@@ -255,14 +255,13 @@ fn good_bad_good_equals_good_good() {
         Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
         Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },
         Frame { exposure: Exposure::Changed { ratio: f32::INFINITY }, ..good },
-        Frame { output: &wrong_output, ..good },
-        Frame { output: &color, ..good },
         Frame { views: &[], ..good },
         Frame { views: &elsewhere, ..good },
     ];
     let mut encoder = rig.device.create_command_encoder(&Default::default());
-    for frame in bad {
-        let error: FrameError = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap_err();
+    let onto = |output| (good, output);
+    for (frame, output) in bad.map(|frame| (frame, &output)).into_iter().chain([onto(&wrong_output), onto(&color)]) {
+        let error: FrameError = rig.gpu.record(&rig.device, &mut encoder, &frame, output).unwrap_err();
         println!("{error}");
         assert!(error.to_string().contains("expected"));
     }
@@ -273,14 +272,14 @@ fn good_bad_good_equals_good_good() {
 #[test]
 fn contexts_that_cannot_be_are_refused() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
-    let desc = GpuDesc::new(SIZE, TextureFormat::Rgba16Float);
-    let refused = |desc: GpuDesc| Afterimage::new(&device, &desc).unwrap_err();
-    let format = refused(GpuDesc { output_format: TextureFormat::Bgra8Unorm, ..desc });
+    let desc = ContextDesc::new(SIZE);
+    let refused = |desc: ContextDesc| Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap_err();
+    let format = Afterimage::new(&device, &desc, TextureFormat::Bgra8Unorm).unwrap_err();
     assert!(matches!(format, CreateError::OutputFormat { .. }), "{format}");
-    let many = ContextDesc { view_count: 5, ..desc.context };
-    assert!(refused(GpuDesc { context: many, ..desc }).to_string().contains("at most 4 views"));
-    assert!(refused(GpuDesc { context: ContextDesc::new([0, 3]), ..desc }).to_string().contains("minimised"));
-    let large = refused(GpuDesc { context: ContextDesc::new([16384, 3]), ..desc });
+    let many = ContextDesc { view_count: 5, ..desc };
+    assert!(refused(many).to_string().contains("at most 4 views"));
+    assert!(refused(ContextDesc::new([0, 3])).to_string().contains("minimised"));
+    let large = refused(ContextDesc::new([16384, 3]));
     assert!(large.to_string().contains("max_texture_dimension_2d"), "{large}");
 }
 
@@ -288,12 +287,13 @@ fn contexts_that_cannot_be_are_refused() {
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
     let pixels = u64::from(SIZE[0] * SIZE[1]);
-    let mut desc = GpuDesc { settings: Settings::paper(), ..GpuDesc::new(SIZE, TextureFormat::Rgba16Float) };
-    assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 24 * pixels);
+    let mut desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(SIZE) };
+    let new = |desc: &ContextDesc| Afterimage::new(&device, desc, TextureFormat::Rgba16Float).unwrap();
+    assert_eq!(new(&desc).memory_bytes(), 24 * pixels);
     desc.settings.sampler = Sampler::AEs;
-    assert_eq!(Afterimage::new(&device, &desc).unwrap().memory_bytes(), 32 * pixels);
-    desc.context.view_count = 2;
-    let mut post = Afterimage::new(&device, &desc).unwrap();
+    assert_eq!(new(&desc).memory_bytes(), 32 * pixels);
+    desc.view_count = 2;
+    let mut post = new(&desc);
     assert_eq!(post.memory_bytes(), 64 * pixels);
     post.resize(&device, [7, 5]).unwrap();
     assert_eq!(post.memory_bytes(), 64 * 35);

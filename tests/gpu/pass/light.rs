@@ -35,7 +35,7 @@ fn h72_exposure_up_and_down_by_256() {
         rig.exposure = Exposure::Changed { ratio };
         let (made, trace) = rig.both(10, Reset::None, &[view("still", ratio)]);
         let expected: Vec<[u32; 3]> = view("still", ratio).color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
-        assert!(made.shown == expected && made.stats.flushed() == 0);
+        assert!(made.shown == expected && made.stats.rejected() == 0);
         assert!(trace[0].pixels().iter().filter(|t| !t.take).count() > 64 * 48 / 2);
         // Back, and nobody says so: after 3 frames the gate has let go of all but a hundredth, which happens to look alike.
         rig.exposure = Exposure::Same;
@@ -50,7 +50,7 @@ fn h72_exposure_up_and_down_by_256() {
                 0
             };
             assert!(!gate || stale <= most, "x{ratio}, frame {index}: {stale} stale pixels");
-            assert_eq!(made.stats.flushed(), 0);
+            assert_eq!(made.stats.rejected(), 0);
         }
     }
     holds!(

@@ -16,7 +16,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
     let mut kept = 0;
     for index in 0..1000_usize {
         let made = rig.on_gpu(index as u64, Reset::None, &views[index % 8..=index % 8]);
-        assert_eq!(made.stats.flushed(), 0, "frame {index}");
+        assert_eq!(made.stats.rejected(), 0, "frame {index}");
         for (i, c) in made.shown.iter().enumerate() {
             assert!(pictures.iter().any(|p| p[i] == *c), "frame {index}, pixel {i}");
             kept += usize::from(pictures[index % 8][i] != *c);
@@ -83,7 +83,7 @@ fn h54_garbage_motion_shows_the_candidate() {
             });
             let color = [5, 6].map(|y| bits(view.color.at(7, y)));
             let (made, _) = one(&mut rig, index, view);
-            assert_eq!((made.stats.verdicts[Verdict::BadMotion as usize], made.stats.flushed()), (2, 2), "{bad}");
+            assert_eq!((made.stats.verdicts[Verdict::BadMotion as usize], made.stats.rejected()), (2, 2), "{bad}");
             assert_eq!([5, 6].map(|y| made.shown[y * 64 + 7]), color);
         }
     }
@@ -187,6 +187,6 @@ fn h60_a_turn_is_a_full_reset() {
         let turn = with_motion("turn", |_| [5000.0, 0.0]);
         let color: Vec<[u32; 3]> = turn.color.pixels().iter().map(|&c| bits(c)).collect();
         let (made, _) = one(&mut rig, 1, turn);
-        assert!(made.shown == color && made.stats.flushed() == PIXELS, "{method:?}");
+        assert!(made.shown == color && made.stats.rejected() == PIXELS, "{method:?}");
     }
 }

@@ -1,13 +1,14 @@
 //! The same frames through both executors, and what comes back from the device.
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use crate::images::{Images, OneView};
+use afterimage::cpu::CpuAfterimage;
+use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
 use afterimage::{
-    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Gaze, Image, Method, Reset,
-    Settings, ViewFrame, ViewGeometry,
+    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Gaze, Image, Reset, Settings,
+    ViewFrame, ViewGeometry,
 };
 use afterimage_testing::Draws;
 use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
@@ -89,21 +90,17 @@ pub struct Made {
 impl Rig {
     /// `None`, after saying so, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
-        let pass = match settings.method {
-            Method::None | Method::Wrs => "wrs_pass",
-            Method::Taa => "taa_pass",
-            Method::Smr => "smr_pass",
-        };
-        Self::with_shader(context, settings, &SHADERS.compose(pass).source)
+        let pass = format!("{}_pass", settings.method.name());
+        Self::with_shader(context, settings, &SHADERS.compose(&pass).source)
     }
 
     /// With another text of the pass on the GPU.
     pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
         let (device, queue) = afterimage_testing::gpu::device()?;
-        let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
-        let made = || Afterimage::from_shader(&device, &desc, source);
+        let context = ContextDesc { settings, ..context };
+        let made = || Afterimage::with_shader(&device, &context, TextureFormat::Rgba32Float, source);
         Some(Self {
-            cpu: CpuAfterimage::new(context, settings).unwrap(),
+            cpu: CpuAfterimage::new(&context).unwrap(),
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
             textures: Textures::new(&device, &context),
             counters: device.create_buffer(&wgpu::BufferDescriptor {
@@ -163,17 +160,18 @@ impl Rig {
         let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
         let cpu_views: Vec<_> = views
             .iter()
-            .map(|v| CpuView {
+            .map(|v| OneView {
                 depth: v.depth.as_ref(),
                 motion: v.motion.as_ref(),
                 trust: v.trust.as_ref(),
                 lod: v.lod.as_ref(),
                 noise: v.noise.as_ref(),
-                ..CpuView::new(v.facts, &v.color)
+                ..OneView::new(v.facts, &v.color)
             })
             .collect();
-        let frame = CpuFrame { reset, exposure: self.exposure, ..CpuFrame::new(&cpu_views, index) };
-        let stats = self.cpu.process(&frame, &mut output, Some(&mut trace)).unwrap();
+        let images = Images::of(&cpu_views);
+        let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
+        let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: held_words(&self.cpu), stats }, trace)
     }
@@ -188,13 +186,14 @@ impl Rig {
         self.upload(std::slice::from_ref(view));
         let frame = Frame {
             noise: view.noise.is_some().then_some(&self.textures.noise),
-            ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(&view.facts), 0)
+            ..Frame::new(&self.textures.color, std::slice::from_ref(&view.facts), 0)
         };
+        let output = &self.textures.output;
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let gpu = self.gpu.record(&self.device, &mut encoder, &frame).unwrap_err().to_string();
-        let cpu_view = [CpuView { noise: view.noise.as_ref(), ..CpuView::new(view.facts, &view.color) }];
+        let gpu = self.gpu.record(&self.device, &mut encoder, &frame, output).unwrap_err().to_string();
+        let images = Images::of(&[OneView { noise: view.noise.as_ref(), ..OneView::new(view.facts, &view.color) }]);
         let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
-        let cpu = self.cpu.process(&CpuFrame::new(&cpu_view, 0), &mut output, None).unwrap_err().to_string();
+        let cpu = self.cpu.process(&images.frame(0), &mut output).unwrap_err().to_string();
         assert_eq!(gpu, cpu);
         cpu
     }
@@ -221,15 +220,15 @@ impl Rig {
             lod: views[0].lod.is_some().then_some(&self.textures.lod),
             noise: views[0].noise.is_some().then_some(&self.textures.noise),
             exposure: self.exposure,
-            counters: count.then_some(&self.counters),
             reset,
-            ..Frame::new(&self.textures.color, &self.textures.output, &facts, index)
+            ..Frame::new(&self.textures.color, &facts, index)
         };
+        let target = Target { counters: count.then_some(&self.counters), ..Target::new(&self.textures.output) };
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             match view {
-                None => self.gpu.record(&self.device, &mut encoder, &frame).unwrap(),
-                Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, view).unwrap(),
+                None => self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap(),
+                Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, target, view).unwrap(),
             };
             self.queue.submit([encoder.finish()]);
         });
@@ -243,10 +242,10 @@ impl Rig {
             let frame = Frame {
                 depth: Some(&self.textures.depth),
                 motion: Some(&self.textures.motion),
-                counters: Some(&self.counters),
-                ..Frame::new(&self.textures.color, &self.textures.output, std::slice::from_ref(facts), index as u64)
+                ..Frame::new(&self.textures.color, std::slice::from_ref(facts), index as u64)
             };
-            self.gpu.record(&self.device, &mut encoder, &frame).unwrap();
+            let target = Target { counters: Some(&self.counters), ..Target::new(&self.textures.output) };
+            self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap();
         }
         self.queue.submit([encoder.finish()]);
         self.read()

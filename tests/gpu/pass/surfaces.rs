@@ -80,7 +80,7 @@ fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
     };
     let floor = |jitter: f32| with_depth("floor", move |[_, y]| 1000.0 / (y as f32 + 1.0 + jitter));
     one(&mut strict, 0, floor(0.0));
-    assert!(one(&mut strict, 1, floor(0.5)).0.stats.flushed() > 0, "the planted error: no allowance for slope");
+    assert!(one(&mut strict, 1, floor(0.5)).0.stats.rejected() > 0, "the planted error: no allowance for slope");
     holds!("H44", Gpu, "wrs and smr, 60 to 89.9 degrees, 8 jittered frames: 0 of {seen} pixels flushed");
 }
 
@@ -115,7 +115,7 @@ fn h46_a_jittering_wire_flushes_itself_alone() {
             let mut view = with_depth("wire", |[x, _]| if x == column { 1.0 } else { 10.0 });
             view.color = Image::from_fn(SIZE, |[x, _]| if x == column { wire } else { wall });
             let (made, _) = one(&mut rig, index, view);
-            assert_eq!(made.stats.flushed(), if index == 0 { 0 } else { 2 * 48 }, "the two columns, and only they");
+            assert_eq!(made.stats.rejected(), if index == 0 { 0 } else { 2 * 48 }, "the two columns, and only they");
             if let Some(before) = before.replace(made.shown.clone()).filter(|_| index > 1) {
                 for (i, (a, b)) in made.shown.iter().zip(&before).enumerate() {
                     let change = f64::from(f32::from_bits(a[0]) - f32::from_bits(b[0]));
@@ -146,7 +146,7 @@ fn h47_a_nan_depth_flushes_its_pixel_alone() {
             };
             let (expected, _) = one(&mut clean, index, view(false));
             let (made, trace) = one(&mut hurt, index, view(bad));
-            assert_eq!((made.stats.flushed(), made.stats.bad_depth), (flushed, u64::from(bad)));
+            assert_eq!((made.stats.rejected(), made.stats.bad_depth), (flushed, u64::from(bad)));
             assert_eq!(trace.at(20, 21).verdict == Verdict::Disoccluded, flushed == 1);
             // smr's coarser levels of a pixel that has forgotten reach its neighbours a frame later.
             let alike = |(i, (a, b))| i == 21 * 64 + 20 || method == Method::Smr && index > 1 || a == b;
@@ -169,7 +169,7 @@ fn h41_h49_sky_and_orthographic_depth_flush_where_surfaces_change() {
             let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
             for (index, split, flushed) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
                 let view = with_depth("sky", |[x, _]| if x < split { wall } else { sky });
-                assert_eq!(one(&mut rig, index, view).0.stats.flushed(), flushed, "{depth:?}, frame {index}");
+                assert_eq!(one(&mut rig, index, view).0.stats.rejected(), flushed, "{depth:?}, frame {index}");
             }
         }
     }
@@ -190,7 +190,7 @@ fn h42_depth_beyond_its_ends_is_clamped() {
         let ends = |by: f32| move |[x, _]: [u32; 2]| if x < 32 { 1.0 + by } else { -by };
         for (index, by) in (0..).zip([0.0, f32::EPSILON, 1e-3, 1e30, f32::INFINITY, 0.0]) {
             let (made, _) = one(&mut rig, index, with_depth("ends", ends(by)));
-            assert_eq!((made.stats.flushed(), made.stats.bad_depth), (0, 0), "{method:?}, by {by}");
+            assert_eq!((made.stats.rejected(), made.stats.bad_depth), (0, 0), "{method:?}, by {by}");
         }
     }
     holds!("H42", Gpu, "wrs and smr: 1 ulp to infinity beyond either end is the same surface as the end, 3072 pixels");
@@ -209,7 +209,7 @@ fn h50_z_fighting_shows_only_what_was_presented() {
         view.color = Image::from_fn(SIZE, |at| if pick(at) { a } else { b });
         let (made, trace) = one(&mut rig, index, view);
         assert!(made.shown.iter().all(|&c| c == bits(a) || c == bits(b)));
-        assert_eq!(made.stats.flushed(), 0);
+        assert_eq!(made.stats.rejected(), 0);
         oldest = trace.pixels().iter().map(|t| t.age).max().unwrap().max(oldest);
     }
     assert!(oldest < 40);

@@ -57,7 +57,7 @@ fn h50_z_fighting_stays_next_to_the_colors_presented() {
         let depth = Some(picks.map(|p| if p { 3.0 } else { 3.0001 }));
         let color = coarse(&picks.map(|p| if p { a } else { b }), 2.0);
         let (made, _) = one(&mut rig, index, View { depth, ..at_lod(color, 2.0) });
-        assert_eq!(made.stats.flushed(), 0);
+        assert_eq!(made.stats.rejected(), 0);
         for c in shown(&made) {
             beyond = (0..3).fold(beyond, |w, i| w.max(c[i] - a[i].max(b[i])).max(a[i].min(b[i]) - c[i]));
         }
@@ -74,7 +74,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
     let views = [0.3, 0.75, 1.0, 1.5, 2.0].map(|lod| at_lod(coarse(&picture, lod), lod));
     for index in 1..1000_usize {
         let made = rig.on_gpu(index as u64, Reset::None, &views[index % 5..=index % 5]);
-        assert!(shown(&made) == picture.pixels() && made.stats.flushed() == 0, "frame {index}");
+        assert!(shown(&made) == picture.pixels() && made.stats.rejected() == 0, "frame {index}");
     }
     holds!("H51", Gpu, "smr: 1000 coarse frames of noise show frame 0 bit for bit in all 3072 pixels");
 }
@@ -184,7 +184,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
     let frame = |e_deg: f32| {
         let mut view = View::still(picture.clone(), [0.0; 2]);
         let geometry = view.facts.geometry;
-        let px = geometry.project(glam::Vec3::new(e_deg.to_radians().tan(), 0.0, 1.0)).unwrap();
+        let px = geometry.project([e_deg.to_radians().tan(), 0.0, 1.0]).unwrap();
         view.facts.gaze = afterimage::Gaze::At { px };
         let ecc = geometry.eccentricity_map(px);
         view.color = settings().foveation.render(&pyramid, &settings().foveation.lod_map(&geometry, px, &ecc));
@@ -218,7 +218,7 @@ fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
         rig.exposure = Exposure::Changed { ratio };
         let (made, _) = one(&mut rig, 1, at_lod(after, 2.0));
         assert_eq!(shown(&made), scaled(&picture).pixels(), "x{ratio}");
-        assert_eq!(made.stats.flushed(), 0);
+        assert_eq!(made.stats.rejected(), 0);
         // Back, and nobody says so.
         rig.exposure = Exposure::Same;
         let back = coarse(&picture, 2.0);

@@ -13,7 +13,7 @@ fn caught(filter: Filter, right: &str, wrong: &str) {
     let foveation = Foveation { fovea_deg: 15.0, mid_deg: 30.0, ..foveation(filter, [2, 16]) };
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
     let planted = std::cell::Cell::new(0);
-    let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), |name| {
+    let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), FORMAT, |name| {
         let source = SHADERS.compose(name).source;
         planted.set(planted.get() + source.matches(right).count());
         source.replace(right, wrong)
@@ -87,7 +87,7 @@ fn bad_pixels_that_spread_are_caught() {
 }
 
 #[test]
-fn a_scrubbed_fovea_is_caught() {
+fn a_sanitized_fovea_is_caught() {
     caught(
         Filter::Mip,
         "shown = textureLoad(full, px, view, 0).xyz;",

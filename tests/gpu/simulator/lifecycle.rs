@@ -1,10 +1,10 @@
 //! Several frames in one submission, lost gazes, formats, refusals.
 
 use super::rig::*;
-use afterimage::gpu::{GpuDesc, Timestamps};
+use afterimage::gpu::Timestamps;
 use afterimage::kernel::pack::half_bits;
 use afterimage::shader::SHADERS;
-use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
 use wgpu::{TextureFormat, TextureUsages};
 
@@ -21,8 +21,8 @@ fn frames_of_one_submission_see_their_own_gaze() {
         let mut encoder = rig.device.create_command_encoder(&Default::default());
         let scenes = [[10.0, 10.0], [80.0, 50.0]].map(|gaze| Scene::mono(image.clone(), gaze));
         let shown = scenes.each_ref().map(|scene| {
-            let output = texture(&rig.device, &rig.post.desc().context, TextureFormat::Rgba32Float, written);
-            rig.post.record(&rig.device, &mut encoder, &FoveationFrame::new(&rig.full, &output, &scene.views)).unwrap();
+            let output = texture(&rig.device, rig.post.desc(), TextureFormat::Rgba32Float, written);
+            rig.post.record(&rig.device, &mut encoder, &SimulatorFrame::new(&rig.full, &output, &scene.views)).unwrap();
             output
         });
         rig.queue.submit([encoder.finish()]);
@@ -53,8 +53,7 @@ fn a_lost_gaze_is_held() {
 fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
     for filter in [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off] {
         let foveation = Foveation { filter, fovea_deg: 20.0, mid_deg: 30.0, ..Foveation::default() };
-        let desc = GpuDesc { output_format: TextureFormat::Rgba16Float, ..desc(SIZE, 1, foveation) };
-        let Some(mut rig) = Rig::new(&desc) else { return };
+        let Some(mut rig) = Rig::with_format(&desc(SIZE, 1, foveation), TextureFormat::Rgba16Float) else { return };
         // All finite halves in turn, denormals and the largest included.
         let halves: Vec<[u16; 4]> = (0..SIZE[0] * SIZE[1])
             .map(|i| [i * 11, i * 11 + 1, i * 11 + 2].map(|b| (b % 0x7c00) as u16))
@@ -63,7 +62,7 @@ fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
         afterimage_testing::gpu::write_layer(&rig.queue, &rig.full, 0, bytemuck::cast_slice(&halves));
         let scene = Scene::mono(nasty(SIZE, "unused"), [40.0, 30.0]);
         let mut encoder = rig.device.create_command_encoder(&Default::default());
-        let frame = FoveationFrame { lod: Some(&rig.lod), ..FoveationFrame::new(&rig.full, &rig.output, &scene.views) };
+        let frame = SimulatorFrame { lod: Some(&rig.lod), ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views) };
         rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
         rig.queue.submit([encoder.finish()]);
         let words = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.output);
@@ -87,36 +86,36 @@ fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
 fn what_does_not_fit_is_refused_and_nothing_recorded() {
     let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
     let base = desc(SIZE, 1, Foveation::default());
-    let bad = GpuDesc { output_format: TextureFormat::Bgra8Unorm, ..base };
-    assert!(matches!(GpuFoveation::new(&device, &bad), Err(CreateError::OutputFormat { .. })));
+    let bad = GpuSimulator::new(&device, &base, TextureFormat::Bgra8Unorm);
+    assert!(matches!(bad, Err(CreateError::OutputFormat { .. })));
     let bad = desc(SIZE, 1, Foveation { rate_far: 3, ..Foveation::default() });
-    assert!(matches!(GpuFoveation::new(&device, &bad), Err(CreateError::Settings(_))));
+    assert!(matches!(GpuSimulator::new(&device, &bad, FORMAT), Err(CreateError::Settings(_))));
     let bad = desc(SIZE, 5, Foveation::default());
-    assert!(GpuFoveation::new(&device, &bad).unwrap_err().to_string().contains("at most 4 views"));
+    assert!(GpuSimulator::new(&device, &bad, FORMAT).unwrap_err().to_string().contains("at most 4 views"));
 
-    let mut post = GpuFoveation::new(&device, &base).unwrap();
+    let mut post = GpuSimulator::new(&device, &base, FORMAT).unwrap();
     let (read, written) = (TextureUsages::TEXTURE_BINDING, TextureUsages::STORAGE_BINDING);
-    let context = base.context;
+    let context = base;
     let full = texture(&device, &context, TextureFormat::Rgba16Float, read);
     let output = texture(&device, &context, TextureFormat::Rgba32Float, written);
     let half = texture(&device, &context, TextureFormat::Rgba16Float, written | read);
     let lod = texture(&device, &context, TextureFormat::R32Float, written);
     let scalar = texture(&device, &context, TextureFormat::R32Float, read);
-    let larger = texture(&device, &desc([98, 61], 1, Foveation::default()).context, TextureFormat::Rgba16Float, read);
+    let larger = texture(&device, &desc([98, 61], 1, Foveation::default()), TextureFormat::Rgba16Float, read);
     let views = [looking(ViewGeometry::flat(SIZE, 70.0).unwrap(), [0.0, 0.0])];
     let other = [looking(ViewGeometry::flat([98, 61], 70.0).unwrap(), [0.0, 0.0])];
-    let good = FoveationFrame { lod: Some(&lod), ..FoveationFrame::new(&full, &output, &views) };
+    let good = SimulatorFrame { lod: Some(&lod), ..SimulatorFrame::new(&full, &output, &views) };
     let mut encoder = device.create_command_encoder(&Default::default());
-    let mut refused = |frame: FoveationFrame<'_>| post.record(&device, &mut encoder, &frame).unwrap_err();
-    assert!(matches!(refused(FoveationFrame { views: &[], ..good }), FrameError::ViewCount { .. }));
-    assert!(matches!(refused(FoveationFrame { views: &other, ..good }), FrameError::Size { .. }));
-    assert!(matches!(refused(FoveationFrame { full: &larger, ..good }), FrameError::Size { .. }));
+    let mut refused = |frame: SimulatorFrame<'_>| post.record(&device, &mut encoder, &frame).unwrap_err();
+    assert!(matches!(refused(SimulatorFrame { views: &[], ..good }), FrameError::ViewCount { .. }));
+    assert!(matches!(refused(SimulatorFrame { views: &other, ..good }), FrameError::Size { .. }));
+    assert!(matches!(refused(SimulatorFrame { full: &larger, ..good }), FrameError::Size { .. }));
     for (frame, words) in [
-        (FoveationFrame { full: &scalar, ..good }, "the full-rate frame is a texture of format R32Float"),
-        (FoveationFrame { full: &output, ..good }, "TEXTURE_BINDING"),
-        (FoveationFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, not what is written"),
-        (FoveationFrame { lod: Some(&scalar), ..good }, "STORAGE_BINDING"),
-        (FoveationFrame { lod: Some(&half), ..good }, "levels of detail is a texture of format Rgba16Float"),
+        (SimulatorFrame { full: &scalar, ..good }, "the full-rate frame is a texture of format R32Float"),
+        (SimulatorFrame { full: &output, ..good }, "TEXTURE_BINDING"),
+        (SimulatorFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, not what is written"),
+        (SimulatorFrame { lod: Some(&scalar), ..good }, "STORAGE_BINDING"),
+        (SimulatorFrame { lod: Some(&half), ..good }, "levels of detail is a texture of format Rgba16Float"),
     ] {
         let message = refused(frame).to_string();
         assert!(message.contains(words), "{message}");
@@ -137,7 +136,7 @@ fn the_device_times_all_passes_of_a_filter() {
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
     let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
-    let mut rig = Rig::with_shaders(device, queue, &desc, |name| SHADERS.compose(name).source);
+    let mut rig = Rig::with_shaders(device, queue, &desc, FORMAT, |name| SHADERS.compose(name).source);
     let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
         label: None,
         ty: wgpu::QueryType::Timestamp,
@@ -150,9 +149,9 @@ fn the_device_times_all_passes_of_a_filter() {
     let readback = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
     let scene = Scene::mono(nasty([640, 360], "timed"), [0.0, 0.0]);
     let mut encoder = rig.device.create_command_encoder(&Default::default());
-    let frame = FoveationFrame {
+    let frame = SimulatorFrame {
         timestamps: Some(Timestamps { queries: &queries, begin: 0, end: 1 }),
-        ..FoveationFrame::new(&rig.full, &rig.output, &scene.views)
+        ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views)
     };
     rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
     encoder.resolve_query_set(&queries, 0..2, &resolved, 0);

@@ -1,9 +1,8 @@
 //! The same frame through the simulators on both sides, and what comes back.
 
-use afterimage::gpu::GpuDesc;
 use afterimage::shader::SHADERS;
 use afterimage::simulator::Pyramid;
-use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
@@ -26,18 +25,18 @@ pub struct Made {
 pub struct Rig {
     pub device: Device,
     pub queue: Queue,
-    pub post: GpuFoveation,
+    pub post: GpuSimulator,
     pub full: Texture,
     pub output: Texture,
     pub lod: Texture,
 }
 
-pub fn desc(size: [u32; 2], view_count: u32, foveation: Foveation) -> GpuDesc {
-    GpuDesc {
-        context: ContextDesc { view_count, ..ContextDesc::new(size) },
-        output_format: TextureFormat::Rgba32Float,
-        settings: Settings { foveation, ..Settings::default() },
-    }
+/// Of most tests.
+pub const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+
+pub fn desc(size: [u32; 2], view_count: u32, foveation: Foveation) -> ContextDesc {
+    let settings = Settings { foveation, ..Settings::default() };
+    ContextDesc { view_count, settings, ..ContextDesc::new(size) }
 }
 
 pub fn looking(geometry: ViewGeometry, px: [f32; 2]) -> ViewFrame {
@@ -75,22 +74,33 @@ impl Scene {
 
 impl Rig {
     /// `None`, after saying so, without an adapter.
-    pub fn new(desc: &GpuDesc) -> Option<Self> {
-        let (device, queue) = afterimage_testing::gpu::device()?;
-        Some(Self::with_shaders(device, queue, desc, |name| SHADERS.compose(name).source))
+    pub fn new(desc: &ContextDesc) -> Option<Self> {
+        Self::with_format(desc, FORMAT)
     }
 
-    pub fn with_shaders(device: Device, queue: Queue, desc: &GpuDesc, source: impl Fn(&str) -> String) -> Self {
+    /// With inputs and outputs of a format.
+    pub fn with_format(desc: &ContextDesc, format: TextureFormat) -> Option<Self> {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        Some(Self::with_shaders(device, queue, desc, format, |name| SHADERS.compose(name).source))
+    }
+
+    pub fn with_shaders(
+        device: Device,
+        queue: Queue,
+        desc: &ContextDesc,
+        format: TextureFormat,
+        source: impl Fn(&str) -> String,
+    ) -> Self {
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         Self {
             post: afterimage_testing::gpu::validated(&device, "new", || {
-                GpuFoveation::with_shaders(&device, desc, source)
+                GpuSimulator::with_shaders(&device, desc, format, source)
             })
             .unwrap(),
-            full: texture(&device, &desc.context, desc.output_format, read),
-            output: texture(&device, &desc.context, desc.output_format, written),
-            lod: texture(&device, &desc.context, TextureFormat::R32Float, written),
+            full: texture(&device, desc, format, read),
+            output: texture(&device, desc, format, written),
+            lod: texture(&device, desc, TextureFormat::R32Float, written),
             device,
             queue,
         }
@@ -101,7 +111,7 @@ impl Rig {
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             let frame =
-                FoveationFrame { lod: Some(&self.lod), ..FoveationFrame::new(&self.full, &self.output, &scene.views) };
+                SimulatorFrame { lod: Some(&self.lod), ..SimulatorFrame::new(&self.full, &self.output, &scene.views) };
             self.post.record(&self.device, &mut encoder, &frame).unwrap();
             self.queue.submit([encoder.finish()]);
         });

@@ -108,8 +108,8 @@ fn a_surface_stored_or_read_wrongly_is_caught() {
     caught(surfaces::PROBES, "half14_bits", ">> 1u, 0x3dffu)", ">> 1u, 0x3e00u)");
     caught(surfaces::PROBES, "pack_surface", "* LOD_STEPS + 0.5", "* LOD_STEPS");
     caught(surfaces::PROBES, "unpack_surface", "if lod == EMPTY_LOD", "if lod > EMPTY_LOD");
-    caught(surfaces::PROBES, "chain_texel", "vec4<f32>(s.color, 1.0)", "vec4<f32>(s.color, 0.0)");
-    caught(surfaces::PROBES, "round_chain", "half_value(half_bits(v.w))", "v.w");
+    caught(surfaces::PROBES, "mip_texel", "vec4<f32>(s.color, 1.0)", "vec4<f32>(s.color, 0.0)");
+    caught(surfaces::PROBES, "round_mip", "half_value(half_bits(v.w))", "v.w");
 }
 
 #[test]
@@ -127,12 +127,17 @@ fn a_wrong_match_is_caught() {
     caught(matching::PROBES, "smooth_step", "3.0 - 2.0 * t", "3.0 - 2.01 * t");
     caught(matching::PROBES, "root_difference", "luma * luma + 0.5 * chroma", "luma * luma + chroma");
     caught(matching::PROBES, "moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within");
-    caught(matching::PROBES, "wanted", "(history_lod - lod) / COARSER_WIDTH", "(lod - history_lod) / COARSER_WIDTH");
+    caught(
+        matching::PROBES,
+        "reuse_weight",
+        "(history_lod - lod) / COARSER_WIDTH",
+        "(lod - history_lod) / COARSER_WIDTH",
+    );
     caught(matching::PROBES, "gain", "(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)");
     caught(matching::PROBES, "decide", "if relit < d {", "if relit > d {");
     caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
-    caught(matching::PROBES, "chain_mean", "(a + b + c + d)", "(a + b + c + c)");
-    caught(matching::PROBES, "chain_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
+    caught(matching::PROBES, "mip_mean", "(a + b + c + d)", "(a + b + c + c)");
+    caught(matching::PROBES, "mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
 }
 
 #[test]

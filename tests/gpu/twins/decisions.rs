@@ -98,7 +98,7 @@ fn verdict(code: u32) -> Verdict {
 
 fn traced(r: &Row<'_>) -> PixelTrace {
     PixelTrace {
-        w_sum: r.f(0),
+        quality: r.f(0),
         age: r.u(1),
         survival: r.f(2),
         verdict: verdict(r.u(3)),
@@ -145,13 +145,13 @@ pub const PROBES: &[Probe] = &[
         name: "view_color",
         module: "debug_view",
         words: [8, 3],
-        wgsl: "out_v(view_color(in_u(7u), PixelTrace(0.0, in_f(0u), in_u(1u), in_f(2u), in_u(3u), in_f(4u), true, vec2<f32>(in_f(5u), in_f(6u)))));",
+        wgsl: "out_v(view_color(in_u(7u), PixelTrace(in_u(3u), 0.0, in_f(0u), in_u(1u), in_f(2u), in_f(4u), true, vec2<f32>(in_f(5u), in_f(6u)))));",
         rust: |r, o| {
             let views = [
-                DebugView::Weight,
+                DebugView::Quality,
                 DebugView::Age,
                 DebugView::Survival,
-                DebugView::Flush,
+                DebugView::Rejection,
                 DebugView::Gate,
                 DebugView::Motion,
             ];

@@ -61,8 +61,8 @@ fn reservoir_is_bit_equal_h01_h02_h04_h15_h17_h18_h21() {
 }
 
 #[test]
-fn scrub_is_bit_equal_h17_h18_h37() {
-    check_module(state::PROBES, "scrub");
+fn sanitize_is_bit_equal_h17_h18_h37() {
+    check_module(state::PROBES, "sanitize");
 }
 
 #[test]

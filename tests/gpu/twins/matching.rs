@@ -92,7 +92,7 @@ fn decide(r: &Row<'_>, o: &mut Out) {
         next_level: r.v(20),
         trust: r.f(23),
         noise: r.f(29),
-        sure: [r.f(31), r.f(32)],
+        confidence: [r.f(31), r.f(32)],
     };
     let p = SmrParams {
         accumulate: r.f(24),
@@ -116,13 +116,24 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
     let flag = |i: usize| flags.map_or(vec![0, 1], |f| vec![f[i]]);
     let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
     let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
-    let sure = floats(&[0.0, 0.25, 1.0]);
+    let confidence = floats(&[0.0, 0.25, 1.0]);
     let mut lists: Vec<&[u32]> = vec![&c; 9];
     lists.push(&l);
     lists.extend([&h[..]; 3]);
     lists.push(&l);
     lists.extend([&h[..]; 9]);
-    lists.extend([&trust[..], &share, &tolerance, &tolerance, &blocks, &relight, &noise, &noisy, &sure, &sure]);
+    lists.extend([
+        &trust[..],
+        &share,
+        &tolerance,
+        &tolerance,
+        &blocks,
+        &relight,
+        &noise,
+        &noisy,
+        &confidence,
+        &confidence,
+    ]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
         let candidate = remembered(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
@@ -142,8 +153,8 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
         let noise = if d.bits() & 1 == 0 { 0.0 } else { d.range(0.0, 20.0) };
         push(row, &[noise]);
         row.push(noisy[d.bits() as usize % noisy.len()]);
-        let sure = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
-        push(row, &sure);
+        let confidence = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
+        push(row, &confidence);
     })
 }
 
@@ -224,23 +235,23 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "wanted",
+        name: "reuse_weight",
         module: "matched",
         words: [6, 2],
-        wgsl: "let w = wanted(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u, vec2<f32>(in_f(4u), in_f(5u))); out_f(w.finer); out_f(w.share);",
+        wgsl: "let w = reuse_weight(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u, vec2<f32>(in_f(4u), in_f(5u))); out_f(w.finer); out_f(w.share);",
         rust: |r, o| {
-            let w = matched::wanted(r.f(0), r.f(1), r.f(2), r.u(3) != 0, [r.f(4), r.f(5)]);
+            let w = matched::reuse_weight(r.f(0), r.f(1), r.f(2), r.u(3) != 0, [r.f(4), r.f(5)]);
             o.f(w.finer);
             o.f(w.share);
         },
         rows: || {
             let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
             let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
-            let (then, one, sure) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
+            let (then, one, confidence) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
             Rows::new(6)
                 .cross(&[&l, &then, &shares, &[0, 1], &one, &one])
-                .mixed("wanted", &[&l, &then, &shares, &[0, 1], &sure, &sure])
-                .random("wanted", |d, row| {
+                .mixed("reuse_weight", &[&l, &then, &shares, &[0, 1], &confidence, &confidence])
+                .random("reuse_weight", |d, row| {
                     let (now, then) = (lod(d), lod(d));
                     let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
                     push(row, &[now, near, d.range(0.0, 0.99)]);
@@ -300,27 +311,27 @@ pub const PROBES: &[Probe] = &[
     decide_probe!("false", "false", "false", Some([0, 0, 0])),
     decide_probe!("false", "true", "true", Some([0, 1, 1])),
     Probe {
-        name: "chain_mean",
+        name: "mip_mean",
         module: "matched",
         words: [16, 4],
-        wgsl: "let m = chain_mean(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)));
+        wgsl: "let m = mip_mean(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)));
     out_v(m.xyz); out_f(m.w);",
         rust: |r, o| {
-            let m = matched::chain_mean(vec4(r, 0), vec4(r, 4), vec4(r, 8), vec4(r, 12));
+            let m = matched::mip_mean(vec4(r, 0), vec4(r, 4), vec4(r, 8), vec4(r, 12));
             o.v(m.truncate());
             o.f(m.w);
         },
-        rows: || chain_rows("chain_mean", 0),
+        rows: || chain_rows("mip_mean", 0),
     },
     Probe {
-        name: "chain_bilinear",
+        name: "mip_bilinear",
         module: "matched",
         words: [18, 3],
-        wgsl: "out_v(chain_bilinear(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)), vec2<f32>(in_f(16u), in_f(17u))));",
+        wgsl: "out_v(mip_bilinear(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)), vec2<f32>(in_f(16u), in_f(17u))));",
         rust: |r, o| {
             let (top, bottom) = ([vec4(r, 0), vec4(r, 4)], [vec4(r, 8), vec4(r, 12)]);
-            o.v(matched::chain_bilinear(top, bottom, [r.f(16), r.f(17)]));
+            o.v(matched::mip_bilinear(top, bottom, [r.f(16), r.f(17)]));
         },
-        rows: || chain_rows("chain_bilinear", 2),
+        rows: || chain_rows("mip_bilinear", 2),
     },
 ];

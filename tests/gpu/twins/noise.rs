@@ -196,13 +196,13 @@ pub const PROBES: &[Probe] = &[
         rows: || pair_rows("noise_difference", &[&channels()]),
     },
     Probe {
-        name: "sureness",
+        name: "noise_confidence",
         module: "noise",
         words: [3, 1],
-        wgsl: "out_f(sureness(Noise(in_f(0u), in_f(1u)), in_f(2u)));",
-        rust: |r, o| o.f(noise::sureness(known(r, 0), r.f(2))),
+        wgsl: "out_f(noise_confidence(Noise(in_f(0u), in_f(1u)), in_f(2u)));",
+        rust: |r, o| o.f(noise::noise_confidence(known(r, 0), r.f(2))),
         rows: || {
-            Rows::new(3).cross(&[&counts(), &variances(), &channels()]).random("sureness", |d, row| {
+            Rows::new(3).cross(&[&counts(), &variances(), &channels()]).random("noise_confidence", |d, row| {
                 push(row, &[1.0 + (d.bits() % 99) as f32, d.range(0.0, 0.02), d.range(0.0, 2.0)]);
             })
         },

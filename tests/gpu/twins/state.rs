@@ -5,7 +5,7 @@ use super::values::*;
 use afterimage::kernel::pack::Stored;
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::rng::Purpose;
-use afterimage::kernel::{pack, reproject, reservoir, rng, scrub};
+use afterimage::kernel::{pack, reproject, reservoir, rng, sanitize};
 use afterimage_testing::Draws;
 
 fn stored(r: &Row<'_>) -> Stored {
@@ -26,19 +26,19 @@ pub fn draw(d: &mut Draws) -> u32 {
 pub const PROBES: &[Probe] = &[
     Probe {
         name: "is_finite",
-        module: "scrub",
+        module: "sanitize",
         words: [1, 1],
         wgsl: "out_b(is_finite(in_f(0u)));",
-        rust: |r, o| o.b(scrub::is_finite(r.f(0))),
+        rust: |r, o| o.b(sanitize::is_finite(r.f(0))),
         rows: || Rows::new(1).cross(&[&any()]).random("is_finite", |d, row| row.push(bits(d))),
     },
     Probe {
         name: "color",
-        module: "scrub",
+        module: "sanitize",
         words: [3, 4],
         wgsl: "let s = color(in_v(0u)); out_v(s.color); out_b(s.usable);",
         rust: |r, o| {
-            let (color, usable) = scrub::color(r.v(0));
+            let (color, usable) = sanitize::color(r.v(0));
             o.v(color);
             o.b(usable);
         },
@@ -52,18 +52,18 @@ pub const PROBES: &[Probe] = &[
     },
     Probe {
         name: "weight",
-        module: "scrub",
+        module: "sanitize",
         words: [1, 1],
         wgsl: "out_f(weight(in_f(0u)));",
-        rust: |r, o| o.f(scrub::weight(r.f(0))),
+        rust: |r, o| o.f(sanitize::weight(r.f(0))),
         rows: || Rows::new(1).cross(&[&any()]).random("weight", |d, row| row.push(bits(d))),
     },
     Probe {
         name: "trust",
-        module: "scrub",
+        module: "sanitize",
         words: [1, 1],
         wgsl: "out_f(trust(in_f(0u)));",
-        rust: |r, o| o.f(scrub::trust(r.f(0))),
+        rust: |r, o| o.f(sanitize::trust(r.f(0))),
         rows: || {
             Rows::new(1)
                 .cross(&[&[any(), around(&[1.0])].concat()])

@@ -145,24 +145,24 @@ pub const PROBES: &[Probe] = &[
         rows: || packed_rows("unpack_surface"),
     },
     Probe {
-        name: "chain_texel",
+        name: "mip_texel",
         module: "surface",
         words: [2, 4],
-        wgsl: "let t = chain_texel(vec2<u32>(in_u(0u), in_u(1u))); out_v(t.xyz); out_f(t.w);",
-        rust: |r, o| surface::chain_texel([r.u(0), r.u(1)]).to_array().into_iter().for_each(|x| o.f(x)),
-        rows: || packed_rows("chain_texel"),
+        wgsl: "let t = mip_texel(vec2<u32>(in_u(0u), in_u(1u))); out_v(t.xyz); out_f(t.w);",
+        rust: |r, o| surface::mip_texel([r.u(0), r.u(1)]).to_array().into_iter().for_each(|x| o.f(x)),
+        rows: || packed_rows("mip_texel"),
     },
     Probe {
-        name: "round_chain",
+        name: "round_mip",
         module: "surface",
         words: [4, 4],
-        wgsl: "let t = round_chain(vec4<f32>(in_v(0u), in_f(3u))); out_v(t.xyz); out_f(t.w);",
-        rust: |r, o| surface::round_chain(r.v(0).extend(r.f(3))).to_array().into_iter().for_each(|x| o.f(x)),
+        wgsl: "let t = round_mip(vec4<f32>(in_v(0u), in_f(3u))); out_v(t.xyz); out_f(t.w);",
+        rust: |r, o| surface::round_mip(r.v(0).extend(r.f(3))).to_array().into_iter().for_each(|x| o.f(x)),
         rows: || {
             let x = finite();
             Rows::new(4)
-                .mixed("round_chain", &[&x, &x, &x, &x])
-                .random("round_chain", |d, row| row.extend((0..4).map(|_| signed(d, -26, 17))))
+                .mixed("round_mip", &[&x, &x, &x, &x])
+                .random("round_mip", |d, row| row.extend((0..4).map(|_| signed(d, -26, 17))))
         },
     },
     Probe {

@@ -132,10 +132,10 @@ fn h36_negative_and_any_other_colors_give_finite_numbers() {
     let mut lowest = 0.0_f32;
     let mut runner = TestRunner::new(afterimage_testing::property("finite lab", cases));
     let result = runner.run(&([ANY; 3], [ANY; 3]), |(a, b)| {
-        let (c, valid) = scrub::color(Vec3::from(a));
+        let (c, valid) = sanitize::color(Vec3::from(a));
         prop_assert_eq!(valid, a.iter().all(|x| x.is_finite()));
         prop_assert!(c.abs().max_element() <= 65504.0);
-        let d = wrs::difference(c, scrub::color(Vec3::from(b)).0, DELTA_E);
+        let d = wrs::difference(c, sanitize::color(Vec3::from(b)).0, DELTA_E);
         prop_assert!(color::lab(c).is_finite() && d.is_finite() && d >= 0.0);
         Ok(())
     });

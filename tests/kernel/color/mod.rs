@@ -5,7 +5,7 @@ mod gate;
 
 use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::GateCode;
-use afterimage::kernel::{color, scrub};
+use afterimage::kernel::{color, sanitize};
 use afterimage_testing::Draws;
 use approx::assert_abs_diff_eq;
 use glam::{DVec3, Vec3};

@@ -1,7 +1,7 @@
 //! Laws that hold for any number, and for any bits.
 
 use super::*;
-use afterimage::kernel::scrub;
+use afterimage::kernel::sanitize;
 
 proptest! {
     #![proptest_config(afterimage_testing::property("reservoir", 2000))]
@@ -69,8 +69,8 @@ proptest! {
     #[test]
     fn any_bits_give_finite_output(color in any::<[u32; 3]>(), others in any::<[u32; 3]>(), words in any::<[u32; 3]>(), draw in 0u32..1 << 24, params in any_params()) {
         let [weight, trust, key] = others.map(f32::from_bits);
-        let (candidate, usable) = scrub::color(Vec3::from(color.map(f32::from_bits)));
-        let weight = if usable { scrub::weight(weight).min(1.0) } else { 0.0 };
+        let (candidate, usable) = sanitize::color(Vec3::from(color.map(f32::from_bits)));
+        let weight = if usable { sanitize::weight(weight).min(1.0) } else { 0.0 };
         let history = pack::unpack(words);
         let past = Past { color: history.color, w_sum: history.w_sum, log_key: key };
         let past = wrs::believe(past, trust, params.sampler);

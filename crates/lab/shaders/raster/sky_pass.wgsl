@@ -1,7 +1,7 @@
 //#use direction
 //#use raster_frame
 //#use scenery
-//#use scrub
+//#use sanitize
 // What is behind everything.
 
 @vertex

@@ -1,4 +1,4 @@
-//#use scrub
+//#use sanitize
 //#use frame
 // Adds the batch's samples to their pixels: film::Moments::add. One thread a pixel: that of its first item.
 

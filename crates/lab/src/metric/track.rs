@@ -102,8 +102,8 @@ fn correspond(
         let (Some(now), Some(before)) = (now, before) else {
             return [index; 2];
         };
-        let ray = geometry.ray([x as f32, y as f32]);
-        let stretch = row[0] * ray.x + row[1] * ray.y + row[2];
+        let [ray_x, ray_y, _] = geometry.ray([x as f32, y as f32]);
+        let stretch = row[0] * ray_x + row[1] * ray_y + row[2];
         let expected = depth::previous_disparity(now.at(xi, yi), stretch, row[3]);
         let slope = depth::slope(x, y, size, |x, y| now.at(x as usize, y as usize));
         let slope = test.slope_px * slope;

@@ -1,7 +1,6 @@
 //! Passes with a part left out, to see what the part costs and buys. For measurements alone: what is left out is there for a reason.
 
 use afterimage::Method;
-use afterimage::gpu::pass_name;
 use afterimage::shader::SHADERS;
 
 /// A part of the passes that can be left out.
@@ -23,7 +22,7 @@ const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr];
 /// All parts.
 pub const PARTS: &[Part] = &[
     Part {
-        name: "scrub",
+        name: "sanitize",
         instead: "NaN and infinity are taken as they come",
         methods: HISTORIES,
         replaced: &[
@@ -37,8 +36,8 @@ pub const PARTS: &[Part] = &[
         methods: HISTORIES,
         replaced: &[
             (
-                "return Scrubbed(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);",
-                "return Scrubbed(c, true);",
+                "return Sanitized(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);",
+                "return Sanitized(c, true);",
             ),
             ("let c = clamp(linear_color, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let c = linear_color;"),
             ("max(g.sharp * (1.0 / g.sharp_sum), vec3<f32>(0.0))", "g.sharp * (1.0 / g.sharp_sum)"),
@@ -95,7 +94,7 @@ impl Part {
     /// # Panics
     /// If the pass holds nothing of it: a mistake in this file, which a test of all parts finds.
     pub fn shader_without(&self, method: Method) -> String {
-        let whole = SHADERS.compose(pass_name(method)).source;
+        let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
         let replaced = self.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
         assert_ne!(whole, replaced, "the pass of {method:?} has no {}", self.name);
         replaced

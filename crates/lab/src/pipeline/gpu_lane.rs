@@ -1,16 +1,16 @@
 //! The post-process on a GPU for frames that live in memory: upload, record, submit, read back.
 
+use super::SourceView;
 use crate::clock::Stopwatch;
 use crate::device::{Headless, PassClock};
-use afterimage::cpu::CpuView;
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, FrameStats, Image, Method, Reset, Settings};
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture, TextureFormat, TextureUsages};
 
 /// What a frame of one view brings.
 pub(super) struct LaneInput<'a> {
-    pub view: CpuView<'a>,
+    pub view: SourceView<'a>,
     pub index: u64,
     pub reset: Reset,
 }
@@ -25,6 +25,8 @@ pub(super) struct LaneOutput {
     pub traffic_bytes_per_pixel: u32,
     pub debug: Vec<Image<[f32; 3]>>,
 }
+
+const OUTPUT: TextureFormat = TextureFormat::Rgba32Float;
 
 /// One context and the textures of its frames.
 #[derive(Debug)]
@@ -44,7 +46,7 @@ pub(super) struct GpuLane {
 
 impl GpuLane {
     pub fn new(gpu: &Arc<Headless>, context: ContextDesc, settings: Settings) -> Result<Self, CreateError> {
-        Self::with(gpu, context, settings, |desc| Afterimage::new(&gpu.device, desc))
+        Self::with(gpu, context, settings, |desc| Afterimage::new(&gpu.device, desc, OUTPUT))
     }
 
     /// With another text of the pass.
@@ -55,16 +57,16 @@ impl GpuLane {
         settings: Settings,
         source: &str,
     ) -> Result<Self, CreateError> {
-        Self::with(gpu, context, settings, |desc| Afterimage::from_shader(&gpu.device, desc, source))
+        Self::with(gpu, context, settings, |desc| Afterimage::with_shader(&gpu.device, desc, OUTPUT, source))
     }
 
     fn with(
         gpu: &Arc<Headless>,
         context: ContextDesc,
         settings: Settings,
-        post: impl FnOnce(&GpuDesc) -> Result<Afterimage, CreateError>,
+        post: impl FnOnce(&ContextDesc) -> Result<Afterimage, CreateError>,
     ) -> Result<Self, CreateError> {
-        let desc = GpuDesc { context, output_format: TextureFormat::Rgba32Float, settings };
+        let desc = ContextDesc { settings, ..context };
         let texture = |format, usage| gpu.texture(context.size_px, 1, format, usage);
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let output = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
@@ -76,7 +78,7 @@ impl GpuLane {
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read),
             noise: texture(TextureFormat::Rg32Float, read),
-            output: texture(TextureFormat::Rgba32Float, output),
+            output: texture(OUTPUT, output),
             counters: gpu.counters(),
             clock: PassClock::new(gpu),
             gpu: gpu.clone(),
@@ -121,16 +123,16 @@ impl GpuLane {
             lod: view.lod.map(|_| &self.lod),
             noise: view.noise.map(|_| &self.noise),
             reset: input.reset,
-            ..Frame::new(&self.color, &self.output, std::slice::from_ref(&view.facts), input.index)
+            ..Frame::new(&self.color, std::slice::from_ref(&view.facts), input.index)
         };
         // Counting takes time that is not the method's: it is done by a view, of which there is always one.
-        let counted = Frame { counters: Some(&self.counters), ..frame };
+        let counted = Target { counters: Some(&self.counters), ..Target::new(&self.output) };
         let mut views = debug.to_vec();
-        views.resize(debug.len().max(1), DebugView::Flush);
+        views.resize(debug.len().max(1), DebugView::Rejection);
         let mut pictures = vec![];
         for view in views {
             let mut encoder = self.encoder();
-            self.post.record_view(&self.gpu.device, &mut encoder, &counted, view)?;
+            self.post.record_view(&self.gpu.device, &mut encoder, &frame, counted, view)?;
             self.gpu.queue.submit([encoder.finish()]);
             pictures.push(self.gpu.read_rgb(&self.output, 0));
         }
@@ -140,8 +142,8 @@ impl GpuLane {
         self.gpu.wait();
         let watch = Stopwatch::start();
         let mut encoder = self.encoder();
-        let timed = Frame { timestamps: self.clock.timestamps(), ..frame };
-        self.post.record(&self.gpu.device, &mut encoder, &timed)?;
+        let timed = Target { timestamps: self.clock.timestamps(), ..Target::new(&self.output) };
+        self.post.record(&self.gpu.device, &mut encoder, &frame, timed)?;
         self.clock.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait();

@@ -47,7 +47,7 @@ impl Knowledge {
         let [qx, qy] = reproject::nearest(x, y, motion, self.noise.size()).ok()?.map(|v| v as usize);
         let (Some(now), Some(before)) = (&frame.depth, &self.depth) else { return Some([qx, qy]) };
         let (now, before) = (now.at(px, py), before.at(qx, qy));
-        let point = (geometry.ray([x as f32, y as f32]) * now).extend(1.0);
+        let point = (Vec3::from(geometry.ray([x as f32, y as f32])) * now).extend(1.0);
         let expected = frame.previous_from_current.map_or(now, |m| glam::Vec4::from(m[2]).dot(point));
         let is_nothing = |z: f32| z.is_nan() || z >= 1e9;
         let same = match (is_nothing(now), is_nothing(before)) {

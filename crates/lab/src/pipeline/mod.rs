@@ -8,12 +8,12 @@ mod guide;
 
 use crate::clock::Stopwatch;
 use crate::metric::{Tracked, Tracker};
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+#[cfg(feature = "ablation")]
+use afterimage::SettingsError;
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
-#[cfg(feature = "ablation")]
-use afterimage::SettingsError;
 use afterimage::{
     ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, ViewFrame,
     ViewGeometry,
@@ -108,7 +108,7 @@ impl Executor {
                 let words = post.history().noise().to_vec();
                 let size_px = post.desc().size_px;
                 let image = (!words.is_empty()).then(|| Image::from_pixels(size_px, words).expect("a word a pixel"));
-                (image?, post.settings())
+                (image?, &post.desc().settings)
             }
             #[cfg(feature = "full")]
             Self::Gpu(lane) => (lane.noise()?, lane.settings()),
@@ -159,7 +159,9 @@ impl Pipeline {
                     let settings = Settings { foveation, ..*settings };
                     let desc = ContextDesc::new(geometry.size_px());
                     match backend {
-                        Backend::Cpu => Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(desc, settings)?))),
+                        Backend::Cpu => {
+                            Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(&ContextDesc { settings, ..desc })?)))
+                        }
                         #[cfg(feature = "full")]
                         Backend::Gpu(gpu) => Ok(Executor::Gpu(Box::new(GpuLane::new(gpu, desc, settings)?))),
                     }
@@ -300,22 +302,22 @@ impl Pipeline {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: frame.previous_from_current,
         };
-        let view = CpuView {
+        let view = SourceView {
+            facts,
+            color: candidate.color,
             depth: frame.depth.as_ref(),
             motion: frame.motion.as_ref(),
             trust: frame.trust.as_ref().filter(|_| self.use_trust),
             lod: candidate.told.then_some(candidate.lods),
             noise: candidate.noise,
-            ..CpuView::new(facts, candidate.color)
         };
         let reset = if frame.cut { Reset::All } else { Reset::None };
-        let cpu_frame = CpuFrame { reset, ..CpuFrame::new(std::slice::from_ref(&view), index) };
         let mut shown: Vec<Option<Shown>> = vec![None; self.lanes.len()];
         // Another lane first in every frame: whoever is first finds the caches as the foveation left them.
         let first = index as usize % self.lanes.len().max(1);
         for i in (first..self.lanes.len()).chain(0..first) {
             shown[i] = Some(match &mut self.lanes[i] {
-                Executor::PostProcess(post) => post_process(post, &cpu_frame, &self.debug)?,
+                Executor::PostProcess(post) => post_process(post, &view, index, reset, &self.debug)?,
                 #[cfg(feature = "full")]
                 Executor::Gpu(lane) => post_process_on_gpu(lane, &LaneInput { view, index, reset }, &self.debug)?,
                 Executor::Oracle { best } => {
@@ -361,21 +363,52 @@ fn poisoned(color: &Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3]> 
     spoiled
 }
 
-fn post_process(post: &mut CpuAfterimage, frame: &CpuFrame<'_>, debug: &[DebugView]) -> Result<Shown, FrameError> {
+/// Images of the one view of a frame.
+#[derive(Clone, Copy)]
+struct SourceView<'a> {
+    facts: ViewFrame,
+    color: &'a Image<[f32; 3]>,
+    depth: Option<&'a Image<f32>>,
+    motion: Option<&'a Image<[f32; 2]>>,
+    trust: Option<&'a Image<f32>>,
+    lod: Option<&'a Image<f32>>,
+    noise: Option<&'a Image<[f32; 2]>>,
+}
+
+fn post_process(
+    post: &mut CpuAfterimage,
+    view: &SourceView<'_>,
+    index: u64,
+    reset: Reset,
+    debug: &[DebugView],
+) -> Result<Shown, FrameError> {
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
+    let frame = Frame {
+        depth: view.depth.as_ref().map(std::slice::from_ref),
+        motion: view.motion.as_ref().map(std::slice::from_ref),
+        trust: view.trust.as_ref().map(std::slice::from_ref),
+        lod: view.lod.as_ref().map(std::slice::from_ref),
+        noise: view.noise.as_ref().map(std::slice::from_ref),
+        reset,
+        ..Frame::new(std::slice::from_ref(&view.color), std::slice::from_ref(&view.facts), index)
+    };
     let watch = Stopwatch::start();
-    let stats = post.process(frame, &mut output, traces.as_mut().map(|t| &mut t[..]))?;
+    let stats = match &mut traces {
+        Some(traces) => post.process_traced(&frame, &mut output, traces)?,
+        None => post.process(&frame, &mut output)?,
+    };
     let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
     let [image] = output;
+    let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
     Ok(Shown {
         image,
         wall_ms,
         cpu_ms,
         device_ms: None,
         stats,
-        traffic_bytes_per_pixel: Some(post.traffic_bytes_per_pixel(&frame.views[0])),
+        traffic_bytes_per_pixel: Some(post.desc().settings.traffic_bytes_per_pixel(given)),
         debug: traces.map_or_else(Vec::new, |[trace]| {
             debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()
         }),

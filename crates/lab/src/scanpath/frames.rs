@@ -3,7 +3,6 @@
 use super::{Scanpath, Screen};
 use crate::error::InputError;
 use afterimage::ViewGeometry;
-use glam::Vec3;
 
 /// Slack in seconds when sample and frame times are compared: covers the rounding of `start_s + i / fps` over hours, and is
 /// far below the spacing of any recording.
@@ -134,7 +133,7 @@ fn mapping(
         match tangent_per_px {
             Some(slope) => {
                 let tangent = [0, 1].map(|i| ((px[i] - 0.5 * size[i]) * slope[i]) as f32);
-                view.project(Vec3::new(tangent[0], tangent[1], 1.0))
+                view.project([tangent[0], tangent[1], 1.0])
             }
             None => Some([0, 1].map(|i| (px[i] / size[i] * frame[i] - 0.5) as f32)),
         }

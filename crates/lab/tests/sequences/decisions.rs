@@ -12,7 +12,7 @@ use afterimage_lab::source::AnalyticSource;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
 const VIEWS: [DebugView; 6] =
-    [DebugView::Weight, DebugView::Age, DebugView::Survival, DebugView::Flush, DebugView::Gate, DebugView::Motion];
+    [DebugView::Quality, DebugView::Age, DebugView::Survival, DebugView::Rejection, DebugView::Gate, DebugView::Motion];
 
 fn source(scene: &str) -> AnalyticSource {
     AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()

@@ -7,6 +7,9 @@ mod rig;
 #[path = "../../../../tests/cpu/surfaces/rig.rs"]
 mod surfaces_rig;
 
+#[path = "../../../../tests/common/images.rs"]
+mod images;
+
 mod controls;
 mod decisions;
 mod sequences;

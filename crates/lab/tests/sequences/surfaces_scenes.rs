@@ -65,7 +65,10 @@ fn play(
 ) {
     let mut source = AnalyticSource::new(scene, VIEW, 70.0, 60.0).unwrap();
     let geometry = *source.view();
-    let mut posts: Vec<_> = lanes.iter().map(|&s| CpuAfterimage::new(ContextDesc::new(VIEW), s).unwrap()).collect();
+    let mut posts: Vec<_> = lanes
+        .iter()
+        .map(|&s| CpuAfterimage::new(&ContextDesc { settings: s, ..ContextDesc::new(VIEW) }).unwrap())
+        .collect();
     let mut tracker = Tracker::default();
     for index in 0..frames {
         let mut full = source.frame(index).unwrap();

@@ -81,7 +81,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcom
             let shown_encoded = encode(&shown.image, 0.0);
             let errors = scorer.push(&reference, &shown_encoded, &step.tracked, &step.ecc_deg);
             last.push(-10.0 * errors.mse.log10());
-            flushed += shown.stats.flushed();
+            flushed += shown.stats.rejected();
             pixels += shown.stats.pixels;
         }
     }

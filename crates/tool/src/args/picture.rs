@@ -36,10 +36,10 @@ impl DebugName {
     /// The library's form.
     pub fn view(self) -> DebugView {
         match self {
-            Self::Weight => DebugView::Weight,
+            Self::Weight => DebugView::Quality,
             Self::Age => DebugView::Age,
             Self::Survival => DebugView::Survival,
-            Self::Flush => DebugView::Flush,
+            Self::Flush => DebugView::Rejection,
             Self::Gate => DebugView::Gate,
             Self::Motion => DebugView::Motion,
         }

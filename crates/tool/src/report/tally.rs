@@ -81,7 +81,7 @@ impl Tally {
         self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
         if !frame.cut {
             self.pixels += shown.stats.pixels;
-            self.flushed += shown.stats.flushed();
+            self.flushed += shown.stats.rejected();
             self.with_history += shown.stats.valid();
             self.replaced += shown.stats.replaced;
         }

@@ -125,7 +125,9 @@ pub fn plan(bytes: &[u8]) {
 /// Settings, frames and history of any bits through every method: refused, or shown without a pixel that is no number.
 pub fn settings(bytes: &[u8]) {
     let mut bits = Bits(bytes);
-    let Ok(mut post) = CpuAfterimage::new(ContextDesc::new(SIZE), bits.settings()) else { return };
+    let Ok(mut post) = CpuAfterimage::new(&ContextDesc { settings: bits.settings(), ..ContextDesc::new(SIZE) }) else {
+        return;
+    };
     let geometry = ViewGeometry::flat(SIZE, 60.0).unwrap();
     for index in 0..3 {
         let color = bits.image(|b| [b.float(), b.float(), b.float()]);

@@ -91,7 +91,7 @@ impl<'a> Caster<'a> {
 
     fn ray(&self, px: [f32; 2]) -> Ray {
         let camera = &self.stage.cameras[0];
-        Ray { origin: camera.origin, direction: camera.axes * self.view.ray(px) }
+        Ray { origin: camera.origin, direction: camera.axes * Vec3::from(self.view.ray(px)) }
     }
 
     fn nearest(&self, ray: &Ray, tile: &Tile) -> Option<(usize, f32)> {
@@ -148,7 +148,7 @@ impl<'a> Caster<'a> {
     /// that makes it exactly zero where nothing moved. What was behind the previous camera is far out of its picture.
     fn motion(&self, previous: Vec3, current: Vec3) -> [f32; 2] {
         let outside = self.view.size_px().map(|s| 4.0 * s as f32);
-        match (self.view.project(previous), self.view.project(current)) {
+        match (self.view.project(previous.into()), self.view.project(current.into())) {
             (Some(a), Some(b)) => [a[0] - b[0], a[1] - b[1]],
             _ => outside,
         }

@@ -89,7 +89,7 @@ impl Outline {
     }
 
     fn add(&mut self, point: Vec3, view: &ViewGeometry) {
-        if let Some(px) = view.project(point) {
+        if let Some(px) = view.project(point.into()) {
             // The margin is for rounding: objects end at the outline, never beyond.
             self.from = self.from.min(Vec2::from(px) - 0.01);
             self.to = self.to.max(Vec2::from(px) + 0.01);

@@ -6,7 +6,6 @@ use super::lattice::Lattice;
 use super::regions::tangent_px;
 use super::rings::Ring;
 use afterimage::ViewGeometry;
-use glam::Vec3;
 
 /// The pattern. Defaults are the thesis'.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +29,7 @@ impl Layers {
     pub(super) fn rings(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32) -> Vec<Ring> {
         let size_px = geometry.size_px();
         let lens = self.lens_deg.and_then(|deg| {
-            let center_px = geometry.project(Vec3::Z)?;
+            let center_px = geometry.project([0.0, 0.0, 1.0])?;
             Some(Circle { center_px, radius_px: tangent_px(geometry, deg) })
         });
         let mut radius = 0.0_f32;

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
-use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{CreateError, Filter, FrameError, Gaze, Method, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
@@ -48,7 +48,7 @@ struct Inputs {
     full: Texture,
     /// The full-rate frame as the foveation simulator leaves it for the frame's gaze.
     color: Texture,
-    foveation: GpuFoveation,
+    foveation: GpuSimulator,
     depth: Texture,
     motion: Texture,
     output: Texture,
@@ -86,7 +86,7 @@ const PASSES: [PassKind; 8] = [
 enum Lane {
     Copy(Afterimage),
     Post(Afterimage),
-    Foveate(GpuFoveation),
+    Foveate(GpuSimulator),
 }
 
 impl Lane {
@@ -101,7 +101,7 @@ impl Lane {
             }
             Does::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
-                Self::Foveate(GpuFoveation::new(&gpu.device, &desc)?)
+                Self::Foveate(GpuSimulator::new(&gpu.device, &desc)?)
             }
         })
     }
@@ -242,9 +242,9 @@ fn record(
         Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame).map(|_| ()),
         Lane::Post(post) => post.record(&gpu.device, encoder, frame).map(|_| ()),
         Lane::Foveate(foveation) => {
-            let foveated = FoveationFrame {
+            let foveated = SimulatorFrame {
                 timestamps: frame.timestamps,
-                ..FoveationFrame::new(frame.color, frame.output, frame.views)
+                ..SimulatorFrame::new(frame.color, frame.output, frame.views)
             };
             foveation.record(&gpu.device, encoder, &foveated)
         }
@@ -291,7 +291,7 @@ impl Inputs {
         let inputs = Self {
             full: texture(TextureFormat::Rgba16Float, read),
             color: texture(TextureFormat::Rgba16Float, TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING),
-            foveation: GpuFoveation::new(&gpu.device, &desc)?,
+            foveation: GpuSimulator::new(&gpu.device, &desc)?,
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg16Float, read),
             output: texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING),
@@ -310,7 +310,7 @@ impl Inputs {
     /// Foveates the frame for these views.
     fn foveate(&mut self, gpu: &Headless, views: &[ViewFrame]) -> Result<(), Failure> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.foveation.record(&gpu.device, &mut encoder, &FoveationFrame::new(&self.full, &self.color, views))?;
+        self.foveation.record(&gpu.device, &mut encoder, &SimulatorFrame::new(&self.full, &self.color, views))?;
         gpu.queue.submit([encoder.finish()]);
         gpu.wait();
         Ok(())

@@ -4,7 +4,7 @@ use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::gpu::{Afterimage, Frame, GpuDesc};
-use afterimage::simulator::gpu::{FoveationFrame, GpuFoveation};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, Filter, Gaze, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
@@ -38,7 +38,7 @@ pub struct Lanes {
     no_motion: Texture,
     lod: Texture,
     foveated: Texture,
-    foveation: GpuFoveation,
+    foveation: GpuSimulator,
     lanes: Vec<Lane>,
     /// What is known of the uploaded frame.
     has_depth: bool,
@@ -70,7 +70,7 @@ impl Lanes {
             no_motion: texture(TextureFormat::Rg32Float, read),
             lod: texture(TextureFormat::R32Float, WRITTEN),
             foveated: texture(COLOR, WRITTEN),
-            foveation: GpuFoveation::new(&gpu.device, &desc(&geometry, settings(Shows::None)))?,
+            foveation: GpuSimulator::new(&gpu.device, &desc(&geometry, settings(Shows::None)))?,
             lanes: vec![],
             has_depth: false,
             has_motion: false,
@@ -89,7 +89,7 @@ impl Lanes {
         let device = &self.gpu.device;
         let foveation = settings(Shows::None).foveation;
         if foveation != self.foveation.desc().settings.foveation {
-            self.foveation = GpuFoveation::new(device, &desc(&self.geometry, settings(Shows::None)))?;
+            self.foveation = GpuSimulator::new(device, &desc(&self.geometry, settings(Shows::None)))?;
         }
         let sides = state.shown_sides();
         self.lanes.truncate(sides.len());
@@ -170,7 +170,7 @@ impl Lanes {
         let (gpu, device) = (&self.gpu, &self.gpu.device);
         times.pass(gpu, Pass::Foveation, |encoder, timestamps| {
             let lod = told.then_some(&self.lod);
-            let frame = FoveationFrame { lod, timestamps, ..FoveationFrame::new(&self.full, &self.foveated, &views) };
+            let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, &views) };
             self.foveation.record(device, encoder, &frame)
         })?;
         // A cut is one when its frame comes, not for as long as it stays.

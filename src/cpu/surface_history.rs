@@ -8,13 +8,13 @@ use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample;
 use crate::kernel::resample::{Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
-use crate::kernel::scrub;
+use crate::kernel::sanitize;
 use crate::kernel::surface::{Surface, unpack_surface};
 use crate::kernel::wrs::expose;
 use glam::Vec3;
 
 /// One view of one frame and its past.
-pub(super) struct Remembered<'a> {
+pub(super) struct SurfaceHistory<'a> {
     pub inputs: Inputs<'a>,
     pub past: PastSurfaces<'a>,
 }
@@ -37,7 +37,7 @@ pub(super) struct Source {
     pub trust: f32,
 }
 
-impl Remembered<'_> {
+impl SurfaceHistory<'_> {
     #[inline(always)]
     fn texel(&self, x: i32, y: i32) -> Surface {
         let [width, height] = self.inputs.size.map(|s| s as i32);
@@ -57,7 +57,7 @@ impl Remembered<'_> {
         if nearest.lod < 0.0 {
             return Err(Verdict::Empty);
         }
-        let trust = inputs.trust(x, y).map_or(1.0, scrub::trust);
+        let trust = inputs.trust(x, y).map_or(1.0, sanitize::trust);
         if trust == 0.0 {
             return Err(Verdict::Distrusted);
         }

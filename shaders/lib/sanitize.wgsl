@@ -1,26 +1,26 @@
-// Twin of src/kernel/scrub.rs. By bits throughout: WGSL may assume that NaN and infinity do not exist.
+// Twin of src/kernel/sanitize.rs. By bits throughout: WGSL may assume that NaN and infinity do not exist.
 
 const MAX_HALF: f32 = 65504.0;
 
-// scrub::is_finite
+// sanitize::is_finite
 fn is_finite(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-struct Scrubbed {
+struct Sanitized {
     color: vec3<f32>,
     usable: bool,
 }
 
-// scrub::color
-fn color(c: vec3<f32>) -> Scrubbed {
+// sanitize::color
+fn color(c: vec3<f32>) -> Sanitized {
     if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
-        return Scrubbed(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);
+        return Sanitized(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);
     }
-    return Scrubbed(vec3<f32>(0.0), false);
+    return Sanitized(vec3<f32>(0.0), false);
 }
 
-// scrub::trust: positive floats are in the order of their bits, infinity last and NaNs beyond it.
+// sanitize::trust: positive floats are in the order of their bits, infinity last and NaNs beyond it.
 fn trust(t: f32) -> f32 {
     let bits = bitcast<u32>(t);
     if bits >= 0x3f800000u && bits <= 0x7f800000u {
@@ -29,7 +29,7 @@ fn trust(t: f32) -> f32 {
     return select(0.0, t, bits >= 0x00800000u && bits < 0x3f800000u);
 }
 
-// scrub::weight: kept from the smallest normal float to the largest finite one.
+// sanitize::weight: kept from the smallest normal float to the largest finite one.
 fn weight(w: f32) -> f32 {
     let bits = bitcast<u32>(w);
     return select(0.0, w, bits >= 0x00800000u && bits < 0x7f800000u);

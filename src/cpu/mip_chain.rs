@@ -3,36 +3,36 @@
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
-use crate::kernel::matched::{chain_bilinear, chain_mean};
+use crate::kernel::matched::{mip_bilinear, mip_mean};
 use crate::kernel::noise::{candidate_bilinear, candidate_mean};
-use crate::kernel::surface::{chain_texel, round_chain};
+use crate::kernel::surface::{mip_texel, round_mip};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Levels 1 to n of one view; level l at index l - 1. Texels are halves: of surfaces colors times coverage, and coverage; of candidates
 /// colors, and the variance of a pixel's luma.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Chain {
+pub(super) struct MipChain {
     size: [u32; 2],
     levels: Vec<Image<[f32; 4]>>,
 }
 
-impl Chain {
+impl MipChain {
     /// `count` levels of a view of `size` pixels.
     pub fn new(size: [u32; 2], count: u32) -> Self {
         let levels = (1..=count).map(|l| Image::filled(size.map(|s| level_len(s, l)), [0.0; 4])).collect();
         Self { size, levels }
     }
 
-    /// Bytes, at four halves a texel.
+    /// Bytes, at four floats a texel.
     pub fn memory_bytes(&self) -> usize {
-        self.levels.iter().map(|l| 8 * l.pixels().len()).sum()
+        self.levels.iter().map(|l| size_of_val(l.pixels())).sum()
     }
 
     /// Fills all levels from the packed surfaces of the view.
     pub fn build(&mut self, words: &[[u32; 2]]) {
         let width = self.size[0];
-        self.fill(|x, y| chain_texel(words[(y * width + x) as usize]), chain_mean);
+        self.fill(|x, y| mip_texel(words[(y * width + x) as usize]), mip_mean);
     }
 
     /// Fills all levels from the texels of the view's candidates.
@@ -58,7 +58,7 @@ impl Chain {
                         }
                     };
                     let mean = mean(at(x0, y0), at(x0 + 1, y0), at(x0, y0 + 1), at(x0 + 1, y0 + 1));
-                    *out = round_chain(mean).to_array();
+                    *out = round_mip(mean).to_array();
                 }
             });
         }
@@ -77,7 +77,7 @@ impl Chain {
 
     fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
         let ([a, b, c, d], fraction) = self.around(at, level);
-        chain_bilinear([a, b], [c, d], fraction)
+        mip_bilinear([a, b], [c, d], fraction)
     }
 
     fn bilinear_candidate(&self, at: [f32; 2], level: u32) -> Vec4 {

@@ -6,11 +6,11 @@
 
 @group(0) @binding(8) var lod_in: texture_2d_array<f32>;
 @group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
-@group(0) @binding(10) var past_chain: texture_2d_array<f32>;
+@group(0) @binding(10) var past_mips: texture_2d_array<f32>;
 @group(0) @binding(11) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(12) var next_chain: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(12) var next_mips: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(13) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(14) var candidate_chain: texture_2d_array<f32>;
+@group(0) @binding(14) var candidate_mips: texture_2d_array<f32>;
 @group(0) @binding(15) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 // Where a pixel's surface was. All but the verdict only means something if that is VERDICT_VALID.

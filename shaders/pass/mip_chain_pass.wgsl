@@ -28,9 +28,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let b = texel(first + vec2<u32>(1u, 0u), group.z);
     let c = texel(first + vec2<u32>(0u, 1u), group.z);
     let d = texel(first + vec2<u32>(1u, 1u), group.z);
-    var mean = chain_mean(a, b, c, d);
+    var mean = mip_mean(a, b, c, d);
     if CANDIDATES != 0u {
         mean = candidate_mean(a, b, c, d);
     }
-    textureStore(coarse, id.xy, group.z, round_chain(mean));
+    textureStore(coarse, id.xy, group.z, round_mip(mean));
 }

@@ -1,0 +1,23 @@
+//#use inputs
+// No method: shows the sanitized candidate. Twin on the CPU: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
+
+fn pixel(px: vec2<u32>, view: u32) {
+    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    // Never a constant: compilers fold colors of constants with other roundings.
+    let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
+    count_if(!candidate.usable, COUNT_NONFINITE);
+    count_if(true, COUNT_VERDICTS + verdict);
+    show(px, view, candidate.color, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, group.z);
+    }
+    add_counts(invocation);
+}

@@ -1,0 +1,134 @@
+//! The one builder of compute pipelines: a shader, its bindings, and a pipeline for each set of values of its overrides.
+
+use crate::method::Overrides;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, BufferBindingType, ComputePass, ComputePipeline, ComputePipelineDescriptor, Device,
+    PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor,
+    ShaderSource, ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureViewDimension,
+};
+
+/// Width of a workgroup: rows of 64 invocations. Also in the shaders.
+pub const WORKGROUP_WIDTH: u32 = 64;
+
+/// A compute shader with the entry point `main` and one bind group.
+#[derive(Debug)]
+pub struct ComputeShader {
+    label: &'static str,
+    bindings: BindGroupLayout,
+    layout: PipelineLayout,
+    module: ShaderModule,
+    /// By values of overrides. Made at their first use.
+    pipelines: Mutex<HashMap<Overrides, ComputePipeline>>,
+}
+
+impl ComputeShader {
+    /// A shader whose bindings have `types`, from 0 on.
+    pub fn new(device: &Device, label: &'static str, source: String, types: &[BindingType]) -> Self {
+        let module = device.create_shader_module(ShaderModuleDescriptor {
+            label: Some(label),
+            source: ShaderSource::Wgsl(source.into()),
+        });
+        let entries: Vec<_> = (0..)
+            .zip(types)
+            .map(|(binding, &ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })
+            .collect();
+        let bindings =
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &[Some(&bindings)],
+            ..PipelineLayoutDescriptor::default()
+        });
+        Self { label, bindings, layout, module, pipelines: Mutex::default() }
+    }
+
+    /// A bind group of `resources`, from binding 0 on.
+    pub fn group<'a>(&self, device: &Device, resources: impl IntoIterator<Item = BindingResource<'a>>) -> BindGroup {
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        device.create_bind_group(&BindGroupDescriptor {
+            label: Some(self.label),
+            layout: &self.bindings,
+            entries: &entries,
+        })
+    }
+
+    /// The pipeline of these values of overrides, made at its first use.
+    pub fn pipeline(&self, device: &Device, overrides: &[(&'static str, u32)]) -> ComputePipeline {
+        // A thread that panicked while it made a pipeline has inserted none.
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(made) = pipelines.get(overrides) {
+            return made.clone();
+        }
+        let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
+        let made = device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&self.layout),
+            module: &self.module,
+            entry_point: Some("main"),
+            compilation_options: PipelineCompilationOptions {
+                constants: &constants,
+                // The post-process has workgroup memory for counting alone, and zeroing it costs a barrier.
+                zero_initialize_workgroup_memory: !overrides.contains(&("COUNT", 0)),
+            },
+            cache: None,
+        });
+        pipelines.insert(overrides.to_vec(), made.clone());
+        made
+    }
+
+    /// Dispatches an invocation for each of `size` texels of each of `layers` layers, in rows of workgroups.
+    pub fn dispatch(
+        &self,
+        device: &Device,
+        pass: &mut ComputePass<'_>,
+        overrides: &[(&'static str, u32)],
+        group: &BindGroup,
+        [width, height]: [u32; 2],
+        layers: u32,
+    ) {
+        pass.set_pipeline(&self.pipeline(device, overrides));
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(width.div_ceil(WORKGROUP_WIDTH), height, layers);
+    }
+}
+
+/// Type of a uniform buffer.
+pub fn uniform() -> BindingType {
+    BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None }
+}
+
+/// Type of a storage buffer.
+pub fn storage_buffer(read_only: bool) -> BindingType {
+    BindingType::Buffer {
+        ty: BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+/// Type of an array of float textures to read.
+pub fn float_texture() -> BindingType {
+    sampled(TextureSampleType::Float { filterable: false })
+}
+
+/// Type of an array of textures of words to read.
+pub fn uint_texture() -> BindingType {
+    sampled(TextureSampleType::Uint)
+}
+
+fn sampled(sample_type: TextureSampleType) -> BindingType {
+    BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2Array, multisampled: false }
+}
+
+/// Type of an array of textures to write.
+pub fn storage_texture(format: TextureFormat) -> BindingType {
+    BindingType::StorageTexture {
+        access: StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: TextureViewDimension::D2Array,
+    }
+}

@@ -1,0 +1,64 @@
+//! Weighted reservoirs.
+
+use super::{Entry, HistoryLayout};
+use crate::kernel::acuity;
+use crate::kernel::reservoir;
+use crate::kernel::wrs::{BiasCode, GateCode, SamplerCode, WrsParams};
+use crate::settings::{Bias, GateMetric, Sampler, Settings};
+
+pub(super) static ENTRY: Entry = Entry {
+    name: "wrs",
+    summary: "weighted reservoirs: A-Chao with Bernoulli bias",
+    history: |settings| HistoryLayout::Reservoirs { keys: has_keys(settings) },
+    history_traffic_bytes: |settings| {
+        let reservoir = if has_keys(settings) { 16 } else { 12 };
+        let noise = if settings.noisy { 4 } else { 0 };
+        2 * reservoir + noise
+    },
+    #[cfg(feature = "gpu")]
+    shader: "wrs_pass",
+    #[cfg(feature = "gpu")]
+    block_px: 1,
+    #[cfg(feature = "gpu")]
+    overrides: |settings, _| {
+        let params = wrs_params(settings);
+        vec![("SAMPLER", params.sampler as u32), ("BIAS", params.bias as u32), ("GATE", params.gate as u32)]
+    },
+    #[cfg(feature = "cpu")]
+    run: crate::cpu::wrs_pass,
+};
+
+/// Whether reservoirs need a key besides their weight sum.
+fn has_keys(settings: &Settings) -> bool {
+    settings.sampler == Sampler::AEs
+}
+
+/// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
+pub(crate) fn inv_density_at_fovea(settings: &Settings) -> f32 {
+    1.0 / acuity::cell_density(settings.foveation.fovea_radius_deg())
+}
+
+/// The kernel's form of wrs' tunables.
+pub(crate) fn wrs_params(settings: &Settings) -> WrsParams {
+    let (bias, exponential_survival) = match settings.bias {
+        Bias::Bernoulli => (BiasCode::Bernoulli, 1.0),
+        Bias::Exponential { lambda } => (BiasCode::Exponential, reservoir::exponential_survival(lambda)),
+        Bias::None => (BiasCode::None, 1.0),
+    };
+    let gate = settings.gate.unwrap_or_default();
+    WrsParams {
+        sampler: match settings.sampler {
+            Sampler::AChao => SamplerCode::AChao,
+            Sampler::AEs => SamplerCode::AEs,
+        },
+        bias,
+        exponential_survival,
+        gate: match (settings.gate, gate.metric) {
+            (None, _) => GateCode::Off,
+            (_, GateMetric::DeltaE94) => GateCode::DeltaE94,
+            (_, GateMetric::Lightness) => GateCode::Lightness,
+        },
+        gate_offset: gate.offset,
+        inv_gate_divisor: 1.0 / gate.divisor,
+    }
+}

@@ -1,0 +1,44 @@
+//! Constants of a view that the passes of both executors read.
+
+use crate::frame::ViewFrame;
+use crate::kernel::rng::{self, Purpose};
+use crate::settings::{Sampler, Settings};
+
+/// `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`, which a test compares.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+pub struct ViewUniforms {
+    /// Slope of rays in x and y per pixel.
+    pub ray_scale: [f32; 2],
+    /// Ray through pixel (0, 0), without its z of 1.
+    pub ray_offset: [f32; 2],
+    /// Ray through the gaze; the last element is unused.
+    pub gaze_ray: [f32; 4],
+    /// Third row of the current-to-previous view transform.
+    pub depth_row: [f32; 4],
+    /// Key of the view's random stream.
+    pub key: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 3],
+}
+
+impl ViewUniforms {
+    /// Constants of view `index` of frame `frame`, whose eye looks at `gaze_px`.
+    pub fn new(view: &ViewFrame, gaze_px: [f32; 2], settings: &Settings, index: usize, frame: u64) -> Self {
+        let (ray_scale, ray_offset) = view.geometry.scale_offset();
+        let purpose = match settings.sampler {
+            Sampler::AChao => Purpose::Select,
+            Sampler::AEs => Purpose::Key,
+        };
+        let [x, y, z] = view.geometry.ray(gaze_px);
+        Self {
+            ray_scale,
+            ray_offset,
+            gaze_ray: [x, y, z, 0.0],
+            depth_row: view.depth_row(),
+            key: rng::stream_key(settings.seed, index as u32, purpose, frame),
+            unused: [0; 3],
+        }
+    }
+}
