@@ -6,10 +6,10 @@
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage};
-use afterimage_lab::trace::gpu::ray_lists::{GpuRays, Question};
-use afterimage_lab::trace::heap::{Heap, HeapBuilder};
+use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
+use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
 use afterimage_lab::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
+use afterimage_lab::trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
 use afterimage_lab::trace::{Bvh, Geometry, Ray};
 use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
@@ -54,14 +54,14 @@ fn courtyard(count: usize) -> Triangles {
 /// Million rays per second: of CPU time where the device is a program, else of wall time.
 fn gpu_mrays(
     gpu: &Headless,
-    heap: &Heap,
+    scene_buffer: &SceneBuffer,
     geometry: &Geometry,
     storage: Storage,
-    question: Question,
+    query: HitQuery,
     rays: &[Ray],
 ) -> f64 {
-    let tracer = GpuRays::new(&gpu.device, &gpu.queue, heap, geometry, storage, question, None);
-    let batch = tracer.batch(&GpuHeap::new(&gpu.device, &gpu.queue, heap, storage), rays);
+    let tracer = GpuRays::new(&gpu.device, &gpu.queue, scene_buffer, geometry, storage, query, None);
+    let batch = tracer.batch(&GpuSceneBuffer::new(&gpu.device, &gpu.queue, scene_buffer, storage), rays);
     tracer.run(&batch);
     let run = |_| {
         let watch = Stopwatch::start();
@@ -105,22 +105,23 @@ fn main() {
         );
         let Some(gpu) = &gpu else { continue };
         for storage in [Storage::Texture, Storage::Buffer] {
-            let heap = HeapBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
-            let heap = match heap {
-                Ok(heap) => heap,
+            let scene_buffer =
+                SceneBufferBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
+            let scene_buffer = match scene_buffer {
+                Ok(scene_buffer) => scene_buffer,
                 Err(error) => {
                     println!("{storage:?}: {error}");
                     continue;
                 }
             };
-            let rate = |question, rays: &[Ray]| gpu_mrays(gpu, &heap, &geometry, storage, question, rays);
+            let rate = |query, rays: &[Ray]| gpu_mrays(gpu, &scene_buffer, &geometry, storage, query, rays);
             println!(
                 "{}, {storage:?}: primary {:.2}, bounce {:.2}, shadow {:.2}; {:.0} bytes a triangle",
                 gpu.info.name,
-                rate(Question::Closest, &primary),
-                rate(Question::Closest, &bounce),
-                rate(Question::Any, &bounce),
-                heap.bytes() as f64 / triangles.len() as f64,
+                rate(HitQuery::Closest, &primary),
+                rate(HitQuery::Closest, &bounce),
+                rate(HitQuery::Any, &bounce),
+                scene_buffer.bytes() as f64 / triangles.len() as f64,
             );
         }
     }

@@ -10,7 +10,7 @@ struct Shear {
 }
 
 // t is 0 where they do not meet.
-struct Meeting {
+struct Intersection {
     t: f32,
     u: f32,
     v: f32,
@@ -50,8 +50,8 @@ fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
 }
 
 // triangle::intersect
-fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Meeting {
-    let miss = Meeting(0.0, 0.0, 0.0);
+fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Intersection {
+    let miss = Intersection(0.0, 0.0, 0.0);
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
     let c = sheared(shear, v2 - origin);
@@ -72,7 +72,7 @@ fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: 
     }
     let u = abs(e1 / det);
     let v = abs(e2 / det);
-    return Meeting((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
+    return Intersection((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
 }
 
 // triangle::point_at

@@ -13,7 +13,7 @@ override NORMAL_MAP: bool = true;
 override EMISSIVE_TEXTURE: bool = true;
 override HAS_SUN: bool = true;
 
-struct Shaded {
+struct ColorVarying {
     @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
     // From the eye.
@@ -25,10 +25,10 @@ struct Shaded {
 }
 
 @vertex
-fn stand(corner: Corner) -> Shaded {
-    let relative = from_eye(frame.now, corner.position);
-    let position = clip(homogeneous_px(frame.now, relative));
-    return Shaded(position, corner.position, relative, corner.normal, corner.tangent, corner.uv, corner.color);
+fn shade_vertex(vertex: Vertex) -> ColorVarying {
+    let relative = from_eye(frame.current, vertex.position);
+    let position = clip(homogeneous_px(frame.current, relative));
+    return ColorVarying(position, vertex.position, relative, vertex.normal, vertex.tangent, vertex.uv, vertex.color);
 }
 
 // Parameters with their textures and tints, as in trace/surface_point.wgsl.
@@ -107,7 +107,7 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
 }
 
 @fragment
-fn shade(in: Shaded, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_at(in.uv, in.color);
     let across = cross(dpdx(in.relative), dpdy(in.relative));
     // A masked edge becomes as wide as a pixel, and is told to the multisampler.

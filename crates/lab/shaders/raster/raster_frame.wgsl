@@ -11,10 +11,10 @@ struct Eye {
 }
 
 struct RasterFrame {
-    now: Eye,
-    before: Eye,
+    current: Eye,
+    previous: Eye,
     // Columns: from a pixel (x, y, 1) to where its direction was, in homogeneous pixels.
-    turned: array<vec4<f32>, 3>,
+    previous_px_from_px: array<vec4<f32>, 3>,
     // Ray through pixel (0, 0), and from a pixel to its right and lower neighbours, in world space.
     corner: vec4<f32>,
     right: vec4<f32>,
@@ -64,7 +64,7 @@ struct RasterLights {
 @group(0) @binding(1) var<storage, read> lights: RasterLights;
 
 // A corner of a triangle, and where it was a frame ago.
-struct Corner {
+struct Vertex {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
@@ -90,6 +90,6 @@ fn clip(px: vec3<f32>) -> vec4<f32> {
 }
 
 // A triangle that covers the frame, infinitely far.
-fn far_corner(index: u32) -> vec4<f32> {
+fn fullscreen_position(index: u32) -> vec4<f32> {
     return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }

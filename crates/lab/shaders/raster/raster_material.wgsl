@@ -74,7 +74,7 @@ fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
 }
 
 // Whether a surface counts as being there: behind less than half a surface is another.
-fn is_there(opacity: f32) -> bool {
+fn passes_alpha_test(opacity: f32) -> bool {
     if (material.flags & FLAG_MASK) != 0u {
         return opacity >= material.cutoff;
     }

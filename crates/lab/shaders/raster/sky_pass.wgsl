@@ -5,8 +5,8 @@
 // What is behind everything.
 
 @vertex
-fn far(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return far_corner(index);
+fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(index);
 }
 
 @fragment

@@ -1,5 +1,5 @@
 //#use plan
-//#use holes
+//#use alpha_test
 //#use traverse
 // The nearest hit of every path that is alive.
 
@@ -11,9 +11,9 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = active_path(id.x);
     if ALPHA {
         let item = work[frame.first_item + path];
-        hole_pixel = item.x;
-        hole_sample = item.y;
-        hole_ray = 2u * plan[BOUNCE];
+        alpha_pixel = item.x;
+        alpha_sample = item.y;
+        alpha_ray = 2u * plan[BOUNCE];
     }
     let ray = Ray(path_row(path, PATH_ORIGIN).xyz, path_row(path, PATH_DIRECTION).xyz, FAR_AWAY);
     let hit = closest(ray, frame.key);

@@ -6,7 +6,7 @@ struct TraceFrame {
     corner: vec3<f32>,
     lights: u32,
     right: vec3<f32>,
-    sky_chosen: f32,
+    sky_probability: f32,
     down: vec3<f32>,
     width: u32,
     sky: vec3<f32>,

@@ -1,4 +1,4 @@
-// Where triangles are in the heap, and hits on them.
+// Where triangles are in the scene buffer, and hits on them.
 
 // First elements of the triangles at rest and in motion.
 override TRIANGLES: u32 = 0u;

@@ -1,4 +1,4 @@
-// Where records are in the heap, and what they are: trace/shading_records.rs.
+// Where records are in the scene buffer, and what they are: trace/shading_records.rs.
 
 override MATERIALS: u32 = 0u;
 override TEXTURES: u32 = 0u;

@@ -1,9 +1,9 @@
 //#use triangle
 //#use hit
-// Rays through the hierarchies: twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (heap_texture or heap_buffer) and
+// Rays through the hierarchies: twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (scene_texture or scene_storage) and
 // `accept_hit` of whoever uses it.
 //
-// An element of the heap is vec4<u32>. A node is five: corner and exponents with the mask of inner children; first child, first
+// An element of the scene buffer is vec4<u32>. A node is five: corner and exponents with the mask of inner children; first child, first
 // triangle, meta bytes; then bytes of the children's planes: min x and max x, min y and max y, min z and max z. A triangle is
 // three: a corner each, with flags, source and light.
 
@@ -27,7 +27,7 @@ struct Ray {
 // The nearest hit; `key` is handed to `accept_hit`.
 fn closest(ray: Ray, key: u32) -> Hit {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
-    if !is_ray(ray) {
+    if !is_valid_ray(ray) {
         return none;
     }
     var hit = traverse(ray, key, NODES, TRIANGLES, 0u, none, false);
@@ -40,7 +40,7 @@ fn closest(ray: Ray, key: u32) -> Hit {
 // Whether anything is hit.
 fn occluded(ray: Ray, key: u32) -> bool {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
-    if !is_ray(ray) {
+    if !is_valid_ray(ray) {
         return false;
     }
     if traverse(ray, key, NODES, TRIANGLES, 0u, none, true).triangle != NO_TRIANGLE {
@@ -53,7 +53,7 @@ fn occluded(ray: Ray, key: u32) -> bool {
 }
 
 // Whether the ray can hit anything: finite but for its limit, with a direction.
-fn is_ray(ray: Ray) -> bool {
+fn is_valid_ray(ray: Ray) -> bool {
     let nowhere = (bitcast<vec3<u32>>(ray.origin) & vec3<u32>(0x7fffffffu)) >= vec3<u32>(0x7f800000u);
     let direction = bitcast<vec3<u32>>(ray.direction) & vec3<u32>(0x7fffffffu);
     let wild = direction >= vec3<u32>(0x7f800000u);
@@ -136,18 +136,18 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
             let r0 = load(triangles + index * 3u);
             let r1 = load(triangles + index * 3u + 1u);
             let r2 = load(triangles + index * 3u + 2u);
-            let meeting = intersect(
+            let intersection = intersect(
                 shear, ray.origin, bitcast<vec3<f32>>(r0.xyz), bitcast<vec3<f32>>(r1.xyz), bitcast<vec3<f32>>(r2.xyz));
             let number = first + index;
             // At the ray's own limit nothing is hit; of equally near triangles that of the lower index.
-            let tie = meeting.t == hit.t && hit.triangle != NO_TRIANGLE && number < hit.triangle;
-            if meeting.t > 0.0 && (meeting.t < hit.t || tie) {
+            let tie = intersection.t == hit.t && hit.triangle != NO_TRIANGLE && number < hit.triangle;
+            if intersection.t > 0.0 && (intersection.t < hit.t || tie) {
                 if ALPHA {
-                    if (r0.w & FLAG_ALPHA) != 0u && !accept_hit(number, meeting.u, meeting.v, key) {
+                    if (r0.w & FLAG_ALPHA) != 0u && !accept_hit(number, intersection.u, intersection.v, key) {
                         continue;
                     }
                 }
-                hit = Hit(number, meeting.t, meeting.u, meeting.v);
+                hit = Hit(number, intersection.t, intersection.u, intersection.v);
                 if any {
                     return hit;
                 }

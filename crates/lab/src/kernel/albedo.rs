@@ -16,13 +16,13 @@ pub const GLASS_IORS: u32 = 12;
 /// Cells before the table of refraction.
 pub const GLASS_BASE: u32 = COSINES * ROUGHNESSES;
 /// Cells before the table of stretched GGX.
-pub const STRETCHED_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
+pub const ANISOTROPIC_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
 /// Knots of the table of stretched GGX along the cosine, the azimuth, the larger width and the aspect.
-pub const STRETCHED: [u32; 4] = [12, 5, 10, 5];
+pub const ANISOTROPIC: [u32; 4] = [12, 5, 10, 5];
 /// Smallest ratio of the square roots of the widths.
 pub const MIN_ASPECT: f32 = 0.316_227_77;
 /// Cells of all tables.
-pub const CELLS: u32 = STRETCHED_BASE + STRETCHED[0] * STRETCHED[1] * STRETCHED[2] * STRETCHED[3];
+pub const CELLS: u32 = ANISOTROPIC_BASE + ANISOTROPIC[0] * ANISOTROPIC[1] * ANISOTROPIC[2] * ANISOTROPIC[3];
 
 /// Where the axis of the sheen's cosines begins: the fourth root of its smallest.
 pub const SHEEN_ROOT: f32 = 0.177_827_94;
@@ -92,20 +92,20 @@ pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, width: f32) -> Vec2 {
 ///
 /// The shadowing of stretched facets depends on both directions of the plane, so no single width stands for it.
 #[inline]
-pub fn stretched_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
+pub fn anisotropic_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
     let slanted = wo.x.abs() + wo.y.abs();
     let azimuth = if slanted > 1e-6 { wo.x.abs() / slanted } else { 0.5 };
     let aspect = ((a.y / a.x).sqrt() - MIN_ASPECT) / (1.0 - MIN_ASPECT);
-    let kx = albedo_knot(albedo_cosine(wo.z, a.x), STRETCHED[0]);
-    let ky = albedo_knot(azimuth, STRETCHED[1]);
-    let kz = albedo_knot(a.x.sqrt(), STRETCHED[2]);
-    let kw = albedo_knot(aspect, STRETCHED[3]);
-    let row = STRETCHED[0];
+    let kx = albedo_knot(albedo_cosine(wo.z, a.x), ANISOTROPIC[0]);
+    let ky = albedo_knot(azimuth, ANISOTROPIC[1]);
+    let kz = albedo_knot(a.x.sqrt(), ANISOTROPIC[2]);
+    let kw = albedo_knot(aspect, ANISOTROPIC[3]);
+    let row = ANISOTROPIC[0];
     let mut parts = [Vec4::ZERO; 4];
     for (corner, part) in parts.iter_mut().enumerate() {
         let z = kz.x as u32 + (corner as u32 & 1);
         let w = kw.x as u32 + (corner as u32 >> 1);
-        let i = STRETCHED_BASE + ((w * STRETCHED[2] + z) * STRETCHED[1] + ky.x as u32) * row + kx.x as u32;
+        let i = ANISOTROPIC_BASE + ((w * ANISOTROPIC[2] + z) * ANISOTROPIC[1] + ky.x as u32) * row + kx.x as u32;
         let a = albedo_cell(tables, i);
         let b = albedo_cell(tables, i + 1);
         let c = albedo_cell(tables, i + row);

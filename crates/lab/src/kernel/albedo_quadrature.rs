@@ -5,7 +5,7 @@
 //! periodic functions, around the azimuth.
 
 use super::albedo::{
-    AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, MIN_ASPECT, ROUGHNESSES, STRETCHED,
+    ANISOTROPIC, AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, MIN_ASPECT, ROUGHNESSES,
 };
 use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
 const MIN_C: f64 = MIN_SHEEN_COSINE as f64;
@@ -20,7 +20,7 @@ const POINTS: [usize; 2] = [24, 12];
 /// The same for refraction, whose total reflection has an edge.
 const GLASS_POINTS: [usize; 2] = [32, 16];
 /// The same for stretched GGX, whose table is of small differences.
-const STRETCHED_POINTS: [usize; 2] = [16, 10];
+const ANISOTROPIC_POINTS: [usize; 2] = [16, 10];
 
 /// Nodes and weights of Gauss and Legendre's rule on \[0, 1\], by Newton's method.
 fn gauss(count: usize) -> Vec<[f64; 2]> {
@@ -191,8 +191,8 @@ impl AlbedoTables {
         let spokes = half_turn(POINTS[1]);
         let glass_rings = gauss(GLASS_POINTS[0]);
         let glass_spokes = half_turn(GLASS_POINTS[1]);
-        let few_rings = gauss(STRETCHED_POINTS[0]);
-        let few = half_turn(STRETCHED_POINTS[1]);
+        let few_rings = gauss(ANISOTROPIC_POINTS[0]);
+        let few = half_turn(ANISOTROPIC_POINTS[1]);
         let around: Vec<[f64; 2]> = few.iter().flat_map(|&[c, s]| [[c, s], [c, -s]]).collect();
         let width_at = |roughness: f64| (roughness * roughness).max(f64::from(MIN_WIDTH));
         let first = (0..COSINES * ROUGHNESSES).into_par_iter().map(|i| {
@@ -218,8 +218,8 @@ impl AlbedoTables {
             let sums = glass(seen_from(z, 1.0), DVec2::splat(a), eta, &glass_rings, &glass_spokes);
             Vec4::from_array(sums.map(|x| x as f32))
         });
-        let third = (0..STRETCHED.iter().product()).into_par_iter().map(|i: u32| {
-            let [nx, ny, nz, nw] = STRETCHED;
+        let third = (0..ANISOTROPIC.iter().product()).into_par_iter().map(|i: u32| {
+            let [nx, ny, nz, nw] = ANISOTROPIC;
             let [x, azimuth] = [knot(i % nx, nx), knot(i / nx % ny, ny)];
             let r = knot(i / (nx * ny) % nz, nz);
             let low = f64::from(MIN_ASPECT);

@@ -51,7 +51,7 @@ pub fn retro_value(wo: Vec3, wi: Vec3, roughness: f32) -> f32 {
 
 /// Probability that a facet of the glass under the cosine `cosine` is taken for a mirror.
 #[inline]
-fn mirror_chance(glass_reflect: Vec3, fresnel: f32) -> f32 {
+fn mirror_probability(glass_reflect: Vec3, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
     }
@@ -62,7 +62,7 @@ fn mirror_chance(glass_reflect: Vec3, fresnel: f32) -> f32 {
 #[inline]
 fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
-    let mut pdf = layers.chances[0] * lambert;
+    let mut pdf = layers.probabilities[0] * lambert;
     let mut diffuse = layers.diffuse;
     if lobes.retro {
         let burley = retro_value(wo, wi, layers.retro_roughness) * layers.retro_scale;
@@ -84,11 +84,11 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
         let density = d / (wo.z + length_o);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += (layers.reflect_rise * rise + layers.reflect) * shape;
-        pdf += layers.chances[1] * density;
+        pdf += layers.probabilities[1] * density;
         if lobes.transmission {
             let fresnel = fresnel_dielectric(vh, layers.eta);
             value += (layers.glass * glass_fresnel(layers.glass_reflect, fresnel)) * shape;
-            pdf += (layers.chances[3] * mirror_chance(layers.glass_reflect, fresnel)) * density;
+            pdf += (layers.probabilities[3] * mirror_probability(layers.glass_reflect, fresnel)) * density;
         }
     }
     if lobes.clearcoat {
@@ -98,7 +98,7 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
         let length_i = ggx_length(wi, a);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += Vec3::splat((layers.coat_rise * rise + layers.coat) * shape);
-        pdf += layers.chances[2] * (d / (wo.z + length_o));
+        pdf += layers.probabilities[2] * (d / (wo.z + length_o));
     }
     Scatter { value, pdf }
 }
@@ -136,7 +136,7 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     let through = Vec3::ONE - glass_fresnel(layers.glass_reflect, fresnel);
     Scatter {
         value: (layers.glass * layers.glass_color) * through * shape,
-        pdf: (layers.chances[3] * (1.0 - mirror_chance(layers.glass_reflect, fresnel))) * density,
+        pdf: (layers.probabilities[3] * (1.0 - mirror_probability(layers.glass_reflect, fresnel))) * density,
     }
 }
 
@@ -146,7 +146,7 @@ pub fn eval(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi, lobes);
     }
-    if lobes.transmission && wo.z > 0.0 && wi.z < 0.0 && layers.chances[3] > 0.0 {
+    if lobes.transmission && wo.z > 0.0 && wi.z < 0.0 && layers.probabilities[3] > 0.0 {
         return eval_transmission(layers, wo, wi);
     }
     Scatter::NONE
@@ -159,14 +159,14 @@ pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
     if wo.z <= 0.0 {
         return none;
     }
-    let up_to_reflect = layers.chances[0] + layers.chances[1];
-    let up_to_coat = up_to_reflect + layers.chances[2];
-    let total = up_to_coat + layers.chances[3];
+    let up_to_reflect = layers.probabilities[0] + layers.probabilities[1];
+    let up_to_coat = up_to_reflect + layers.probabilities[2];
+    let total = up_to_coat + layers.probabilities[3];
     let at = u[0] * total;
     let direction = Vec2::new(u[1], u[2]);
     let mut wi;
     let mut side = 1.0;
-    if at < layers.chances[0] {
+    if at < layers.probabilities[0] {
         wi = cosine_hemisphere(direction);
     } else if at < up_to_reflect {
         wi = mirrored(wo, vndf_sample(wo, layers.widths, direction));
@@ -176,7 +176,7 @@ pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = wo.dot(h).clamp(0.0, 1.0);
         wi = mirrored(wo, h);
-        if u[3] >= mirror_chance(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
+        if u[3] >= mirror_probability(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
             side = -1.0;
             if layers.thin {
                 wi.z = -wi.z;

@@ -1,7 +1,7 @@
 //! A surface point of the principled BSDF, and its layers as a viewer sees them: what each reflects, and what it leaves to those
 //! below it.
 
-use super::albedo::{AlbedoTables, ggx_albedo, glass_albedo, sheen_albedo, stretched_albedo};
+use super::albedo::{AlbedoTables, anisotropic_albedo, ggx_albedo, glass_albedo, sheen_albedo};
 use super::microfacet::{
     MIN_SHEEN_ROUGHNESS, charlie_lambda, fresnel_dielectric, ggx_mean_width, ggx_widths, reflectance_at_normal,
     schlick_weight,
@@ -160,7 +160,7 @@ pub struct Layers {
     /// A sheet.
     pub thin: bool,
     /// Probabilities of the lobes: diffuse, reflection, coat, glass. All 0 for what scatters nothing.
-    pub chances: [f32; 4],
+    pub probabilities: [f32; 4],
 }
 
 /// Directional albedo of Burley's diffuse lobe with base color 1, in closed form: the lobe is a polynomial in the cosines.
@@ -231,7 +231,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     }
     let below_coat = 1.0 - coat_albedo;
     let mut sheen = Vec3::ZERO;
-    let mut sheen_chance = 0.0;
+    let mut sheen_probability = 0.0;
     let mut sheen_width = 1.0;
     let mut sheen_lambda = 0.0;
     let mut below = below_coat;
@@ -243,7 +243,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let scale = 1.0 / e.max(1.0);
         let albedo = e * scale;
         sheen = color * (scale * below_coat);
-        sheen_chance = luma(color) * (albedo * below_coat);
+        sheen_probability = luma(color) * (albedo * below_coat);
         sheen_width = sheen_roughness * sheen_roughness;
         sheen_lambda = charlie_lambda(z, sheen_width);
         below = below_coat * (1.0 - color.x.max(color.y).max(color.z) * albedo);
@@ -255,12 +255,12 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     if lobes.specular || lobes.metal || lobes.transmission {
         e = ggx_albedo(tables, z, mean_width);
         if lobes.anisotropy && anisotropy > 0.0 {
-            e += stretched_albedo(tables, wo, widths);
+            e += anisotropic_albedo(tables, wo, widths);
         }
     }
     let mut reflect = Vec3::ZERO;
     let mut reflect_rise = Vec3::ZERO;
-    let mut reflect_chance = 0.0;
+    let mut reflect_probability = 0.0;
     let mut entered = Vec3::ONE;
     if lobes.specular {
         let normal = reflectance_at_normal(surface.ior.max(1.0));
@@ -269,14 +269,14 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let scale = compensation(f0, e) * ((opaque * below) * specular);
         reflect = scale * f0;
         reflect_rise = scale * (Vec3::ONE - f0);
-        reflect_chance = luma(albedo) * (opaque * below);
+        reflect_probability = luma(albedo) * (opaque * below);
         entered = Vec3::ONE - albedo;
     }
     if lobes.metal {
         let scale = compensation(base, e) * (metallic * below);
         reflect += scale * base;
         reflect_rise += scale * (Vec3::ONE - base);
-        reflect_chance += luma(reflect_albedo(base, e)) * (metallic * below);
+        reflect_probability += luma(reflect_albedo(base, e)) * (metallic * below);
     }
     let diffuse_albedo = (base * entered) * (opaque * below);
     let retro = if lobes.retro { strength } else { 0.0 };
@@ -288,7 +288,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     let mut glass = Vec3::ZERO;
     let mut glass_reflect = Vec3::ZERO;
     let mut eta = 1.0;
-    let mut glass_chance = 0.0;
+    let mut glass_probability = 0.0;
     let ior = surface.ior.clamp(1.0, MAX_REFRACTING_IOR);
     let thin = surface.thin || ior < MIN_REFRACTING_IOR;
     if lobes.transmission {
@@ -304,14 +304,15 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let f = glass_fresnel(glass_reflect, fresnel_dielectric(z, eta));
         // From inside, some facets reflect totally whatever the colors.
         let least = if eta < 1.0 { 0.1 } else { 0.0 };
-        glass_chance = luma((Vec3::ONE - f) * base + f).max(least) * amount;
+        glass_probability = luma((Vec3::ONE - f) * base + f).max(least) * amount;
     }
 
-    let diffuse_chance = luma(diffuse_albedo) + sheen_chance;
-    let total = ((diffuse_chance + reflect_chance) + coat_albedo) + glass_chance;
-    let mut chances = [0.0; 4];
+    let diffuse_probability = luma(diffuse_albedo) + sheen_probability;
+    let total = ((diffuse_probability + reflect_probability) + coat_albedo) + glass_probability;
+    let mut probabilities = [0.0; 4];
     if total > 1e-30 {
-        chances = [diffuse_chance / total, reflect_chance / total, coat_albedo / total, glass_chance / total];
+        probabilities =
+            [diffuse_probability / total, reflect_probability / total, coat_albedo / total, glass_probability / total];
     }
     Layers {
         widths,
@@ -332,6 +333,6 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         glass_reflect,
         eta,
         thin,
-        chances,
+        probabilities,
     }
 }

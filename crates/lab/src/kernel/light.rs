@@ -41,10 +41,10 @@ pub fn map_direction(u: f32, v: f32) -> (Vec3, f32) {
     (Vec3::new(sin_longitude * sine, cos_latitude, -(cos_longitude * sine)), sine)
 }
 
-/// Density over directions, 1/sr, of a uniform point in one of `texels` texels of a map, chosen with probability `chosen`.
+/// Density over directions, 1/sr, of a uniform point in one of `texels` texels of a map, probability with probability `probability`.
 #[inline]
-pub fn map_pdf(chosen: f32, texels: f32, sine: f32) -> f32 {
-    chosen * texels / (MAP_AREA * sine.max(1e-6))
+pub fn map_pdf(probability: f32, texels: f32, sine: f32) -> f32 {
+    probability * texels / (MAP_AREA * sine.max(1e-6))
 }
 
 /// Twice the square of pi: longitudes times angles from the axis.

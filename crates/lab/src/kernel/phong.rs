@@ -32,7 +32,7 @@ pub fn phong_power(x: f32, y: f32) -> f32 {
 
 /// Probability that a sample is of Phong's lobe: its share of the mean albedo.
 #[inline]
-pub fn phong_chance(surface: &PhongSurface) -> f32 {
+pub fn phong_specular_probability(surface: &PhongSurface) -> f32 {
     let diffuse = (surface.diffuse.x + surface.diffuse.y) + surface.diffuse.z;
     let specular = (surface.specular.x + surface.specular.y) + surface.specular.z;
     let sum = diffuse + specular;
@@ -70,11 +70,11 @@ pub fn phong_sample(surface: &PhongSurface, wo: Vec3, u: [f32; 3]) -> Sampled {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Sampled { wi, scatter: Scatter::NONE };
     }
-    let chance = phong_chance(surface);
-    let value = if u[0] < chance {
-        phong_specular(surface, wo, wi) / chance
+    let probability = phong_specular_probability(surface);
+    let value = if u[0] < probability {
+        phong_specular(surface, wo, wi) / probability
     } else {
-        phong_diffuse(surface, wi) / (1.0 - chance)
+        phong_diffuse(surface, wi) / (1.0 - probability)
     };
     Sampled { wi, scatter: Scatter { value, pdf: uniform_hemisphere_pdf(wi.z) } }
 }

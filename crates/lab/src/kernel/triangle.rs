@@ -34,7 +34,7 @@ pub struct Shear {
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct Intersection {
     /// Distance in lengths of the ray's direction; 0 where they do not meet.
     pub t: f32,
     /// Weight of the second vertex.
@@ -83,8 +83,8 @@ pub fn edge(a: Vec3A, b: Vec3A) -> f32 {
 
 /// Where the ray from `origin` meets the triangle, from either side.
 #[inline]
-pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -> Meeting {
-    let miss = Meeting { t: 0.0, u: 0.0, v: 0.0 };
+pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -> Intersection {
+    let miss = Intersection { t: 0.0, u: 0.0, v: 0.0 };
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
     let c = sheared(shear, v2 - origin);
@@ -107,7 +107,7 @@ pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -
     let u = (e1 / det).abs();
     let v = (e2 / det).abs();
     // A vertex' depth and two differences, not three products: one order of operations on every compiler.
-    Meeting { t: (a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v }
+    Intersection { t: (a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v }
 }
 
 /// The point of a triangle at barycentrics. Nearer to the surface than a point along the ray, whose error grows with distance.

@@ -1,6 +1,6 @@
 //! A guess at the light that surfaces send to each other, for scenes whose light is inside them.
 
-use super::lighting::LightWords;
+use super::lighting::LightRecord;
 use crate::kernel::direction::{basis, to_world};
 use crate::kernel::sampling::{barycentrics, cosine_hemisphere};
 use crate::kernel::triangle::{magnitude, offset_ray, point_at};
@@ -20,7 +20,7 @@ pub(super) fn radiance(
     scene: &Scene,
     moving: &Triangles,
     lights: &[PunctualLight],
-    panels: &[LightWords],
+    panels: &[LightRecord],
     size: Vec3,
 ) -> Vec3 {
     let walls = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);

@@ -18,10 +18,10 @@ struct Eye {
 /// The uniform of a frame.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct FrameWords {
-    now: Eye,
-    before: Eye,
-    turned: [[f32; 4]; 3],
+pub(super) struct FrameUniforms {
+    current: Eye,
+    previous: Eye,
+    previous_px_from_px: [[f32; 4]; 3],
     corner: [f32; 4],
     right: [f32; 4],
     down: [f32; 4],
@@ -68,18 +68,19 @@ fn row(v: DVec3) -> [f32; 4] {
     v.as_vec3().extend(0.0).to_array()
 }
 
-impl FrameWords {
+impl FrameUniforms {
     /// A frame seen through `view` that was seen through `previous`; what is nearer than `near` metres is not seen.
     pub fn new(view: &View, previous: &View, near: f32) -> Self {
-        let (now, before) = (Pixels::of(view), Pixels::of(previous));
-        let turned = [now.right, now.down, now.corner].map(|d| row(DVec3::from(before.rows.map(|r| r.dot(d)))));
+        let (current_px, previous_px) = (Pixels::of(view), Pixels::of(previous));
+        let previous_px_from_px = [current_px.right, current_px.down, current_px.corner]
+            .map(|d| row(DVec3::from(previous_px.rows.map(|r| r.dot(d)))));
         Self {
-            now: Eye::of(view, &now),
-            before: Eye::of(previous, &before),
-            turned,
-            corner: row(now.corner),
-            right: row(now.right),
-            down: row(now.down),
+            current: Eye::of(view, &current_px),
+            previous: Eye::of(previous, &previous_px),
+            previous_px_from_px,
+            corner: row(current_px.corner),
+            right: row(current_px.right),
+            down: row(current_px.down),
             size: view.geometry().size_px().map(|s| s as f32),
             near,
             unused: 0.0,

@@ -23,7 +23,7 @@ pub const DEFAULT_SUN_DIRECTION: [f32; 3] = [-0.35, -0.87, -0.35];
 /// A light, as the shader reads it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct LightWords {
+pub(super) struct LightRecord {
     position: [f32; 3],
     kind: u32,
     direction: [f32; 3],
@@ -36,7 +36,7 @@ pub(super) struct LightWords {
     unused: f32,
 }
 
-impl LightWords {
+impl LightRecord {
     /// What a panel sends, W.
     pub fn power(&self) -> Vec3 {
         let sides = if self.kind == TWO_SIDED { 2.0 } else { 1.0 };
@@ -51,7 +51,7 @@ const TWO_SIDED: u32 = 4;
 /// All of them.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct LightsWords {
+pub(super) struct LightingRecord {
     ambient: [[f32; 4]; 6],
     sun: [[f32; 4]; 3],
     bounced: [f32; 3],
@@ -59,7 +59,7 @@ pub(super) struct LightsWords {
     texel: f32,
     last_level: f32,
     unused: [f32; 2],
-    lights: [LightWords; MAX_LIGHTS],
+    lights: [LightRecord; MAX_LIGHTS],
 }
 
 /// Light of a scene that does not change.
@@ -69,7 +69,7 @@ pub(super) struct Lighting {
     pub environment: Environment,
     /// Whether a sun was added, as the scene has no light of its own.
     added_sun: bool,
-    panels: Vec<LightWords>,
+    panels: Vec<LightRecord>,
     ambient: [Vec3; 6],
     bounced: Vec3,
     center: Vec3,
@@ -119,7 +119,7 @@ impl Lighting {
     }
 
     /// The uniform, with the punctual lights at a time; `last_level` is the sky map's, `shadow_side` the shadow map's.
-    pub fn words(&self, lights: &[PunctualLight], last_level: f32, shadow_side: u32) -> LightsWords {
+    pub fn record(&self, lights: &[PunctualLight], last_level: f32, shadow_side: u32) -> LightingRecord {
         let sun = self.sun(lights);
         let mut all = lights.to_vec();
         all.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
@@ -127,14 +127,14 @@ impl Lighting {
             all.retain(|l| *l != sun);
             all.insert(0, sun);
         }
-        let mut words: Vec<LightWords> = all.iter().map(punctual).chain(self.panels.iter().copied()).collect();
-        words.truncate(MAX_LIGHTS);
-        if let (Some(_), Some(first)) = (sun, words.first_mut()) {
+        let mut records: Vec<LightRecord> = all.iter().map(punctual).chain(self.panels.iter().copied()).collect();
+        records.truncate(MAX_LIGHTS);
+        if let (Some(_), Some(first)) = (sun, records.first_mut()) {
             first.has_shadow = 1.0;
         }
-        let count = words.len() as u32;
-        words.resize(MAX_LIGHTS, LightWords::default());
-        LightsWords {
+        let count = records.len() as u32;
+        records.resize(MAX_LIGHTS, LightRecord::default());
+        LightingRecord {
             ambient: self.ambient.map(|c| c.extend(0.0).to_array()),
             sun: self.sun_rows(sun.map_or(Vec3::NEG_Y, |s| s.direction)),
             bounced: self.bounced.to_array(),
@@ -142,7 +142,7 @@ impl Lighting {
             texel: 2.0 * self.radius / shadow_side as f32,
             last_level,
             unused: [0.0; 2],
-            lights: words.try_into().expect("as many as there may be"),
+            lights: records.try_into().expect("as many as there may be"),
         }
     }
 
@@ -165,15 +165,15 @@ fn strength(light: &PunctualLight) -> f32 {
 }
 
 /// As the tracer has it.
-fn punctual(l: &PunctualLight) -> LightWords {
+fn punctual(l: &PunctualLight) -> LightRecord {
     let PunctualRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, .. } =
         PunctualRecord::new(l);
-    LightWords { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightWords::default() }
+    LightRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightRecord::default() }
 }
 
 /// Triangles that emit, those of one material and about one direction as one disk of their area at their middle. Where they are
 /// at time 0, as bright as the material says: emissive textures are not looked at.
-fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
+fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightRecord> {
     struct Sum {
         material: u32,
         facing: Vec3,
@@ -205,18 +205,18 @@ fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
             }
         }
     }
-    let words = |s: &Sum| {
+    let records = |s: &Sum| {
         let material = &materials[s.material as usize];
-        LightWords {
+        LightRecord {
             position: (s.middle / s.area).as_vec3().to_array(),
             kind: if material.double_sided { TWO_SIDED } else { ONE_SIDED },
             direction: s.normal.normalize_or(DVec3::NEG_Y).as_vec3().to_array(),
             intensity: material.emissive,
             area: s.area as f32,
-            ..LightWords::default()
+            ..LightRecord::default()
         }
     };
-    let mut panels: Vec<LightWords> = sums.iter().map(words).collect();
+    let mut panels: Vec<LightRecord> = sums.iter().map(records).collect();
     panels.sort_by(|a, b| luma(b.power()).total_cmp(&luma(a.power())));
     panels.truncate(MAX_LIGHTS / 2);
     panels

@@ -26,7 +26,6 @@
 //! - **Refraction** is not there: through glass one sees straight on, dimmed by the base color's luminance.
 
 mod bounce;
-mod corners;
 mod frame;
 mod lighting;
 mod materials;
@@ -34,6 +33,7 @@ mod mipmaps;
 mod pipelines;
 mod record;
 mod targets;
+mod vertices;
 
 pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
@@ -45,11 +45,11 @@ use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use crate::trace::effects::Effects;
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
-use corners::{Blended, Corner, Grouped, STRIDE};
 use lighting::Lighting;
 use materials::upload_levels;
 use pipelines::{Layouts, Pipelines};
 use std::sync::LazyLock;
+use vertices::{Blended, Grouped, STRIDE, Vertex};
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureFormat, TextureView};
 
 /// What a rasteriser is made for.
@@ -85,11 +85,11 @@ pub struct Raster {
     /// Where what moves was a frame ago.
     previous: Buffer,
     /// What moves, to be uploaded with the next frame, now and a frame ago.
-    pending: Option<[Vec<Corner>; 2]>,
+    pending: Option<[Vec<Vertex>; 2]>,
     lights: Vec<PunctualLight>,
     has_sun: bool,
     /// Whether the shadow map is of an earlier pose.
-    is_shadow_old: bool,
+    is_shadow_stale: bool,
     near: f32,
     targets: Targets,
 }
@@ -134,10 +134,10 @@ impl Raster {
         let (sky, last_level) = sky(device, queue, &lighting.environment);
         let scenery = scenery(device, queue, &layouts, &shadow, &sky);
         let grouped = Grouped::new(scene.still(), &scene.materials);
-        let corners = grouped.corners(scene.still());
-        let buffer = vertex_buffer(device, corners.len());
-        queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&corners));
-        let still = Set { blended: grouped.blended(&corners), grouped, buffer };
+        let vertices = grouped.vertices(scene.still());
+        let buffer = vertex_buffer(device, vertices.len());
+        queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&vertices));
+        let still = Set { blended: grouped.blended(&vertices), grouped, buffer };
         let grouped = Grouped::new(&pose.moving, &scene.materials);
         let count = 3 * pose.moving.len();
         let moving = Set { grouped, buffer: vertex_buffer(device, count), blended: vec![] };
@@ -157,7 +157,7 @@ impl Raster {
             pending: None,
             lights: vec![],
             has_sun,
-            is_shadow_old: true,
+            is_shadow_stale: true,
             near,
             lighting,
             targets: Targets::new(device, size),
@@ -175,12 +175,12 @@ impl Raster {
 
     fn place(&mut self, pose: Pose, previous: Pose) {
         if !pose.moving.is_empty() {
-            let now = self.moving.grouped.corners(&pose.moving);
+            let now = self.moving.grouped.vertices(&pose.moving);
             self.moving.blended = self.moving.grouped.blended(&now);
-            self.pending = Some([now, self.moving.grouped.corners(&previous.moving)]);
+            self.pending = Some([now, self.moving.grouped.vertices(&previous.moving)]);
         }
         self.lights = pose.lights;
-        self.is_shadow_old = true;
+        self.is_shadow_stale = true;
     }
 
     /// Distance of the near plane, metres: a ten-thousandth of the scene's radius, at most a centimetre.
@@ -215,11 +215,11 @@ fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> R
     Ok(())
 }
 
-/// A buffer for corners, at least one.
-fn vertex_buffer(device: &Device, corners: usize) -> Buffer {
+/// A buffer for vertices, at least one.
+fn vertex_buffer(device: &Device, vertices: usize) -> Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("corners"),
-        size: STRIDE * corners.max(1) as u64,
+        label: Some("vertices"),
+        size: STRIDE * vertices.max(1) as u64,
         usage: BufferUsages::VERTEX | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })

@@ -1,6 +1,6 @@
 //! Render pipelines and the layouts of what is bound.
 
-use super::corners::{Kind, LAYOUTS};
+use super::vertices::{Kind, LAYOUTS};
 use crate::shader::SHADERS;
 use crate::trace::effects::{Effect, Effects};
 use wgpu::{
@@ -82,7 +82,7 @@ impl Pipelines {
         let three = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.scenery)];
         let make = |recipe: Recipe<'_>| recipe.make(device, if recipe.samples > 1 { &three } else { &two });
         let motion = |fragment, depth| {
-            make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "follow", fragment, MOTION_FORMAT) })
+            make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "motion_vertex", fragment, MOTION_FORMAT) })
         };
         let shadow = |fragment| {
             make(Recipe {
@@ -90,7 +90,7 @@ impl Pipelines {
                 format: None,
                 // Away from the sun, more where the surface is steep in it.
                 bias: DepthBiasState { constant: -2, slope_scale: -2.0, clamp: 0.0 },
-                ..Recipe::new(&sun, "from_sun", fragment, COLOR_FORMAT)
+                ..Recipe::new(&sun, "shadow_vertex", fragment, COLOR_FORMAT)
             })
         };
         let shade = |depth, blend, coverage| {
@@ -100,17 +100,17 @@ impl Pipelines {
                 blend,
                 coverage,
                 samples: SAMPLES,
-                ..Recipe::new(&color, "stand", Some("shade"), COLOR_FORMAT)
+                ..Recipe::new(&color, "shade_vertex", Some("shade"), COLOR_FORMAT)
             })
         };
         Self {
             motion: [motion(Some("motion_opaque"), true), motion(Some("motion"), true)],
             motion_far: make(Recipe {
                 depth: false,
-                corners: false,
-                ..Recipe::new(&surface, "far", Some("motion_far"), MOTION_FORMAT)
+                vertices: false,
+                ..Recipe::new(&surface, "fullscreen", Some("motion_far"), MOTION_FORMAT)
             }),
-            sun: [shadow(None), shadow(Some("holes"))],
+            sun: [shadow(None), shadow(Some("alpha_test"))],
             color: [
                 shade(true, None, false),
                 shade(true, None, true),
@@ -118,9 +118,9 @@ impl Pipelines {
             ],
             sky: make(Recipe {
                 depth: false,
-                corners: false,
+                vertices: false,
                 samples: SAMPLES,
-                ..Recipe::new(&sky, "far", Some("sky"), COLOR_FORMAT)
+                ..Recipe::new(&sky, "fullscreen", Some("sky"), COLOR_FORMAT)
             }),
         }
     }
@@ -147,7 +147,7 @@ struct Recipe<'a> {
     coverage: bool,
     samples: u32,
     /// Whether vertices are read.
-    corners: bool,
+    vertices: bool,
 }
 
 impl<'a> Recipe<'a> {
@@ -163,7 +163,7 @@ impl<'a> Recipe<'a> {
             blend: None,
             coverage: false,
             samples: 1,
-            corners: true,
+            vertices: true,
         }
     }
 
@@ -185,7 +185,7 @@ impl<'a> Recipe<'a> {
                 module: self.module,
                 entry_point: Some(self.vertex),
                 compilation_options: if self.fragment.is_some() { options() } else { Default::default() },
-                buffers: if self.corners { &buffers } else { &[] },
+                buffers: if self.vertices { &buffers } else { &[] },
             },
             // Counter-clockwise is the front; backs are seen, too.
             primitive: wgpu::PrimitiveState::default(),

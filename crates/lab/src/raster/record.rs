@@ -1,8 +1,8 @@
 //! The passes of a frame.
 
-use super::corners::{Kind, STRIDE};
-use super::frame::FrameWords;
-use super::lighting::LightsWords;
+use super::frame::FrameUniforms;
+use super::lighting::LightingRecord;
+use super::vertices::{Kind, STRIDE};
 use super::{Raster, Set};
 use crate::trace::view::View;
 use afterimage::gpu::filled;
@@ -24,12 +24,12 @@ impl Raster {
     /// Several frames may be recorded into one encoder; each has uniforms of its own.
     pub fn record(&mut self, device: &Device, encoder: &mut CommandEncoder, view: &View, previous: &View) {
         self.upload(device, encoder);
-        let frame = FrameWords::new(view, previous, self.near);
-        let lights = self.lighting.words(&self.lights, self.last_level, self.shadow_side);
+        let frame = FrameUniforms::new(view, previous, self.near);
+        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
         let group = self.frame_group(device, &frame, &lights);
-        if self.has_sun && self.is_shadow_old {
+        if self.has_sun && self.is_shadow_stale {
             self.sun_pass(encoder, &group);
-            self.is_shadow_old = false;
+            self.is_shadow_stale = false;
         }
         self.surface_pass(encoder, &group);
         self.color_pass(device, encoder, &group, view);
@@ -38,13 +38,13 @@ impl Raster {
     /// What moved since the last frame.
     fn upload(&mut self, device: &Device, encoder: &mut CommandEncoder) {
         let Some([now, before]) = self.pending.take() else { return };
-        for (to, corners) in [(&self.moving.buffer, now), (&self.previous, before)] {
-            let from = filled(device, "raster frame", bytemuck::cast_slice(&corners), BufferUsages::COPY_SRC);
-            encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * corners.len() as u64);
+        for (to, vertices) in [(&self.moving.buffer, now), (&self.previous, before)] {
+            let from = filled(device, "raster frame", bytemuck::cast_slice(&vertices), BufferUsages::COPY_SRC);
+            encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * vertices.len() as u64);
         }
     }
 
-    fn frame_group(&self, device: &Device, frame: &FrameWords, lights: &LightsWords) -> BindGroup {
+    fn frame_group(&self, device: &Device, frame: &FrameUniforms, lights: &LightingRecord) -> BindGroup {
         let buffers = [
             filled(device, "raster frame", bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
             filled(device, "raster frame", bytemuck::bytes_of(lights), BufferUsages::STORAGE),
@@ -123,7 +123,7 @@ impl Raster {
     }
 
     /// Parts of what stands still and of what moves, opaque ones of both first.
-    fn each_part(&self, mut f: impl FnMut(&Set, bool, &super::corners::Part)) {
+    fn each_part(&self, mut f: impl FnMut(&Set, bool, &super::vertices::Part)) {
         let of = |set: &'_ Set| set.grouped.parts.clone();
         let mut parts: Vec<_> = of(&self.still).into_iter().map(|p| (false, p)).collect();
         parts.extend(of(&self.moving).into_iter().map(|p| (true, p)));

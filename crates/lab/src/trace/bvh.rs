@@ -180,14 +180,14 @@ impl Bvh {
                 leaves &= leaves - 1;
                 let triangle = &self.triangles[index as usize];
                 let [v0, v1, v2] = triangle.corners();
-                let meeting = intersect(ray.shear, ray.origin, v0, v1, v2);
+                let intersection = intersect(ray.shear, ray.origin, v0, v1, v2);
                 let index = first + index;
-                let nearer = meeting.t < hit.t || meeting.t == hit.t && index < hit.triangle;
-                if meeting.t > 0.0 && nearer && meeting.t < f32::INFINITY {
-                    if triangle.has(TriangleFlags::ALPHA) && !accept(index, meeting.u, meeting.v) {
+                let nearer = intersection.t < hit.t || intersection.t == hit.t && index < hit.triangle;
+                if intersection.t > 0.0 && nearer && intersection.t < f32::INFINITY {
+                    if triangle.has(TriangleFlags::ALPHA) && !accept(index, intersection.u, intersection.v) {
                         continue;
                     }
-                    *hit = Hit { triangle: index, t: meeting.t, u: meeting.u, v: meeting.v };
+                    *hit = Hit { triangle: index, t: intersection.t, u: intersection.u, v: intersection.v };
                     met = true;
                     if ANY {
                         return true;

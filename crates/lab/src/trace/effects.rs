@@ -123,7 +123,7 @@ impl Effects {
             m.sheen_roughness_texture,
             m.transmission_texture,
         ];
-        let glows = m.emissive != [0.0; 3];
+        let emits = m.emissive != [0.0; 3];
         Self::NONE
             .set(Effect::Dielectric, m.metallic < 1.0 && m.specular > 0.0 || m.metallic_roughness_texture.is_some())
             .set(Effect::Metal, m.metallic > 0.0)
@@ -134,9 +134,9 @@ impl Effects {
             .set(Effect::BaseColor, m.base_color_texture.is_some())
             .set(Effect::SurfaceTexture, surface_textures.iter().any(Option::is_some))
             .set(Effect::NormalMap, m.normal_texture.is_some())
-            .set(Effect::EmissiveTexture, glows && m.emissive_texture.is_some())
+            .set(Effect::EmissiveTexture, emits && m.emissive_texture.is_some())
             .set(Effect::Alpha, m.alpha != Alpha::Opaque)
-            .set(Effect::EmissiveTriangles, glows)
+            .set(Effect::EmissiveTriangles, emits)
     }
 
     fn of_light(lights: &[PunctualLight], environment: &Environment) -> Self {

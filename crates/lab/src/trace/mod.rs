@@ -5,7 +5,7 @@
 //! - [`Tracer`]: [`cpu`] or [`gpu`], the same paths; specialised to [`effects::Effects`] that the scene calls for. It adds the samples
 //!   of a [`work::Work`] to a [`film::Film`].
 //! - [`sampling`]: where a frame is sampled for a gaze. [`surfaces`]: exact depth and motion. [`stereo`]: a gaze for each eye.
-//! - [`heap`]: everything that the tracer on a GPU reads, as one array of `vec4<u32>`.
+//! - [`scene_buffer`]: everything that the tracer on a GPU reads, as one array of `vec4<u32>`.
 
 mod alias;
 mod bvh;
@@ -15,10 +15,10 @@ pub mod effects;
 pub mod film;
 mod geometry;
 pub mod gpu;
-pub mod heap;
 pub mod measure;
 mod node;
 pub mod sampling;
+pub mod scene_buffer;
 pub mod settings;
 pub mod shading_records;
 pub mod stereo;

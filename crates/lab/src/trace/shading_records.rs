@@ -164,9 +164,9 @@ pub struct PickRecord {
     pub keep: f32,
     pub alias: u32,
     /// Probability that this light is picked.
-    pub chosen: f32,
+    pub probability: f32,
     /// Kind in the upper two bits, index of the triangle or punctual light in the others.
-    pub what: u32,
+    pub kind_and_index: u32,
 }
 
 /// A [`PunctualLight`] in four rows.
@@ -214,7 +214,7 @@ impl PunctualRecord {
 pub struct MapRecord {
     pub radiance: [f32; 3],
     /// Probability that this texel is picked.
-    pub chosen: f32,
+    pub probability: f32,
     /// As in [`PickRecord`].
     pub keep: f32,
     pub alias: u32,

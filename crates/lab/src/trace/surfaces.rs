@@ -51,7 +51,7 @@ pub(super) struct Seen {
 pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<Seen> {
     let ray = Ray { origin, direction, t_max: f32::INFINITY };
     let hit = world.geometry.closest(&ray, |triangle, u, v| {
-        !effects.has(Effect::Alpha) || cpu::is_mostly_there(world, triangle, u, v, effects)
+        !effects.has(Effect::Alpha) || cpu::is_half_opaque(world, triangle, u, v, effects)
     })?;
     let corners = world.geometry.triangle(hit.triangle).positions();
     let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());

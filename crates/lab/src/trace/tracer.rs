@@ -4,7 +4,7 @@ use super::cpu::CpuTracer;
 use super::effects::Effects;
 use super::film::Film;
 use super::gpu::GpuTracer;
-use super::heap::HeapError;
+use super::scene_buffer::SceneBufferError;
 use super::settings::TraceSettings;
 use super::view::View;
 use super::work::Work;
@@ -27,7 +27,7 @@ impl Tracer {
     ///
     /// # Errors
     /// If the device has no room for the scene.
-    pub fn new(backend: &Backend, world: &World, settings: TraceSettings) -> Result<Self, HeapError> {
+    pub fn new(backend: &Backend, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         Ok(match backend {
             Backend::Cpu => Self::Cpu(CpuTracer::new(settings)),
             Backend::Gpu(device) => Self::Gpu(Box::new(GpuTracer::new(device.clone(), world, settings)?)),
@@ -62,7 +62,7 @@ impl Tracer {
     ///
     /// # Errors
     /// If more moves than at first.
-    pub fn update(&mut self, world: &World) -> Result<(), HeapError> {
+    pub fn update(&mut self, world: &World) -> Result<(), SceneBufferError> {
         match self {
             Self::Cpu(_) => Ok(()),
             Self::Gpu(tracer) => tracer.update(world),

@@ -33,7 +33,7 @@ impl TriangleFlags {
     }
 }
 
-/// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
+/// A triangle for traversal: three `vec4<u32>` of the scene buffer. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
 /// of the triangle in its source, and one more than its row in the table of lights (0: it is no light).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -95,7 +95,7 @@ impl TriangleRecord {
     }
 }
 
-/// Where a moving triangle's corners were a frame ago: three `vec4<u32>` of the heap.
+/// Where a moving triangle's corners were a frame ago: three `vec4<u32>` of the scene buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PreviousRecord {
@@ -113,7 +113,7 @@ impl PreviousRecord {
     }
 }
 
-/// A triangle for shading: four `vec4<u32>` of the heap.
+/// A triangle for shading: four `vec4<u32>` of the scene buffer.
 ///
 /// | words | hold |
 /// |---|---|

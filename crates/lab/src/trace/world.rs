@@ -36,16 +36,16 @@ pub struct World {
     /// Its texels, row by row.
     pub map: Vec<MapRecord>,
     /// Probability that the environment is picked.
-    pub sky_chosen: f32,
+    pub sky_probability: f32,
     /// Albedos of the lobes.
     pub tables: AlbedoTables,
     /// What the scene calls for.
     pub needs: Effects,
     /// Most triangles that can move, and most lights that there can be, at any time: some may be without area now.
-    pub(super) most_moving: usize,
-    pub(super) most_lights: usize,
+    pub(super) max_moving: usize,
+    pub(super) max_lights: usize,
     /// Luminance that each material emits, both sides together.
-    glow: Vec<f64>,
+    emitted_luma: Vec<f64>,
     /// Mean luminance of the environment.
     sky_luma: f64,
     still_bounds: [Vec3; 2],
@@ -70,7 +70,7 @@ impl World {
             Environment::Constant(radiance) => f64::from(luma(Vec3::from(*radiance))),
             Environment::Map(image) => mean_radiance(image),
         };
-        let glow = scene
+        let emitted_luma = scene
             .materials
             .iter()
             .map(|m| {
@@ -81,7 +81,7 @@ impl World {
             .collect();
         let rest = scene.pose(0.0);
         let shining = |m: &&u32| scene.materials.get(**m as usize).is_some_and(|m| m.emissive.iter().any(|&e| e > 0.0));
-        let most_lights = scene.still().materials.iter().chain(&rest.moving.materials).filter(shining).count()
+        let max_lights = scene.still().materials.iter().chain(&rest.moving.materials).filter(shining).count()
             + rest.lights.len()
             + 1;
         let mut world = Self {
@@ -94,13 +94,13 @@ impl World {
             sky,
             map_size,
             map,
-            sky_chosen: 0.0,
+            sky_probability: 0.0,
             tables: AlbedoTables::compute(),
             needs: Effects::needed(scene),
-            glow,
+            emitted_luma,
             sky_luma,
-            most_moving: rest.moving.len(),
-            most_lights,
+            max_moving: rest.moving.len(),
+            max_lights,
             still_bounds: [Vec3::INFINITY, Vec3::NEG_INFINITY],
         };
         world.still_bounds = bounds(world.geometry.still.triangles());
@@ -125,20 +125,20 @@ impl World {
         let [low, high] = [self.still_bounds[0].min(moving[0]), self.still_bounds[1].max(moving[1])];
         let radius = (0.5 * f64::from((high - low).length())).max(1e-6);
         let disk = if radius.is_finite() { PI * radius * radius } else { 1.0 };
-        let mut what = vec![];
+        let mut kinds_and_indices = vec![];
         let mut power = vec![];
         for i in 0..self.geometry.len() {
             let triangle = self.geometry.triangle(i);
-            let glow = self.glow.get(triangle.material() as usize).copied().unwrap_or(0.0);
-            if triangle.has(TriangleFlags::EMISSIVE) && glow > 0.0 {
+            let emitted_luma = self.emitted_luma.get(triangle.material() as usize).copied().unwrap_or(0.0);
+            if triangle.has(TriangleFlags::EMISSIVE) && emitted_luma > 0.0 {
                 let [a, b, c] = triangle.positions().map(|p| p.as_dvec3());
-                what.push(LIGHT_TRIANGLE << 30 | i);
-                power.push(PI * glow * 0.5 * (b - a).cross(c - a).length());
+                kinds_and_indices.push(LIGHT_TRIANGLE << 30 | i);
+                power.push(PI * emitted_luma * 0.5 * (b - a).cross(c - a).length());
             }
         }
         for (i, l) in lights.iter().enumerate() {
             let intensity = f64::from(luma(Vec3::from(l.intensity)));
-            what.push(LIGHT_PUNCTUAL << 30 | i as u32);
+            kinds_and_indices.push(LIGHT_PUNCTUAL << 30 | i as u32);
             power.push(
                 intensity
                     * match l.kind {
@@ -149,19 +149,24 @@ impl World {
             );
         }
         if self.needs.has(Effect::Environment) {
-            what.push(LIGHT_ENVIRONMENT << 30);
+            kinds_and_indices.push(LIGHT_ENVIRONMENT << 30);
             power.push(4.0 * PI * self.sky_luma * disk);
         }
-        let (rows, chosen) = alias_table(&power);
+        let (rows, probability) = alias_table(&power);
         self.picks.clear();
         for (i, (keep, alias)) in rows.into_iter().enumerate() {
-            self.picks.push(PickRecord { keep, alias, chosen: chosen[i], what: what[i] });
-            if what[i] >> 30 == LIGHT_TRIANGLE {
-                self.geometry.set_light(what[i] & LIGHT_INDEX, i as u32);
+            self.picks.push(PickRecord {
+                keep,
+                alias,
+                probability: probability[i],
+                kind_and_index: kinds_and_indices[i],
+            });
+            if kinds_and_indices[i] >> 30 == LIGHT_TRIANGLE {
+                self.geometry.set_light(kinds_and_indices[i] & LIGHT_INDEX, i as u32);
             }
         }
         let has_sky = self.needs.has(Effect::Environment);
-        self.sky_chosen = if has_sky { chosen.last().copied().unwrap_or(0.0) } else { 0.0 };
+        self.sky_probability = if has_sky { probability.last().copied().unwrap_or(0.0) } else { 0.0 };
     }
 }
 
@@ -189,7 +194,7 @@ fn mean_luma(texture: &Texture) -> f64 {
     let value = |b: u8| decoded[usize::from(b)];
     let sum: f64 =
         texture.texels.iter().map(|t| f64::from(luma(Vec3::new(value(t[0]), value(t[1]), value(t[2]))))).sum();
-    // Never 0: what may glow may be hit, and must then have been worth a look.
+    // Never 0: what may emitted_luma may be hit, and must then have been worth a look.
     (sum / texture.texels.len().max(1) as f64).max(1e-6)
 }
 
@@ -219,9 +224,15 @@ fn map_records(map: &Image<[f32; 3]>) -> Vec<MapRecord> {
             (0.125 * row(y.saturating_sub(1)) + 0.75 * row(y) + 0.125 * row(y + 1)) * row_share(h, y)
         })
         .collect();
-    let (rows, chosen) = alias_table(&weights);
-    let records = map.pixels().iter().zip(rows).zip(chosen);
+    let (rows, probability) = alias_table(&weights);
+    let records = map.pixels().iter().zip(rows).zip(probability);
     records
-        .map(|((&radiance, (keep, alias)), chosen)| MapRecord { radiance, chosen, keep, alias, unused: [0.0; 2] })
+        .map(|((&radiance, (keep, alias)), probability)| MapRecord {
+            radiance,
+            probability,
+            keep,
+            alias,
+            unused: [0.0; 2],
+        })
         .collect()
 }

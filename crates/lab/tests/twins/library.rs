@@ -1,7 +1,7 @@
 //! The library under test: that of the tracer and the rasteriser.
 
 use super::probe::Probe;
-pub use super::scattering_lobes::heap;
+pub use super::scattering_lobes::table_data;
 use super::{facets, lighting, scattering, scattering_lobes, triangles};
 pub use afterimage_lab::shader::SHADERS;
 
@@ -16,7 +16,7 @@ pub const RUST_ONLY: &[(&str, &str)] = &[];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
 pub const PRIVATE: &[&str] =
-    &["compensation", "eval_reflection", "eval_transmission", "folded", "glass_fresnel", "mirror_chance"];
+    &["compensation", "eval_reflection", "eval_transmission", "folded", "glass_fresnel", "mirror_probability"];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {

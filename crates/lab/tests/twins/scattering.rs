@@ -242,12 +242,12 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "phong_chance",
+        name: "phong_specular_probability",
         module: "phong",
         words: [7, 1],
-        wgsl: concat!(material!(), "out_f(phong_chance(s));"),
-        rust: |r, o| o.f(phong::phong_chance(&material(r))),
-        rows: || materials("phong_chance", |_, _| {}, 0),
+        wgsl: concat!(material!(), "out_f(phong_specular_probability(s));"),
+        rust: |r, o| o.f(phong::phong_specular_probability(&material(r))),
+        rows: || materials("phong_specular_probability", |_, _| {}, 0),
     },
     Probe {
         name: "phong_diffuse",

@@ -92,6 +92,6 @@ pub(in crate::trace) fn path_key(seed: u64, frame: u64) -> u32 {
 }
 
 /// Whether a surface with holes is at least half there.
-pub(super) fn is_mostly_there(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
-    surface::is_there(world, triangle, u, v, 0.5, effects)
+pub(super) fn is_half_opaque(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
+    surface::passes_alpha_test(world, triangle, u, v, 0.5, effects)
 }

@@ -1,7 +1,7 @@
 //! One path of light. `shaders/trace/shade.wgsl` and its companions do the same a step at a time.
 
-use super::lights::{Arriving, look, sky, sky_pdf, triangle_pdf};
-use super::surface::{Point, is_there, lobes, point};
+use super::lights::{LightSample, sample_light, sky, sky_pdf, triangle_pdf};
+use super::surface::{SurfacePoint, lobes, passes_alpha_test, surface_point};
 use crate::kernel::bsdf::{Layers, Lobes, Sampled, Scatter, eval, layers, sample};
 use crate::kernel::direction::{to_local, to_world, unit};
 use crate::kernel::phong::{phong_eval, phong_sample};
@@ -36,7 +36,7 @@ const DRAWS_MAP: u32 = 3;
 /// From one bounce to the next.
 const DRAWS_STRIDE: u32 = 4;
 /// Whether it meets a surface with holes: apart from all others, and by triangle.
-const DRAWS_HOLES: u32 = 0x8000_0000;
+const DRAWS_ALPHA_TEST: u32 = 0x8000_0000;
 
 /// Where a path is.
 struct State {
@@ -61,7 +61,7 @@ impl Paths<'_> {
                 radiance += state.throughput * self.sky_light(&state);
                 break;
             };
-            let p = point(self.world, &hit, state.ray.direction, self.effects);
+            let p = surface_point(self.world, &hit, state.ray.direction, self.effects);
             if self.effects.has(Effect::Transmission) && !p.front {
                 state.throughput *= (p.absorption * -hit.t).map(exp);
             }
@@ -75,7 +75,7 @@ impl Paths<'_> {
             if self.integrator != Integrator::Naive {
                 let draws = path_draws(pixel, sample, first + DRAWS_LIGHT, self.key);
                 let more = path_draws(pixel, sample, first + DRAWS_MAP, self.key);
-                if let Some((ray, light)) = self.light(&p, &scattering, draws, more) {
+                if let Some((ray, light)) = self.direct_light(&p, &scattering, draws, more) {
                     rays += 1;
                     if !self.occluded(&ray, pixel, sample, 2 * bounce + 1) {
                         radiance += state.throughput * light;
@@ -87,9 +87,9 @@ impl Paths<'_> {
                 break;
             }
             let direction = unit(to_world(sampled.wi, x, y, z));
-            let Some(origin) = leaving(&p, direction, sampled.wi.z) else { break };
+            let Some(origin) = spawn_origin(&p, direction, sampled.wi.z) else { break };
             state.throughput *= sampled.scatter.value / sampled.scatter.pdf;
-            if !brings_light(state.throughput) {
+            if !any_positive(state.throughput) {
                 break;
             }
             state.ray = Ray { origin, direction, t_max: f32::INFINITY };
@@ -101,7 +101,7 @@ impl Paths<'_> {
 
     /// The nearest surface; `number` tells a path's rays apart.
     fn closest(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> Option<Hit> {
-        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let accept = |t, u, v| self.accept_hit(t, u, v, pixel, sample, number);
         let geometry = &self.world.geometry;
         if self.effects.has(Effect::MovingObjects) {
             geometry.closest(ray, accept)
@@ -111,7 +111,7 @@ impl Paths<'_> {
     }
 
     fn occluded(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> bool {
-        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let accept = |t, u, v| self.accept_hit(t, u, v, pixel, sample, number);
         let geometry = &self.world.geometry;
         if self.effects.has(Effect::MovingObjects) {
             geometry.occluded(ray, accept)
@@ -120,16 +120,16 @@ impl Paths<'_> {
         }
     }
 
-    fn meets(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {
+    fn accept_hit(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {
         if !self.effects.has(Effect::Alpha) {
             return true;
         }
-        let draws = path_draws(pixel, sample, DRAWS_HOLES | number, self.key ^ triangle);
-        is_there(self.world, triangle, u, v, draws[0], self.effects)
+        let draws = path_draws(pixel, sample, DRAWS_ALPHA_TEST | number, self.key ^ triangle);
+        passes_alpha_test(self.world, triangle, u, v, draws[0], self.effects)
     }
 
     /// Share of what a scattered ray finds that is not counted where it was looked for.
-    fn share(&self, state: &State, light_pdf: f32) -> f32 {
+    fn mis_weight(&self, state: &State, light_pdf: f32) -> f32 {
         match self.integrator {
             _ if state.pdf <= 0.0 => 1.0,
             Integrator::Naive => 1.0,
@@ -142,44 +142,50 @@ impl Paths<'_> {
         if !self.effects.has(Effect::Environment) {
             return Vec3::ZERO;
         }
-        sky(self.world, state.ray.direction, self.effects) * self.share(state, state.sky_pdf)
+        sky(self.world, state.ray.direction, self.effects) * self.mis_weight(state, state.sky_pdf)
     }
 
-    fn surface_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
-        if !self.effects.has(Effect::EmissiveTriangles) || !brings_light(p.emitted) {
+    fn surface_light(&self, state: &State, p: &SurfacePoint, hit: &Hit) -> Vec3 {
+        if !self.effects.has(Effect::EmissiveTriangles) || !any_positive(p.emitted) {
             return Vec3::ZERO;
         }
         let cosine = p.geometric.dot(state.ray.direction);
-        p.emitted * self.share(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
+        p.emitted * self.mis_weight(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
     }
 
     /// A ray towards a light, and what arrives if nothing is in between.
-    fn light(&self, p: &Point, scattering: &Scattering, draws: [f32; 4], more: [f32; 4]) -> Option<(Ray, Vec3)> {
-        let arriving = look(self.world, p.position, &p.frame, draws, more, self.effects)?;
+    fn direct_light(
+        &self,
+        p: &SurfacePoint,
+        scattering: &Scattering,
+        draws: [f32; 4],
+        more: [f32; 4],
+    ) -> Option<(Ray, Vec3)> {
+        let sampled = sample_light(self.world, p.position, &p.frame, draws, more, self.effects)?;
         let [x, y, z] = p.frame;
-        let wi = to_local(arriving.direction, x, y, z);
+        let wi = to_local(sampled.direction, x, y, z);
         let scatter = scattering.eval(wi);
         let mut weight = 1.0;
-        if arriving.can_be_hit && self.integrator == Integrator::Mis {
-            weight = power_heuristic(arriving.pdf, scatter.pdf);
+        if sampled.can_be_hit && self.integrator == Integrator::Mis {
+            weight = power_heuristic(sampled.pdf, scatter.pdf);
         }
-        let light = scatter.value * arriving.radiance * (weight / arriving.pdf);
-        if !brings_light(light) {
+        let light = scatter.value * sampled.radiance * (weight / sampled.pdf);
+        if !any_positive(light) {
             return None;
         }
-        let origin = leaving(p, arriving.direction, wi.z)?;
-        Some((shadow_ray(origin, p.position, &arriving), light))
+        let origin = spawn_origin(p, sampled.direction, wi.z)?;
+        Some((shadow_ray(origin, p.position, &sampled), light))
     }
 }
 
 /// Whether any channel is above 0; not if it is no number.
-fn brings_light(light: Vec3) -> bool {
-    light.x.max(light.y.max(light.z)) > 0.0
+fn any_positive(v: Vec3) -> bool {
+    v.x.max(v.y.max(v.z)) > 0.0
 }
 
 /// Where a ray starts that leaves `p` along `direction`, whose cosine to the shading normal is `cosine`; `None` where the shading
 /// normal and the surface disagree about the side: light would leak through.
-fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
+fn spawn_origin(p: &SurfacePoint, direction: Vec3, cosine: f32) -> Option<Vec3> {
     let side = p.geometric.dot(direction);
     if side * cosine <= 0.0 {
         return None;
@@ -190,20 +196,20 @@ fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
 
 /// From `origin`, off the surface point at `position`, to what was found from there. Both ends being off their surfaces, the
 /// segment between them meets neither; it ends a little early for what rounding adds over its length.
-fn shadow_ray(origin: Vec3, position: Vec3, arriving: &Arriving) -> Ray {
-    if arriving.distance == f32::INFINITY {
-        return Ray { origin, direction: arriving.direction, t_max: f32::INFINITY };
+fn shadow_ray(origin: Vec3, position: Vec3, light: &LightSample) -> Ray {
+    if light.distance == f32::INFINITY {
+        return Ray { origin, direction: light.direction, t_max: f32::INFINITY };
     }
-    let to = arriving.direction * arriving.distance + (position - origin);
-    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * BEFORE_LIGHT }
+    let to = light.direction * light.distance + (position - origin);
+    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * SHADOW_RAY_SCALE }
 }
 
 /// Share of the way to a light that is looked at.
-const BEFORE_LIGHT: f32 = 1.0 - 1.0 / 1_048_576.0;
+const SHADOW_RAY_SCALE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
 /// How light scatters at a point, seen along `wo`.
 struct Scattering<'a> {
-    point: &'a Point,
+    point: &'a SurfacePoint,
     wo: Vec3,
     lobes: Lobes,
     /// `None`: Phong's model.
@@ -211,7 +217,7 @@ struct Scattering<'a> {
 }
 
 impl<'a> Scattering<'a> {
-    fn new(paths: &Paths, point: &'a Point, wo: Vec3) -> Self {
+    fn new(paths: &Paths, point: &'a SurfacePoint, wo: Vec3) -> Self {
         let lobes = lobes(paths.effects);
         let principled = paths.bsdf == Bsdf::Principled;
         let layers = principled.then(|| layers(&point.surface, wo, &paths.world.tables, lobes));

@@ -15,7 +15,7 @@ use crate::trace::{AttributesAt, Hit};
 use glam::{Vec2, Vec3, Vec4};
 
 /// A point on a surface as a ray from outside or inside sees it.
-pub(super) struct Point {
+pub(super) struct SurfacePoint {
     /// World space.
     pub position: Vec3,
     /// Largest coordinate of the triangle, which bounds the position's rounding.
@@ -37,7 +37,7 @@ pub(super) struct Point {
 }
 
 /// The point that a ray of direction `direction` (of length 1) hits.
-pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> Point {
+pub(super) fn surface_point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> SurfacePoint {
     let triangle = world.geometry.triangle(hit.triangle);
     let place = world.geometry.attributes(hit.triangle).at(hit.u, hit.v);
     let material = &world.materials[triangle.material() as usize];
@@ -87,7 +87,7 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
         exponent: material.phong_exponent,
     };
     let (position, magnitude) = (point_at(v0, v1, v2, hit.u, hit.v), magnitude(v0, v1, v2));
-    Point { position, magnitude, geometric, frame, front, emitted, absorption, surface, phong }
+    SurfacePoint { position, magnitude, geometric, frame, front, emitted, absorption, surface, phong }
 }
 
 /// Base color and opacity.
@@ -103,7 +103,7 @@ fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects:
 }
 
 /// Whether a path whose draw is `draw` meets a surface with holes at this point.
-pub(super) fn is_there(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
+pub(super) fn passes_alpha_test(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
     let place = world.geometry.attributes(triangle).at(u, v);
     let opacity = base(world, material, &place, effects).w;

@@ -1,7 +1,7 @@
 //! Kernels and the layouts of what they are bound to.
 
 use crate::shader::SHADERS;
-use crate::trace::gpu::device_heap::{GpuHeap, Storage};
+use crate::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
 use std::borrow::Cow;
 
 /// Invocations of a workgroup.
@@ -18,7 +18,7 @@ pub(super) struct Passes {
     pub shadow: wgpu::ComputePipeline,
     pub count_paths: wgpu::ComputePipeline,
     pub resolve: wgpu::ComputePipeline,
-    pub heap_layout: wgpu::BindGroupLayout,
+    pub scene_layout: wgpu::BindGroupLayout,
     pub frame_layout: wgpu::BindGroupLayout,
     /// A storage buffer to write: the plan of `count_pass`, the film of `resolve_pass`.
     pub written_layout: wgpu::BindGroupLayout,
@@ -29,7 +29,7 @@ pub(super) struct Passes {
 impl Passes {
     pub fn new(
         device: &wgpu::Device,
-        heap: &GpuHeap,
+        scene_buffer: &GpuSceneBuffer,
         storage: Storage,
         constants: &[(&'static str, f64)],
         edit: impl Fn(String) -> String,
@@ -37,7 +37,7 @@ impl Passes {
         let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("trace"), entries })
         };
-        let heap_layout = layout(&[heap.layout_entry(0)]);
+        let scene_layout = layout(&[scene_buffer.layout_entry(0)]);
         let frame_layout = layout(&[
             buffer(0, wgpu::BufferBindingType::Uniform),
             buffer(1, wgpu::BufferBindingType::Storage { read_only: true }),
@@ -51,7 +51,7 @@ impl Passes {
         let pipeline = |module: &str, entry: &str, third: Option<&wgpu::BindGroupLayout>| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry),
-                bind_group_layouts: &[Some(&heap_layout), Some(&frame_layout), third],
+                bind_group_layouts: &[Some(&scene_layout), Some(&frame_layout), third],
                 immediate_size: 0,
             });
             let source = edit(SHADERS.compose_with(&[storage.module(), module], "").source);
@@ -83,7 +83,7 @@ impl Passes {
             shadow: pipeline("shadow_pass", "shadow", Some(&plan_layout)),
             count_paths: pipeline("count_pass", "count_paths", Some(&written_layout)),
             resolve: pipeline("resolve_pass", "resolve", Some(&written_layout)),
-            heap_layout,
+            scene_layout,
             frame_layout,
             written_layout,
             plan_layout,

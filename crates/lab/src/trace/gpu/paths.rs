@@ -2,7 +2,7 @@
 
 use super::passes::{Passes, WORKGROUP};
 use crate::device::Headless;
-use crate::trace::gpu::device_heap::GpuHeap;
+use crate::trace::gpu::scene_buffer::GpuSceneBuffer;
 use afterimage::gpu::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
@@ -10,13 +10,13 @@ use wgpu::BufferUsages;
 /// Twin of `TraceFrame` in `shaders/trace/frame.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct FrameWords {
+pub(super) struct FrameUniforms {
     pub origin: [f32; 3],
     pub key: u32,
     pub corner: [f32; 3],
     pub lights: u32,
     pub right: [f32; 3],
-    pub sky_chosen: f32,
+    pub sky_probability: f32,
     pub down: [f32; 3],
     pub width: u32,
     pub sky: [f32; 3],
@@ -52,7 +52,7 @@ pub(super) struct Paths {
 /// A list of work and the film that it goes to.
 pub(super) struct Run<'a> {
     paths: &'a Paths,
-    heap: wgpu::BindGroup,
+    scene_buffer: wgpu::BindGroup,
     bound: wgpu::BindGroup,
     counters: wgpu::Buffer,
     film: wgpu::Buffer,
@@ -60,7 +60,7 @@ pub(super) struct Run<'a> {
 }
 
 /// What was counted.
-pub(super) struct Counted {
+pub(super) struct Counters {
     pub rays: u64,
     pub nonfinite: u64,
 }
@@ -76,7 +76,7 @@ impl Paths {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("plan"), layout, entries })
         };
         Self {
-            frame: buffer("frame", size_of::<FrameWords>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST),
+            frame: buffer("frame", size_of::<FrameUniforms>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST),
             paths: buffer("paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
             lists: buffer("lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
             plan_written: bind(&passes.written_layout),
@@ -90,7 +90,7 @@ impl Paths {
         &'a self,
         device: &wgpu::Device,
         passes: &Passes,
-        heap: &GpuHeap,
+        scene_buffer: &GpuSceneBuffer,
         work: &wgpu::Buffer,
         film: &[[f32; 4]],
     ) -> Run<'a> {
@@ -106,7 +106,7 @@ impl Paths {
         let shared = [&self.frame, work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
         Run {
             paths: self,
-            heap: bind(&passes.heap_layout, &[heap.binding()]),
+            scene_buffer: bind(&passes.scene_layout, &[scene_buffer.binding()]),
             bound: bind(&passes.frame_layout, &shared),
             film_bound: bind(&passes.written_layout, &[film.as_entire_binding()]),
             counters,
@@ -116,18 +116,18 @@ impl Paths {
 }
 
 impl Run<'_> {
-    /// All kernels over the batch that `words` names.
+    /// All kernels over the batch that `uniforms` names.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         passes: &Passes,
-        words: &FrameWords,
+        uniforms: &FrameUniforms,
         max_depth: u32,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        // Through the encoder: a write by the queue would give all batches of a submission the last words.
-        let contents = bytemuck::bytes_of(words);
+        // Through the encoder: a write by the queue would give all batches of a submission the last uniforms.
+        let contents = bytemuck::bytes_of(uniforms);
         let staged = filled(device, "frame", contents, BufferUsages::COPY_SRC);
         encoder.copy_buffer_to_buffer(&staged, 0, &self.paths.frame, 0, contents.len() as u64);
 
@@ -135,9 +135,9 @@ impl Run<'_> {
         let (written, read) = (&self.paths.plan_written, &self.paths.plan_read);
         let desc = wgpu::ComputePassDescriptor { label: Some("trace"), timestamp_writes: timestamps };
         let mut pass = encoder.begin_compute_pass(&desc);
-        pass.set_bind_group(0, &self.heap, &[]);
+        pass.set_bind_group(0, &self.scene_buffer, &[]);
         pass.set_bind_group(1, &self.bound, &[]);
-        let groups = words.items.div_ceil(WORKGROUP);
+        let groups = uniforms.items.div_ceil(WORKGROUP);
         pass.set_pipeline(&passes.generate);
         pass.dispatch_workgroups(groups, 1, 1);
         pass.set_pipeline(&passes.start);
@@ -168,11 +168,12 @@ impl Run<'_> {
     }
 
     /// Waits for all batches, and reads the film and what was counted.
-    pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counted) {
+    pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counters) {
         let film = device.read_buffer(&self.film);
         let words = device.read_buffer(&self.counters);
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&words);
-        let counted = Counted { rays: u64::from(words[2]) | u64::from(words[3]) << 32, nonfinite: u64::from(words[4]) };
+        let counted =
+            Counters { rays: u64::from(words[2]) | u64::from(words[3]) << 32, nonfinite: u64::from(words[4]) };
         (bytemuck::pod_collect_to_vec(&film), counted)
     }
 }

@@ -1,15 +1,15 @@
 //! Hits of a list of rays on a device: for tests and measurements.
 
-use super::device_heap::{GpuHeap, Storage, traversal_constants};
+use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use crate::shader::SHADERS;
-use crate::trace::heap::Heap;
+use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
 use std::borrow::Cow;
 use wgpu::BufferUsages;
 
 /// What is asked about each ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Question {
+pub enum HitQuery {
     /// The nearest hit.
     Closest,
     /// Whether anything is hit.
@@ -22,7 +22,7 @@ pub struct GpuRays {
     device: wgpu::Device,
     queue: wgpu::Queue,
     pipeline: wgpu::ComputePipeline,
-    question: Question,
+    query: HitQuery,
 }
 
 /// Rays on the device, and room for their hits.
@@ -40,15 +40,15 @@ impl GpuRays {
     /// Largest number of rays of a batch: a dispatch has no more workgroups along an axis, and a binding no more bytes.
     pub const MAX_RAYS: usize = 4_000_000;
 
-    /// For a scene's heap, as it was finished. `source` is the text of the shader; `None` for the package's own, where every hit
+    /// For a scene's scene_buffer, as it was finished. `source` is the text of the shader; `None` for the package's own, where every hit
     /// is accepted.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        heap: &Heap,
+        scene_buffer: &SceneBuffer,
         geometry: &Geometry,
         storage: Storage,
-        question: Question,
+        query: HitQuery,
         source: Option<&str>,
     ) -> Self {
         let source = source.map_or_else(|| Self::source(storage), str::to_owned);
@@ -60,17 +60,17 @@ impl GpuRays {
             label: Some("hits"),
             layout: None,
             module: &module,
-            entry_point: Some(match question {
-                Question::Closest => "closest_hits",
-                Question::Any => "any_hits",
+            entry_point: Some(match query {
+                HitQuery::Closest => "closest_hits",
+                HitQuery::Any => "any_hits",
             }),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &traversal_constants(heap, geometry, false, storage),
+                constants: &traversal_constants(scene_buffer, geometry, false, storage),
                 zero_initialize_workgroup_memory: false,
             },
             cache: None,
         });
-        Self { device: device.clone(), queue: queue.clone(), pipeline, question }
+        Self { device: device.clone(), queue: queue.clone(), pipeline, query }
     }
 
     /// The package's own shader.
@@ -79,7 +79,7 @@ impl GpuRays {
     }
 
     /// Uploads rays.
-    pub fn batch(&self, heap: &GpuHeap, rays: &[Ray]) -> Batch {
+    pub fn batch(&self, scene_buffer: &GpuSceneBuffer, rays: &[Ray]) -> Batch {
         let rays = &rays[..rays.len().min(Self::MAX_RAYS)];
         let floats: Vec<[f32; 8]> = rays
             .iter()
@@ -99,7 +99,7 @@ impl GpuRays {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: heap.binding() },
+                wgpu::BindGroupEntry { binding: 0, resource: scene_buffer.binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 2, resource: hits.as_entire_binding() },
             ],
@@ -137,11 +137,11 @@ impl GpuRays {
         let mapped = readback.get_mapped_range(..).expect("the buffer was mapped and waited for");
         let words: &[[u32; 4]] = bytemuck::cast_slice(&mapped);
         let hit = |&[triangle, t, u, v]: &[u32; 4]| {
-            let found = match self.question {
-                Question::Closest => triangle != u32::MAX,
-                Question::Any => triangle == 1,
+            let found = match self.query {
+                HitQuery::Closest => triangle != u32::MAX,
+                HitQuery::Any => triangle == 1,
             };
-            let triangle = if self.question == Question::Any { 0 } else { triangle };
+            let triangle = if self.query == HitQuery::Any { 0 } else { triangle };
             found.then(|| Hit { triangle, t: f32::from_bits(t), u: f32::from_bits(u), v: f32::from_bits(v) })
         };
         words[..batch.count as usize].iter().map(hit).collect()

@@ -13,8 +13,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 fn reflected(layers: &Layers, wo: Vec3, grid: u32, value: impl Fn(Vec3, Scatter) -> f32) -> f64 {
     let mut sum = 0.0;
     let mut before = 0.0;
-    for (lobe, &chance) in layers.chances.iter().enumerate() {
-        if chance > 0.0 {
+    for (lobe, &probability) in layers.probabilities.iter().enumerate() {
+        if probability > 0.0 {
             let choices = if lobe == 3 { 16 } else { 1 };
             let mut mean = 0.0;
             for i in 0..grid * grid * choices {
@@ -25,16 +25,16 @@ fn reflected(layers: &Layers, wo: Vec3, grid: u32, value: impl Fn(Vec3, Scatter)
                 let power = if lobe == 0 { 4 } else { 2 };
                 let radial = 1.0 - t.powi(power);
                 let [a, b] = if lobe == 0 { [radial, turn] } else { [turn, radial] };
-                let u = [before + 0.5 * chance, a, b, at(i / (grid * grid), choices)];
+                let u = [before + 0.5 * probability, a, b, at(i / (grid * grid), choices)];
                 let s = bsdf::sample(layers, wo, u, Lobes::ALL);
                 if s.scatter.pdf > 0.0 {
                     let weight = f64::from(power) * f64::from(t).powi(power - 1);
                     mean += weight * f64::from(value(s.wi, s.scatter) / s.scatter.pdf);
                 }
             }
-            sum += f64::from(chance) * mean / f64::from(grid * grid * choices);
+            sum += f64::from(probability) * mean / f64::from(grid * grid * choices);
         }
-        before += chance;
+        before += probability;
     }
     sum
 }

@@ -23,8 +23,8 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
         for z in COSINES {
             let wo = direction(z, d.uniform());
             let layers = bsdf::layers(&surface, wo, &TABLES, Lobes::ALL);
-            let chances: f32 = layers.chances.iter().sum();
-            assert!((chances - 1.0).abs() < 1e-6 || chances == 0.0, "{surface:?} {wo}: {chances}");
+            let probabilities: f32 = layers.probabilities.iter().sum();
+            assert!((probabilities - 1.0).abs() < 1e-6 || probabilities == 0.0, "{surface:?} {wo}: {probabilities}");
             for _ in 0..40 {
                 let u = std::array::from_fn(|_| DRAWS[d.bits() as usize % 5]);
                 let s = bsdf::sample(&layers, wo, u, Lobes::ALL);

@@ -68,7 +68,7 @@ fn a_light_picked_with_a_wrong_probability_is_caught() {
     let mut rig = Rig::new(under_a_screen(), [32, 32]);
     let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
     for pick in &mut rig.world.picks {
-        pick.chosen *= 1.1;
+        pick.probability *= 1.1;
     }
     reject(
         "chosen 1.1 times as often",
@@ -81,7 +81,7 @@ fn a_texel_picked_with_a_wrong_probability_is_caught() {
     let mut rig = Rig::new(under_a_map(), [32, 32]);
     let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
     for texel in &mut rig.world.map {
-        texel.chosen *= 1.1;
+        texel.probability *= 1.1;
     }
     reject(
         "texels 1.1 times as often",

@@ -3,7 +3,7 @@
 use super::rig::{Rig, device};
 use super::scenes::{SMALL, builtin, shared};
 use super::statistics::{p_of_means, p_of_pixels};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_testing::{accept, reject};
 

@@ -8,7 +8,7 @@ use afterimage_lab::scene::{
     Wrap,
 };
 use afterimage_lab::trace::effects::{Effect, Effects};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, TraceSettings};
 use afterimage_testing::Draws;
 use glam::{DVec3, Vec2, Vec3, Vec4};

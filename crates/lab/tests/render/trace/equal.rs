@@ -3,7 +3,7 @@
 use super::rig::{Rig, device, differing};
 use super::scenes::{SMALL, builtin, shared, under_a_map, under_a_screen, under_lamps};
 use afterimage_lab::scene::builtin::courtyard_of;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 
 const INTEGRATORS: [Integrator; 3] = [Integrator::Mis, Integrator::Nee, Integrator::Naive];

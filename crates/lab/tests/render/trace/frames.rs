@@ -7,7 +7,7 @@ use afterimage_lab::scene::{Pose, Scene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::{Film, Moments};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::{WorkItem, uniform};
 use afterimage_testing::Draws;

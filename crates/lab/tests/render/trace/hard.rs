@@ -7,7 +7,7 @@ use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, P
 use afterimage_lab::trace::Bvh;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::gpu::GpuTracer;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::work::uniform;

@@ -5,7 +5,7 @@ use afterimage_lab::scene::{Camera, Scene};
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::gpu::GpuTracer;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{WorkItem, uniform};

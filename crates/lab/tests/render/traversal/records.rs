@@ -2,7 +2,7 @@
 
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material};
-use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, heap};
+use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, scene_buffer};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3, Vec4};
 
@@ -70,22 +70,27 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
     let pose = |name| soup(name, 100, Vec3::ZERO, 1.0);
     let (before, now) = (pose("before"), pose("now"));
     first.moving = Bvh::build(&before, Some(&before.positions), &[]);
-    let limits = heap::HeapLimits { rows: 8192, elements: 1 << 26 };
-    let mut packed = heap::HeapBuilder::default().geometry(&first, 100).finish(limits).unwrap();
-    let resting = packed.elements()[..packed.base(heap::Section::MovingNodes) as usize].to_vec();
+    let limits = scene_buffer::SceneBufferLimits { rows: 8192, elements: 1 << 26 };
+    let mut packed = scene_buffer::SceneBufferBuilder::default().geometry(&first, 100).finish(limits).unwrap();
+    let resting = packed.elements()[..packed.base(scene_buffer::Section::MovingNodes) as usize].to_vec();
 
     let mut second = first.clone();
     second.moving = Bvh::build(&now, Some(&before.positions), &[]);
     packed.rewrite_moving(&second).unwrap();
-    let afresh = heap::HeapBuilder::default().geometry(&second, 100).finish(limits).unwrap();
+    let afresh = scene_buffer::SceneBufferBuilder::default().geometry(&second, 100).finish(limits).unwrap();
     assert_eq!(packed.elements()[..resting.len()], resting);
-    for section in [heap::Section::MovingTriangles, heap::Section::MovingAttributes, heap::Section::MovingPrevious] {
-        let of = |heap: &heap::Heap| {
-            heap.elements()[heap.base(section) as usize..][..heap.capacity(section) as usize].to_vec()
+    for section in [
+        scene_buffer::Section::MovingTriangles,
+        scene_buffer::Section::MovingAttributes,
+        scene_buffer::Section::MovingPrevious,
+    ] {
+        let of = |scene_buffer: &scene_buffer::SceneBuffer| {
+            scene_buffer.elements()[scene_buffer.base(section) as usize..][..scene_buffer.capacity(section) as usize]
+                .to_vec()
         };
         assert_eq!(of(&packed), of(&afresh), "{section:?}");
     }
-    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(heap::Section::MovingNodes));
+    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(scene_buffer::Section::MovingNodes));
     for (record, previous) in second.moving.triangles().iter().zip(second.moving.previous()) {
         assert_eq!(previous.positions(), before.positions[record.source() as usize]);
     }
@@ -94,21 +99,27 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
     second.moving = Bvh::default();
     packed.rewrite_moving(&second).unwrap();
     second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
-    assert!(matches!(packed.rewrite_moving(&second), Err(heap::HeapError::Full { .. })));
+    assert!(matches!(packed.rewrite_moving(&second), Err(scene_buffer::SceneBufferError::Full { .. })));
 }
 
 #[test]
 fn a_heap_that_no_device_takes_is_refused() {
     let geometry =
         Geometry { still: Bvh::build(&soup("large", 3000, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
-    for limits in [heap::HeapLimits { rows: 16, elements: 1 << 20 }, heap::HeapLimits { rows: 8192, elements: 5000 }] {
-        let refused = heap::HeapBuilder::default().geometry(&geometry, 0).finish(limits);
-        assert!(matches!(refused, Err(heap::HeapError::TooLarge { .. })), "{refused:?}");
+    for limits in [
+        scene_buffer::SceneBufferLimits { rows: 16, elements: 1 << 20 },
+        scene_buffer::SceneBufferLimits { rows: 8192, elements: 5000 },
+    ] {
+        let refused = scene_buffer::SceneBufferBuilder::default().geometry(&geometry, 0).finish(limits);
+        assert!(matches!(refused, Err(scene_buffer::SceneBufferError::TooLarge { .. })), "{refused:?}");
     }
     // Wider rows where the default ones would be too many.
-    let limits = heap::HeapLimits { rows: 2048, elements: 1 << 22 };
-    let mut builder = heap::HeapBuilder::default();
-    let wide =
-        builder.geometry(&geometry, 0).reserve(heap::Section::Texels, &[0_u32; 0], 3 << 20).finish(limits).unwrap();
+    let limits = scene_buffer::SceneBufferLimits { rows: 2048, elements: 1 << 22 };
+    let mut builder = scene_buffer::SceneBufferBuilder::default();
+    let wide = builder
+        .geometry(&geometry, 0)
+        .reserve(scene_buffer::Section::Texels, &[0_u32; 0], 3 << 20)
+        .finish(limits)
+        .unwrap();
     assert_eq!((wide.width_log2(), wide.rows() <= 2048), (11, true));
 }

@@ -3,8 +3,8 @@
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material, Triangles};
 use afterimage_lab::shader::SHADERS;
-use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage, geometry_constants, traversal_constants};
-use afterimage_lab::trace::heap::HeapBuilder;
+use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage, geometry_constants, traversal_constants};
+use afterimage_lab::trace::scene_buffer::SceneBufferBuilder;
 use afterimage_lab::trace::{Bvh, Geometry, TriangleRecord};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3, Vec4};
@@ -83,15 +83,17 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
         moving: Bvh::build(&moving, Some(&before.positions), &materials),
     };
     let (device, queue) = afterimage_testing::gpu::device()?;
-    let heap =
-        HeapBuilder::default().geometry(&geometry, MOVING as usize).finish(storage.limits(&device.limits())).unwrap();
-    let on_device = GpuHeap::new(&device, &queue, &heap, storage);
+    let scene_buffer = SceneBufferBuilder::default()
+        .geometry(&geometry, MOVING as usize)
+        .finish(storage.limits(&device.limits()))
+        .unwrap();
+    let on_device = GpuSceneBuffer::new(&device, &queue, &scene_buffer, storage);
     let mut d = Draws::new("weights");
     let weights: Vec<[f32; 2]> = (0..STILL + MOVING).map(|_| [d.range(0.0, 0.5), d.range(0.0, 0.5)]).collect();
 
     let text = source(SHADERS.compose_with(&[storage.module(), "accept_all", "geometry"], PROBE).source);
-    let mut constants = traversal_constants(&heap, &geometry, true, storage);
-    constants.extend(geometry_constants(&heap));
+    let mut constants = traversal_constants(&scene_buffer, &geometry, true, storage);
+    constants.extend(geometry_constants(&scene_buffer));
     // Overrides that the probe does not use are not in it.
     constants.retain(|(name, _)| text.contains(&format!("override {name}:")));
     let words = afterimage_testing::gpu::validated(&device, "the probe", || {

@@ -1,6 +1,6 @@
 //! Triangles and rays that tests share.
 
-use afterimage_lab::kernel::triangle::{Meeting, intersect, shear};
+use afterimage_lab::kernel::triangle::{Intersection, intersect, shear};
 use afterimage_lab::scene::Triangles;
 use afterimage_lab::trace::{Bvh, Hit, Ray};
 use afterimage_testing::Draws;
@@ -64,7 +64,7 @@ pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let mut best = Hit { triangle: u32::MAX, t: ray.t_max, u: 0.0, v: 0.0 };
     for (i, triangle) in bvh.triangles().iter().enumerate() {
         let [a, b, c] = triangle.positions().map(Vec3A::from);
-        let Meeting { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
+        let Intersection { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
         if t > 0.0 && t < best.t {
             best = Hit { triangle: i as u32, t, u, v };
         }

@@ -6,10 +6,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A corner of a triangle.
+/// A vertex of a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct Corner {
+pub(super) struct Vertex {
     pub position: [f32; 3],
     normal: [f32; 3],
     tangent: [f32; 4],
@@ -18,10 +18,10 @@ pub(super) struct Corner {
     color: [u16; 4],
 }
 
-/// Bytes of a [`Corner`].
-pub(super) const STRIDE: u64 = size_of::<Corner>() as u64;
+/// Bytes of a [`Vertex`].
+pub(super) const STRIDE: u64 = size_of::<Vertex>() as u64;
 
-/// What a corner is read from: its own buffer, and its position in the buffer of a frame ago.
+/// What a vertex is read from: its own buffer, and its position in the buffer of a frame ago.
 pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
     wgpu::VertexBufferLayout {
         array_stride: STRIDE,
@@ -93,13 +93,13 @@ impl Grouped {
         Self { order, parts }
     }
 
-    /// The corners of `triangles`, which have the materials that the groups were made of.
-    pub fn corners(&self, triangles: &Triangles) -> Vec<Corner> {
-        let mut corners = vec![Corner::default(); 3 * self.order.len()];
-        corners.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(corners, &i)| {
+    /// The vertices of `triangles`, which have the materials that the groups were made of.
+    pub fn vertices(&self, triangles: &Triangles) -> Vec<Vertex> {
+        let mut vertices = vec![Vertex::default(); 3 * self.order.len()];
+        vertices.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(vertices, &i)| {
             let i = i as usize;
-            for (k, corner) in corners.iter_mut().enumerate() {
-                *corner = Corner {
+            for (k, vertex) in vertices.iter_mut().enumerate() {
+                *vertex = Vertex {
                     position: triangles.positions[i][k].to_array(),
                     normal: triangles.normals[i][k].to_array(),
                     tangent: triangles.tangents[i][k].to_array(),
@@ -108,16 +108,16 @@ impl Grouped {
                 };
             }
         });
-        corners
+        vertices
     }
 
     /// The middles of the triangles that are blended, with the first vertex and material of each.
-    pub fn blended(&self, corners: &[Corner]) -> Vec<Blended> {
+    pub fn blended(&self, vertices: &[Vertex]) -> Vec<Blended> {
         let parts = self.parts.iter().filter(|p| p.kind == Kind::Blend);
         parts
             .flat_map(|part| {
                 part.vertices.clone().step_by(3).map(|first| {
-                    let of = |k: u32| Vec3::from(corners[(first + k) as usize].position);
+                    let of = |k: u32| Vec3::from(vertices[(first + k) as usize].position);
                     Blended { first, material: part.material, middle: (of(0) + of(1) + of(2)) / 3.0 }
                 })
             })
@@ -154,9 +154,9 @@ mod tests {
             kinds,
             [(Kind::Opaque, 1, 0..6), (Kind::Mask, 2, 6..9), (Kind::Blend, 0, 9..15), (Kind::Blend, 3, 15..18)]
         );
-        let corners = grouped.corners(&triangles);
-        let x: Vec<f32> = corners.iter().step_by(3).map(|c| c.position[0]).collect();
+        let vertices = grouped.vertices(&triangles);
+        let x: Vec<f32> = vertices.iter().step_by(3).map(|c| c.position[0]).collect();
         assert_eq!(x, [2.0, 4.0, 3.0, 1.0, 5.0, 0.0]);
-        assert_eq!(grouped.blended(&corners).iter().map(|b| b.first).collect::<Vec<_>>(), [9, 12, 15]);
+        assert_eq!(grouped.blended(&vertices).iter().map(|b| b.first).collect::<Vec<_>>(), [9, 12, 15]);
     }
 }

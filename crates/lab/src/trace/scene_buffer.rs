@@ -1,5 +1,5 @@
 //! Everything that a tracer on the GPU reads, as one flat array of `vec4<u32>`: a texture or a buffer, whichever the device reads
-//! faster, behind one `load(i)` (`shaders/trace/heap_texture.wgsl`, `heap_buffer.wgsl`).
+//! faster, behind one `load(i)` (`shaders/trace/scene_texture.wgsl`, `scene_storage.wgsl`).
 
 use super::Geometry;
 use bytemuck::NoUninit;
@@ -10,7 +10,7 @@ pub const ELEMENT_BYTES: usize = 16;
 /// Smallest row, in elements: what is lost at most before a section that is rewritten each frame.
 const MIN_WIDTH: u32 = 1024;
 
-/// What a part of the heap holds. At rest until `MovingNodes`, rewritten each frame from there on.
+/// What a part of the scene buffer holds. At rest until `MovingNodes`, rewritten each frame from there on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Section {
     /// Hierarchy of the triangles at rest: five elements a node, `obvhs`' bytes.
@@ -50,9 +50,9 @@ impl Section {
     }
 }
 
-/// Why there is no heap.
+/// Why there is no scene_buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum HeapError {
+pub enum SceneBufferError {
     /// The device has no texture or buffer of the size.
     #[error("the scene takes {elements} elements of 16 bytes on the GPU, and the device has room for {available}")]
     TooLarge {
@@ -73,9 +73,9 @@ pub enum HeapError {
     },
 }
 
-/// Largest heap that a device takes.
+/// Largest scene_buffer that a device takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HeapLimits {
+pub struct SceneBufferLimits {
     /// Rows, and elements in a row: a texture's largest side. 2^31 for buffers, whose rows are only for alignment.
     pub rows: u32,
     /// Elements.
@@ -92,7 +92,7 @@ struct Place {
 
 /// Contents and places.
 #[derive(Clone, Debug)]
-pub struct Heap {
+pub struct SceneBuffer {
     elements: Vec<[u32; 4]>,
     places: Vec<Place>,
     width_log2: u32,
@@ -100,7 +100,7 @@ pub struct Heap {
 
 /// Collects sections. Each section is given at most once.
 #[derive(Clone, Debug, Default)]
-pub struct HeapBuilder<'a> {
+pub struct SceneBufferBuilder<'a> {
     parts: Vec<Part<'a>>,
 }
 
@@ -112,7 +112,7 @@ struct Part<'a> {
     elements: u64,
 }
 
-impl<'a> HeapBuilder<'a> {
+impl<'a> SceneBufferBuilder<'a> {
     /// A section with these contents.
     pub fn fill<T: NoUninit>(&mut self, section: Section, records: &'a [T]) -> &mut Self {
         self.reserve(section, records, 0)
@@ -126,18 +126,18 @@ impl<'a> HeapBuilder<'a> {
         self
     }
 
-    /// Nodes, triangles and attributes. `most_moving` is the largest number of moving triangles at any time.
-    pub fn geometry(&mut self, geometry: &'a Geometry, most_moving: usize) -> &mut Self {
+    /// Nodes, triangles and attributes. `max_moving` is the largest number of moving triangles at any time.
+    pub fn geometry(&mut self, geometry: &'a Geometry, max_moving: usize) -> &mut Self {
         let (still, moving) = (&geometry.still, &geometry.moving);
         self.reserve(Section::Nodes, &still.nodes, NODE_ELEMENTS)
             .fill(Section::Triangles, still.triangles())
             .fill(Section::Attributes, still.attributes());
-        if most_moving > 0 {
+        if max_moving > 0 {
             // Every node but the root of a lone triangle has two children or more.
-            self.reserve(Section::MovingNodes, &moving.nodes, most_moving * NODE_ELEMENTS)
-                .reserve(Section::MovingTriangles, moving.triangles(), most_moving * 3)
-                .reserve(Section::MovingAttributes, moving.attributes(), most_moving * 4)
-                .reserve(Section::MovingPrevious, moving.previous(), most_moving * 3);
+            self.reserve(Section::MovingNodes, &moving.nodes, max_moving * NODE_ELEMENTS)
+                .reserve(Section::MovingTriangles, moving.triangles(), max_moving * 3)
+                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4)
+                .reserve(Section::MovingPrevious, moving.previous(), max_moving * 3);
         }
         self
     }
@@ -146,7 +146,7 @@ impl<'a> HeapBuilder<'a> {
     ///
     /// # Errors
     /// If the device has no room for them.
-    pub fn finish(&mut self, limits: HeapLimits) -> Result<Heap, HeapError> {
+    pub fn finish(&mut self, limits: SceneBufferLimits) -> Result<SceneBuffer, SceneBufferError> {
         self.parts.sort_by_key(|part| part.section);
         let mut width_log2 = MIN_WIDTH.ilog2();
         loop {
@@ -167,15 +167,19 @@ impl<'a> HeapBuilder<'a> {
                 continue;
             }
             if rows > u64::from(limits.rows) || end > limits.elements || end > u64::from(u32::MAX) {
-                return Err(HeapError::TooLarge { elements: end, available: limits.elements });
+                return Err(SceneBufferError::TooLarge { elements: end, available: limits.elements });
             }
-            let mut heap = Heap { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
+            let mut scene_buffer = SceneBuffer { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
             for (part, base) in self.parts.drain(..).zip(starts) {
-                let to = bytemuck::cast_slice_mut(&mut heap.elements[base as usize..]);
+                let to = bytemuck::cast_slice_mut(&mut scene_buffer.elements[base as usize..]);
                 to[..part.bytes.len()].copy_from_slice(part.bytes);
-                heap.places.push(Place { section: part.section, base: base as u32, capacity: part.elements as u32 });
+                scene_buffer.places.push(Place {
+                    section: part.section,
+                    base: base as u32,
+                    capacity: part.elements as u32,
+                });
             }
-            return Ok(heap);
+            return Ok(scene_buffer);
         }
     }
 }
@@ -183,7 +187,7 @@ impl<'a> HeapBuilder<'a> {
 /// Elements of a node.
 pub const NODE_ELEMENTS: usize = 5;
 
-impl Heap {
+impl SceneBuffer {
     /// Index of the section's first element; 0 if there is no such section.
     pub fn base(&self, section: Section) -> u32 {
         self.place(section).map_or(0, |p| p.base)
@@ -218,12 +222,12 @@ impl Heap {
     ///
     /// # Errors
     /// If they are more than was reserved.
-    pub fn rewrite<T: NoUninit>(&mut self, section: Section, records: &[T]) -> Result<(), HeapError> {
+    pub fn rewrite<T: NoUninit>(&mut self, section: Section, records: &[T]) -> Result<(), SceneBufferError> {
         let bytes: &[u8] = bytemuck::cast_slice(records);
         let count = bytes.len().div_ceil(ELEMENT_BYTES) as u64;
         let (base, capacity) = (self.base(section), self.capacity(section));
         if count > u64::from(capacity) {
-            return Err(HeapError::Full { section, elements: count, capacity });
+            return Err(SceneBufferError::Full { section, elements: count, capacity });
         }
         bytemuck::cast_slice_mut(&mut self.elements[base as usize..])[..bytes.len()].copy_from_slice(bytes);
         Ok(())
@@ -233,7 +237,7 @@ impl Heap {
     ///
     /// # Errors
     /// If they are more than was reserved.
-    pub fn rewrite_moving(&mut self, geometry: &Geometry) -> Result<(), HeapError> {
+    pub fn rewrite_moving(&mut self, geometry: &Geometry) -> Result<(), SceneBufferError> {
         let moving = &geometry.moving;
         if self.place(Section::MovingNodes).is_none() && moving.nodes.is_empty() {
             return Ok(());
@@ -247,7 +251,7 @@ impl Heap {
         self.rewrite(Section::MovingPrevious, moving.previous())
     }
 
-    /// Rows of the moving sections, up to the end of the heap. Empty if there are none.
+    /// Rows of the moving sections, up to the end of the scene buffer. Empty if there are none.
     pub fn moving_rows(&self) -> std::ops::Range<u32> {
         let first = self.places.iter().find(|p| p.section.is_moving());
         first.map_or(self.rows(), |p| p.base >> self.width_log2)..self.rows()
