@@ -1,5 +1,6 @@
 //! Times of batches by the device's own clock.
 
+use super::compute::empty_buffer;
 use crate::device::Headless;
 use std::time::Duration;
 use wgpu::BufferUsages;
@@ -20,12 +21,12 @@ impl Clock {
                 ty: wgpu::QueryType::Timestamp,
                 count,
             }),
-            resolved: device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("batches"),
-                size: u64::from(count) * 8,
-                usage: BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
+            resolved: empty_buffer(
+                &device.device,
+                "batches",
+                u64::from(count) * 8,
+                BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
+            ),
         })
     }
 

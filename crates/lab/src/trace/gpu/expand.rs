@@ -1,12 +1,12 @@
 //! Work in batches, and the list of a batch made on the device from spans of pixels.
 
 use super::BATCH;
+use super::compute::{Kernel, bind_group, empty_buffer};
 use super::passes::WORKGROUP;
 use crate::shader::SHADERS;
 use crate::trace::work::{Spans, Work, WorkItem};
 use afterimage::gpu::filled;
 use bytemuck::{Pod, Zeroable};
-use std::borrow::Cow;
 use wgpu::BufferUsages;
 
 /// A part of the work that is in flight at once.
@@ -92,19 +92,9 @@ pub(super) struct Expansion {
 
 impl Expand {
     pub fn new(device: &wgpu::Device) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("expand_pass"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(SHADERS.compose("expand_pass").source)),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("expand"),
-            layout: None,
-            module: &module,
-            entry_point: Some("expand"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { pipeline }
+        let source = SHADERS.compose("expand_pass").source;
+        let kernel = Kernel { module: "expand_pass", source, entry: "expand", layout: None, constants: &[] };
+        Self { pipeline: kernel.pipeline(device) }
     }
 
     /// The list of the work: uploaded, or a place that batches are expanded into.
@@ -114,23 +104,15 @@ impl Expand {
             Work::List(items) => return (stored("work", bytemuck::cast_slice(items)), None),
             Work::Spans(spans) => stored("spans", bytemuck::cast_slice(spans.spans())),
         };
-        let buffer = |label, size, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-        };
-        let list = buffer("work", u64::from(BATCH) * size_of::<WorkItem>() as u64, BufferUsages::STORAGE);
-        let uniforms =
-            buffer("batch", size_of::<BatchUniforms>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let list = empty_buffer(device, "work", u64::from(BATCH) * size_of::<WorkItem>() as u64, BufferUsages::STORAGE);
+        let uniforms = empty_buffer(
+            device,
+            "batch",
+            size_of::<BatchUniforms>() as u64,
+            BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        );
         let resources = [&uniforms, &spans, &list].map(wgpu::Buffer::as_entire_binding);
-        let entries: Vec<_> = resources
-            .into_iter()
-            .zip(0..)
-            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("expand"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let bound = bind_group(device, "expand", &self.pipeline.get_bind_group_layout(0), &resources);
         (list, Some(Expansion { uniforms, bound }))
     }
 

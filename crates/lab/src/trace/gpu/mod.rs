@@ -3,6 +3,7 @@
 //! known on the device only.
 
 mod clock;
+mod compute;
 mod expand;
 mod passes;
 mod paths;

@@ -1,8 +1,8 @@
 //! Kernels and the layouts of what they are bound to.
 
+use super::compute::Kernel;
 use crate::shader::SHADERS;
 use crate::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
-use std::borrow::Cow;
 
 /// Invocations of a workgroup.
 pub(super) const WORKGROUP: u32 = 64;
@@ -58,21 +58,7 @@ impl Passes {
             // A kernel is told of the overrides that it has.
             let has = |name: &str| source.contains(&format!("override {name}:"));
             let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| has(name)).collect();
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(module),
-                source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            })
+            Kernel { module, source, entry, layout: Some(&layout), constants: &constants }.pipeline(device)
         };
         Self {
             generate: pipeline("generate_pass", "generate", None),

@@ -1,5 +1,6 @@
 //! Buffers that paths live in, and a run of all kernels over a list of work.
 
+use super::compute::{bind_group, empty_buffer};
 use super::passes::{Passes, WORKGROUP};
 use crate::device::Headless;
 use crate::trace::gpu::scene_buffer::GpuSceneBuffer;
@@ -67,18 +68,17 @@ pub(super) struct Counters {
 
 impl Paths {
     pub fn new(device: &wgpu::Device, passes: &Passes, capacity: u32) -> Self {
-        let buffer = |label, size, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-        };
-        let plan = buffer("plan", PLAN_BYTES, BufferUsages::STORAGE | BufferUsages::INDIRECT);
-        let bind = |layout| {
-            let entries = &[wgpu::BindGroupEntry { binding: 0, resource: plan.as_entire_binding() }];
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("plan"), layout, entries })
-        };
+        let plan = empty_buffer(device, "plan", PLAN_BYTES, BufferUsages::STORAGE | BufferUsages::INDIRECT);
+        let bind = |layout| bind_group(device, "plan", layout, &[plan.as_entire_binding()]);
         Self {
-            frame: buffer("frame", size_of::<FrameUniforms>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST),
-            paths: buffer("paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
-            lists: buffer("lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
+            frame: empty_buffer(
+                device,
+                "frame",
+                size_of::<FrameUniforms>() as u64,
+                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            ),
+            paths: empty_buffer(device, "paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
+            lists: empty_buffer(device, "lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
             plan_written: bind(&passes.written_layout),
             plan_read: bind(&passes.plan_layout),
             plan,
@@ -97,12 +97,7 @@ impl Paths {
         let to_read = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let film = filled(device, "film", bytemuck::cast_slice(film), to_read);
         let counters = filled(device, "counters", &[0; COUNTER_BYTES as usize], to_read);
-        let bind = |layout, resources: &[wgpu::BindingResource]| {
-            let numbered = resources.iter().cloned().zip(0..);
-            let entries: Vec<_> =
-                numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("trace"), layout, entries: &entries })
-        };
+        let bind = |layout, resources: &[wgpu::BindingResource]| bind_group(device, "trace", layout, resources);
         let shared = [&self.frame, work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
         Run {
             paths: self,

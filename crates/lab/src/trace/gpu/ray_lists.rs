@@ -1,10 +1,10 @@
 //! Hits of a list of rays on a device: for tests and measurements.
 
+use super::compute::{Kernel, bind_group, empty_buffer};
 use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use crate::shader::SHADERS;
 use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
-use std::borrow::Cow;
 use wgpu::BufferUsages;
 
 /// What is asked about each ray.
@@ -52,24 +52,17 @@ impl GpuRays {
         source: Option<&str>,
     ) -> Self {
         let source = source.map_or_else(|| Self::source(storage), str::to_owned);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("hits"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("hits"),
-            layout: None,
-            module: &module,
-            entry_point: Some(match query {
+        let kernel = Kernel {
+            module: "hits",
+            source,
+            entry: match query {
                 HitQuery::Closest => "closest_hits",
                 HitQuery::Any => "any_hits",
-            }),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &traversal_constants(scene_buffer, geometry, false, storage),
-                zero_initialize_workgroup_memory: false,
             },
-            cache: None,
-        });
+            layout: None,
+            constants: &traversal_constants(scene_buffer, geometry, false, storage),
+        };
+        let pipeline = kernel.pipeline(device);
         Self { device: device.clone(), queue: queue.clone(), pipeline, query }
     }
 
@@ -88,22 +81,12 @@ impl GpuRays {
                 [o.x, o.y, o.z, r.t_max, d.x, d.y, d.z, 0.0]
             })
             .collect();
-        let buffer = |size: usize, usage| {
-            let size = size.max(32) as u64;
-            self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
-        let input = buffer(rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let buffer = |label, size: usize, usage| empty_buffer(&self.device, label, size.max(32) as u64, usage);
+        let input = buffer("rays", rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         self.queue.write_buffer(&input, 0, bytemuck::cast_slice(&floats));
-        let hits = buffer(rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: scene_buffer.binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: hits.as_entire_binding() },
-            ],
-        });
+        let hits = buffer("hits", rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let resources = [scene_buffer.binding(), input.as_entire_binding(), hits.as_entire_binding()];
+        let group = bind_group(&self.device, "hits", &self.pipeline.get_bind_group_layout(0), &resources);
         Batch { group, hits, count: rays.len() as u32 }
     }
 
@@ -127,8 +110,7 @@ impl GpuRays {
     pub fn hits(&self, batch: &Batch) -> Vec<Option<Hit>> {
         let size = batch.hits.size();
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
-        let readback = self.device.create_buffer(&desc);
+        let readback = empty_buffer(&self.device, "hits read back", size, usage);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&batch.hits, 0, &readback, 0, size);
         self.queue.submit([encoder.finish()]);
