@@ -33,22 +33,22 @@ macro_rules! effects {
 }
 
 effects! {
-    Dielectric "dielectric" "a material that is not all metal reflects at its surface",
+    Dielectric "dielectric" "a material with dielectric reflection",
     Metal "metal" "a metallic material",
-    Anisotropy "anisotropy" "a highlight that is stretched",
-    Clearcoat "clearcoat" "a coated material",
+    Anisotropy "anisotropy" "a material with anisotropic highlights",
+    Clearcoat "clearcoat" "a material with a clear coat",
     Sheen "sheen" "a material with sheen",
-    Transmission "transmission" "a material that light passes through, and that may absorb it",
-    BaseColor "base-color" "a base color from an image or on vertices",
-    SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from an image",
+    Transmission "transmission" "a material that transmits light, and may absorb it",
+    BaseColor "base-color" "a base color from a texture or vertex colors",
+    SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from a texture",
     NormalMap "normal-map" "a normal map",
-    EmissiveTexture "emissive-texture" "an emissive color from an image",
-    Alpha "alpha" "a surface with holes or partly transparent",
+    EmissiveTexture "emissive-texture" "an emissive texture",
+    Alpha "alpha" "an alpha-tested or partly transparent surface",
     EmissiveTriangles "emissive-triangles" "a surface that emits light",
     PunctualLights "punctual-lights" "a point, spot or directional light",
-    Environment "environment" "light from all around",
-    EnvironmentMap "environment-map" "light from all around that differs by direction",
-    MovingObjects "moving-objects" "triangles that move",
+    Environment "environment" "an environment that emits light",
+    EnvironmentMap "environment-map" "an environment map",
+    MovingObjects "moving-objects" "moving triangles",
 }
 
 /// A set of effects.

@@ -55,7 +55,7 @@ impl Section {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SceneBufferError {
     /// The device has no texture or buffer of this size.
-    #[error("the scene takes {elements} elements of 16 bytes on the GPU, and the device has room for {available}")]
+    #[error("scene buffer: needs {elements} elements of 16 bytes, the device allows {available}; use a smaller scene or the CPU")]
     TooLarge {
         /// Elements needed.
         elements: u64,
@@ -63,7 +63,7 @@ pub enum SceneBufferError {
         available: u64,
     },
     /// New contents of a section exceed its reserved capacity.
-    #[error("{elements} elements do not fit into the {capacity} that were reserved for {section:?}")]
+    #[error("scene buffer: {section:?} needs {elements} elements, {capacity} are reserved; create the tracer again")]
     Full {
         /// The section.
         section: Section,

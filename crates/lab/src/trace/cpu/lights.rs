@@ -1,4 +1,4 @@
-//! Light that is looked for: `shaders/trace/lights.wgsl`.
+//! Light sampling (next event estimation) and environment lookup. Twin of `shaders/trace/lights.wgsl`.
 
 use super::surface::emission_at;
 use crate::kernel::direction::{to_world, unit};
@@ -13,23 +13,23 @@ use crate::trace::shading_records::{
 use crate::trace::world::World;
 use glam::{Vec2, Vec3};
 
-/// Light that may arrive at a point.
+/// A sampled point on a light, as seen from a surface point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightSample {
-    /// Unit vector towards it.
+    /// Unit vector towards the light.
     pub direction: Vec3,
-    /// Metres to it; infinity for what is infinitely far.
+    /// Distance in metres; infinity for lights at infinity.
     pub distance: f32,
-    /// Radiance; of punctual lights irradiance on a surface that faces them.
+    /// Radiance; for punctual lights, irradiance on a surface facing the light.
     pub radiance: Vec3,
-    /// Density of finding it, 1/sr; of punctual lights the probability.
+    /// Density of the sample in 1/sr; for punctual lights, the probability of picking the light.
     pub pdf: f32,
-    /// Whether a path that scatters may find it, too.
+    /// Whether scattered rays can also hit the light, so that the sample needs a MIS weight.
     pub can_be_hit: bool,
 }
 
-/// Picks a light and a place on it, as seen from `position` with shading frame `frame`. `draws` pick the light and the place,
-/// `more` the texel of an environment map.
+/// Samples a light and a point on it, seen from `position` with shading frame `frame`. `draws` choose the light and the
+/// point, `more` the texel of an environment map.
 pub(super) fn sample_light(
     world: &World,
     position: Vec3,
@@ -82,7 +82,7 @@ fn from_triangle(
     if cosine <= 0.0 && !double_sided {
         return None;
     }
-    // To just before the light: the ray must not end on it.
+    // The shadow ray ends just before the light, so that it does not hit the light itself.
     let side = if cosine > 0.0 { face } else { -face };
     let to = offset_ray(on_light, side, magnitude(v0, v1, v2)) - position;
     let squared = to.dot(to);
@@ -143,7 +143,7 @@ fn has_map(world: &World, effects: Effects) -> bool {
     effects.has(Effect::EnvironmentMap) && world.map_size[0] > 0
 }
 
-/// Radiance from a direction that meets nothing.
+/// Radiance of the environment in a direction.
 pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
     if !has_map(world, effects) {
         return world.sky;
@@ -163,7 +163,8 @@ pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
     top * (1.0 - t) + bottom * t
 }
 
-/// Density with which [`sample_light`] finds the sky in a direction under `cosine` to the shading normal that it is looked from.
+/// Density in 1/sr with which [`sample_light`] would sample this direction of the environment. `cosine` is that of the
+/// direction to the shading normal.
 pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effects) -> f32 {
     if !has_map(world, effects) {
         return world.sky_probability * cosine_hemisphere_pdf(cosine);
@@ -177,7 +178,8 @@ pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effe
     world.sky_probability * map_pdf(probability, world.map.len() as f32, sine)
 }
 
-/// Density with which [`sample_light`] finds the point of triangle `index` that a path from `distance` away met under `cosine`.
+/// Density in 1/sr with which [`sample_light`] would sample the point where a path hit triangle `index`, at `distance`
+/// and with `cosine` to the triangle's normal.
 pub(super) fn triangle_pdf(world: &World, index: u32, distance: f32, cosine: f32) -> f32 {
     let light = world.geometry.triangle(index);
     let Some(row) = light.light() else { return 0.0 };

@@ -1,4 +1,5 @@
-//! One path of light. `shaders/trace/shade.wgsl` and its companions do the same a step at a time.
+//! A light path, traced from the camera. `shaders/trace/shade_pass.wgsl` and the other passes do the same one step at a
+//! time.
 
 use super::lights::{LightSample, sample_light, sky, sky_pdf, triangle_pdf};
 use super::surface::{SurfacePoint, lobes, passes_alpha_test, surface_point};
@@ -15,7 +16,7 @@ use afterimage::kernel::approx::exp;
 use afterimage::kernel::rng::path_draws;
 use glam::Vec3;
 
-/// What all paths of a frame have in common.
+/// Constants of all paths of a frame.
 pub(super) struct Paths<'a> {
     pub world: &'a World,
     pub integrator: Integrator,
@@ -25,31 +26,32 @@ pub(super) struct Paths<'a> {
     pub key: u32,
 }
 
-/// Every decision of a path has draws of its own: where in the pixel it starts ...
+/// Index of random draws: position within the pixel. Each decision of a path has draws of its own.
 pub(super) const DRAWS_CAMERA: u32 = 0;
-/// ... and at each bounce where it goes,
+/// Index of random draws: scattered direction. This one and the next two are relative to the bounce.
 const DRAWS_SCATTER: u32 = 1;
-/// which light it looks for and where on it,
+/// Index of random draws: light and point on it.
 const DRAWS_LIGHT: u32 = 2;
-/// and where in the environment map.
+/// Index of random draws: texel of the environment map.
 const DRAWS_MAP: u32 = 3;
-/// From one bounce to the next.
+/// Increment of draw indices per bounce.
 const DRAWS_STRIDE: u32 = 4;
-/// Whether it meets a surface with holes: apart from all others, and by triangle.
+/// Index of random draws: alpha test. The high bit keeps it apart from all others; the triangle index is mixed into the
+/// key.
 const DRAWS_ALPHA_TEST: u32 = 0x8000_0000;
 
-/// Where a path is.
+/// State of a path between bounces.
 struct State {
     ray: Ray,
     throughput: Vec3,
-    /// Density of the ray's direction; 0 for the camera's.
+    /// Density of the ray's direction in 1/sr; 0 for camera rays.
     pdf: f32,
-    /// Density with which the sky in the ray's direction could have been looked for instead.
+    /// Density in 1/sr with which light sampling would have chosen this direction of the environment.
     sky_pdf: f32,
 }
 
 impl Paths<'_> {
-    /// Radiance that arrives along `direction` (of length 1), and rays traced for it.
+    /// Radiance arriving along `direction` (unit length), and the number of rays traced for it.
     pub fn radiance(&self, origin: Vec3, direction: Vec3, pixel: u32, sample: u32) -> (Vec3, u64) {
         let mut radiance = Vec3::ZERO;
         let mut rays = 0;
@@ -99,7 +101,7 @@ impl Paths<'_> {
         (radiance, rays)
     }
 
-    /// The nearest surface; `number` tells a path's rays apart.
+    /// Nearest surface on a ray; `number` distinguishes the rays of a path in alpha tests.
     fn closest(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> Option<Hit> {
         let accept = |t, u, v| self.accept_hit(t, u, v, pixel, sample, number);
         let geometry = &self.world.geometry;
@@ -128,7 +130,7 @@ impl Paths<'_> {
         passes_alpha_test(self.world, triangle, u, v, draws[0], self.effects)
     }
 
-    /// Share of what a scattered ray finds that is not counted where it was looked for.
+    /// MIS weight of light that a scattered ray hits, given the density with which light sampling would have found it.
     fn mis_weight(&self, state: &State, light_pdf: f32) -> f32 {
         match self.integrator {
             _ if state.pdf <= 0.0 => 1.0,
@@ -153,7 +155,7 @@ impl Paths<'_> {
         p.emitted * self.mis_weight(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
     }
 
-    /// A ray towards a light, and what arrives if nothing is in between.
+    /// Shadow ray to a sampled light, and its contribution if unoccluded.
     fn direct_light(
         &self,
         p: &SurfacePoint,
@@ -178,13 +180,13 @@ impl Paths<'_> {
     }
 }
 
-/// Whether any channel is above 0; not if it is no number.
+/// Whether any channel is above 0; false for NaN.
 fn any_positive(v: Vec3) -> bool {
     v.x.max(v.y.max(v.z)) > 0.0
 }
 
-/// Where a ray starts that leaves `p` along `direction`, whose cosine to the shading normal is `cosine`; `None` where the shading
-/// normal and the surface disagree about the side: light would leak through.
+/// Origin of a ray leaving `p` along `direction`, whose cosine to the shading normal is `cosine`. `None` where shading
+/// and geometric normal disagree about the side, as light would leak through.
 fn spawn_origin(p: &SurfacePoint, direction: Vec3, cosine: f32) -> Option<Vec3> {
     let side = p.geometric.dot(direction);
     if side * cosine <= 0.0 {
@@ -194,8 +196,8 @@ fn spawn_origin(p: &SurfacePoint, direction: Vec3, cosine: f32) -> Option<Vec3> 
     Some(offset_ray(p.position, normal, p.magnitude))
 }
 
-/// From `origin`, off the surface point at `position`, to what was found from there. Both ends being off their surfaces, the
-/// segment between them meets neither; it ends a little early for what rounding adds over its length.
+/// Shadow ray from `origin` to the light sampled from `position`. Both ends are offset from their surfaces, so the
+/// segment meets neither. It ends slightly early to allow for rounding over its length.
 fn shadow_ray(origin: Vec3, position: Vec3, light: &LightSample) -> Ray {
     if light.distance == f32::INFINITY {
         return Ray { origin, direction: light.direction, t_max: f32::INFINITY };
@@ -204,15 +206,15 @@ fn shadow_ray(origin: Vec3, position: Vec3, light: &LightSample) -> Ray {
     Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * SHADOW_RAY_SCALE }
 }
 
-/// Share of the way to a light that is looked at.
+/// Share of the distance to a light that the shadow ray covers.
 const SHADOW_RAY_SCALE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
-/// How light scatters at a point, seen along `wo`.
+/// Scattering at a surface point for the outgoing direction `wo`.
 struct Scattering<'a> {
     point: &'a SurfacePoint,
     wo: Vec3,
     lobes: Lobes,
-    /// `None`: Phong's model.
+    /// `None` for Phong's model.
     layers: Option<Layers>,
 }
 

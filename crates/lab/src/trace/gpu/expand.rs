@@ -1,4 +1,4 @@
-//! Work in batches, and the list of a batch made on the device from spans of pixels.
+//! Splits work into batches, and expands spans of pixels into lists of samples on the device.
 
 use super::BATCH;
 use super::compute::{Kernel, bind_group, empty_buffer};
@@ -9,13 +9,13 @@ use afterimage::gpu::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 
-/// A part of the work that is in flight at once.
+/// A part of the work that is traced at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Batch {
-    /// Where its items begin in the list.
+    /// Index of its first item in the list.
     pub first_item: u32,
     pub items: u32,
-    /// Of spans: what `expand` is told.
+    /// For spans: uniforms of the `expand` kernel.
     expansion: Option<BatchUniforms>,
 }
 
@@ -29,10 +29,11 @@ struct BatchUniforms {
     items: u32,
 }
 
-/// Most samples of a pixel in a batch: software Vulkan leaves a loop after 65,535 rounds, and `resolve` has one a sample.
+/// Largest number of samples of one pixel in a batch. Software Vulkan leaves a loop after 65,535 iterations, and
+/// `resolve` has one iteration per sample.
 const MAX_SAMPLES_PER_PIXEL: u32 = 1 << 15;
 
-/// The work in parts that fit. A pixel's mean goes on from one to the next.
+/// Splits the work into batches. A pixel's running mean continues from one batch to the next.
 pub(super) fn batches(work: Work) -> Vec<Batch> {
     match work {
         Work::List(items) => of_list(items),
@@ -78,13 +79,13 @@ fn of_spans(spans: &Spans) -> Vec<Batch> {
     batches
 }
 
-/// The kernel that makes lists.
+/// The kernel that expands spans into lists.
 #[derive(Debug)]
 pub(super) struct Expand {
     pipeline: wgpu::ComputePipeline,
 }
 
-/// Spans on the device, and what a batch is told.
+/// Spans on the device, and the uniforms of the current batch.
 pub(super) struct Expansion {
     uniforms: wgpu::Buffer,
     bound: wgpu::BindGroup,
@@ -97,7 +98,7 @@ impl Expand {
         Self { pipeline: kernel.pipeline(device) }
     }
 
-    /// The list of the work: uploaded, or a place that batches are expanded into.
+    /// Device list of the work: uploaded, or an empty buffer that each batch's spans are expanded into.
     pub fn list(&self, device: &wgpu::Device, work: Work) -> (wgpu::Buffer, Option<Expansion>) {
         let stored = |label, contents: &[u8]| filled(device, label, contents, BufferUsages::STORAGE);
         let spans = match work {
@@ -116,7 +117,7 @@ impl Expand {
         (list, Some(Expansion { uniforms, bound }))
     }
 
-    /// Makes the list of `batch`, if it is to be made.
+    /// Records the expansion of `batch`, if the work consists of spans.
     pub fn record(
         &self,
         device: &wgpu::Device,

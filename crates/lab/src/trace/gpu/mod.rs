@@ -1,6 +1,6 @@
-//! The tracer on a GPU: a wavefront (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013). Paths are advanced
-//! together, one step of one kind at a time: `generate`, then for each bounce `extend`, `shade`, `shadow`; how many are left is
-//! known on the device only.
+//! Path tracer on a GPU: a wavefront tracer (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013). All
+//! paths advance together, one kernel at a time: `generate`, then for each bounce `extend`, `shade` and `shadow`. Only
+//! the device knows how many paths are still alive.
 
 mod clock;
 mod compute;
@@ -28,14 +28,14 @@ use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Paths in flight at once.
+/// Number of paths in flight.
 pub const BATCH: u32 = 1 << 17;
 
-/// Work items on the device at once.
+/// Largest number of listed work items on the device at once.
 const MAX_ITEMS: usize = 1 << 22;
 
-/// A scene's tracer on a device. Same seed, same device, same image: appending to lists is unordered, but no result depends on
-/// the order.
+/// Tracer of one scene on one device. The same seed on the same device gives the same image: appending to path lists is
+/// unordered, but no result depends on the order.
 #[derive(Debug)]
 pub struct GpuTracer {
     device: Arc<Headless>,
@@ -46,12 +46,12 @@ pub struct GpuTracer {
     passes: Passes,
     expand: Expand,
     paths: Paths,
-    /// Time that compiling the kernels took, as far as the driver does it now.
+    /// Time spent compiling kernels, as far as the driver compiles them at creation.
     pub compile_time: Duration,
 }
 
 impl GpuTracer {
-    /// To be called after tracing: on a lost device the film gets black samples.
+    /// Reports a lost device. Call it after tracing: on a lost device the film receives black samples.
     ///
     /// # Errors
     /// [`FrameError::DeviceLost`].
@@ -62,13 +62,13 @@ impl GpuTracer {
     /// Uploads `world` and compiles kernels for it.
     ///
     /// # Errors
-    /// If the scene is too large for the device.
+    /// If the scene exceeds the device's limits.
     pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         let storage = Storage::of(device.info.device_type);
         Self::with_storage(device, world, settings, storage)
     }
 
-    /// As [`new`](Self::new), with the scene kept as `storage`.
+    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -81,7 +81,8 @@ impl GpuTracer {
         Self::with_shader_edit(device, world, settings, storage, |text| text)
     }
 
-    /// As [`with_storage`](Self::with_storage), with each kernel's text as `edit` returns it: for measurements of what text costs.
+    /// As [`with_storage`](Self::with_storage), with `edit` applied to each kernel's WGSL source, to measure the cost
+    /// of code.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -104,20 +105,20 @@ impl GpuTracer {
         Ok(Self { device, settings, effects, scene_buffer, on_device, passes, expand, paths, compile_time })
     }
 
-    /// What is compiled in.
+    /// Effects that are compiled in.
     pub fn effects(&self) -> Effects {
         self.effects
     }
 
-    /// Bytes of the scene on the device.
+    /// Size of the scene buffer in bytes.
     pub fn scene_bytes(&self) -> u64 {
         self.scene_buffer.bytes()
     }
 
-    /// Uploads what moved since the last frame: to be called after [`World::pose`].
+    /// Uploads moved geometry and lights. Call it after [`World::pose`].
     ///
     /// # Errors
-    /// If there is more of it than at first.
+    /// If they exceed the capacity reserved at creation.
     pub fn update(&mut self, world: &World) -> Result<(), SceneBufferError> {
         self.scene_buffer.rewrite_moving(&world.geometry)?;
         self.scene_buffer.rewrite(Section::Picks, &world.picks)?;
@@ -126,10 +127,11 @@ impl GpuTracer {
         Ok(())
     }
 
-    /// Adds the samples of `work`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
+    /// Adds the samples of `work` to `film`, which must contain all its pixels, as
+    /// [`CpuTracer::trace`](super::cpu::CpuTracer::trace) does.
     pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         match work.into() {
-            // Longer lists would not fit a binding of default limits.
+            // Longer lists exceed the default limit of a storage binding.
             Work::List(items) => {
                 for items in items.chunks(MAX_ITEMS) {
                     self.trace_batches(world, view, frame, items.into(), film, None);
@@ -139,8 +141,8 @@ impl GpuTracer {
         }
     }
 
-    /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
-    /// none, or for more than 2048 batches.
+    /// As [`trace`](Self::trace), and returns the kernels' time by device timestamps, without transfers. `None` if the
+    /// device has no timestamps, or for more than 2048 batches.
     pub fn trace_timed<'w>(
         &self,
         world: &World,
@@ -199,7 +201,7 @@ impl GpuTracer {
             let timestamps = clock.map(|c| c.around(index));
             run.record(device, &mut encoder, &self.passes, &uniforms, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
-            // A software device would otherwise hold all batches at once.
+            // Without waiting, a software device holds the memory of all batches at once.
             self.device.wait();
         }
         let (rows, counters) = run.read(&self.device);
@@ -219,14 +221,14 @@ fn moments_of(rows: &[[f32; 4]; 2]) -> Moments {
     Moments { mean: Vec3::new(x, y, z), squares: Vec3::new(a, b, c), count: count as u32 }
 }
 
-/// Everything that the kernels read.
+/// Builds the scene buffer.
 fn scene_buffer(
     world: &World,
     effects: Effects,
     limits: super::scene_buffer::SceneBufferLimits,
 ) -> Result<SceneBuffer, SceneBufferError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
-    // Room for one where nothing moves: a node of zeros has no children.
+    // Room for one triangle even where nothing moves: a zeroed node has no children.
     let max_moving = if effects.has(Effect::MovingObjects) { world.max_moving.max(1) } else { 0 };
     let mut builder = SceneBufferBuilder::default();
     builder
@@ -241,7 +243,7 @@ fn scene_buffer(
     builder.finish(limits)
 }
 
-/// Values of all overrides.
+/// Values of all override constants.
 fn constants(
     world: &World,
     scene_buffer: &SceneBuffer,

@@ -1,4 +1,4 @@
-//! Kernels and the layouts of what they are bound to.
+//! Compute pipelines of the tracer, and their bind group layouts.
 
 use super::compute::Kernel;
 use crate::shader::SHADERS;
@@ -7,7 +7,7 @@ use crate::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
 /// Invocations of a workgroup.
 pub(super) const WORKGROUP: u32 = 64;
 
-/// The kernels, specialised to a scene.
+/// The kernels, specialized to a scene.
 #[derive(Debug)]
 pub(super) struct Passes {
     pub generate: wgpu::ComputePipeline,
@@ -20,9 +20,9 @@ pub(super) struct Passes {
     pub resolve: wgpu::ComputePipeline,
     pub scene_layout: wgpu::BindGroupLayout,
     pub frame_layout: wgpu::BindGroupLayout,
-    /// A storage buffer to write: the plan of `count_pass`, the film of `resolve_pass`.
+    /// One writable storage buffer: the plan for `count_pass`, the film for `resolve_pass`.
     pub written_layout: wgpu::BindGroupLayout,
-    /// The plan, to read.
+    /// The plan as a read-only storage buffer.
     pub plan_layout: wgpu::BindGroupLayout,
 }
 
@@ -55,7 +55,7 @@ impl Passes {
                 immediate_size: 0,
             });
             let source = edit(SHADERS.compose_with(&[storage.module(), module], "").source);
-            // A kernel is told of the overrides that it has.
+            // WebGPU rejects values for overrides that a shader does not declare.
             let has = |name: &str| source.contains(&format!("override {name}:"));
             let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| has(name)).collect();
             Kernel { module, source, entry, layout: Some(&layout), constants: &constants }.pipeline(device)

@@ -1,4 +1,4 @@
-//! Buffers that paths live in, and a run of all kernels over a list of work.
+//! Path state on the device, and the sequence of kernels over a batch.
 
 use super::compute::{bind_group, empty_buffer};
 use super::passes::{Passes, WORKGROUP};
@@ -30,16 +30,16 @@ pub(super) struct FrameUniforms {
     pub unused: [u32; 2],
 }
 
-/// Bytes of a path: `PATH_ROWS`.
+/// Bytes of a path's state: `PATH_ROWS` rows of 16 bytes.
 const PATH_BYTES: u64 = 8 * 16;
 
-/// Bytes of `counters` and of `plan`.
+/// Sizes of the `counters` and `plan` buffers in bytes.
 const COUNTER_BYTES: u64 = 5 * 4;
 const PLAN_BYTES: u64 = 9 * 4;
-/// Where in the plan the workgroups of `shadow` are.
+/// Byte offset of `shadow`'s workgroup counts in the plan.
 const PLAN_SHADOW: u64 = 3 * 4;
 
-/// What stays from frame to frame.
+/// Buffers that are reused from frame to frame.
 #[derive(Debug)]
 pub(super) struct Paths {
     frame: wgpu::Buffer,
@@ -50,7 +50,7 @@ pub(super) struct Paths {
     plan_read: wgpu::BindGroup,
 }
 
-/// A list of work and the film that it goes to.
+/// Bindings of a list of work and of the film that receives it.
 pub(super) struct Run<'a> {
     paths: &'a Paths,
     scene_buffer: wgpu::BindGroup,
@@ -60,7 +60,7 @@ pub(super) struct Run<'a> {
     film_bound: wgpu::BindGroup,
 }
 
-/// What was counted.
+/// Counters that the kernels add to.
 pub(super) struct Counters {
     pub rays: u64,
     pub nonfinite: u64,
@@ -111,7 +111,7 @@ impl Paths {
 }
 
 impl Run<'_> {
-    /// All kernels over the batch that `uniforms` names.
+    /// Records all kernels over the batch that `uniforms` describes.
     pub fn record(
         &self,
         device: &wgpu::Device,
@@ -121,7 +121,7 @@ impl Run<'_> {
         max_depth: u32,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        // Through the encoder: a write by the queue would give all batches of a submission the last uniforms.
+        // Copied through the encoder: a queue write would give all batches of a submission the last batch's uniforms.
         let contents = bytemuck::bytes_of(uniforms);
         let staged = filled(device, "frame", contents, BufferUsages::COPY_SRC);
         encoder.copy_buffer_to_buffer(&staged, 0, &self.paths.frame, 0, contents.len() as u64);
@@ -162,7 +162,7 @@ impl Run<'_> {
         pass.dispatch_workgroups(groups, 1, 1);
     }
 
-    /// Waits for all batches, and reads the film and what was counted.
+    /// Waits for all batches, then reads the film and the counters.
     pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counters) {
         let film = device.read_buffer(&self.film);
         let words = device.read_buffer(&self.counters);

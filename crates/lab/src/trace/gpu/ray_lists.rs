@@ -1,4 +1,4 @@
-//! Hits of a list of rays on a device: for tests and measurements.
+//! Hits for a list of rays on a device, for tests and measurements.
 
 use super::compute::{Kernel, bind_group, empty_buffer};
 use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
@@ -7,16 +7,16 @@ use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
 use wgpu::BufferUsages;
 
-/// What is asked about each ray.
+/// Kind of traversal query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitQuery {
-    /// The nearest hit.
+    /// Nearest hit.
     Closest,
-    /// Whether anything is hit.
+    /// Whether the ray hits anything.
     Any,
 }
 
-/// Traversal as a pipeline of its own.
+/// A pipeline that only traverses.
 #[derive(Debug)]
 pub struct GpuRays {
     device: wgpu::Device,
@@ -25,7 +25,7 @@ pub struct GpuRays {
     query: HitQuery,
 }
 
-/// Rays on the device, and room for their hits.
+/// Rays and their hits on the device.
 #[derive(Debug)]
 pub struct Batch {
     group: wgpu::BindGroup,
@@ -37,11 +37,11 @@ pub struct Batch {
 const WORKGROUP: u32 = 64;
 
 impl GpuRays {
-    /// Largest number of rays of a batch: a dispatch has no more workgroups along an axis, and a binding no more bytes.
+    /// Largest number of rays in a batch, from WebGPU's default limits: 65,535 workgroups per dispatch and 128 MiB per
+    /// binding.
     pub const MAX_RAYS: usize = 4_000_000;
 
-    /// For a scene's scene_buffer, as it was finished. `source` is the text of the shader; `None` for the package's own, where every hit
-    /// is accepted.
+    /// A pipeline for `scene_buffer`. `source` is WGSL; `None` uses [`source`](Self::source), which accepts every hit.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -66,12 +66,12 @@ impl GpuRays {
         Self { device: device.clone(), queue: queue.clone(), pipeline, query }
     }
 
-    /// The package's own shader.
+    /// WGSL source of this crate's kernel.
     pub fn source(storage: Storage) -> String {
         SHADERS.compose_with(&[storage.module(), "accept_all", "hits_pass"], "").source
     }
 
-    /// Uploads rays.
+    /// Uploads rays; those beyond [`MAX_RAYS`](Self::MAX_RAYS) are left out.
     pub fn batch(&self, scene_buffer: &GpuSceneBuffer, rays: &[Ray]) -> Batch {
         let rays = &rays[..rays.len().min(Self::MAX_RAYS)];
         let floats: Vec<[f32; 8]> = rays
@@ -90,7 +90,7 @@ impl GpuRays {
         Batch { group, hits, count: rays.len() as u32 }
     }
 
-    /// Traces a batch and waits for it.
+    /// Traces a batch and waits for the result.
     pub fn run(&self, batch: &Batch) {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -99,11 +99,11 @@ impl GpuRays {
         pass.dispatch_workgroups(batch.count.div_ceil(WORKGROUP), 1, 1);
         drop(pass);
         self.queue.submit([encoder.finish()]);
-        // A lost device shows at the next map.
+        // A lost device is reported by the next map.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// The hits of a batch that ran; where anything is asked, those of triangle 0 at distance 0.
+    /// Hits of a batch that has run. [`HitQuery::Any`] reports only whether there is a hit, with all fields 0.
     ///
     /// # Panics
     /// If the device was lost.

@@ -3,22 +3,22 @@
 use crate::trace::Geometry;
 use crate::trace::scene_buffer::{ELEMENT_BYTES, SceneBuffer, SceneBufferLimits, Section};
 
-/// Where a device keeps the scene buffer.
+/// Kind of GPU resource that holds the scene buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
-    /// An rgba32uint texture. Software Vulkan reads it five times as fast as a buffer.
+    /// An rgba32uint texture. On software Vulkan, reads are five times as fast as from a buffer.
     Texture,
     /// A storage buffer.
     Buffer,
 }
 
 impl Storage {
-    /// What a kind of device reads faster.
+    /// Faster storage for a kind of device.
     pub fn of(device: wgpu::DeviceType) -> Self {
         if device == wgpu::DeviceType::Cpu { Self::Texture } else { Self::Buffer }
     }
 
-    /// The shader module that has `load`.
+    /// Shader module that defines `load` for this storage.
     pub fn module(self) -> &'static str {
         match self {
             Self::Texture => "scene_texture",
@@ -26,7 +26,7 @@ impl Storage {
         }
     }
 
-    /// The largest scene_buffer on a device of these limits.
+    /// Largest scene buffer on a device with these limits.
     pub fn limits(self, device: &wgpu::Limits) -> SceneBufferLimits {
         match self {
             Self::Texture => {
@@ -41,7 +41,7 @@ impl Storage {
     }
 }
 
-/// A texture or a buffer with the scene buffer's contents.
+/// Texture or buffer with the scene buffer's contents.
 #[derive(Debug)]
 pub struct GpuSceneBuffer {
     resource: Resource,
@@ -54,7 +54,7 @@ enum Resource {
 }
 
 impl GpuSceneBuffer {
-    /// Uploads all of `scene_buffer`, which was finished within the limits of `storage` on this device.
+    /// Uploads all of `scene_buffer`, which must have been built within the limits of `storage` on this device.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene_buffer: &SceneBuffer, storage: Storage) -> Self {
         let resource = match storage {
             Storage::Texture => {
@@ -87,7 +87,7 @@ impl GpuSceneBuffer {
         this
     }
 
-    /// Uploads the sections that are rewritten each frame. Takes effect with the queue's next submission.
+    /// Uploads the sections that are rewritten each frame. Takes effect with the next submission to the queue.
     pub fn write_moving(&self, queue: &wgpu::Queue, scene_buffer: &SceneBuffer) {
         let rows = scene_buffer.moving_rows();
         if !rows.is_empty() {
@@ -95,7 +95,7 @@ impl GpuSceneBuffer {
         }
     }
 
-    /// For `binding` of a layout of compute passes.
+    /// Bind group layout entry for compute passes.
     pub fn layout_entry(&self, binding: u32) -> wgpu::BindGroupLayoutEntry {
         let ty = match &self.resource {
             Resource::Texture(..) => wgpu::BindingType::Texture {
@@ -112,7 +112,7 @@ impl GpuSceneBuffer {
         wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
     }
 
-    /// What to bind there.
+    /// Resource to bind.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         match &self.resource {
             Resource::Texture(_, view) => wgpu::BindingResource::TextureView(view),
@@ -142,7 +142,7 @@ impl GpuSceneBuffer {
     }
 }
 
-/// Values of the overrides of `geometry`: where its records are.
+/// Override values of `geometry.wgsl`: offsets of its records.
 pub fn geometry_constants(scene_buffer: &SceneBuffer) -> [(&'static str, f64); 3] {
     [
         ("ATTRIBUTES", f64::from(scene_buffer.base(Section::Attributes))),
@@ -151,7 +151,7 @@ pub fn geometry_constants(scene_buffer: &SceneBuffer) -> [(&'static str, f64); 3
     ]
 }
 
-/// Values of the overrides of `traverse` and of the scene buffer's accessor.
+/// Override values of `traverse.wgsl` and of the module that defines `load`.
 pub fn traversal_constants(
     scene_buffer: &SceneBuffer,
     geometry: &Geometry,

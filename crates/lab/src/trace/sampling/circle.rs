@@ -1,9 +1,9 @@
-//! Circles on a frame, and the points of lattices in them, row by row.
+//! Circles on a frame, and the lattice points inside them, row by row.
 
 use super::lattice::Lattice;
 use std::ops::Range;
 
-/// A circle on the frame; one of infinite radius holds everything, one of a negative radius nothing.
+/// A circle on the frame. With infinite radius it contains everything, with a negative radius nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Circle {
     pub center_px: [f32; 2],
@@ -11,25 +11,25 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// Holds everything.
+    /// The circle that contains everything.
     pub const EVERYTHING: Self = Self { center_px: [0.0; 2], radius_px: f32::INFINITY };
 
-    /// The same, larger by `by_px`, and by what single precision can be off at its edge.
+    /// The circle enlarged by `by_px`, plus the rounding error of single precision at its edge.
     pub fn grown(self, by_px: f32) -> Self {
         Self { radius_px: self.radius_px + by_px + 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
     }
 
-    /// The same, smaller by `by_px`, and by what single precision can be off at its edge.
+    /// The circle reduced by `by_px`, plus the rounding error of single precision at its edge.
     pub fn shrunk(self, by_px: f32) -> Self {
         Self { radius_px: self.radius_px - by_px - 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
     }
 
-    /// How far a pixel lies from the middle.
+    /// Distance of a pixel from the centre, in pixels.
     pub fn distance_px(&self, px: [f32; 2]) -> f32 {
         (px[0] - self.center_px[0]).hypot(px[1] - self.center_px[1])
     }
 
-    /// The points of a lattice's row that it holds: a chord.
+    /// Points of a lattice row inside the circle.
     pub fn chord(&self, lattice: &Lattice, row: u32) -> Range<u32> {
         let [cx, cy] = self.center_px.map(f64::from);
         let [x0, y0] = lattice.first_px.map(f64::from);
@@ -39,14 +39,14 @@ impl Circle {
             return 0..0;
         }
         let half = ((radius - down) * (radius + down)).sqrt();
-        // Conversions of floats to integers saturate: 0 is the first point, whatever lies left of it.
+        // Float to integer conversion saturates, so points left of the first become 0.
         let first = ((cx - half - x0) / step).ceil() as u32;
         let beyond = ((cx + half - x0) / step + 1.0).floor() as u32;
         first..beyond.min(lattice.points[0]).max(first)
     }
 }
 
-/// Points of a lattice's row that lie in both `outer`, but not in `inner`: up to two runs.
+/// Points of a lattice row inside both `outer` circles and outside `inner`: up to two runs.
 pub(super) fn runs(outer: [Circle; 2], inner: Circle, lattice: &Lattice, row: u32) -> [Range<u32>; 2] {
     let [a, b] = outer.map(|circle| circle.chord(lattice, row));
     let (start, end) = (a.start.max(b.start), a.end.min(b.end));
@@ -63,7 +63,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    /// Point by point; `None` where a point lies so near a circle that rounding decides.
+    /// Reference test of one point; `None` if it is so near a circle that rounding decides.
     fn is_wanted(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
         let inside = |circle: Circle| {
             let [cx, cy] = circle.center_px.map(f64::from);
@@ -79,7 +79,7 @@ mod tests {
         let (mut points, mut wanted, mut undecided) = (0, 0, 0);
         for case in 0..4000 {
             let size_px = [rng.random_range(1..90), rng.random_range(1..60)];
-            // Off the frame on all sides, and far off.
+            // Also gazes off the frame on all sides, some far off.
             let reach = if case % 10 == 0 { 1e6 } else { 60.0 };
             let gaze: [f32; 2] = size_px.map(|s| rng.random_range(-reach..s as f32 + reach));
             let step = rng.random_range(1..6);
