@@ -1,11 +1,13 @@
-//! The Disney principled BSDF (Burley 2012, 2015) in glTF's parametrisation, layered by directional albedo so that a white
-//! material of any parameters scatters exactly what falls on it.
+//! The Disney principled BSDF (Burley 2012, 2015) in glTF's parametrization, layered by directional albedo so that a
+//! white material with any parameters conserves energy exactly.
 //!
-//! Local frame: z is the shading normal, on the side of `wo`, x the tangent. `wo` points to the viewer, `wi` to the light. Values
-//! are f |cos wi|, densities are per solid angle of `wi`. Radiance inside a body is carried over its squared index of refraction
-//! (basic radiance), so refraction does not scale it; that is radiance itself wherever both ends of a path are in air.
+//! Local frame: z is the shading normal, on the side of `wo`; x is the tangent. `wo` points to the viewer, `wi` to the
+//! light. Values are f |cos wi|; densities are per solid angle of `wi`. Radiance inside a medium is divided by its
+//! squared index of refraction (basic radiance), so refraction does not scale it. Where both ends of a path are in air,
+//! that equals radiance.
 //!
-//! [`layers`] does once what depends on the point and `wo` only; [`eval`] and [`sample`] take it from there.
+//! [`layers`] computes everything that depends only on the surface point and `wo`, once; [`eval`] and [`sample`] use
+//! it.
 
 use super::direction::unit;
 use super::layers::glass_fresnel;
@@ -17,7 +19,7 @@ use super::microfacet::{
 use super::sampling::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::{Vec2, Vec3};
 
-/// What a pair of directions comes to.
+/// Value and density of the BSDF for a pair of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
     /// f |cos wi|.
@@ -27,16 +29,16 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// No light, no sample.
+    /// No light and no sample.
     pub const NONE: Self = Self { value: Vec3::ZERO, pdf: 0.0 };
 }
 
 /// A sampled direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// Unit vector; meaningless where the density is 0.
+    /// Unit vector; meaningless if the density is 0.
     pub wi: Vec3,
-    /// Value and density there. Density 0: this draw has no direction, its light is lost in the surface.
+    /// Value and density at `wi`. A density of 0 means that this draw has no direction and its light is absorbed.
     pub scatter: Scatter,
 }
 
@@ -49,7 +51,7 @@ pub fn retro_value(wo: Vec3, wi: Vec3, roughness: f32) -> f32 {
     i * o
 }
 
-/// Probability that a facet of the glass under the cosine `cosine` is taken for a mirror.
+/// Probability that sampling reflects at a glass facet whose Fresnel reflectance is `fresnel`.
 #[inline]
 fn mirror_probability(glass_reflect: Vec3, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
@@ -58,7 +60,7 @@ fn mirror_probability(glass_reflect: Vec3, fresnel: f32) -> f32 {
     fresnel * glass_reflect.x.max(glass_reflect.y).max(glass_reflect.z)
 }
 
-/// The lobes above the horizon.
+/// Lobes above the horizon.
 #[inline]
 fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
@@ -103,7 +105,8 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
     Scatter { value, pdf }
 }
 
-/// Refraction and what passes through a sheet (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007).
+/// Refraction, and transmission through thin sheets (Walter et al., "Microfacet Models for Refraction through Rough
+/// Surfaces", 2007).
 #[inline]
 fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     let below = Vec3::new(wi.x, wi.y, -wi.z);
@@ -121,7 +124,7 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
         if vh <= 0.0 || lh >= 0.0 {
             return Scatter::NONE;
         }
-        // Of solid angle of the half vector by that of wi (their eq. 17), times v.h.
+        // Jacobian from the half vector's solid angle to that of wi (their eq. 17), times v.h.
         let root = (vh + lh * layers.eta) / layers.eta;
         jacobian = (vh * -lh) / (root * root);
     }
@@ -140,7 +143,7 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     }
 }
 
-/// Value and density of `wi`. 0 where `wo` is below the horizon.
+/// Value and density of `wi`; 0 if `wo` is below the horizon.
 #[inline]
 pub fn eval(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
@@ -152,7 +155,8 @@ pub fn eval(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     Scatter::NONE
 }
 
-/// A direction: `u[0]` chooses the lobe, `u[1]` and `u[2]` the direction, `u[3]` whether a facet of the glass reflects.
+/// Samples a direction. `u[0]` chooses the lobe, `u[1]` and `u[2]` the direction, `u[3]` reflection or transmission at
+/// a glass facet.
 #[inline]
 pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
     let none = Sampled { wi: Vec3::Z, scatter: Scatter::NONE };
