@@ -1,4 +1,4 @@
-//! The shaders of this crate, put together with the drop-in's.
+//! WGSL modules of this crate, composed with those of the drop-in.
 
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
@@ -18,9 +18,9 @@ static MODULES: &[Module] = &[
     module!("lib", "texel"),
     module!("lib", "triangle"),
     module!("raster", "color_pass"),
+    module!("raster", "lighting_maps"),
     module!("raster", "raster_frame"),
     module!("raster", "raster_material"),
-    module!("raster", "scenery"),
     module!("raster", "sky_pass"),
     module!("raster", "sun_pass"),
     module!("raster", "surface_pass"),
@@ -48,5 +48,5 @@ static MODULES: &[Module] = &[
     module!("trace", "traverse"),
 ];
 
-/// This crate's shaders, which may use the drop-in's modules.
+/// Composer of this crate's shaders, which may use the drop-in's modules.
 pub static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]);

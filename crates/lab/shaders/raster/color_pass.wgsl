@@ -3,7 +3,7 @@
 //#use light
 //#use raster_frame
 //#use raster_material
-//#use scenery
+//#use lighting_maps
 //#use shading
 // Color of surfaces in the light of punctual lights, panels, the sun and the sky. Scattering is the tracer's; what light other
 // surfaces send is only guessed (`bounced`). Premultiplied by opacity.
@@ -187,7 +187,7 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
         let passed = clamp(surface.transmission * (1.0 - surface.metallic), 0.0, 1.0);
         through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3<f32>(0.0), vec3<f32>(1.0)));
     }
-    color = clamp(color, vec3<f32>(0.0), vec3<f32>(BRIGHTEST));
+    color = clamp(color, vec3<f32>(0.0), vec3<f32>(MAX_COLOR));
     if (material.flags & FLAG_BLEND) != 0u {
         color *= opacity;
     }

@@ -1,6 +1,6 @@
 //#use direction
 //#use raster_frame
-//#use scenery
+//#use lighting_maps
 //#use scrub
 // What is behind everything.
 
@@ -13,5 +13,5 @@ fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32>
 fn sky(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let px = position.xy - vec2<f32>(0.5);
     let direction = unit((frame.right.xyz * px.x + frame.down.xyz * px.y) + frame.corner.xyz);
-    return vec4<f32>(clamp(sky_radiance(direction, 0.0), vec3<f32>(0.0), vec3<f32>(BRIGHTEST)), 1.0);
+    return vec4<f32>(clamp(sky_radiance(direction, 0.0), vec3<f32>(0.0), vec3<f32>(MAX_COLOR)), 1.0);
 }

@@ -1,10 +1,10 @@
-//! What a frame is told, as `shaders/raster/raster_frame.wgsl` reads it.
+//! Frame uniforms. Twin of `RasterFrame` in `shaders/raster/raster_frame.wgsl`.
 
 use crate::trace::view::View;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-/// A camera: from the eye to homogeneous pixels.
+/// Camera: projects points relative to the eye to homogeneous pixels.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct Eye {
@@ -15,7 +15,7 @@ struct Eye {
     along: [f32; 4],
 }
 
-/// The uniform of a frame.
+/// Uniforms of a frame.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct FrameUniforms {
@@ -30,7 +30,7 @@ pub(super) struct FrameUniforms {
     unused: f32,
 }
 
-/// Rows from a direction to homogeneous pixels, and columns from pixels to a direction, in f64.
+/// Projection in f64: rows from direction to homogeneous pixels, and columns from pixels to direction.
 struct Pixels {
     rows: [DVec3; 3],
     corner: DVec3,
@@ -69,7 +69,7 @@ fn row(v: DVec3) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    /// A frame seen through `view` that was seen through `previous`; what is nearer than `near` metres is not seen.
+    /// Uniforms for camera `view`, previous camera `previous` and near plane `near` in metres.
     pub fn new(view: &View, previous: &View, near: f32) -> Self {
         let (current_px, previous_px) = (Pixels::of(view), Pixels::of(previous));
         let previous_px_from_px = [current_px.right, current_px.down, current_px.corner]

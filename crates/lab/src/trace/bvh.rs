@@ -49,13 +49,13 @@ impl Hit {
 }
 
 /// A ray with everything precomputed that node and triangle tests need.
-pub(super) struct Prepared {
+pub(super) struct PreparedRay {
     origin: Vec3A,
     shear: Shear,
     node_ray: NodeRay,
 }
 
-impl Prepared {
+impl PreparedRay {
     /// `None` for rays that cannot hit anything.
     #[inline]
     pub fn new(ray: &Ray) -> Option<Self> {
@@ -135,13 +135,13 @@ impl Bvh {
     /// test on triangles flagged [`TriangleFlags::ALPHA`]. Its answer must not depend on the order of calls.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
         let mut hit = Hit::none(ray.t_max);
-        self.traverse::<false>(&Prepared::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
+        self.traverse::<false>(&PreparedRay::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
     }
 
     /// Whether the ray hits anything.
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> bool {
         let mut hit = Hit::none(ray.t_max);
-        Prepared::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
+        PreparedRay::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
     }
 
     /// Replaces `hit` by the nearest hit if that is nearer, and returns whether it did. With `ANY`, stops at the first
@@ -149,7 +149,7 @@ impl Bvh {
     #[inline]
     pub(super) fn traverse<const ANY: bool>(
         &self,
-        ray: &Prepared,
+        ray: &PreparedRay,
         first: u32,
         hit: &mut Hit,
         accept: &mut impl FnMut(u32, f32, f32) -> bool,

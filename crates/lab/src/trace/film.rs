@@ -89,7 +89,7 @@ impl Film {
         let own = self.at(pixel);
         let error = match own.count {
             0 => return [0.0; 2],
-            1 => self.scatter(pixel),
+            1 => self.spread(pixel),
             // Assumes fully correlated channels, an upper bound.
             _ => luma(own.variance_of_mean().map(f32::sqrt)),
         };
@@ -97,7 +97,7 @@ impl Film {
     }
 
     /// Standard deviation of luma over the 3x3 neighbourhood.
-    fn scatter(&self, [x, y]: [u32; 2]) -> f32 {
+    fn spread(&self, [x, y]: [u32; 2]) -> f32 {
         let mut lumas = Moments::default();
         for (dx, dy) in (0..9).map(|i| (i % 3, i / 3)) {
             // Coordinates left of or above the image wrap to pixels that no film holds.

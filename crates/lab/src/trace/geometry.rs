@@ -1,6 +1,6 @@
 //! All triangles of a scene: static and moving.
 
-use super::bvh::{Bvh, Hit, Prepared, Ray};
+use super::bvh::{Bvh, Hit, PreparedRay, Ray};
 use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleRecord};
 
 /// Static and moving triangles, each under a hierarchy of its own. Indices of moving triangles follow those of static
@@ -68,7 +68,7 @@ impl Geometry {
     /// Nearest hit, as [`Bvh::closest`].
     #[inline]
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
-        let prepared = Prepared::new(ray)?;
+        let prepared = PreparedRay::new(ray)?;
         let mut hit = Hit::none(ray.t_max);
         let still = self.still.traverse::<false>(&prepared, 0, &mut hit, &mut accept);
         let moving = self.moving.traverse::<false>(&prepared, self.first_moving(), &mut hit, &mut accept);
@@ -78,7 +78,7 @@ impl Geometry {
     /// Whether the ray hits anything, as [`Bvh::occluded`].
     #[inline]
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> bool {
-        let Some(prepared) = Prepared::new(ray) else { return false };
+        let Some(prepared) = PreparedRay::new(ray) else { return false };
         let mut hit = Hit::none(ray.t_max);
         self.still.traverse::<true>(&prepared, 0, &mut hit, &mut accept)
             || self.moving.traverse::<true>(&prepared, self.first_moving(), &mut hit, &mut accept)

@@ -55,7 +55,9 @@ impl Section {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SceneBufferError {
     /// The device has no texture or buffer of this size.
-    #[error("scene buffer: needs {elements} elements of 16 bytes, the device allows {available}; use a smaller scene or the CPU")]
+    #[error(
+        "scene buffer: needs {elements} elements of 16 bytes, the device allows {available}; use a smaller scene or the CPU"
+    )]
     TooLarge {
         /// Elements needed.
         elements: u64,

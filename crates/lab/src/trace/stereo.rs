@@ -42,7 +42,7 @@ impl GazePoint {
         let rays = head.rays();
         let direction = unit(rays.corner + rays.right * px[0] + rays.down * px[1]);
         match first_surface(world, rays.origin, direction, effects) {
-            Some(surface) => Self::At(surface.at),
+            Some(surface) => Self::At(surface.current),
             None => Self::Far(direction.as_dvec3()),
         }
     }

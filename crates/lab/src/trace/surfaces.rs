@@ -35,28 +35,28 @@ impl Surfaces {
                 let before = previous.project_direction(direction.as_dvec3());
                 return (f32::INFINITY, motion(px, before));
             };
-            let depth = view.project(seen.at).map_or(f32::INFINITY, |(_, depth)| depth as f32);
-            (depth, motion(px, previous.project(seen.was).map(|(px, _)| px)))
+            let depth = view.project(seen.current).map_or(f32::INFINITY, |(_, depth)| depth as f32);
+            (depth, motion(px, previous.project(seen.previous).map(|(px, _)| px)))
         });
         Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
     }
 }
 
 /// World-space positions of a surface point, in this frame and in the previous one.
-pub(super) struct Seen {
-    pub at: DVec3,
-    pub was: DVec3,
+pub(super) struct SurfacePosition {
+    pub current: DVec3,
+    pub previous: DVec3,
 }
 
 /// First surface on a ray.
-pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<Seen> {
+pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<SurfacePosition> {
     let ray = Ray { origin, direction, t_max: f32::INFINITY };
     let hit = world.geometry.closest(&ray, |triangle, u, v| {
         !effects.has(Effect::Alpha) || cpu::is_half_opaque(world, triangle, u, v, effects)
     })?;
     let corners = world.geometry.triangle(hit.triangle).positions();
-    let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
-    Some(Seen { at: at(corners, hit.u, hit.v), was: at(was, hit.u, hit.v) })
+    let previous = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
+    Some(SurfacePosition { current: at(corners, hit.u, hit.v), previous: at(previous, hit.u, hit.v) })
 }
 
 fn at(corners: [Vec3; 3], u: f32, v: f32) -> DVec3 {

@@ -49,13 +49,13 @@ impl CpuTracer {
         let (width, base) = (film.moments.size()[0], film.base());
         let moments = &film.moments;
         let pixels = work.into().by_pixel();
-        let done: Vec<Done> = pixels
+        let done: Vec<PixelResult> = pixels
             .par_iter()
             .with_min_len(32)
             .map(|(id, samples)| {
                 let [x, y] = [id & 0xffff, id >> 16];
                 let index = (y * width + x - base) as usize;
-                let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
+                let mut done = PixelResult { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
                 for sample in samples.numbers() {
                     let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);
                     let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
@@ -79,7 +79,7 @@ impl CpuTracer {
 }
 
 /// Result of one pixel.
-struct Done {
+struct PixelResult {
     index: usize,
     moments: Moments,
     rays: u64,

@@ -50,11 +50,11 @@ impl Circle {
 pub(super) fn runs(outer: [Circle; 2], inner: Circle, lattice: &Lattice, row: u32) -> [Range<u32>; 2] {
     let [a, b] = outer.map(|circle| circle.chord(lattice, row));
     let (start, end) = (a.start.max(b.start), a.end.min(b.end));
-    let hole = inner.chord(lattice, row);
-    if hole.is_empty() {
+    let excluded = inner.chord(lattice, row);
+    if excluded.is_empty() {
         return [start..end, 0..0];
     }
-    [start..end.min(hole.start), start.max(hole.end)..end]
+    [start..end.min(excluded.start), start.max(excluded.end)..end]
 }
 
 #[cfg(test)]
@@ -64,7 +64,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     /// Reference test of one point; `None` if it is so near a circle that rounding decides.
-    fn is_wanted(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
+    fn is_inside(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
         let inside = |circle: Circle| {
             let [cx, cy] = circle.center_px.map(f64::from);
             let (distance, radius) = ((px[0] - cx).hypot(px[1] - cy), f64::from(circle.radius_px));
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn runs_are_what_a_look_at_every_point_finds() {
         let mut rng = Pcg64::seed_from_u64(7);
-        let (mut points, mut wanted, mut undecided) = (0, 0, 0);
+        let (mut points, mut inside_count, mut undecided) = (0, 0, 0);
         for case in 0..4000 {
             let size_px = [rng.random_range(1..90), rng.random_range(1..60)];
             // Also gazes off the frame on all sides, some far off.
@@ -101,21 +101,21 @@ mod tests {
                 assert!(runs[1].is_empty() || runs[0].is_empty() || runs[0].end <= runs[1].start, "{runs:?}");
                 for x in 0..lattice.points[0] {
                     points += 1;
-                    let Some(is_wanted) = is_wanted(outer, inner, lattice.px([x, row]).map(f64::from)) else {
+                    let Some(is_inside) = is_inside(outer, inner, lattice.px([x, row]).map(f64::from)) else {
                         undecided += 1;
                         continue;
                     };
-                    wanted += u32::from(is_wanted);
+                    inside_count += u32::from(is_inside);
                     let found = runs.iter().any(|r| r.contains(&x));
                     assert_eq!(
-                        found, is_wanted,
+                        found, is_inside,
                         "case {case}: point {x}, {row} of {lattice:?}, {outer:?} less {inner:?}"
                     );
                 }
             }
         }
-        println!("{points} points, {wanted} in, {undecided} on an edge");
-        assert!(wanted * 20 > points && wanted * 2 < points && undecided * 1000 < points);
+        println!("{points} points, {inside_count} in, {undecided} on an edge");
+        assert!(inside_count * 20 > points && inside_count * 2 < points && undecided * 1000 < points);
     }
 
     #[test]

@@ -26,14 +26,14 @@ use afterimage::{Image, SettingsError};
 use rayon::prelude::*;
 
 /// Samples that every sampled point gets at least, so that changes are seen.
-const LEAST: u32 = 1;
+const MIN_SAMPLES: u32 = 1;
 
 /// Largest number of samples of a point, as a multiple of its ring's. Further samples gain more elsewhere, and the
 /// deviation estimate may be wrong.
-const MOST: u32 = 8;
+const MAX_FACTOR: u32 = 8;
 
 /// Sample number reserved for the draws that round counts; no path has it.
-const ROUNDING: u32 = u32::MAX;
+const ROUNDING_SAMPLE: u32 = u32::MAX;
 
 impl Guide {
     /// Guide from frames accumulated in `film`, displayed without reprojection: sample counts, and standard deviations
@@ -63,7 +63,7 @@ impl Guide {
     }
 
     /// Guide for a lattice point: the smallest sample count of the pixels it stands for, and their mean deviation.
-    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> Known {
+    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> PointHistory {
         let [xs, ys] = lattice.cell(point, self.known.size());
         let mut known = f32::INFINITY;
         let (mut sum, mut count) = (0.0, 0.0);
@@ -76,7 +76,7 @@ impl Guide {
                 count += 1.0;
             }
         }
-        Known { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
+        PointHistory { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
     }
 }
 
@@ -99,9 +99,9 @@ impl Plan {
         }
         let key = path_key(seed, frame);
         let work = self.parts().into_iter().zip(0..).map(|(part, ring)| {
-            let known: Vec<Known> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
+            let known: Vec<PointHistory> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
             let rounded = |([x, y], share): (&[u32; 2], f64)| {
-                (share + f64::from(path_draws(x | y << 16, ROUNDING, ring, key)[0])).floor() as u32
+                (share + f64::from(path_draws(x | y << 16, ROUNDING_SAMPLE, ring, key)[0])).floor() as u32
             };
             let counts: Vec<u32> = part.targets.par_iter().zip(shares(&known, part.samples)).map(rounded).collect();
             spans(&part, &counts)
@@ -112,14 +112,14 @@ impl Plan {
 
 /// Samples held at a point, and their standard deviation if known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Known {
+struct PointHistory {
     samples: f64,
     deviation: Option<f64>,
 }
 
 /// Mean number of samples for each point, with a total of `samples` per point.
-fn shares(points: &[Known], samples: u32) -> Vec<f64> {
-    let (least, most) = (f64::from(samples.min(LEAST)), f64::from(samples) * f64::from(MOST));
+fn shares(points: &[PointHistory], samples: u32) -> Vec<f64> {
+    let (least, most) = (f64::from(samples.min(MIN_SAMPLES)), f64::from(samples) * f64::from(MAX_FACTOR));
     let deviations = || points.iter().filter_map(|p| p.deviation);
     let mean = match deviations().count() {
         0 => 1.0,
@@ -183,12 +183,12 @@ mod tests {
     use afterimage::kernel::rng::{pcg4d, unit_draw};
 
     /// Counts from 0 to 40, deviations from 1e-4 to 1, and some unknown deviations.
-    fn points(count: u32, seed: u32) -> Vec<Known> {
+    fn points(count: u32, seed: u32) -> Vec<PointHistory> {
         let draws = |i| pcg4d([i, seed, 0, 0]).map(|bits| f64::from(unit_draw(bits)));
         (0..count)
             .map(|i| {
                 let [samples, deviation, unknown, _] = draws(i);
-                Known { samples: 40.0 * samples, deviation: (unknown > 0.1).then(|| 1e-4_f64.powf(deviation)) }
+                PointHistory { samples: 40.0 * samples, deviation: (unknown > 0.1).then(|| 1e-4_f64.powf(deviation)) }
             })
             .collect()
     }
@@ -204,7 +204,7 @@ mod tests {
             assert!((spent / (5000.0 * f64::from(samples)) - 1.0).abs() < 1e-7, "{spent} spent");
             // Karush-Kuhn-Tucker conditions: the variance reduction of one more sample is equal at all points between
             // the bounds, smaller at those with the least samples, larger at those with the most.
-            let gain = |(p, share): (&Known, &f64)| (p.deviation.unwrap_or(mean) / (p.samples + share)).powi(2);
+            let gain = |(p, share): (&PointHistory, &f64)| (p.deviation.unwrap_or(mean) / (p.samples + share)).powi(2);
             let (mut least, mut between, mut most) = (0.0_f64, [f64::INFINITY, 0.0_f64], f64::INFINITY);
             for (p, share) in points.iter().zip(&shares) {
                 let gain = gain((p, share));
@@ -221,8 +221,10 @@ mod tests {
 
     #[test]
     fn extremes_of_a_float_stay_within_the_bounds() {
-        let known =
-            |samples: f32, deviation: f32| Known { samples: f64::from(samples), deviation: Some(f64::from(deviation)) };
+        let known = |samples: f32, deviation: f32| PointHistory {
+            samples: f64::from(samples),
+            deviation: Some(f64::from(deviation)),
+        };
         let tiny = f32::from_bits(1);
         let points = [known(f32::MAX, tiny), known(0.0, f32::MAX), known(f32::INFINITY, f32::MAX), known(0.0, 0.0)];
         let all = shares(&points, 3);

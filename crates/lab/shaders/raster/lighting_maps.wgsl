@@ -9,7 +9,7 @@
 @group(2) @binding(4) var albedo_tables: texture_2d<u32>;
 
 // Largest number of the color's format.
-const BRIGHTEST: f32 = 65504.0;
+const MAX_COLOR: f32 = 65504.0;
 
 // Cell of the tables of albedos.
 fn load(i: u32) -> vec4<u32> {
