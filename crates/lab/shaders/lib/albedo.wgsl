@@ -1,6 +1,6 @@
 //#use microfacet
-// Twin of src/kernel/albedo.rs. A pass that uses it defines `load`, from an index to the four words of a cell of the scene buffer that
-// holds the tables; `tables` is where they begin.
+// Twin of src/kernel/albedo.rs. Callers define `load`, which reads a cell of the tables as four words; `tables` is the
+// index of their first cell.
 
 const COSINES: u32 = 48u;
 const ROUGHNESSES: u32 = 32u;

@@ -2,7 +2,7 @@
 //#use layers
 //#use microfacet
 //#use sampling
-// Twin of src/kernel/bsdf.rs. `Scatter` and `Sampled` are one struct.
+// Twin of src/kernel/bsdf.rs. One struct `Scatter` stands for both `Scatter` and `Sampled`.
 
 struct Scatter {
     wi: vec3<f32>,

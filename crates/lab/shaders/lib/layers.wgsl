@@ -2,7 +2,7 @@
 //#use color
 //#use microfacet
 //#use sampling
-// Twin of src/kernel/layers.rs. `Lobes` are overrides; `Surface` is `BsdfSurface`.
+// Twin of src/kernel/layers.rs. `Lobes` are override constants; `Surface` is called `BsdfSurface`.
 
 override LOBE_RETRO: bool = true;
 override LOBE_SPECULAR: bool = true;

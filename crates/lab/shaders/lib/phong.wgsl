@@ -1,6 +1,6 @@
 //#use approx
 //#use sampling
-// Twin of src/kernel/phong.rs. `Sampled` and `Scatter` are (wi), value, density in one struct.
+// Twin of src/kernel/phong.rs. One struct holds the fields of `Sampled` and `Scatter`.
 
 struct PhongSurface {
     diffuse: vec3<f32>,

@@ -2,7 +2,7 @@
 //#use raster_frame
 //#use lighting_maps
 //#use scrub
-// What is behind everything.
+// The sky behind all surfaces.
 
 @vertex
 fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {

@@ -1,6 +1,6 @@
 //#use raster_frame
 //#use raster_material
-// The scene as the sun sees it: the shadow map. Depth is reversed, 1 next to the sun.
+// The sun's shadow map. Depth is reversed, 1 nearest to the sun.
 
 struct ShadowVarying {
     @builtin(position) position: vec4<f32>,

@@ -1,8 +1,9 @@
 //#use raster_frame
 //#use raster_material
-// Depth and motion of the first surface behind each pixel's centre: previous minus current, pixels, y down.
+// Depth and motion of the first surface at each pixel's centre. Motion is previous minus current position in pixels, y
+// down.
 
-// What the previous camera could not have seen.
+// Motion of points behind the previous camera.
 const OFF_FRAME_PX: f32 = 1e6;
 
 struct MotionVarying {
@@ -28,8 +29,8 @@ fn moved(now: vec3<f32>, before: vec3<f32>) -> vec2<f32> {
     return clamp(before.xy / before.z - now.xy / now.z, -off, off);
 }
 
-// Both places are interpolated, not the one subtracted from the pixel: where vertices are rounded to a grid of subpixels, both
-// are off by the same.
+// Both positions are interpolated, instead of subtracting from the pixel's: vertices are snapped to a subpixel grid,
+// and this way both positions have the same error.
 @fragment
 fn motion(in: MotionVarying) -> @location(0) vec2<f32> {
     if !passes_alpha_test(base_at(in.uv, in.color).w) {
@@ -48,7 +49,7 @@ fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32>
     return fullscreen_position(index);
 }
 
-// The sky is infinitely far: only the camera's rotation moves it.
+// The sky is infinitely far away: only camera rotation moves it.
 @fragment
 fn motion_far(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     let px = position.xy - vec2<f32>(0.5);

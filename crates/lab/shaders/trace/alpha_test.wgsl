@@ -1,12 +1,12 @@
 //#use rng
 //#use surface_point
-// Whether a path meets a surface with holes: Paths::meets. Whoever traces says which path it is first.
+// Alpha test of a path's hits: Paths::accept_hit. Callers set the three variables before they trace.
 
 const DRAWS_ALPHA_TEST: u32 = 0x80000000u;
 
 var<private> alpha_pixel: u32;
 var<private> alpha_sample: u32;
-// Tells the rays of a path apart.
+// Distinguishes the rays of a path.
 var<private> alpha_ray: u32;
 
 fn accept_hit(triangle: u32, u: f32, v: f32, key: u32) -> bool {

@@ -1,7 +1,7 @@
 //#use plan
 //#use alpha_test
 //#use traverse
-// The nearest hit of every path that is alive.
+// Finds the nearest hit of every live path.
 
 @compute @workgroup_size(WORKGROUP)
 fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -21,5 +21,5 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
         vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
 }
 
-// Hits count up to the largest number.
+// Largest finite f32: rays have no limit.
 const FAR_AWAY: f32 = 3.4028234e38;

@@ -2,16 +2,16 @@
 //#use sampling
 //#use surface_point
 //#use frame
-// Light that is looked for: trace/cpu/lights.rs.
+// Light sampling and environment lookup. Twin of trace/cpu/lights.rs.
 
 const LIGHT_TRIANGLE: u32 = 0u;
 const LIGHT_PUNCTUAL: u32 = 1u;
 const LIGHT_ENVIRONMENT: u32 = 2u;
 const LIGHT_INDEX: u32 = 0x3fffffffu;
-// Farther than all there is: of lights infinitely far away.
+// Distance that stands for lights at infinity.
 const FAR: f32 = 3e38;
 
-// lights::LightSample; nothing arrives where `pdf` is 0.
+// lights::LightSample; a `pdf` of 0 means no light.
 struct LightSample {
     direction: vec3<f32>,
     distance: f32,

@@ -1,6 +1,6 @@
-// The scene buffer as a texture: on software Vulkan a textureLoad costs a fifth of a read from a storage buffer.
+// The scene buffer as a texture. On software Vulkan, textureLoad costs a fifth of a storage buffer read.
 
-// Elements in a row are 2 to this power.
+// Base-2 logarithm of the row width in elements.
 override SCENE_WIDTH_LOG2: u32 = 10u;
 
 @group(0) @binding(0) var scene_buffer: texture_2d<u32>;

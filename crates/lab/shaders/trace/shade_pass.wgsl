@@ -2,10 +2,10 @@
 //#use rng
 //#use lights
 //#use plan
-// What every path finds where it hit, where it goes next, and the light it looks for: Paths::radiance.
+// Shades the hit of every live path: adds emission, samples a light, scatters. Twin of Paths::radiance.
 
 override MAX_DEPTH: u32 = 3u;
-// 0 both ways, 1 by looking, 2 by intersection.
+// Integrator: 0 multiple importance sampling, 1 light sampling only, 2 scattered rays only.
 override INTEGRATOR: u32 = 0u;
 
 const DRAWS_SCATTER: u32 = 1u;
@@ -29,7 +29,7 @@ fn any_positive(v: vec3<f32>) -> bool {
     return max(v.x, max(v.y, v.z)) > 0.0;
 }
 
-// path::spawn_origin, for directions that agree about the side.
+// path::spawn_origin; callers check that shading and geometric normal agree about the side.
 fn spawn_origin(p: SurfacePoint, side: f32) -> vec3<f32> {
     return offset_ray(p.position, select(-p.geometric, p.geometric, side > 0.0), p.magnitude);
 }

@@ -1,7 +1,7 @@
 //#use plan
 //#use alpha_test
 //#use traverse
-// Adds the light that nothing is in the way of.
+// Adds the contribution of unoccluded light samples.
 
 @compute @workgroup_size(WORKGROUP)
 fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {

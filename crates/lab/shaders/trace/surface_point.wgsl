@@ -5,7 +5,7 @@
 //#use effects
 //#use geometry
 //#use texture
-// From a hit to what scatters there: trace/cpu/surface.rs.
+// Surface properties at a hit. Twin of trace/cpu/surface.rs.
 
 struct SurfacePoint {
     position: vec3<f32>,
@@ -145,7 +145,7 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
     return s;
 }
 
-// surface::point; `material` of the triangle that was hit goes with it.
+// surface::surface_point
 fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     let c = triangle_at(hit.triangle);
     let v0 = c.corners[0];
