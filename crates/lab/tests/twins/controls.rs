@@ -1,4 +1,4 @@
-//! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
+//! Planted errors in the shaders: each must be caught by the comparison of its function.
 
 use super::probe::caught;
 use super::{facets, lighting, scattering, scattering_lobes, triangles};

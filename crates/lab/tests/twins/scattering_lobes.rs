@@ -1,4 +1,4 @@
-//! Functions of scattering that read tables: albedo, bsdf; the law of compiled lobes.
+//! Probes of scattering functions that read tables: albedo, bsdf. Also: unused lobes change no bit.
 
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::scattering::{above, anywhere, put, put_sampled, put_scatter, share, two};
@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 static TABLES: LazyLock<AlbedoTables> = LazyLock::new(AlbedoTables::compute);
 
-/// What `load` reads while `module` is probed.
+/// Words that `load` reads while `module` is probed: the albedo tables where it needs them.
 pub fn table_data(module: &str) -> Vec<u32> {
     if ["albedo", "bsdf", "layers"].contains(&module) { TABLES.words().flatten().collect() } else { vec![] }
 }
@@ -76,7 +76,7 @@ fn put_layers(o: &mut Out, l: &Layers) {
     l.probabilities.into_iter().for_each(|x| o.f(x));
 }
 
-/// WGSL of [`surface`], and of [`layers`] after it.
+/// WGSL code for [`surface`], followed by [`layers`].
 macro_rules! layered {
     ($rest:literal) => {
         concat!(
@@ -88,7 +88,7 @@ macro_rules! layered {
     };
 }
 
-/// Surface, `wo`, and `more`.
+/// Rows of a surface, `wo`, and the words that `more` adds.
 fn surfaces(name: &str, words: usize, more: fn(&mut Draws, &mut Vec<u32>)) -> Rows {
     Rows::new(SURFACE + 3 + words).random(name, |d, row| {
         put_surface(d, row);
@@ -279,7 +279,7 @@ pub const PROBES: &[Probe] = &[
 
 type Switch = (&'static str, fn(&Lobes) -> bool);
 
-/// Name of each override, and whether a surface needs it.
+/// Override of each lobe, and whether a surface needs it.
 const SWITCHES: [Switch; 7] = [
     ("LOBE_RETRO", |l| l.retro),
     ("LOBE_SPECULAR", |l| l.specular),
@@ -290,8 +290,8 @@ const SWITCHES: [Switch; 7] = [
     ("LOBE_TRANSMISSION", |l| l.transmission),
 ];
 
-/// Rows of `probe` whose surface needs none of the switches that are off, and how many of them a device with these switches off
-/// computes otherwise than Rust with all on.
+/// Rows of `probe` whose surfaces need none of the lobes in `off`, and their differences between a device without these
+/// lobes and Rust with all lobes.
 fn without(probe: &Probe, off: &[usize]) -> Option<(usize, Vec<String>)> {
     let mut source = probe.source();
     for &k in off {

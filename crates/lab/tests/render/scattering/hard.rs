@@ -1,4 +1,4 @@
-//! H83: the ends of every range. Nothing is NaN or infinite, nothing negative, weights sum to 1.
+//! H83: the ends of every parameter range. Nothing is NaN, infinite or negative, and weights sum to 1.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -36,7 +36,8 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
                 ] {
                     let good = |x: f32| x.is_finite() && x >= 0.0;
                     assert!(s.value.to_array().into_iter().all(good) && good(s.pdf), "{surface:?} {wo} {u:?}: {s:?}");
-                    // What has light has a density, but for the tail of the sheen, which is cut off at e^-60 and not at 0.
+                    // Directions with light have a density, except in the sheen's tail, which is clamped to e^-60
+                    // instead of 0.
                     assert!(s.pdf > 0.0 || s.value.max_element() < 1e-20, "{surface:?} {wo} {u:?}: {s:?}");
                     if s.pdf > 0.0 {
                         sampled += 1;
@@ -128,7 +129,7 @@ fn phong_is_passive_and_its_samples_have_its_mean() {
             mean += w / f64::from(n);
             squares += w * w / f64::from(n);
         }
-        // Midpoint rule, far finer than the lobe.
+        // Midpoint rule with steps much finer than the lobe.
         let steps = 400;
         for i in 0..steps * steps {
             let at = |k: u32| (k as f32 + 0.5) / steps as f32;

@@ -1,4 +1,4 @@
-//! The device's hits are the CPU's, bit for bit: triangle, distance, barycentrics.
+//! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
 use super::scenes::{all, direction, no_rays, rays, soup, sphere};
 use afterimage_lab::scene::{Alpha, Material};
@@ -47,7 +47,7 @@ impl Rig {
         })
     }
 
-    /// Rays whose hits differ from the CPU's in any bit.
+    /// Number of rays whose hits differ from the CPU's in any bit.
     fn differing(&self, rays: &[Ray], source: Option<&str>) -> usize {
         let got = self.ask(HitQuery::Closest, rays, source);
         rays.iter().zip(got).filter(|(ray, got)| self.geometry.closest(ray, all) != *got).count()
@@ -84,7 +84,7 @@ fn random_soups() {
             let geometry = resting(Bvh::build(&soup(&name, count, center, half), None, &[]));
             let Some(rig) = Rig::new(geometry, 0, storage) else { return };
             let mut rays = rays(&name, 20_000, center, half);
-            // Limits, too.
+            // The same with limits.
             let mut d = Draws::new("limits");
             rays.iter_mut().step_by(3).for_each(|r| r.t_max = half * d.range(0.0, 2.0));
             rig.check(&name, &rays);
@@ -119,7 +119,7 @@ fn moving_triangles_are_where_they_were_last_written() {
         rig.check("first pose", &rays);
         for (i, count) in [(1, 200), (2, 7), (3, 0), (4, 200)] {
             rig.geometry.moving = pose(i, count);
-            // Before the upload the device still sees the pose before.
+            // Until the upload, the device still has the earlier pose.
             assert!(rig.differing(&rays, None) > 0);
             rig.scene_buffer.rewrite_moving(&rig.geometry).unwrap();
             rig.on_device.write_moving(&rig.queue, &rig.scene_buffer);
@@ -162,7 +162,7 @@ fn opacity_is_asked_where_it_matters_and_only_there() {
     let geometry = resting(Bvh::build(&triangles, None, &materials));
     let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
     let rays = rays("alpha on the device", 10_000, Vec3::ZERO, 1.0);
-    // Lets through a third of the hits on triangles that ask, by their index.
+    // An alpha test that accepts a third of the hits, by triangle index.
     let source = GpuRays::source(Storage::Texture)
         .replace("    return true;\n}", "    return triangle % 3u != 0u;\n}")
         .replace("if ALPHA {", "if true {");
@@ -184,7 +184,7 @@ fn planted_errors_are_caught() {
     };
     let Some(rig) = Rig::new(geometry("planted"), 300, Storage::Texture) else { return };
     let rays = rays("planted", 20_000, Vec3::ZERO, 1.0);
-    // The same rays with limits at which they hit nothing any more.
+    // The same rays, limited so that they hit nothing.
     let nearest = |r: &Ray| rig.geometry.closest(r, all).map_or(1.0, |h| h.t);
     let limits: Vec<Ray> = rays.iter().map(|r| Ray { t_max: nearest(r), ..*r }).collect();
     let source = GpuRays::source(Storage::Texture);
@@ -210,7 +210,7 @@ fn planted_errors_are_caught() {
 
 #[test]
 fn boxes_that_are_not_widened_let_rays_leak() {
-    // Flat boxes: walls of an axis-aligned room, rays from afar towards them and along their edges.
+    // Flat boxes: walls of an axis-aligned room, with distant rays towards them and along their edges.
     let mut triangles = afterimage_lab::scene::Triangles::default();
     for i in 0..40 {
         for j in 0..40 {

@@ -1,4 +1,4 @@
-//! What is packed comes out again.
+//! Packing and unpacking of triangle records.
 
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material};
@@ -24,8 +24,9 @@ fn attributes_survive_packing() {
         assert_eq!(got.uvs, triangles.uvs[source]);
         for i in 0..3 {
             let (normal, tangent) = (triangles.normals[source][i], triangles.tangents[source][i]);
-            // Half a step of 1/32767 in x and y, and a step more in x of the tangent for the sign's bit; z moves by the sum, and the
-            // sphere is at most sqrt(3) larger than the octahedron: sqrt(3) * |(0.5, 0.5, 1)| and sqrt(3) * |(1.5, 0.5, 2)| steps.
+            // Rounding is half a step of 1/32767 in x and y, plus one step in a tangent's x for the sign bit; z moves
+            // by the sum. The sphere is at most sqrt(3) larger than the octahedron: sqrt(3) |(0.5, 0.5, 1)| and sqrt(3)
+            // |(1.5, 0.5, 2)| steps.
             assert!(got.normals[i].distance(normal) < 2.13 / 32767.0, "{} {normal}", got.normals[i]);
             assert!(got.tangents[i].truncate().distance(tangent.truncate()) < 4.42 / 32767.0);
             assert_eq!(got.tangents[i].w, tangent.w);
@@ -95,7 +96,7 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
         assert_eq!(previous.positions(), before.positions[record.source() as usize]);
     }
 
-    // Nothing moves any more, and then more than was reserved.
+    // First nothing moves any more, then more than was reserved.
     second.moving = Bvh::default();
     packed.rewrite_moving(&second).unwrap();
     second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
@@ -113,7 +114,7 @@ fn a_heap_that_no_device_takes_is_refused() {
         let refused = scene_buffer::SceneBufferBuilder::default().geometry(&geometry, 0).finish(limits);
         assert!(matches!(refused, Err(scene_buffer::SceneBufferError::TooLarge { .. })), "{refused:?}");
     }
-    // Wider rows where the default ones would be too many.
+    // Rows widen if there would be too many of the default width.
     let limits = scene_buffer::SceneBufferLimits { rows: 2048, elements: 1 << 22 };
     let mut builder = scene_buffer::SceneBufferBuilder::default();
     let wide = builder

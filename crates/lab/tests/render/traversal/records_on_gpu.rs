@@ -1,4 +1,4 @@
-//! What the device reads of a triangle is what the CPU reads, bit for bit.
+//! The device decodes triangle records as the CPU does, bit for bit.
 
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material, Triangles};
@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 const STILL: u32 = 400;
 const MOVING: u32 = 100;
-/// Words of a triangle's line.
+/// Words that the probe writes per triangle.
 const WORDS: usize = 34;
 
 const PROBE: &str = "
@@ -71,7 +71,7 @@ fn expected(geometry: &Geometry, weights: &[[f32; 2]]) -> Vec<u32> {
     words
 }
 
-/// Lines that differ between the device and the CPU.
+/// Triangles whose words differ between the device and the CPU.
 fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usize> {
     let materials = [
         Material { emissive: [1.0; 3], transmission: 0.5, ..Material::default() },
@@ -94,7 +94,7 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
     let text = source(SHADERS.compose_with(&[storage.module(), "accept_all", "geometry"], PROBE).source);
     let mut constants = traversal_constants(&scene_buffer, &geometry, true, storage);
     constants.extend(geometry_constants(&scene_buffer));
-    // Overrides that the probe does not use are not in it.
+    // Keep only overrides that the probe declares.
     constants.retain(|(name, _)| text.contains(&format!("override {name}:")));
     let words = afterimage_testing::gpu::validated(&device, "the probe", || {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
