@@ -1,15 +1,15 @@
-//! What does it cost to find out what a ray hits? Build times, rates on the CPU (`obvhs` beside it) and on the GPU, from 2.6
+//! Cost of ray traversal: build times, and ray rates on the CPU (with `obvhs` for comparison) and on the GPU, from 2.6
 //! thousand to 2.6 million triangles.
 //!
-//! `cargo run --release -p afterimage-lab --example 12_traversal`; numbers of triangles may follow.
+//! `cargo run --release -p afterimage-lab --example 12_traversal`; optionally followed by triangle counts.
 
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage};
-use afterimage_lab::trace::gpu::ray_lists::{GpuRays, Question};
-use afterimage_lab::trace::heap::{Heap, HeapBuilder};
+use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
+use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
 use afterimage_lab::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
+use afterimage_lab::trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
 use afterimage_lab::trace::{Bvh, Geometry, Ray};
 use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
@@ -17,7 +17,7 @@ use std::f32::consts::TAU;
 
 const SIZE: [u32; 2] = [640, 360];
 
-/// A grid of `n` by `m` quadrilaterals over a surface, parameters from 0 to 1.
+/// A grid of `n` by `m` quadrilaterals over the surface `at`, whose parameters range from 0 to 1.
 fn surface(triangles: &mut Triangles, n: usize, m: usize, at: impl Fn(f32, f32) -> Vec3) {
     let at = |i: usize, j: usize| at(i as f32 / n as f32, j as f32 / m as f32);
     for i in 0..n {
@@ -27,7 +27,7 @@ fn surface(triangles: &mut Triangles, n: usize, m: usize, at: impl Fn(f32, f32) 
     }
 }
 
-/// A paved yard of 20 m with walls of rough stone and 24 columns.
+/// A paved yard of 20 m with rough stone walls and 24 columns.
 fn courtyard(count: usize) -> Triangles {
     let mut triangles = Triangles::default();
     let rough = |x: f32, y: f32| 0.03 * ((37.0 * x).sin() * (41.0 * y).cos() + (113.0 * x + 71.0 * y).sin());
@@ -51,17 +51,17 @@ fn courtyard(count: usize) -> Triangles {
     triangles
 }
 
-/// Million rays per second: of CPU time where the device is a program, else of wall time.
+/// Million rays per second: of CPU time on software devices, otherwise of wall time.
 fn gpu_mrays(
     gpu: &Headless,
-    heap: &Heap,
+    scene_buffer: &SceneBuffer,
     geometry: &Geometry,
     storage: Storage,
-    question: Question,
+    query: HitQuery,
     rays: &[Ray],
 ) -> f64 {
-    let tracer = GpuRays::new(&gpu.device, &gpu.queue, heap, geometry, storage, question, None);
-    let batch = tracer.batch(&GpuHeap::new(&gpu.device, &gpu.queue, heap, storage), rays);
+    let tracer = GpuRays::new(&gpu.device, &gpu.queue, scene_buffer, geometry, storage, query, None);
+    let batch = tracer.batch(&GpuSceneBuffer::new(&gpu.device, &gpu.queue, scene_buffer, storage), rays);
     tracer.run(&batch);
     let run = |_| {
         let watch = Stopwatch::start();
@@ -105,22 +105,23 @@ fn main() {
         );
         let Some(gpu) = &gpu else { continue };
         for storage in [Storage::Texture, Storage::Buffer] {
-            let heap = HeapBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
-            let heap = match heap {
-                Ok(heap) => heap,
+            let scene_buffer =
+                SceneBufferBuilder::default().geometry(&geometry, 0).finish(storage.limits(&gpu.device.limits()));
+            let scene_buffer = match scene_buffer {
+                Ok(scene_buffer) => scene_buffer,
                 Err(error) => {
                     println!("{storage:?}: {error}");
                     continue;
                 }
             };
-            let rate = |question, rays: &[Ray]| gpu_mrays(gpu, &heap, &geometry, storage, question, rays);
+            let rate = |query, rays: &[Ray]| gpu_mrays(gpu, &scene_buffer, &geometry, storage, query, rays);
             println!(
                 "{}, {storage:?}: primary {:.2}, bounce {:.2}, shadow {:.2}; {:.0} bytes a triangle",
                 gpu.info.name,
-                rate(Question::Closest, &primary),
-                rate(Question::Closest, &bounce),
-                rate(Question::Any, &bounce),
-                heap.bytes() as f64 / triangles.len() as f64,
+                rate(HitQuery::Closest, &primary),
+                rate(HitQuery::Closest, &bounce),
+                rate(HitQuery::Any, &bounce),
+                scene_buffer.bytes() as f64 / triangles.len() as f64,
             );
         }
     }

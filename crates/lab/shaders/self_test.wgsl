@@ -1,23 +1,23 @@
-// Questions to an adapter about its arithmetic: one thread answers one row of input. Not part of any pass.
+// Probes an adapter's arithmetic: one invocation per input row. Not part of any pass.
 
 @group(0) @binding(0) var<storage, read> given: array<u32>;
 @group(0) @binding(1) var<storage, read_write> answered: array<u32>;
 
-// Which question, by number of the entry in `Question` (src/pipeline/self_test.rs).
+// Probe number, as in `Question` (src/self_test.rs).
 override QUESTION: u32;
 
 fn answer(a: f32, b: f32, c: f32) -> u32 {
     switch QUESTION {
-        // NaN: comparison, and what max makes of it.
+        // NaN: comparison, and the result of max.
         case 0u: { return select(0u, 1u, a == a); }
         case 1u: { return bitcast<u32>(max(a, b)); }
-        // Bits through a float variable.
+        // Bit pattern kept through a float variable.
         case 2u: { return bitcast<u32>(a); }
         // Denormals.
         case 3u: { return bitcast<u32>(a + b); }
-        // A product and a sum: one rounding or two.
+        // Product plus sum: one rounding (fused) or two.
         case 4u: { return bitcast<u32>(a * b + c); }
-        // Knuth's two-sum: its error term is 0 where sums are reassociated.
+        // Knuth's two-sum: its error term is 0 if the compiler reassociates sums.
         case 5u: {
             let sum = a + b;
             let part = sum - a;

@@ -1,4 +1,4 @@
-//! The shaders of this crate, put together with the drop-in's.
+//! WGSL modules of this crate, composed with those of the drop-in.
 
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
@@ -18,13 +18,14 @@ static MODULES: &[Module] = &[
     module!("lib", "texel"),
     module!("lib", "triangle"),
     module!("raster", "color_pass"),
+    module!("raster", "lighting_maps"),
     module!("raster", "raster_frame"),
     module!("raster", "raster_material"),
-    module!("raster", "scenery"),
     module!("raster", "sky_pass"),
     module!("raster", "sun_pass"),
     module!("raster", "surface_pass"),
     module!("trace", "accept_all"),
+    module!("trace", "alpha_test"),
     module!("trace", "count_pass"),
     module!("trace", "effects"),
     module!("trace", "expand_pass"),
@@ -32,15 +33,14 @@ static MODULES: &[Module] = &[
     module!("trace", "frame"),
     module!("trace", "generate_pass"),
     module!("trace", "geometry"),
-    module!("trace", "heap_buffer"),
-    module!("trace", "heap_texture"),
     module!("trace", "hit"),
     module!("trace", "hits_pass"),
-    module!("trace", "holes"),
     module!("trace", "lights"),
     module!("trace", "plan"),
     module!("trace", "records"),
     module!("trace", "resolve_pass"),
+    module!("trace", "scene_storage"),
+    module!("trace", "scene_texture"),
     module!("trace", "shade_pass"),
     module!("trace", "shadow_pass"),
     module!("trace", "surface_point"),
@@ -48,5 +48,5 @@ static MODULES: &[Module] = &[
     module!("trace", "traverse"),
 ];
 
-/// This crate's shaders, which may use the drop-in's modules.
+/// Composer of this crate's shaders, which may use the drop-in's modules.
 pub static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]);

@@ -33,6 +33,6 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
 }
 
 /// Words that lie before the rows of a module's probes: what it loads.
-pub fn heap(_module: &str) -> Vec<u32> {
+pub fn table_data(_module: &str) -> Vec<u32> {
     vec![]
 }

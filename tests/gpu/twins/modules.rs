@@ -35,13 +35,14 @@ fn every_module_composes_and_is_valid() {
     let names: Vec<_> = SHADERS.module_names().collect();
     assert!(names.len() >= 11);
     for name in names {
-        // What a module's users provide: where the heap is, which hits count.
+        // What a module's users provide: where the scene buffer is, which hits count.
         let source = SHADERS.compose(name).source;
         let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
-        let heaps: &[Option<&str>] = if lacks("load") { &[Some("heap_texture"), Some("heap_buffer")] } else { &[None] };
+        let storages: &[Option<&str>] =
+            if lacks("load") { &[Some("scene_texture"), Some("scene_storage")] } else { &[None] };
         let accept = lacks("accept_hit").then_some("accept_all");
-        for heap in heaps {
-            let parts: Vec<&str> = heap.iter().copied().chain(accept).chain([name]).collect();
+        for storage in storages {
+            let parts: Vec<&str> = storage.iter().copied().chain(accept).chain([name]).collect();
             validate(&SHADERS.compose_with(&parts, "")).unwrap_or_else(|e| panic!("{name}: {e}"));
         }
     }

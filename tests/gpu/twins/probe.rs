@@ -1,6 +1,6 @@
 //! A probe: one library function over a table of words, on the adapter and by its Rust twin.
 
-use super::library::{SHADERS, heap};
+use super::library::{SHADERS, table_data};
 use glam::Vec3;
 
 /// A function under test.
@@ -63,7 +63,7 @@ impl Probe {
     /// The library and an entry point `main` that runs one row per invocation.
     pub fn source(&self) -> String {
         let [ins, outs] = self.words;
-        let heap = heap(self.module).len();
+        let table_data = table_data(self.module).len();
         let harness = format!(
             "@group(0) @binding(0) var<storage, read> probe_in: array<u32>;
 @group(0) @binding(1) var<storage, read_write> probe_out: array<u32>;
@@ -81,8 +81,8 @@ fn out_b(x: bool) {{ out_u(select(0u, 1u, x)); }}
 fn out_v(x: vec3<f32>) {{ out_f(x.x); out_f(x.y); out_f(x.z); }}
 @compute @workgroup_size({workgroup})
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
-    if id.x >= (arrayLength(&probe_in) - {heap}u) / {ins}u {{ return; }}
-    probe_read = {heap}u + id.x * {ins}u;
+    if id.x >= (arrayLength(&probe_in) - {table_data}u) / {ins}u {{ return; }}
+    probe_read = {table_data}u + id.x * {ins}u;
     probe_write = id.x * {outs}u;
     {wgsl}
 }}
@@ -109,8 +109,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         let [ins, outs] = self.words;
         assert_eq!(rows.width, ins, "{}", self.name);
         let count = rows.words.len() / ins;
-        // The heap comes first, so that where it lies does not depend on the rows.
-        let inputs = [heap(self.module), rows.words.clone()].concat();
+        // The table data comes first, so that where it lies does not depend on the rows.
+        let inputs = [table_data(self.module), rows.words.clone()].concat();
         let got = afterimage_testing::gpu::run_probe(device, queue, source, "main", &inputs, count * outs);
         let mut lines = vec![];
         for (input, got) in rows.words.chunks(ins).zip(got.chunks(outs)) {
@@ -130,7 +130,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     pub fn outputs(&self, rows: &[Vec<u32>]) -> Option<Vec<Vec<u32>>> {
         let (device, queue) = afterimage_testing::gpu::device()?;
         let outs = self.words[1];
-        let inputs = [heap(self.module), rows.concat()].concat();
+        let inputs = [table_data(self.module), rows.concat()].concat();
         let got =
             afterimage_testing::gpu::run_probe(&device, &queue, &self.source(), "main", &inputs, rows.len() * outs);
         let got: Vec<Vec<u32>> = got.chunks(outs).map(<[u32]>::to_vec).collect();

@@ -1,6 +1,6 @@
 //#use microfacet
-// Twin of src/kernel/albedo.rs. A pass that uses it defines `load`, from an index to the four words of a cell of the heap that
-// holds the tables; `tables` is where they begin.
+// Twin of src/kernel/albedo.rs. Callers define `load`, which reads a cell of the tables as four words; `tables` is the
+// index of their first cell.
 
 const COSINES: u32 = 48u;
 const ROUGHNESSES: u32 = 32u;
@@ -8,8 +8,8 @@ const GLASS_COSINES: u32 = 24u;
 const GLASS_ROUGHNESSES: u32 = 12u;
 const GLASS_IORS: u32 = 12u;
 const GLASS_BASE: u32 = COSINES * ROUGHNESSES;
-const STRETCHED_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
-const STRETCHED: vec4<u32> = vec4<u32>(12u, 5u, 10u, 5u);
+const ANISOTROPIC_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
+const ANISOTROPIC: vec4<u32> = vec4<u32>(12u, 5u, 10u, 5u);
 const MIN_ASPECT: f32 = 0.31622777;
 const SHEEN_ROOT: f32 = 0.17782794;
 const IOR_ROOT: f32 = 0.17191392;
@@ -52,24 +52,24 @@ fn ggx_albedo(tables: u32, cosine: f32, width: f32) -> vec2<f32> {
     return vec2<f32>(e.x, e.x * schlick_weight(cosine) + e.y);
 }
 
-// albedo::stretched_albedo
-fn stretched_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
+// albedo::anisotropic_albedo
+fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
     let slanted = abs(wo.x) + abs(wo.y);
     var azimuth = 0.5;
     if slanted > 1e-6 {
         azimuth = abs(wo.x) / slanted;
     }
     let aspect = (sqrt(a.y / a.x) - MIN_ASPECT) / (1.0f - MIN_ASPECT);
-    let kx = albedo_knot(albedo_cosine(wo.z, a.x), STRETCHED.x);
-    let ky = albedo_knot(azimuth, STRETCHED.y);
-    let kz = albedo_knot(sqrt(a.x), STRETCHED.z);
-    let kw = albedo_knot(aspect, STRETCHED.w);
-    let row = STRETCHED.x;
+    let kx = albedo_knot(albedo_cosine(wo.z, a.x), ANISOTROPIC.x);
+    let ky = albedo_knot(azimuth, ANISOTROPIC.y);
+    let kz = albedo_knot(sqrt(a.x), ANISOTROPIC.z);
+    let kw = albedo_knot(aspect, ANISOTROPIC.w);
+    let row = ANISOTROPIC.x;
     var parts: array<vec4<f32>, 4>;
     for (var corner = 0u; corner < 4u; corner++) {
         let z = u32(kz.x) + (corner & 1u);
         let w = u32(kw.x) + (corner >> 1u);
-        let i = STRETCHED_BASE + ((w * STRETCHED.z + z) * STRETCHED.y + u32(ky.x)) * row + u32(kx.x);
+        let i = ANISOTROPIC_BASE + ((w * ANISOTROPIC.z + z) * ANISOTROPIC.y + u32(ky.x)) * row + u32(kx.x);
         let a = albedo_cell(tables, i);
         let b = albedo_cell(tables, i + 1u);
         let c = albedo_cell(tables, i + row);

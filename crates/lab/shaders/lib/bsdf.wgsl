@@ -2,7 +2,7 @@
 //#use layers
 //#use microfacet
 //#use sampling
-// Twin of src/kernel/bsdf.rs. `Scatter` and `Sampled` are one struct.
+// Twin of src/kernel/bsdf.rs. One struct `Scatter` stands for both `Scatter` and `Sampled`.
 
 struct Scatter {
     wi: vec3<f32>,
@@ -18,8 +18,8 @@ fn retro_value(wo: vec3<f32>, wi: vec3<f32>, roughness: f32) -> f32 {
     return i * o;
 }
 
-// bsdf::mirror_chance
-fn mirror_chance(glass_reflect: vec3<f32>, fresnel: f32) -> f32 {
+// bsdf::mirror_probability
+fn mirror_probability(glass_reflect: vec3<f32>, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
     }
@@ -29,7 +29,7 @@ fn mirror_chance(glass_reflect: vec3<f32>, fresnel: f32) -> f32 {
 // bsdf::eval_reflection
 fn eval_reflection(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
-    var pdf = layers.chances.x * lambert;
+    var pdf = layers.probabilities.x * lambert;
     var diffuse = layers.diffuse;
     if LOBE_RETRO {
         let burley = retro_value(wo, wi, layers.retro_roughness) * layers.retro_scale;
@@ -51,11 +51,11 @@ fn eval_reflection(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
         let density = d / (wo.z + length_o);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += (layers.reflect_rise * rise + layers.reflect) * shape;
-        pdf += layers.chances.y * density;
+        pdf += layers.probabilities.y * density;
         if LOBE_TRANSMISSION {
             let fresnel = fresnel_dielectric(vh, layers.eta);
             value += (layers.glass * glass_fresnel(layers.glass_reflect, fresnel)) * shape;
-            pdf += (layers.chances.w * mirror_chance(layers.glass_reflect, fresnel)) * density;
+            pdf += (layers.probabilities.w * mirror_probability(layers.glass_reflect, fresnel)) * density;
         }
     }
     if LOBE_CLEARCOAT {
@@ -65,7 +65,7 @@ fn eval_reflection(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
         let length_i = ggx_length(wi, a);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += vec3<f32>((layers.coat_rise * rise + layers.coat) * shape);
-        pdf += layers.chances.z * (d / (wo.z + length_o));
+        pdf += layers.probabilities.z * (d / (wo.z + length_o));
     }
     return Scatter(wi, value, pdf);
 }
@@ -101,7 +101,7 @@ fn eval_transmission(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     let density = d / (wo.z + length_o);
     let through = vec3<f32>(1.0) - glass_fresnel(layers.glass_reflect, fresnel);
     let value = (layers.glass * layers.glass_color) * through * shape;
-    return Scatter(wi, value, (layers.chances.w * (1.0 - mirror_chance(layers.glass_reflect, fresnel))) * density);
+    return Scatter(wi, value, (layers.probabilities.w * (1.0 - mirror_probability(layers.glass_reflect, fresnel))) * density);
 }
 
 // bsdf::eval
@@ -109,7 +109,7 @@ fn eval(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi);
     }
-    if LOBE_TRANSMISSION && wo.z > 0.0 && wi.z < 0.0 && layers.chances.w > 0.0 {
+    if LOBE_TRANSMISSION && wo.z > 0.0 && wi.z < 0.0 && layers.probabilities.w > 0.0 {
         return eval_transmission(layers, wo, wi);
     }
     return Scatter(wi, vec3<f32>(0.0), 0.0);
@@ -121,14 +121,14 @@ fn sample(layers: Layers, wo: vec3<f32>, u: vec4<f32>) -> Scatter {
     if wo.z <= 0.0 {
         return none;
     }
-    let up_to_reflect = layers.chances.x + layers.chances.y;
-    let up_to_coat = up_to_reflect + layers.chances.z;
-    let total = up_to_coat + layers.chances.w;
+    let up_to_reflect = layers.probabilities.x + layers.probabilities.y;
+    let up_to_coat = up_to_reflect + layers.probabilities.z;
+    let total = up_to_coat + layers.probabilities.w;
     let at = u.x * total;
     let direction = vec2<f32>(u.y, u.z);
     var wi = vec3<f32>(0.0, 0.0, 1.0);
     var side = 1.0;
-    if at < layers.chances.x {
+    if at < layers.probabilities.x {
         wi = cosine_hemisphere(direction);
     } else if (LOBE_SPECULAR || LOBE_METAL) && at < up_to_reflect {
         wi = mirrored(wo, vndf_sample(wo, layers.widths, direction));
@@ -138,7 +138,7 @@ fn sample(layers: Layers, wo: vec3<f32>, u: vec4<f32>) -> Scatter {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = clamp(dot(wo, h), 0.0, 1.0);
         wi = mirrored(wo, h);
-        if u.w >= mirror_chance(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
+        if u.w >= mirror_probability(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
             side = -1.0;
             if layers.thin {
                 wi.z = -wi.z;

@@ -10,7 +10,7 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(0.0, 0.0, 1.0);
 }
 
-// direction::basis, two vectors: the columns.
+// direction::basis; the two vectors are the columns.
 fn basis(n: vec3<f32>) -> mat2x3<f32> {
     let sign = select(-1.0, 1.0, n.z >= 0.0);
     let a = -1.0 / (sign + n.z);

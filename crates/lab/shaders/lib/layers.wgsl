@@ -2,7 +2,7 @@
 //#use color
 //#use microfacet
 //#use sampling
-// Twin of src/kernel/layers.rs. `Lobes` are overrides; `Surface` is `BsdfSurface`.
+// Twin of src/kernel/layers.rs. `Lobes` are override constants; `Surface` is called `BsdfSurface`.
 
 override LOBE_RETRO: bool = true;
 override LOBE_SPECULAR: bool = true;
@@ -52,7 +52,7 @@ struct Layers {
     glass_reflect: vec3<f32>,
     eta: f32,
     thin: bool,
-    chances: vec4<f32>,
+    probabilities: vec4<f32>,
 }
 
 // layers::retro_albedo
@@ -117,7 +117,7 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
     }
     let below_coat = 1.0 - coat_albedo;
     var sheen = vec3<f32>(0.0);
-    var sheen_chance = 0.0;
+    var sheen_probability = 0.0;
     var sheen_width = 1.0;
     var sheen_lambda = 0.0;
     var below = below_coat;
@@ -128,7 +128,7 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
         let scale = 1.0 / max(e, 1.0);
         let albedo = e * scale;
         sheen = color * (scale * below_coat);
-        sheen_chance = luma(color) * (albedo * below_coat);
+        sheen_probability = luma(color) * (albedo * below_coat);
         sheen_width = sheen_roughness * sheen_roughness;
         sheen_lambda = charlie_lambda(z, sheen_width);
         below = below_coat * (1.0 - max(max(color.x, color.y), color.z) * albedo);
@@ -139,12 +139,12 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
     if LOBE_SPECULAR || LOBE_METAL || LOBE_TRANSMISSION {
         e = ggx_albedo(tables, z, mean_width);
         if LOBE_ANISOTROPY && anisotropy > 0.0 {
-            e += stretched_albedo(tables, wo, widths);
+            e += anisotropic_albedo(tables, wo, widths);
         }
     }
     var reflect = vec3<f32>(0.0);
     var reflect_rise = vec3<f32>(0.0);
-    var reflect_chance = 0.0;
+    var reflect_probability = 0.0;
     var entered = vec3<f32>(1.0);
     if LOBE_SPECULAR {
         let normal = reflectance_at_normal(max(surface.ior, 1.0));
@@ -153,14 +153,14 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
         let scale = compensation(f0, e) * ((opaque * below) * specular);
         reflect = scale * f0;
         reflect_rise = scale * (vec3<f32>(1.0) - f0);
-        reflect_chance = luma(albedo) * (opaque * below);
+        reflect_probability = luma(albedo) * (opaque * below);
         entered = vec3<f32>(1.0) - albedo;
     }
     if LOBE_METAL {
         let scale = compensation(base, e) * (metallic * below);
         reflect += scale * base;
         reflect_rise += scale * (vec3<f32>(1.0) - base);
-        reflect_chance += luma(reflect_albedo(base, e)) * (metallic * below);
+        reflect_probability += luma(reflect_albedo(base, e)) * (metallic * below);
     }
     let diffuse_albedo = (base * entered) * (opaque * below);
     let retro = select(0.0, strength, LOBE_RETRO);
@@ -172,7 +172,7 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
     var glass = vec3<f32>(0.0);
     var glass_reflect = vec3<f32>(0.0);
     var eta = 1.0;
-    var glass_chance = 0.0;
+    var glass_probability = 0.0;
     let ior = clamp(surface.ior, 1.0, MAX_REFRACTING_IOR);
     let thin = surface.thin || ior < MIN_REFRACTING_IOR;
     if LOBE_TRANSMISSION {
@@ -186,14 +186,14 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
         glass = vec3<f32>(amount) / (glass_reflect * (returned.x - returned.y) + vec3<f32>(returned.y));
         let f = glass_fresnel(glass_reflect, fresnel_dielectric(z, eta));
         let least = select(0.0, 0.1, eta < 1.0);
-        glass_chance = max(luma((vec3<f32>(1.0) - f) * base + f), least) * amount;
+        glass_probability = max(luma((vec3<f32>(1.0) - f) * base + f), least) * amount;
     }
 
-    let diffuse_chance = luma(diffuse_albedo) + sheen_chance;
-    let total = ((diffuse_chance + reflect_chance) + coat_albedo) + glass_chance;
-    var chances = vec4<f32>(0.0);
+    let diffuse_probability = luma(diffuse_albedo) + sheen_probability;
+    let total = ((diffuse_probability + reflect_probability) + coat_albedo) + glass_probability;
+    var probabilities = vec4<f32>(0.0);
     if total > 1e-30 {
-        chances = vec4<f32>(diffuse_chance / total, reflect_chance / total, coat_albedo / total, glass_chance / total);
+        probabilities = vec4<f32>(diffuse_probability / total, reflect_probability / total, coat_albedo / total, glass_probability / total);
     }
     return Layers(
         widths,
@@ -214,6 +214,6 @@ fn layers(surface: BsdfSurface, wo: vec3<f32>, tables: u32) -> Layers {
         glass_reflect,
         eta,
         thin,
-        chances,
+        probabilities,
     );
 }

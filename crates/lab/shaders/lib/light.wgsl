@@ -40,6 +40,6 @@ fn map_direction(u: f32, v: f32) -> MapDirection {
 }
 
 // light::map_pdf
-fn map_pdf(chosen: f32, texels: f32, sine: f32) -> f32 {
-    return chosen * texels / (MAP_AREA * max(sine, 1e-6));
+fn map_pdf(probability: f32, texels: f32, sine: f32) -> f32 {
+    return probability * texels / (MAP_AREA * max(sine, 1e-6));
 }

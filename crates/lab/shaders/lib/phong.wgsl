@@ -1,6 +1,6 @@
 //#use approx
 //#use sampling
-// Twin of src/kernel/phong.rs. `Sampled` and `Scatter` are (wi), value, density in one struct.
+// Twin of src/kernel/phong.rs. One struct holds the fields of `Sampled` and `Scatter`.
 
 struct PhongSurface {
     diffuse: vec3<f32>,
@@ -25,8 +25,8 @@ fn phong_power(x: f32, y: f32) -> f32 {
     return exp(max(ln(max(x, 1e-30)) * y, -60.0));
 }
 
-// phong::phong_chance
-fn phong_chance(surface: PhongSurface) -> f32 {
+// phong::phong_specular_probability
+fn phong_specular_probability(surface: PhongSurface) -> f32 {
     let diffuse = (surface.diffuse.x + surface.diffuse.y) + surface.diffuse.z;
     let specular = (surface.specular.x + surface.specular.y) + surface.specular.z;
     let sum = diffuse + specular;
@@ -63,10 +63,10 @@ fn phong_sample(surface: PhongSurface, wo: vec3<f32>, u: vec3<f32>) -> PhongScat
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return PhongScatter(wi, vec3<f32>(0.0), 0.0);
     }
-    let chance = phong_chance(surface);
+    let probability = phong_specular_probability(surface);
     let pdf = uniform_hemisphere_pdf(wi.z);
-    if u.x < chance {
-        return PhongScatter(wi, phong_specular(surface, wo, wi) / chance, pdf);
+    if u.x < probability {
+        return PhongScatter(wi, phong_specular(surface, wo, wi) / probability, pdf);
     }
-    return PhongScatter(wi, phong_diffuse(surface, wi) / (1.0 - chance), pdf);
+    return PhongScatter(wi, phong_diffuse(surface, wi) / (1.0 - probability), pdf);
 }

@@ -1,4 +1,4 @@
-// Twin of src/kernel/triangle.rs: rays and triangles (Woop, Benthin and Wald, JCGT 2(1), 2013).
+// Twin of src/kernel/triangle.rs: watertight ray/triangle intersection (Woop, Benthin and Wald, JCGT 2(1), 2013).
 
 const ORIGIN_OFFSET: f32 = 1.0 / 262144.0;
 const MIN_DET: f32 = 1e-36;
@@ -9,8 +9,8 @@ struct Shear {
     z: vec3<f32>,
 }
 
-// t is 0 where they do not meet.
-struct Meeting {
+// t is 0 if there is no intersection.
+struct Intersection {
     t: f32,
     u: f32,
     v: f32,
@@ -39,8 +39,9 @@ fn sheared(shear: Shear, from_origin: vec3<f32>) -> vec3<f32> {
     return shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z;
 }
 
-// triangle::edge. The corners in an order of their own, which changes nothing where products are rounded; a device that fuses one
-// of them with the difference would else answer the two triangles of an edge differently, and leave gaps.
+// triangle::edge, with the two vertices in a fixed order. The order has no effect where products are rounded. On a
+// device that fuses one product into the difference, the two triangles at an edge would otherwise get different answers
+// and leave a gap.
 fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let swapped = a.x > b.x || (a.x == b.x && a.y > b.y);
     let p = select(a.xy, b.xy, swapped);
@@ -50,8 +51,8 @@ fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
 }
 
 // triangle::intersect
-fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Meeting {
-    let miss = Meeting(0.0, 0.0, 0.0);
+fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Intersection {
+    let miss = Intersection(0.0, 0.0, 0.0);
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
     let c = sheared(shear, v2 - origin);
@@ -72,7 +73,7 @@ fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: 
     }
     let u = abs(e1 / det);
     let v = abs(e2 / det);
-    return Meeting((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
+    return Intersection((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
 }
 
 // triangle::point_at

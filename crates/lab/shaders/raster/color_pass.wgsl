@@ -3,20 +3,20 @@
 //#use light
 //#use raster_frame
 //#use raster_material
-//#use scenery
+//#use lighting_maps
 //#use shading
-// Color of surfaces in the light of punctual lights, panels, the sun and the sky. Scattering is the tracer's; what light other
-// surfaces send is only guessed (`bounced`). Premultiplied by opacity.
+// Color of surfaces lit by punctual lights, panels, the sun and the sky, with the tracer's scattering functions.
+// Indirect light is an estimate (`bounced`). Color is premultiplied by opacity.
 
 override SURFACE_TEXTURE: bool = true;
 override NORMAL_MAP: bool = true;
 override EMISSIVE_TEXTURE: bool = true;
 override HAS_SUN: bool = true;
 
-struct Shaded {
+struct ColorVarying {
     @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
-    // From the eye.
+    // Position relative to the eye.
     @location(1) relative: vec3<f32>,
     @location(2) normal: vec3<f32>,
     @location(3) tangent: vec4<f32>,
@@ -25,13 +25,13 @@ struct Shaded {
 }
 
 @vertex
-fn stand(corner: Corner) -> Shaded {
-    let relative = from_eye(frame.now, corner.position);
-    let position = clip(homogeneous_px(frame.now, relative));
-    return Shaded(position, corner.position, relative, corner.normal, corner.tangent, corner.uv, corner.color);
+fn shade_vertex(vertex: Vertex) -> ColorVarying {
+    let relative = from_eye(frame.current, vertex.position);
+    let position = clip(homogeneous_px(frame.current, relative));
+    return ColorVarying(position, vertex.position, relative, vertex.normal, vertex.tangent, vertex.uv, vertex.color);
 }
 
-// Parameters with their textures and tints, as in trace/surface_point.wgsl.
+// BSDF parameters with textures and tints applied, as in trace/surface_point.wgsl.
 fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
     var s: BsdfSurface;
     s.base_color = base;
@@ -71,7 +71,7 @@ fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
     return s;
 }
 
-// Irradiance from all around, by the faces of a cube, weighted by the squares of the normal's coordinates, whose sum is 1.
+// Ambient irradiance from six faces, weighted by the squared components of the normal, whose sum is 1.
 fn ambient_at(normal: vec3<f32>) -> vec3<f32> {
     let share = normal * normal;
     let x = select(lights.ambient[1], lights.ambient[0], normal.x >= 0.0).xyz;
@@ -82,7 +82,7 @@ fn ambient_at(normal: vec3<f32>) -> vec3<f32> {
 
 struct Incoming {
     direction: vec3<f32>,
-    // On a surface that faces it.
+    // On a surface facing the light.
     irradiance: vec3<f32>,
 }
 
@@ -95,7 +95,7 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
     let direction = unit(to);
     let cosine = -dot(direction, light.direction);
     if light.kind >= 3u {
-        // A disk of that area as seen from its axis, by the cosine beside it.
+        // Irradiance of a disk of the panel's area on its axis, times the cosine off the axis.
         let seen = select(max(cosine, 0.0), abs(cosine), light.kind == 4u);
         return Incoming(direction, light.intensity * (seen * light.area / (distance * distance + light.area * FRAC_1_PI)));
     }
@@ -107,10 +107,10 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
 }
 
 @fragment
-fn shade(in: Shaded, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = base_at(in.uv, in.color);
     let across = cross(dpdx(in.relative), dpdy(in.relative));
-    // A masked edge becomes as wide as a pixel, and is told to the multisampler.
+    // An alpha-tested edge is widened to one pixel, for alpha to coverage.
     let edge = max(fwidth(base.w), 1e-4);
     var opacity = 1.0;
     if (material.flags & FLAG_MASK) != 0u {
@@ -165,7 +165,7 @@ fn shade(in: Shaded, @builtin(front_facing) front: bool) -> @location(0) vec4<f3
         color += value * arriving.irradiance * share;
     }
 
-    // From all around: what scatters is lit by the mean over the hemisphere, highlights show what they mirror.
+    // Ambient light: diffuse lobes use irradiance; highlights use sky radiance in the mirror direction.
     let reflected = unit(normal * (2.0 * wo.z) - toward);
     color += l.diffuse * (ambient_at(normal) + lights.bounced * PI);
     if LOBE_SPECULAR || LOBE_METAL || LOBE_TRANSMISSION {
@@ -181,13 +181,13 @@ fn shade(in: Shaded, @builtin(front_facing) front: bool) -> @location(0) vec4<f3
         color += (l.coat * e.x + l.coat_rise * e.y) * (sky_radiance(reflected, surface.clearcoat_roughness) + lights.bounced);
     }
 
-    // What shines through is what is behind, without refraction, dimmed by the base color's luminance.
+    // Transmission shows what is straight behind, dimmed by the base color's luminance.
     var through = 0.0;
     if LOBE_TRANSMISSION {
         let passed = clamp(surface.transmission * (1.0 - surface.metallic), 0.0, 1.0);
         through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3<f32>(0.0), vec3<f32>(1.0)));
     }
-    color = clamp(color, vec3<f32>(0.0), vec3<f32>(BRIGHTEST));
+    color = clamp(color, vec3<f32>(0.0), vec3<f32>(MAX_COLOR));
     if (material.flags & FLAG_BLEND) != 0u {
         color *= opacity;
     }

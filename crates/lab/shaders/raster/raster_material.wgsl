@@ -1,4 +1,4 @@
-// A material of the rasteriser: the tracer's record, and its textures, white where there is none.
+// Group 1: a material in the tracer's layout, with its textures; white where it has none.
 
 override BASE_COLOR_TEXTURE: bool = true;
 
@@ -73,8 +73,8 @@ fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
     return base;
 }
 
-// Whether a surface counts as being there: behind less than half a surface is another.
-fn is_there(opacity: f32) -> bool {
+// Alpha test: cutoff for MASK, more than half opaque for BLEND.
+fn passes_alpha_test(opacity: f32) -> bool {
     if (material.flags & FLAG_MASK) != 0u {
         return opacity >= material.cutoff;
     }

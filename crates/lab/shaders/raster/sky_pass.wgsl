@@ -1,17 +1,17 @@
 //#use direction
 //#use raster_frame
-//#use scenery
+//#use lighting_maps
 //#use sanitize
-// What is behind everything.
+// The sky behind all surfaces.
 
 @vertex
-fn far(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return far_corner(index);
+fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(index);
 }
 
 @fragment
 fn sky(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let px = position.xy - vec2<f32>(0.5);
     let direction = unit((frame.right.xyz * px.x + frame.down.xyz * px.y) + frame.corner.xyz);
-    return vec4<f32>(clamp(sky_radiance(direction, 0.0), vec3<f32>(0.0), vec3<f32>(BRIGHTEST)), 1.0);
+    return vec4<f32>(clamp(sky_radiance(direction, 0.0), vec3<f32>(0.0), vec3<f32>(MAX_COLOR)), 1.0);
 }

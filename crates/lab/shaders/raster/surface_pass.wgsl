@@ -1,11 +1,12 @@
 //#use raster_frame
 //#use raster_material
-// Depth and motion of the first surface behind each pixel's centre: previous minus current, pixels, y down.
+// Depth and motion of the first surface at each pixel's centre. Motion is previous minus current position in pixels, y
+// down.
 
-// What the previous camera could not have seen.
+// Motion of points behind the previous camera.
 const OFF_FRAME_PX: f32 = 1e6;
 
-struct Followed {
+struct MotionVarying {
     @builtin(position) position: vec4<f32>,
     @location(0) now: vec3<f32>,
     @location(1) before: vec3<f32>,
@@ -14,10 +15,10 @@ struct Followed {
 }
 
 @vertex
-fn follow(corner: Corner) -> Followed {
-    let now = homogeneous_px(frame.now, from_eye(frame.now, corner.position));
-    let before = homogeneous_px(frame.before, from_eye(frame.before, corner.before));
-    return Followed(clip(now), now, before, corner.uv, corner.color);
+fn motion_vertex(vertex: Vertex) -> MotionVarying {
+    let now = homogeneous_px(frame.current, from_eye(frame.current, vertex.position));
+    let before = homogeneous_px(frame.previous, from_eye(frame.previous, vertex.before));
+    return MotionVarying(clip(now), now, before, vertex.uv, vertex.color);
 }
 
 fn moved(now: vec3<f32>, before: vec3<f32>) -> vec2<f32> {
@@ -28,30 +29,30 @@ fn moved(now: vec3<f32>, before: vec3<f32>) -> vec2<f32> {
     return clamp(before.xy / before.z - now.xy / now.z, -off, off);
 }
 
-// Both places are interpolated, not the one subtracted from the pixel: where vertices are rounded to a grid of subpixels, both
-// are off by the same.
+// Both positions are interpolated, instead of subtracting from the pixel's: vertices are snapped to a subpixel grid,
+// and this way both positions have the same error.
 @fragment
-fn motion(in: Followed) -> @location(0) vec2<f32> {
-    if !is_there(base_at(in.uv, in.color).w) {
+fn motion(in: MotionVarying) -> @location(0) vec2<f32> {
+    if !passes_alpha_test(base_at(in.uv, in.color).w) {
         discard;
     }
     return moved(in.now, in.before);
 }
 
 @fragment
-fn motion_opaque(in: Followed) -> @location(0) vec2<f32> {
+fn motion_opaque(in: MotionVarying) -> @location(0) vec2<f32> {
     return moved(in.now, in.before);
 }
 
 @vertex
-fn far(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return far_corner(index);
+fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(index);
 }
 
-// The sky is infinitely far: only the camera's rotation moves it.
+// The sky is infinitely far away: only camera rotation moves it.
 @fragment
 fn motion_far(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     let px = position.xy - vec2<f32>(0.5);
-    let before = (frame.turned[0].xyz * px.x + frame.turned[1].xyz * px.y) + frame.turned[2].xyz;
+    let before = (frame.previous_px_from_px[0].xyz * px.x + frame.previous_px_from_px[1].xyz * px.y) + frame.previous_px_from_px[2].xyz;
     return moved(vec3<f32>(px, 1.0), before);
 }

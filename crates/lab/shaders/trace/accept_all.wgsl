@@ -1,4 +1,4 @@
-// Where no material has an opacity of its own: every hit counts.
+// Accepts every hit: for scenes without alpha modes MASK and BLEND.
 
 fn accept_hit(triangle: u32, u: f32, v: f32, key: u32) -> bool {
     return true;

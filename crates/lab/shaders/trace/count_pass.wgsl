@@ -1,5 +1,5 @@
 //#use frame
-// Between the others: what was appended becomes what is alive, and workgroups for it.
+// Runs between the other kernels: turns list lengths into counts of live paths and of workgroups.
 
 @group(2) @binding(0) var<storage, read_write> plan: array<u32, 9>;
 

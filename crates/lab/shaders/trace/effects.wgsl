@@ -1,4 +1,5 @@
-// What is compiled in: trace::effects::Effect. With MOVES and ALPHA of `traverse` and LOBE_* of `bsdf` all of them.
+// Effects that are compiled in: trace::effects::Effect. MOVES and ALPHA in `traverse` and LOBE_* in `layers` complete
+// the set.
 
 override EFFECT_ANISOTROPY: bool = true;
 override EFFECT_CLEARCOAT: bool = true;
@@ -14,5 +15,5 @@ override EFFECT_PUNCTUAL_LIGHTS: bool = true;
 override EFFECT_ENVIRONMENT: bool = true;
 override EFFECT_ENVIRONMENT_MAP: bool = true;
 
-// The thesis' model of scattering in place of the principled one.
+// Use the thesis' Phong model instead of the principled BSDF.
 override PHONG: bool = false;

@@ -1,4 +1,4 @@
-// Makes the list of a batch's work from spans of pixels: one thread an item.
+// Expands spans of pixels into the list of a batch's samples, one invocation per sample.
 
 struct Span {
     pixel: u32,
@@ -9,14 +9,14 @@ struct Span {
 struct Batch {
     first_pixel: u32,
     first_sample: u32,
-    // Samples of each pixel in this batch.
+    // Samples per pixel in this batch.
     samples: u32,
     items: u32,
 }
 
 @group(0) @binding(0) var<uniform> batch: Batch;
 @group(0) @binding(1) var<storage, read> spans: array<Span>;
-// Pixel and sample of each item.
+// Pixel and sample number of each item.
 @group(0) @binding(2) var<storage, read_write> work: array<vec2<u32>>;
 
 override WORKGROUP: u32 = 64u;
@@ -27,7 +27,7 @@ fn expand(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let number = batch.first_pixel + id.x / batch.samples;
-    // The last span that begins at or before the pixel.
+    // Binary search for the last span that begins at or before the pixel.
     var low = 0u;
     var high = arrayLength(&spans);
     while high - low > 1u {

@@ -1,7 +1,7 @@
 //#use plan
-//#use holes
+//#use alpha_test
 //#use traverse
-// The nearest hit of every path that is alive.
+// Finds the nearest hit of every live path.
 
 @compute @workgroup_size(WORKGROUP)
 fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -11,9 +11,9 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = active_path(id.x);
     if ALPHA {
         let item = work[frame.first_item + path];
-        hole_pixel = item.x;
-        hole_sample = item.y;
-        hole_ray = 2u * plan[BOUNCE];
+        alpha_pixel = item.x;
+        alpha_sample = item.y;
+        alpha_ray = 2u * plan[BOUNCE];
     }
     let ray = Ray(path_row(path, PATH_ORIGIN).xyz, path_row(path, PATH_DIRECTION).xyz, FAR_AWAY);
     let hit = closest(ray, frame.key);
@@ -21,5 +21,5 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
         vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
 }
 
-// Hits count up to the largest number.
+// Largest finite f32: rays have no limit.
 const FAR_AWAY: f32 = 3.4028234e38;

@@ -1,4 +1,4 @@
-// What all passes of a frame share, and where paths are between them: trace/gpu/paths.rs.
+// Bindings that all kernels of a frame share, and the layout of path state. Twin of trace/gpu/paths.rs.
 
 struct TraceFrame {
     origin: vec3<f32>,
@@ -6,7 +6,7 @@ struct TraceFrame {
     corner: vec3<f32>,
     lights: u32,
     right: vec3<f32>,
-    sky_chosen: f32,
+    sky_probability: f32,
     down: vec3<f32>,
     width: u32,
     sky: vec3<f32>,
@@ -15,42 +15,43 @@ struct TraceFrame {
     items: u32,
     capacity: u32,
     jitter: f32,
-    // The film's entry of pixel (x, y) is y * width + x - film_base.
+    // Pixel (x, y) has index y * width + x - film_base in the film.
     film_base: u32,
 }
 
-// Words of `counters`.
+// Indices into `counters`.
 const NEXT: u32 = 0u;
 const SHADOWS: u32 = 1u;
 const RAYS_LOW: u32 = 2u;
 const RAYS_HIGH: u32 = 3u;
 const NONFINITE: u32 = 4u;
-// Words of `plan`, after the workgroups along x, y and z of `extend` and `shade` and those of `shadow`.
+// Indices into `plan`, after the workgroup counts along x, y and z of `extend` and `shade` and those of `shadow`.
 const BOUNCE: u32 = 6u;
 const PATHS_ALIVE: u32 = 7u;
 const SHADOW_RAYS: u32 = 8u;
 
 @group(1) @binding(0) var<uniform> frame: TraceFrame;
-// Pixel and sample of all that is to be traced; a batch of it is in flight.
+// Pixel and sample number of all items; the batch in flight begins at `first_item`.
 @group(1) @binding(1) var<storage, read> work: array<vec2<u32>>;
-// Eight rows a path: PATH_*.
+// State of each path, PATH_ROWS rows.
 @group(1) @binding(2) var<storage, read_write> paths: array<vec4<u32>>;
-// Numbers of paths: those alive at even bounces, at odd ones, those with a shadow ray; `capacity` each.
+// Path indices in three lists of `capacity` each: live paths at even bounces, at odd bounces, and paths with a shadow
+// ray.
 @group(1) @binding(3) var<storage, read_write> lists: array<u32>;
 @group(1) @binding(4) var<storage, read_write> counters: array<atomic<u32>, 5>;
 
 override WORKGROUP: u32 = 64u;
 
 const PATH_ROWS: u32 = 8u;
-// Origin, density of the direction (0 for the camera's).
+// Ray origin; density of its direction in w (0 for camera rays).
 const PATH_ORIGIN: u32 = 0u;
-// Direction, density with which the sky there could have been looked for.
+// Ray direction; in w the density with which light sampling would have chosen it for the environment.
 const PATH_DIRECTION: u32 = 1u;
 const PATH_THROUGHPUT: u32 = 2u;
 const PATH_RADIANCE: u32 = 3u;
-// Triangle, distance, barycentrics.
+// Triangle, distance and barycentric weights of the hit.
 const PATH_HIT: u32 = 4u;
-// Shadow ray: origin and limit, direction, light.
+// Three rows of a shadow ray: origin and limit, direction, contribution.
 const PATH_SHADOW: u32 = 5u;
 
 fn path_row(path: u32, row: u32) -> vec4<f32> {

@@ -1,7 +1,7 @@
 //#use direction
 //#use rng
 //#use frame
-// Starts a path for each item of a batch.
+// Starts a camera path for each item of a batch.
 
 const DRAWS_CAMERA: u32 = 0u;
 

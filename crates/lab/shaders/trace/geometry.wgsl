@@ -1,7 +1,7 @@
 //#use octahedral
 //#use texel
 //#use hit
-// What is stored of a triangle: twin of src/trace/triangle_records.rs and geometry.rs. A triangle's index is that of its hit.
+// Triangle records. Twin of src/trace/triangle_records.rs and geometry.rs. Triangles are indexed as in hits.
 
 override ATTRIBUTES: u32 = 0u;
 override MOVING_ATTRIBUTES: u32 = 0u;
@@ -10,7 +10,8 @@ override MOVING_PREVIOUS: u32 = 0u;
 const FLAG_EMISSIVE: u32 = 0x2000000u;
 const FLAG_TRANSMISSIVE: u32 = 0x4000000u;
 
-// Corners in world space, material and FLAG_ bits, index in the source, and one more than its row in the table of lights.
+// Corner positions in world space; material; FLAG_* bits; index in the source; one plus the row in the light table, or
+// 0.
 struct Triangle {
     corners: array<vec3<f32>, 3>,
     material: u32,
@@ -19,7 +20,8 @@ struct Triangle {
     light: u32,
 }
 
-// At a point of a triangle. Normal and tangent are interpolated, not normalised; the bitangent's sign is the first corner's.
+// Attributes at a point of a triangle. Normal and tangent are interpolated, not normalized; the bitangent's sign is the
+// first corner's.
 struct Attributes {
     normal: vec3<f32>,
     tangent: vec3<f32>,
@@ -32,7 +34,7 @@ fn is_moving(triangle: u32) -> bool {
     return MOVES && triangle >= FIRST_MOVING;
 }
 
-// First element of a record of `size` elements.
+// First element of a triangle's record of `size` elements.
 fn record_at(triangle: u32, still: u32, moving: u32, size: u32) -> u32 {
     return select(still + triangle * size, moving + (triangle - FIRST_MOVING) * size, is_moving(triangle));
 }
@@ -47,7 +49,7 @@ fn triangle_at(triangle: u32) -> Triangle {
     return Triangle(corners, r0.w & 0xffffffu, r0.w & 0xff000000u, r1.w, r2.w);
 }
 
-// Corners a frame ago; those of now where nothing moves.
+// Corner positions in the previous frame; the current ones for static triangles.
 fn previous_corners(triangle: u32) -> array<vec3<f32>, 3> {
     let at = select(TRIANGLES + triangle * 3u, MOVING_PREVIOUS + (triangle - FIRST_MOVING) * 3u, is_moving(triangle));
     return array<vec3<f32>, 3>(

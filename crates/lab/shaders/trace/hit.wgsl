@@ -1,16 +1,16 @@
-// Where triangles are in the heap, and hits on them.
+// Hits, and where triangles are in the scene buffer.
 
-// First elements of the triangles at rest and in motion.
+// First elements of the static and the moving triangles.
 override TRIANGLES: u32 = 0u;
 override MOVING_TRIANGLES: u32 = 0u;
-// Number of triangles at rest, which is the index of the first that moves.
+// Number of static triangles, which is the index of the first moving one.
 override FIRST_MOVING: u32 = 0u;
-// Whether any triangle moves.
+// Whether the scene has moving triangles.
 override MOVES: bool = false;
 
 const NO_TRIANGLE: u32 = 0xffffffffu;
 
-// `triangle` is NO_TRIANGLE where nothing was hit.
+// `triangle` is NO_TRIANGLE if nothing was hit.
 struct Hit {
     triangle: u32,
     t: f32,

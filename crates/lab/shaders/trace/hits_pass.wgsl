@@ -1,9 +1,10 @@
 //#use traverse
-// Hits of a list of rays: for tests and for measuring traversal, without shading. Needs what `traverse` needs.
+// Hits for a list of rays: for tests, and for measuring traversal without shading. Needs `load` and `accept_hit`, as
+// `traverse` does.
 
-// A ray is two elements: origin and limit, direction and a spare word.
+// Two elements per ray: origin and limit; direction and an unused word.
 @group(0) @binding(1) var<storage, read> rays: array<vec4<f32>>;
-// Triangle, distance and barycentrics of each ray; of `any_hits` the first word, 1 where something is hit.
+// Triangle, distance and barycentric weights per ray. `any_hits` writes only the first word: 1 for a hit.
 @group(0) @binding(2) var<storage, read_write> hits: array<vec4<u32>>;
 
 override WORKGROUP: u32 = 64u;

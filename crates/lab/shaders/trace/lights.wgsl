@@ -2,17 +2,17 @@
 //#use sampling
 //#use surface_point
 //#use frame
-// Light that is looked for: trace/cpu/lights.rs.
+// Light sampling and environment lookup. Twin of trace/cpu/lights.rs.
 
 const LIGHT_TRIANGLE: u32 = 0u;
 const LIGHT_PUNCTUAL: u32 = 1u;
 const LIGHT_ENVIRONMENT: u32 = 2u;
 const LIGHT_INDEX: u32 = 0x3fffffffu;
-// Farther than all there is: of lights infinitely far away.
+// Distance that stands for lights at infinity.
 const FAR: f32 = 3e38;
 
-// lights::Arriving; nothing arrives where `pdf` is 0.
-struct Arriving {
+// lights::LightSample; a `pdf` of 0 means no light.
+struct LightSample {
     direction: vec3<f32>,
     distance: f32,
     radiance: vec3<f32>,
@@ -20,43 +20,43 @@ struct Arriving {
     can_be_hit: bool,
 }
 
-fn nothing_arrives() -> Arriving {
-    return Arriving(vec3<f32>(0.0, 1.0, 0.0), 0.0, vec3<f32>(0.0), 0.0, false);
+fn no_light() -> LightSample {
+    return LightSample(vec3<f32>(0.0, 1.0, 0.0), 0.0, vec3<f32>(0.0), 0.0, false);
 }
 
-// lights::look
-fn look(p: Point, draws: vec4<f32>, more: vec4<f32>) -> Arriving {
+// lights::sample_light
+fn sample_light(p: SurfacePoint, draws: vec4<f32>, more: vec4<f32>) -> LightSample {
     let count = frame.lights;
     if count == 0u {
-        return nothing_arrives();
+        return no_light();
     }
     var pick = load(PICKS + min(u32(draws.x * f32(count)), count - 1u));
     if draws.y >= bitcast<f32>(pick.x) {
         pick = load(PICKS + pick.y);
     }
-    let chosen = bitcast<f32>(pick.z);
+    let probability = bitcast<f32>(pick.z);
     let kind = pick.w >> 30u;
     let index = pick.w & LIGHT_INDEX;
     if EFFECT_EMISSIVE_TRIANGLES {
         if kind == LIGHT_TRIANGLE {
-            return from_triangle(p.position, index, chosen, draws.zw);
+            return from_triangle(p.position, index, probability, draws.zw);
         }
     }
     if EFFECT_PUNCTUAL_LIGHTS {
         if kind == LIGHT_PUNCTUAL {
-            return from_punctual(p.position, index, chosen);
+            return from_punctual(p.position, index, probability);
         }
     }
     if EFFECT_ENVIRONMENT {
         if kind == LIGHT_ENVIRONMENT {
-            return from_environment(p, chosen, draws.zw, more);
+            return from_environment(p, probability, draws.zw, more);
         }
     }
-    return nothing_arrives();
+    return no_light();
 }
 
 // lights::from_triangle
-fn from_triangle(position: vec3<f32>, index: u32, chosen: f32, place: vec2<f32>) -> Arriving {
+fn from_triangle(position: vec3<f32>, index: u32, probability: f32, place: vec2<f32>) -> LightSample {
     let c = triangle_at(index);
     let weights = barycentrics(place);
     let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
@@ -65,19 +65,19 @@ fn from_triangle(position: vec3<f32>, index: u32, chosen: f32, place: vec2<f32>)
     let cosine = dot(face, position - on_light);
     let double_sided = (material_row(c.material, 8u).x & FLAG_DOUBLE_SIDED) != 0u;
     if cosine <= 0.0 && !double_sided {
-        return nothing_arrives();
+        return no_light();
     }
     let side = select(-face, face, cosine > 0.0);
     let to = offset_ray(on_light, side, magnitude(c.corners[0], c.corners[1], c.corners[2])) - position;
     let squared = dot(to, to);
     let direction = unit(to);
     let area = 0.5 * sqrt(dot(normal, normal));
-    let pdf = chosen * area_pdf(area, squared, dot(face, direction));
-    return Arriving(direction, sqrt(squared), emission_at(index, c.material, weights.y, weights.z), pdf, true);
+    let pdf = probability * area_pdf(area, squared, dot(face, direction));
+    return LightSample(direction, sqrt(squared), emission_at(index, c.material, weights.y, weights.z), pdf, true);
 }
 
 // lights::from_punctual
-fn from_punctual(position: vec3<f32>, index: u32, chosen: f32) -> Arriving {
+fn from_punctual(position: vec3<f32>, index: u32, probability: f32) -> LightSample {
     let r0 = load(PUNCTUAL + index * PUNCTUAL_ROWS);
     let r1 = load(PUNCTUAL + index * PUNCTUAL_ROWS + 1u);
     let r2 = bitcast<vec4<f32>>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 2u));
@@ -95,7 +95,7 @@ fn from_punctual(position: vec3<f32>, index: u32, chosen: f32) -> Arriving {
         let cos_outer = bitcast<f32>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 3u).x);
         radiance *= cone_falloff(-dot(direction, axis), r2.w, cos_outer);
     }
-    return Arriving(direction, distance, radiance, chosen, false);
+    return LightSample(direction, distance, radiance, probability, false);
 }
 
 fn has_map() -> bool {
@@ -109,7 +109,7 @@ fn map_radiance(i: i32, j: i32) -> vec3<f32> {
 }
 
 // lights::from_environment
-fn from_environment(p: Point, chosen: f32, place: vec2<f32>, more: vec4<f32>) -> Arriving {
+fn from_environment(p: SurfacePoint, probability: f32, place: vec2<f32>, more: vec4<f32>) -> LightSample {
     var direction: vec3<f32>;
     var pdf: f32;
     if has_map() {
@@ -130,7 +130,7 @@ fn from_environment(p: Point, chosen: f32, place: vec2<f32>, more: vec4<f32>) ->
         direction = to_world(local, p.x, p.y, p.z);
         pdf = cosine_hemisphere_pdf(local.z);
     }
-    return Arriving(direction, FAR, sky(direction), chosen * pdf, true);
+    return LightSample(direction, FAR, sky(direction), probability * pdf, true);
 }
 
 // lights::sky
@@ -153,15 +153,15 @@ fn sky(direction: vec3<f32>) -> vec3<f32> {
 // lights::sky_pdf
 fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
     if !has_map() {
-        return frame.sky_chosen * cosine_hemisphere_pdf(cosine);
+        return frame.sky_probability * cosine_hemisphere_pdf(cosine);
     }
     let size = frame.map_size;
     let place = map_coordinates(direction);
     let i = min(u32(place.x * f32(size.x)), size.x - 1u);
     let j = min(u32(place.y * f32(size.y)), size.y - 1u);
     let sine = sqrt(direction.x * direction.x + direction.z * direction.z);
-    let chosen = bitcast<f32>(load(MAP + (j * size.x + i) * MAP_ROWS).w);
-    return frame.sky_chosen * map_pdf(chosen, f32(size.x * size.y), sine);
+    let probability = bitcast<f32>(load(MAP + (j * size.x + i) * MAP_ROWS).w);
+    return frame.sky_probability * map_pdf(probability, f32(size.x * size.y), sine);
 }
 
 // lights::triangle_pdf

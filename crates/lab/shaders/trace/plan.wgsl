@@ -1,9 +1,9 @@
 //#use frame
-// How many paths are alive at which bounce: what `count_pass` wrote.
+// Bounce and number of live paths, as `count_pass` wrote them.
 
 @group(2) @binding(0) var<storage, read> plan: array<u32, 9>;
 
-// Path of thread `i` among those alive.
+// Path of invocation `i` among the live paths.
 fn active_path(i: u32) -> u32 {
     return lists[(plan[BOUNCE] & 1u) * frame.capacity + i];
 }

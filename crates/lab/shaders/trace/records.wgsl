@@ -1,4 +1,4 @@
-// Where records are in the heap, and what they are: trace/shading_records.rs.
+// Offsets of materials, textures and lights in the scene buffer, and their constants. Twin of trace/shading_records.rs.
 
 override MATERIALS: u32 = 0u;
 override TEXTURES: u32 = 0u;
@@ -17,7 +17,7 @@ const FLAG_BLEND: u32 = 2u;
 const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
-// A row of a material.
+// Row `row` of a material.
 fn material_row(material: u32, row: u32) -> vec4<u32> {
     return load(MATERIALS + material * MATERIAL_ROWS + row);
 }

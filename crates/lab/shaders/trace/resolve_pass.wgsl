@@ -1,8 +1,9 @@
 //#use sanitize
 //#use frame
-// Adds the batch's samples to their pixels: film::Moments::add. One thread a pixel: that of its first item.
+// Adds a batch's samples to their pixels: film::Moments::add. The invocation of a pixel's first item adds all its
+// samples.
 
-// Mean and count, squared deviations; two rows a pixel.
+// Two rows per pixel: mean and count; squared deviations.
 @group(2) @binding(0) var<storage, read_write> film: array<vec4<f32>>;
 
 @compute @workgroup_size(WORKGROUP)

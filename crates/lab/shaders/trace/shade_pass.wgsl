@@ -2,20 +2,20 @@
 //#use rng
 //#use lights
 //#use plan
-// What every path finds where it hit, where it goes next, and the light it looks for: Paths::radiance.
+// Shades the hit of every live path: adds emission, samples a light, scatters. Twin of Paths::radiance.
 
 override MAX_DEPTH: u32 = 3u;
-// 0 both ways, 1 by looking, 2 by meeting.
+// Integrator: 0 multiple importance sampling, 1 light sampling only, 2 scattered rays only.
 override INTEGRATOR: u32 = 0u;
 
 const DRAWS_SCATTER: u32 = 1u;
 const DRAWS_LIGHT: u32 = 2u;
 const DRAWS_MAP: u32 = 3u;
 const DRAWS_STRIDE: u32 = 4u;
-const BEFORE_LIGHT: f32 = 1.0 - 1.0 / 1048576.0;
+const SHADOW_RAY_SCALE: f32 = 1.0 - 1.0 / 1048576.0;
 
-// Paths::share
-fn share(pdf: f32, light_pdf: f32) -> f32 {
+// Paths::mis_weight
+fn mis_weight(pdf: f32, light_pdf: f32) -> f32 {
     if pdf <= 0.0 || INTEGRATOR == 2u {
         return 1.0;
     }
@@ -25,16 +25,16 @@ fn share(pdf: f32, light_pdf: f32) -> f32 {
     return power_heuristic(pdf, light_pdf);
 }
 
-fn brings_light(light: vec3<f32>) -> bool {
-    return max(light.x, max(light.y, light.z)) > 0.0;
+fn any_positive(v: vec3<f32>) -> bool {
+    return max(v.x, max(v.y, v.z)) > 0.0;
 }
 
-// path::leaving, for directions that agree about the side.
-fn leaving(p: Point, side: f32) -> vec3<f32> {
+// path::spawn_origin; callers check that shading and geometric normal agree about the side.
+fn spawn_origin(p: SurfacePoint, side: f32) -> vec3<f32> {
     return offset_ray(p.position, select(-p.geometric, p.geometric, side > 0.0), p.magnitude);
 }
 
-fn eval_at(p: Point, layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
+fn eval_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     if PHONG {
         let s = phong_eval(p.phong, wo, wi);
         return Scatter(wi, s.value, s.pdf);
@@ -42,7 +42,7 @@ fn eval_at(p: Point, layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     return eval(layers, wo, wi);
 }
 
-fn sample_at(p: Point, layers: Layers, wo: vec3<f32>, draws: vec4<f32>) -> Scatter {
+fn sample_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, draws: vec4<f32>) -> Scatter {
     if PHONG {
         let s = phong_sample(p.phong, wo, draws.xyz);
         return Scatter(s.wi, s.value, s.pdf);
@@ -60,17 +60,17 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     let ray = path_row(path, PATH_DIRECTION);
     let pdf = path_row(path, PATH_ORIGIN).w;
     var throughput = path_row(path, PATH_THROUGHPUT).xyz;
-    let words = paths[path * PATH_ROWS + PATH_HIT];
-    let hit = Hit(words.x, bitcast<f32>(words.y), bitcast<f32>(words.z), bitcast<f32>(words.w));
+    let record = paths[path * PATH_ROWS + PATH_HIT];
+    let hit = Hit(record.x, bitcast<f32>(record.y), bitcast<f32>(record.z), bitcast<f32>(record.w));
 
     if hit.triangle == NO_TRIANGLE {
         if EFFECT_ENVIRONMENT {
-            let found = throughput * (sky(ray.xyz) * share(pdf, ray.w));
+            let found = throughput * (sky(ray.xyz) * mis_weight(pdf, ray.w));
             set_path_row(path, PATH_RADIANCE, path_row(path, PATH_RADIANCE).xyz + found, 0.0);
         }
         return;
     }
-    let p = point_of(hit, ray.xyz);
+    let p = surface_point(hit, ray.xyz);
     if EFFECT_TRANSMISSION {
         if !p.front {
             let depth = p.absorption * -hit.t;
@@ -78,9 +78,9 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     if EFFECT_EMISSIVE_TRIANGLES {
-        if brings_light(p.emitted) {
+        if any_positive(p.emitted) {
             let cosine = dot(p.geometric, ray.xyz);
-            let found = throughput * (p.emitted * share(pdf, triangle_pdf(hit.triangle, hit.t, cosine)));
+            let found = throughput * (p.emitted * mis_weight(pdf, triangle_pdf(hit.triangle, hit.t, cosine)));
             set_path_row(path, PATH_RADIANCE, path_row(path, PATH_RADIANCE).xyz + found, 0.0);
         }
     }
@@ -101,28 +101,28 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         if EFFECT_ENVIRONMENT_MAP {
             more = path_draws(item.x, item.y, first + DRAWS_MAP, frame.key);
         }
-        let arriving = look(p, draws, more);
-        if arriving.pdf > 0.0 {
-            let wi = to_local(arriving.direction, p.x, p.y, p.z);
+        let light = sample_light(p, draws, more);
+        if light.pdf > 0.0 {
+            let wi = to_local(light.direction, p.x, p.y, p.z);
             let scatter = eval_at(p, layered, wo, wi);
             var weight = 1.0;
-            if arriving.can_be_hit && INTEGRATOR == 0u {
-                weight = power_heuristic(arriving.pdf, scatter.pdf);
+            if light.can_be_hit && INTEGRATOR == 0u {
+                weight = power_heuristic(light.pdf, scatter.pdf);
             }
-            let light = scatter.value * arriving.radiance * (weight / arriving.pdf);
-            let side = dot(p.geometric, arriving.direction);
-            if brings_light(light) && side * wi.z > 0.0 {
-                let origin = leaving(p, side);
-                var direction = arriving.direction;
+            let contribution = scatter.value * light.radiance * (weight / light.pdf);
+            let side = dot(p.geometric, light.direction);
+            if any_positive(contribution) && side * wi.z > 0.0 {
+                let origin = spawn_origin(p, side);
+                var direction = light.direction;
                 var limit = 3.4028234e38;
-                if arriving.distance < FAR {
-                    let to = arriving.direction * arriving.distance + (p.position - origin);
+                if light.distance < FAR {
+                    let to = light.direction * light.distance + (p.position - origin);
                     direction = unit(to);
-                    limit = sqrt(dot(to, to)) * BEFORE_LIGHT;
+                    limit = sqrt(dot(to, to)) * SHADOW_RAY_SCALE;
                 }
                 set_path_row(path, PATH_SHADOW, origin, limit);
                 set_path_row(path, PATH_SHADOW + 1u, direction, 0.0);
-                set_path_row(path, PATH_SHADOW + 2u, throughput * light, 0.0);
+                set_path_row(path, PATH_SHADOW + 2u, throughput * contribution, 0.0);
                 lists[2u * frame.capacity + atomicAdd(&counters[SHADOWS], 1u)] = path;
             }
         }
@@ -139,10 +139,10 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     throughput *= sampled.value / sampled.pdf;
-    if !brings_light(throughput) {
+    if !any_positive(throughput) {
         return;
     }
-    set_path_row(path, PATH_ORIGIN, leaving(p, side), sampled.pdf);
+    set_path_row(path, PATH_ORIGIN, spawn_origin(p, side), sampled.pdf);
     var sky_density = 0.0;
     if EFFECT_ENVIRONMENT {
         sky_density = sky_pdf(direction, sampled.wi.z);

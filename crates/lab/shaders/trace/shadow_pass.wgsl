@@ -1,7 +1,7 @@
 //#use plan
-//#use holes
+//#use alpha_test
 //#use traverse
-// Adds the light that nothing is in the way of.
+// Adds the contribution of unoccluded light samples.
 
 @compute @workgroup_size(WORKGROUP)
 fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -11,9 +11,9 @@ fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = lists[2u * frame.capacity + id.x];
     if ALPHA {
         let item = work[frame.first_item + path];
-        hole_pixel = item.x;
-        hole_sample = item.y;
-        hole_ray = 2u * plan[BOUNCE] + 1u;
+        alpha_pixel = item.x;
+        alpha_sample = item.y;
+        alpha_ray = 2u * plan[BOUNCE] + 1u;
     }
     let origin = path_row(path, PATH_SHADOW);
     let ray = Ray(origin.xyz, path_row(path, PATH_SHADOW + 1u).xyz, origin.w);

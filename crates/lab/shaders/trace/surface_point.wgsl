@@ -5,9 +5,9 @@
 //#use effects
 //#use geometry
 //#use texture
-// From a hit to what scatters there: trace/cpu/surface.rs.
+// Surface properties at a hit. Twin of trace/cpu/surface.rs.
 
-struct Point {
+struct SurfacePoint {
     position: vec3<f32>,
     magnitude: f32,
     geometric: vec3<f32>,
@@ -34,8 +34,8 @@ fn base_of(material: u32, place: Attributes) -> vec4<f32> {
     return base;
 }
 
-// surface::is_there
-fn is_there(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
+// surface::passes_alpha_test
+fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
     let material = triangle_at(triangle).material;
     let place = attributes_at(triangle, u, v);
     let opacity = base_of(material, place).w;
@@ -145,8 +145,8 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
     return s;
 }
 
-// surface::point; `material` of the triangle that was hit goes with it.
-fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
+// surface::surface_point
+fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     let c = triangle_at(hit.triangle);
     let v0 = c.corners[0];
     let v1 = c.corners[1];
@@ -171,7 +171,7 @@ fn point_of(hit: Hit, direction: vec3<f32>) -> Point {
             normal = mapped_normal(normal, place.tangent, place.bitangent_sign, texel, scale);
         }
     }
-    var p: Point;
+    var p: SurfacePoint;
     p.geometric = face * side;
     p.z = visible_normal(normal * side, p.geometric, toward);
     p.surface = resolve_surface(c.material, place, front);

@@ -1,7 +1,7 @@
 //#use color
 //#use texel
 //#use records
-// Values of textures: trace/cpu/texture.rs.
+// Texture lookup. Twin of trace/cpu/texture.rs.
 
 const NEAREST: u32 = 16u;
 

@@ -1,16 +1,16 @@
 //#use triangle
 //#use hit
-// Rays through the hierarchies: twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (heap_texture or heap_buffer) and
-// `accept_hit` of whoever uses it.
+// Traversal of the hierarchies. Twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (scene_texture or
+// scene_storage) and `accept_hit` (accept_all or alpha_test).
 //
-// An element of the heap is vec4<u32>. A node is five: corner and exponents with the mask of inner children; first child, first
-// triangle, meta bytes; then bytes of the children's planes: min x and max x, min y and max y, min z and max z. A triangle is
-// three: a corner each, with flags, source and light.
+// Elements of the scene buffer are vec4<u32>. A node has five: corner, and exponents with the mask of inner children;
+// first child, first triangle, meta bytes; then one byte per child for each of min x, max x, min y, max y, min z, max
+// z. A triangle has three: a corner each, with flags, source and light.
 
-// First elements of the nodes at rest and in motion.
+// First elements of the static and the moving nodes.
 override NODES: u32 = 0u;
 override MOVING_NODES: u32 = 0u;
-// Whether any material has an opacity that decides about hits.
+// Whether hits need an alpha test.
 override ALPHA: bool = false;
 
 const NODE_SLACK: f32 = 1.0 / 524288.0;
@@ -24,10 +24,10 @@ struct Ray {
     t_max: f32,
 }
 
-// The nearest hit; `key` is handed to `accept_hit`.
+// Nearest hit. `key` is passed on to `accept_hit`.
 fn closest(ray: Ray, key: u32) -> Hit {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
-    if !is_ray(ray) {
+    if !is_valid_ray(ray) {
         return none;
     }
     var hit = traverse(ray, key, NODES, TRIANGLES, 0u, none, false);
@@ -37,10 +37,10 @@ fn closest(ray: Ray, key: u32) -> Hit {
     return hit;
 }
 
-// Whether anything is hit.
+// Whether the ray hits anything.
 fn occluded(ray: Ray, key: u32) -> bool {
     let none = Hit(NO_TRIANGLE, ray.t_max, 0.0, 0.0);
-    if !is_ray(ray) {
+    if !is_valid_ray(ray) {
         return false;
     }
     if traverse(ray, key, NODES, TRIANGLES, 0u, none, true).triangle != NO_TRIANGLE {
@@ -52,8 +52,8 @@ fn occluded(ray: Ray, key: u32) -> bool {
     return false;
 }
 
-// Whether the ray can hit anything: finite but for its limit, with a direction.
-fn is_ray(ray: Ray) -> bool {
+// Whether the ray can hit anything: finite origin, finite nonzero direction, limit not NaN.
+fn is_valid_ray(ray: Ray) -> bool {
     let nowhere = (bitcast<vec3<u32>>(ray.origin) & vec3<u32>(0x7fffffffu)) >= vec3<u32>(0x7f800000u);
     let direction = bitcast<vec3<u32>>(ray.direction) & vec3<u32>(0x7fffffffu);
     let wild = direction >= vec3<u32>(0x7f800000u);
@@ -99,7 +99,7 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
         let near = to_node * inverse - widening * reach;
         let far = to_node * inverse + widening * reach;
 
-        // Planes that the ray meets first and last, eight bytes an axis.
+        // Near and far planes per axis for the ray's direction, eight bytes each.
         let first_x = select(n2.xy, n2.zw, backward.x);
         let last_x = select(n2.zw, n2.xy, backward.x);
         let first_y = select(n3.xy, n3.zw, backward.y);
@@ -109,7 +109,8 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
         var hits = 0u;
         for (var half = 0u; half < 2u; half++) {
             let meta4 = select(n1.z, n1.w, half == 1u);
-            // Inner children have both bits of 0x18; their index bits are turned by the octant, so that the nearest come highest.
+            // Inner children have both bits of 0x18 set. XOR with the octant puts the nearest children into the highest
+            // bits.
             let inner = (meta4 & (meta4 << 1u)) & 0x10101010u;
             let bit_index = (meta4 ^ (octants & ((inner >> 4u) * 0xffu))) & 0x1f1f1f1fu;
             let child_bits = (meta4 >> 5u) & 0x07070707u;
@@ -136,18 +137,18 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
             let r0 = load(triangles + index * 3u);
             let r1 = load(triangles + index * 3u + 1u);
             let r2 = load(triangles + index * 3u + 2u);
-            let meeting = intersect(
+            let intersection = intersect(
                 shear, ray.origin, bitcast<vec3<f32>>(r0.xyz), bitcast<vec3<f32>>(r1.xyz), bitcast<vec3<f32>>(r2.xyz));
             let number = first + index;
-            // At the ray's own limit nothing is hit; of equally near triangles that of the lower index.
-            let tie = meeting.t == hit.t && hit.triangle != NO_TRIANGLE && number < hit.triangle;
-            if meeting.t > 0.0 && (meeting.t < hit.t || tie) {
+            // A hit at the ray's limit does not count; among equally near triangles the lower index wins.
+            let tie = intersection.t == hit.t && hit.triangle != NO_TRIANGLE && number < hit.triangle;
+            if intersection.t > 0.0 && (intersection.t < hit.t || tie) {
                 if ALPHA {
-                    if (r0.w & FLAG_ALPHA) != 0u && !accept_hit(number, meeting.u, meeting.v, key) {
+                    if (r0.w & FLAG_ALPHA) != 0u && !accept_hit(number, intersection.u, intersection.v, key) {
                         continue;
                     }
                 }
-                hit = Hit(number, meeting.t, meeting.u, meeting.v);
+                hit = Hit(number, intersection.t, intersection.u, intersection.v);
                 if any {
                     return hit;
                 }

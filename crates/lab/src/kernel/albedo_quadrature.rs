@@ -1,11 +1,11 @@
-//! The tables of [`albedo`](super::albedo), by quadrature in f64. No shader twin: they are computed once and uploaded.
+//! Computes the tables of [`albedo`](super::albedo) by quadrature in f64. No shader twin: the tables are uploaded.
 //!
-//! GGX is integrated over the draws that its sampler takes (visible normals), where the integrand is a ratio of masking terms
-//! between 0 and 1; sheen over directions. Gauss and Legendre's rule along the cosine, equal steps, which converge as fast for
-//! periodic functions, around the azimuth.
+//! GGX is integrated over the random numbers of its sampler of visible normals; the integrand is then a ratio of
+//! masking terms between 0 and 1. Sheen is integrated over directions. The cosine uses Gauss-Legendre quadrature. The
+//! azimuth uses equal steps, which converge as fast for periodic functions.
 
 use super::albedo::{
-    AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, MIN_ASPECT, ROUGHNESSES, STRETCHED,
+    ANISOTROPIC, AlbedoTables, CELLS, COSINES, GLASS_COSINES, GLASS_IORS, GLASS_ROUGHNESSES, MIN_ASPECT, ROUGHNESSES,
 };
 use super::microfacet::{MIN_SHEEN_COSINE, MIN_SHEEN_ROUGHNESS, MIN_WIDTH};
 const MIN_C: f64 = MIN_SHEEN_COSINE as f64;
@@ -15,21 +15,21 @@ use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Points along the cosine, and around half a turn, whose other half is its mirror image.
+/// Quadrature points along the cosine and over half a turn of azimuth; the other half is its mirror image.
 const POINTS: [usize; 2] = [24, 12];
-/// The same for refraction, whose total reflection has an edge.
+/// Quadrature points for refraction. More than for reflection, as total internal reflection has an edge.
 const GLASS_POINTS: [usize; 2] = [32, 16];
-/// The same for stretched GGX, whose table is of small differences.
-const STRETCHED_POINTS: [usize; 2] = [16, 10];
+/// Quadrature points for anisotropic GGX. Its table holds small differences, so fewer suffice.
+const ANISOTROPIC_POINTS: [usize; 2] = [16, 10];
 
-/// Nodes and weights of Gauss and Legendre's rule on \[0, 1\], by Newton's method.
+/// Nodes and weights of Gauss-Legendre quadrature on \[0, 1\], by Newton's method.
 fn gauss(count: usize) -> Vec<[f64; 2]> {
     let n = count as f64;
     (0..count)
         .map(|i| {
             let mut x = (PI * (i as f64 + 0.75) / (n + 0.5)).cos();
             let mut slope = 1.0;
-            // Quadratic convergence from a guess good to 1 / n^2: six steps reach f64.
+            // The first guess is good to 1 / n^2 and convergence is quadratic, so six steps reach f64 precision.
             for _ in 0..6 {
                 let [mut p0, mut p1] = [1.0, x];
                 for k in 2..=count {
@@ -53,7 +53,7 @@ fn half_turn(n: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A rough boundary of widths `a`, seen from `wo`.
+/// A rough boundary with GGX widths `a`, seen from `wo`.
 struct Facets {
     wo: DVec3,
     length: f64,
@@ -65,12 +65,13 @@ impl Facets {
         Self { wo, length: stretched(wo, a), a }
     }
 
-    /// Mean of `f`(normal) over the visible normals. `spokes` of half a turn will do where the x axis is a line of symmetry.
+    /// Mean of `f(normal)` over the visible normals. If the x axis is a line of symmetry, `spokes` over half a turn
+    /// suffice.
     fn mean<const N: usize>(&self, rings: &[[f64; 2]], spokes: &[[f64; 2]], f: impl Fn(DVec3) -> [f64; N]) -> [f64; N] {
         let s = DVec3::new(self.wo.x * self.a.x, self.wo.y * self.a.y, self.wo.z).normalize();
         let mut sum = [0.0; N];
         for &[t, weight] in rings {
-            // Normals that reflect below the horizon crowd at the end of the draws.
+            // Normals that reflect below the horizon are concentrated at the end of this range.
             let [u, weight] = [1.0 - t * t, 2.0 * t * weight];
             let q = u * (1.0 + s.z);
             let r = (q * (2.0 - q)).max(0.0).sqrt();
@@ -86,7 +87,7 @@ impl Facets {
         sum
     }
 
-    /// G2 / G1 of the direction `wi`, whichever side it leaves to.
+    /// Smith's G2 / G1 for `wi`, in reflection or refraction.
     fn shadowing(&self, wi: DVec3) -> f64 {
         let z = wi.z.abs();
         let sum = z * self.length + self.wo.z * stretched(wi, self.a);
@@ -99,7 +100,7 @@ fn stretched(v: DVec3, a: DVec2) -> f64 {
     (x * x + y * y + v.z * v.z).sqrt()
 }
 
-/// Direction at the cosine `z` whose x and y are as `azimuth` to 1 - `azimuth`.
+/// Direction with cosine `z` whose x and y are in the ratio `azimuth` to 1 - `azimuth`.
 fn seen_from(z: f64, azimuth: f64) -> DVec3 {
     let r = (1.0 - z * z).max(0.0).sqrt() / (azimuth * azimuth + (1.0 - azimuth) * (1.0 - azimuth)).sqrt();
     DVec3::new(r * azimuth, r * (1.0 - azimuth), z)
@@ -109,7 +110,7 @@ fn mirrored(v: DVec3, h: DVec3) -> DVec3 {
     2.0 * v.dot(h) * h - v
 }
 
-/// Directional albedo with reflectance 1, and with (1 - v.h)^5.
+/// Directional albedo of GGX for reflectance 1, and for reflectance (1 - v.h)^5.
 fn ggx(wo: DVec3, a: DVec2, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2] {
     let facets = Facets::new(wo, a);
     facets.mean(rings, spokes, |h| {
@@ -119,8 +120,8 @@ fn ggx(wo: DVec3, a: DVec2, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 2]
     })
 }
 
-/// What returns from a rough boundary into a medium of `ior`: with Fresnel's reflectance, and with no reflection but the total
-/// one; the same for the way out.
+/// Directional albedo of a rough boundary into a medium of `ior`: with Fresnel's reflectance, and with total internal
+/// reflection only; then both for the way out of the medium.
 fn glass(wo: DVec3, a: DVec2, ior: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> [f64; 4] {
     let facets = Facets::new(wo, a);
     facets.mean(rings, spokes, |h| {
@@ -160,7 +161,7 @@ fn sheen(z: f64, a: f64, rings: &[[f64; 2]], spokes: &[[f64; 2]]) -> f64 {
     let lambda_o = charlie_lambda(z.max(MIN_C), a);
     let mut sum = 0.0;
     for &[t, weight] in rings {
-        // The cosine is t^4: the lobe's weight is at the horizon.
+        // Substitution cosine = t^4: the lobe's weight is concentrated at the horizon.
         let c = t.powi(4);
         let r = (1.0 - c * c).max(0.0).sqrt();
         let lambda_i = charlie_lambda(c.max(MIN_C), a);
@@ -178,7 +179,7 @@ fn knot(index: u32, count: u32) -> f64 {
     f64::from(index) / f64::from(count - 1)
 }
 
-/// The inverse of [`albedo_cosine`](super::albedo::albedo_cosine).
+/// Inverse of [`albedo_cosine`](super::albedo::albedo_cosine).
 fn cosine_at(x: f64, width: f64) -> f64 {
     let k = width * (1.0 - 0.75 * width);
     x * k / (1.0 + k - x)
@@ -191,8 +192,8 @@ impl AlbedoTables {
         let spokes = half_turn(POINTS[1]);
         let glass_rings = gauss(GLASS_POINTS[0]);
         let glass_spokes = half_turn(GLASS_POINTS[1]);
-        let few_rings = gauss(STRETCHED_POINTS[0]);
-        let few = half_turn(STRETCHED_POINTS[1]);
+        let few_rings = gauss(ANISOTROPIC_POINTS[0]);
+        let few = half_turn(ANISOTROPIC_POINTS[1]);
         let around: Vec<[f64; 2]> = few.iter().flat_map(|&[c, s]| [[c, s], [c, -s]]).collect();
         let width_at = |roughness: f64| (roughness * roughness).max(f64::from(MIN_WIDTH));
         let first = (0..COSINES * ROUGHNESSES).into_par_iter().map(|i| {
@@ -218,8 +219,8 @@ impl AlbedoTables {
             let sums = glass(seen_from(z, 1.0), DVec2::splat(a), eta, &glass_rings, &glass_spokes);
             Vec4::from_array(sums.map(|x| x as f32))
         });
-        let third = (0..STRETCHED.iter().product()).into_par_iter().map(|i: u32| {
-            let [nx, ny, nz, nw] = STRETCHED;
+        let third = (0..ANISOTROPIC.iter().product()).into_par_iter().map(|i: u32| {
+            let [nx, ny, nz, nw] = ANISOTROPIC;
             let [x, azimuth] = [knot(i % nx, nx), knot(i / nx % ny, ny)];
             let r = knot(i / (nx * ny) % nz, nz);
             let low = f64::from(MIN_ASPECT);

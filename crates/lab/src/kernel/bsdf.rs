@@ -1,11 +1,13 @@
-//! The Disney principled BSDF (Burley 2012, 2015) in glTF's parametrisation, layered by directional albedo so that a white
-//! material of any parameters scatters exactly what falls on it.
+//! The Disney principled BSDF (Burley 2012, 2015) in glTF's parametrization, layered by directional albedo so that a
+//! white material with any parameters conserves energy exactly.
 //!
-//! Local frame: z is the shading normal, on the side of `wo`, x the tangent. `wo` points to the viewer, `wi` to the light. Values
-//! are f |cos wi|, densities are per solid angle of `wi`. Radiance inside a body is carried over its squared index of refraction
-//! (basic radiance), so refraction does not scale it; that is radiance itself wherever both ends of a path are in air.
+//! Local frame: z is the shading normal, on the side of `wo`; x is the tangent. `wo` points to the viewer, `wi` to the
+//! light. Values are f |cos wi|; densities are per solid angle of `wi`. Radiance inside a medium is divided by its
+//! squared index of refraction (basic radiance), so refraction does not scale it. Where both ends of a path are in air,
+//! that equals radiance.
 //!
-//! [`layers`] does once what depends on the point and `wo` only; [`eval`] and [`sample`] take it from there.
+//! [`layers`] computes everything that depends only on the surface point and `wo`, once; [`eval`] and [`sample`] use
+//! it.
 
 use super::direction::unit;
 use super::layers::glass_fresnel;
@@ -17,7 +19,7 @@ use super::microfacet::{
 use super::sampling::{cosine_hemisphere, cosine_hemisphere_pdf};
 use glam::{Vec2, Vec3};
 
-/// What a pair of directions comes to.
+/// Value and density of the BSDF for a pair of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
     /// f |cos wi|.
@@ -27,16 +29,16 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// No light, no sample.
+    /// No light and no sample.
     pub const NONE: Self = Self { value: Vec3::ZERO, pdf: 0.0 };
 }
 
 /// A sampled direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// Unit vector; meaningless where the density is 0.
+    /// Unit vector; meaningless if the density is 0.
     pub wi: Vec3,
-    /// Value and density there. Density 0: this draw has no direction, its light is lost in the surface.
+    /// Value and density at `wi`. A density of 0 means that this draw has no direction and its light is absorbed.
     pub scatter: Scatter,
 }
 
@@ -49,20 +51,20 @@ pub fn retro_value(wo: Vec3, wi: Vec3, roughness: f32) -> f32 {
     i * o
 }
 
-/// Probability that a facet of the glass under the cosine `cosine` is taken for a mirror.
+/// Probability that sampling reflects at a glass facet whose Fresnel reflectance is `fresnel`.
 #[inline]
-fn mirror_chance(glass_reflect: Vec3, fresnel: f32) -> f32 {
+fn mirror_probability(glass_reflect: Vec3, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
     }
     fresnel * glass_reflect.x.max(glass_reflect.y).max(glass_reflect.z)
 }
 
-/// The lobes above the horizon.
+/// Lobes above the horizon.
 #[inline]
 fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
-    let mut pdf = layers.chances[0] * lambert;
+    let mut pdf = layers.probabilities[0] * lambert;
     let mut diffuse = layers.diffuse;
     if lobes.retro {
         let burley = retro_value(wo, wi, layers.retro_roughness) * layers.retro_scale;
@@ -84,11 +86,11 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
         let density = d / (wo.z + length_o);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += (layers.reflect_rise * rise + layers.reflect) * shape;
-        pdf += layers.chances[1] * density;
+        pdf += layers.probabilities[1] * density;
         if lobes.transmission {
             let fresnel = fresnel_dielectric(vh, layers.eta);
             value += (layers.glass * glass_fresnel(layers.glass_reflect, fresnel)) * shape;
-            pdf += (layers.chances[3] * mirror_chance(layers.glass_reflect, fresnel)) * density;
+            pdf += (layers.probabilities[3] * mirror_probability(layers.glass_reflect, fresnel)) * density;
         }
     }
     if lobes.clearcoat {
@@ -98,12 +100,13 @@ fn eval_reflection(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter
         let length_i = ggx_length(wi, a);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
         value += Vec3::splat((layers.coat_rise * rise + layers.coat) * shape);
-        pdf += layers.chances[2] * (d / (wo.z + length_o));
+        pdf += layers.probabilities[2] * (d / (wo.z + length_o));
     }
     Scatter { value, pdf }
 }
 
-/// Refraction and what passes through a sheet (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007).
+/// Refraction, and transmission through thin sheets (Walter et al., "Microfacet Models for Refraction through Rough
+/// Surfaces", 2007).
 #[inline]
 fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     let below = Vec3::new(wi.x, wi.y, -wi.z);
@@ -121,7 +124,7 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
         if vh <= 0.0 || lh >= 0.0 {
             return Scatter::NONE;
         }
-        // Of solid angle of the half vector by that of wi (their eq. 17), times v.h.
+        // Jacobian from the half vector's solid angle to that of wi (their eq. 17), times v.h.
         let root = (vh + lh * layers.eta) / layers.eta;
         jacobian = (vh * -lh) / (root * root);
     }
@@ -136,37 +139,38 @@ fn eval_transmission(layers: &Layers, wo: Vec3, wi: Vec3) -> Scatter {
     let through = Vec3::ONE - glass_fresnel(layers.glass_reflect, fresnel);
     Scatter {
         value: (layers.glass * layers.glass_color) * through * shape,
-        pdf: (layers.chances[3] * (1.0 - mirror_chance(layers.glass_reflect, fresnel))) * density,
+        pdf: (layers.probabilities[3] * (1.0 - mirror_probability(layers.glass_reflect, fresnel))) * density,
     }
 }
 
-/// Value and density of `wi`. 0 where `wo` is below the horizon.
+/// Value and density of `wi`; 0 if `wo` is below the horizon.
 #[inline]
 pub fn eval(layers: &Layers, wo: Vec3, wi: Vec3, lobes: Lobes) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi, lobes);
     }
-    if lobes.transmission && wo.z > 0.0 && wi.z < 0.0 && layers.chances[3] > 0.0 {
+    if lobes.transmission && wo.z > 0.0 && wi.z < 0.0 && layers.probabilities[3] > 0.0 {
         return eval_transmission(layers, wo, wi);
     }
     Scatter::NONE
 }
 
-/// A direction: `u[0]` chooses the lobe, `u[1]` and `u[2]` the direction, `u[3]` whether a facet of the glass reflects.
+/// Samples a direction. `u[0]` chooses the lobe, `u[1]` and `u[2]` the direction, `u[3]` reflection or transmission at
+/// a glass facet.
 #[inline]
 pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
     let none = Sampled { wi: Vec3::Z, scatter: Scatter::NONE };
     if wo.z <= 0.0 {
         return none;
     }
-    let up_to_reflect = layers.chances[0] + layers.chances[1];
-    let up_to_coat = up_to_reflect + layers.chances[2];
-    let total = up_to_coat + layers.chances[3];
+    let up_to_reflect = layers.probabilities[0] + layers.probabilities[1];
+    let up_to_coat = up_to_reflect + layers.probabilities[2];
+    let total = up_to_coat + layers.probabilities[3];
     let at = u[0] * total;
     let direction = Vec2::new(u[1], u[2]);
     let mut wi;
     let mut side = 1.0;
-    if at < layers.chances[0] {
+    if at < layers.probabilities[0] {
         wi = cosine_hemisphere(direction);
     } else if at < up_to_reflect {
         wi = mirrored(wo, vndf_sample(wo, layers.widths, direction));
@@ -176,7 +180,7 @@ pub fn sample(layers: &Layers, wo: Vec3, u: [f32; 4], lobes: Lobes) -> Sampled {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = wo.dot(h).clamp(0.0, 1.0);
         wi = mirrored(wo, h);
-        if u[3] >= mirror_chance(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
+        if u[3] >= mirror_probability(layers.glass_reflect, fresnel_dielectric(vh, layers.eta)) {
             side = -1.0;
             if layers.thin {
                 wi.z = -wi.z;

@@ -1,7 +1,7 @@
-//! A surface point of the principled BSDF, and its layers as a viewer sees them: what each reflects, and what it leaves to those
-//! below it.
+//! Surface parameters of the principled BSDF, and its layers for a given view direction: the reflection of each layer,
+//! and the energy left for the layers below.
 
-use super::albedo::{AlbedoTables, ggx_albedo, glass_albedo, sheen_albedo, stretched_albedo};
+use super::albedo::{AlbedoTables, anisotropic_albedo, ggx_albedo, glass_albedo, sheen_albedo};
 use super::microfacet::{
     MIN_SHEEN_ROUGHNESS, charlie_lambda, fresnel_dielectric, ggx_mean_width, ggx_widths, reflectance_at_normal,
     schlick_weight,
@@ -10,16 +10,17 @@ use afterimage::kernel::color::luma;
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// Index of refraction of the coat (glTF KHR_materials_clearcoat).
+/// Index of refraction of the clear coat (glTF KHR_materials_clearcoat).
 const COAT_IOR: f32 = 1.5;
 
-/// Smallest index of refraction that bends rays. A body below it is a sheet: towards 1 refraction has no half vector.
+/// Smallest index of refraction that bends rays. Volumes with a smaller one are treated as thin sheets, as the
+/// refraction half vector degenerates towards 1.
 pub const MIN_REFRACTING_IOR: f32 = 1.03;
 
-/// Largest index of refraction that rays are bent by.
+/// Largest index of refraction used for bending rays.
 pub const MAX_REFRACTING_IOR: f32 = 3.0;
 
-/// Parameters of a surface point, textures and tints resolved.
+/// BSDF parameters of a surface point, with textures and tints applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Linear, each channel in \[0, 1\].
@@ -28,42 +29,42 @@ pub struct Surface {
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1.
     pub roughness: f32,
-    /// Strength of the dielectric interface, 0 to 1. With 0 the diffuse lobe is Lambert's.
+    /// Strength of the dielectric interface, 0 to 1. At 0 the diffuse lobe is Lambert's.
     pub specular: f32,
-    /// Factor of the dielectric's reflectance at normal incidence, tint resolved.
+    /// Factor on the dielectric's reflectance at normal incidence, tint applied.
     pub specular_color: Vec3,
     /// Index of refraction, 1 or more.
     pub ior: f32,
-    /// 0 to 1, stretch of the highlight along x.
+    /// Anisotropy along x, 0 to 1.
     pub anisotropy: f32,
-    /// Strength of the coat, 0 to 1.
+    /// Strength of the clear coat, 0 to 1.
     pub clearcoat: f32,
-    /// Perceptual roughness of the coat.
+    /// Perceptual roughness of the clear coat, 0 to 1.
     pub clearcoat_roughness: f32,
-    /// Tint resolved, each channel in \[0, 1\].
+    /// Sheen color, tint applied, each channel in \[0, 1\].
     pub sheen_color: Vec3,
-    /// Perceptual roughness of the sheen.
+    /// Perceptual roughness of the sheen, 0 to 1.
     pub sheen_roughness: f32,
-    /// Share of the dielectric that refracts in place of scattering back, 0 to 1.
+    /// Share of the dielectric that transmits instead of scattering diffusely, 0 to 1.
     pub transmission: f32,
-    /// A sheet that does not bend rays, in place of a body.
+    /// Thin sheet that does not bend rays, instead of a volume.
     pub thin: bool,
-    /// Whether `wo` is outside the body.
+    /// Whether `wo` is outside the volume.
     pub entering: bool,
 }
 
-/// Which lobes are compiled in. A surface that does not use a lobe gives the same bits with and without it.
+/// Lobes that are compiled in. A surface that does not use a lobe gives the same bits with and without it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lobes {
     /// Retro-reflection of the diffuse lobe.
     pub retro: bool,
-    /// The dielectric interface.
+    /// Dielectric reflection.
     pub specular: bool,
-    /// Metal.
+    /// Metallic reflection.
     pub metal: bool,
-    /// Stretched highlights.
+    /// Anisotropic highlights.
     pub anisotropy: bool,
-    /// The clear coat.
+    /// Clear coat.
     pub clearcoat: bool,
     /// Sheen.
     pub sheen: bool,
@@ -72,7 +73,7 @@ pub struct Lobes {
 }
 
 impl Lobes {
-    /// Every lobe.
+    /// All lobes.
     pub const ALL: Self = Self {
         retro: true,
         specular: true,
@@ -82,7 +83,7 @@ impl Lobes {
         sheen: true,
         transmission: true,
     };
-    /// Lambert's diffuse lobe only.
+    /// Only Lambert's diffuse lobe.
     pub const NONE: Self = Self {
         retro: false,
         specular: false,
@@ -93,7 +94,7 @@ impl Lobes {
         transmission: false,
     };
 
-    /// The lobes that `surface` uses.
+    /// Lobes that `surface` uses.
     pub fn used_by(surface: &Surface) -> Self {
         Self {
             retro: surface.specular > 0.0,
@@ -106,7 +107,7 @@ impl Lobes {
         }
     }
 
-    /// The lobes of either.
+    /// Lobes in either set.
     pub fn union(self, other: Self) -> Self {
         Self {
             retro: self.retro | other.retro,
@@ -120,57 +121,58 @@ impl Lobes {
     }
 }
 
-/// A surface as `wo` sees it: each layer's strength under the layers above it.
+/// Layers of a surface for a given `wo`, each attenuated by the layers above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layers {
-    /// Widths of the base's GGX.
+    /// GGX widths of the base.
     pub widths: Vec2,
-    /// Albedo of the diffuse lobe over pi.
+    /// Diffuse albedo divided by pi.
     pub diffuse: Vec3,
-    /// Share of Burley's lobe in it.
+    /// Share of Burley's lobe in the diffuse reflection.
     pub retro: f32,
-    /// Its roughness.
+    /// Roughness of Burley's lobe.
     pub retro_roughness: f32,
-    /// One over the directional albedo of Burley's lobe.
+    /// Reciprocal of the directional albedo of Burley's lobe.
     pub retro_scale: f32,
-    /// Dielectric and metal: reflectance at normal incidence.
+    /// Dielectric and metallic reflectance at normal incidence.
     pub reflect: Vec3,
-    /// What is added to it by [`schlick_weight`].
+    /// Increase of `reflect` towards grazing angles, weighted by [`schlick_weight`].
     pub reflect_rise: Vec3,
-    /// The coat's width.
+    /// GGX width of the clear coat.
     pub coat_width: f32,
-    /// The coat's reflectance at normal incidence.
+    /// Reflectance of the clear coat at normal incidence.
     pub coat: f32,
-    /// Its rise.
+    /// Increase of `coat` towards grazing angles, weighted by [`schlick_weight`].
     pub coat_rise: f32,
-    /// The sheen's color.
+    /// Sheen color, scaled.
     pub sheen: Vec3,
-    /// Its squared roughness.
+    /// Squared roughness of the sheen.
     pub sheen_width: f32,
     /// [`charlie_lambda`] of `wo`.
     pub sheen_lambda: f32,
-    /// Strength of refraction and the reflection that belongs to it, compensated.
+    /// Strength of refraction with its reflection, energy-compensated.
     pub glass: Vec3,
-    /// Color of what is transmitted.
+    /// Color of transmitted light.
     pub glass_color: Vec3,
-    /// Factor of Fresnel's reflectance.
+    /// Factor on Fresnel's reflectance of the glass.
     pub glass_reflect: Vec3,
-    /// Index of refraction on the other side over that on the side of `wo`.
+    /// Relative index of refraction: far side over the side of `wo`.
     pub eta: f32,
-    /// A sheet.
+    /// Whether the surface is a thin sheet.
     pub thin: bool,
-    /// Probabilities of the lobes: diffuse, reflection, coat, glass. All 0 for what scatters nothing.
-    pub chances: [f32; 4],
+    /// Probabilities of sampling the diffuse, reflection, coat and glass lobes. All 0 if nothing scatters.
+    pub probabilities: [f32; 4],
 }
 
-/// Directional albedo of Burley's diffuse lobe with base color 1, in closed form: the lobe is a polynomial in the cosines.
+/// Directional albedo of Burley's diffuse lobe with base color 1. Closed form, as the lobe is a polynomial in the
+/// cosines.
 #[inline]
 pub fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
     let p = schlick_weight(cosine);
     let r = roughness;
     let b = r - 0.5;
     let rc = r * cosine;
-    // Integrals over the azimuth and mu of mu f(mu), (1 - mu)^5 = P: P -> 1/42, mu P -> 1/168, mu^2 P -> 1/504.
+    // Integrals over azimuth and mu of mu f(mu), with P = (1 - mu)^5: P -> 1/42, mu P -> 1/168, mu^2 P -> 1/504.
     let rise_i = b / 42.0 + rc / 168.0;
     let rise_o = b / 2.0 + rc / 3.0;
     let squares = ((11.0 / 1008.0) * r) * r * (1.0 - cosine * cosine);
@@ -178,27 +180,27 @@ pub fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
     (rise_i + (rise_o + both) * p) * 2.0 + 1.0
 }
 
-/// Reflectance at normal incidence `f0`, rise and compensation in one: factors of Schlick's reflectance so that at `f0` = 1 the
-/// lobe reflects everything (Turquin, "Practical multiple scattering compensation for microfacet models", 2019). `e` is
-/// [`ggx_albedo`].
+/// Energy compensation for multiple scattering: factor on a GGX lobe with reflectance `f0` at normal incidence, such
+/// that the lobe reflects everything at `f0` = 1 (Turquin, "Practical multiple scattering compensation for microfacet
+/// models", 2019). `e` is [`ggx_albedo`].
 #[inline]
 fn compensation(f0: Vec3, e: Vec2) -> Vec3 {
     f0 * ((1.0 - e.x) / e.x) + Vec3::ONE
 }
 
-/// Directional albedo of a compensated GGX lobe with reflectance `f0` at normal incidence.
+/// Directional albedo of an energy-compensated GGX lobe with reflectance `f0` at normal incidence.
 #[inline]
 pub fn reflect_albedo(f0: Vec3, e: Vec2) -> Vec3 {
     ((f0 * (e.x - e.y) + Vec3::splat(e.y)) * compensation(f0, e)).min(Vec3::ONE)
 }
 
-/// Fresnel's reflectance as the glass scales it; total internal reflection is never scaled.
+/// Fresnel reflectance scaled by the glass' factor. Total internal reflection is not scaled.
 #[inline]
 pub fn glass_fresnel(glass_reflect: Vec3, fresnel: f32) -> Vec3 {
     if fresnel >= 1.0 { Vec3::ONE } else { glass_reflect * fresnel }
 }
 
-/// Everything about `surface` that does not depend on `wi`.
+/// Everything about `surface` that depends on `wo` but not on `wi`.
 #[inline]
 pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) -> Layers {
     let z = wo.z.clamp(0.0, 1.0);
@@ -213,7 +215,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     let dielectric = 1.0 - metallic;
     let opaque = dielectric * (1.0 - transmission);
 
-    // From the top down: what the coat and the sheen leave.
+    // Coat and sheen first, from the top down: each leaves energy for the layers below.
     let mut coat = 0.0;
     let mut coat_rise = 0.0;
     let mut coat_albedo = 0.0;
@@ -231,36 +233,36 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     }
     let below_coat = 1.0 - coat_albedo;
     let mut sheen = Vec3::ZERO;
-    let mut sheen_chance = 0.0;
+    let mut sheen_probability = 0.0;
     let mut sheen_width = 1.0;
     let mut sheen_lambda = 0.0;
     let mut below = below_coat;
     if lobes.sheen {
         let color = surface.sheen_color.clamp(Vec3::ZERO, Vec3::ONE);
         let sheen_roughness = surface.sheen_roughness.clamp(MIN_SHEEN_ROUGHNESS, 1.0);
-        // Charlie is no more than a fit: at the horizon it may reflect more than there is.
+        // Charlie is a fit; near the horizon its albedo may exceed 1.
         let e = sheen_albedo(tables, z, sheen_roughness);
         let scale = 1.0 / e.max(1.0);
         let albedo = e * scale;
         sheen = color * (scale * below_coat);
-        sheen_chance = luma(color) * (albedo * below_coat);
+        sheen_probability = luma(color) * (albedo * below_coat);
         sheen_width = sheen_roughness * sheen_roughness;
         sheen_lambda = charlie_lambda(z, sheen_width);
         below = below_coat * (1.0 - color.x.max(color.y).max(color.z) * albedo);
     }
 
-    // The base: reflection of the dielectric and the metal, and what it leaves.
+    // The base: dielectric and metallic reflection, and the energy they leave.
     let mut e = Vec2::new(1.0, 0.0);
     let mean_width = ggx_mean_width(widths);
     if lobes.specular || lobes.metal || lobes.transmission {
         e = ggx_albedo(tables, z, mean_width);
         if lobes.anisotropy && anisotropy > 0.0 {
-            e += stretched_albedo(tables, wo, widths);
+            e += anisotropic_albedo(tables, wo, widths);
         }
     }
     let mut reflect = Vec3::ZERO;
     let mut reflect_rise = Vec3::ZERO;
-    let mut reflect_chance = 0.0;
+    let mut reflect_probability = 0.0;
     let mut entered = Vec3::ONE;
     if lobes.specular {
         let normal = reflectance_at_normal(surface.ior.max(1.0));
@@ -269,14 +271,14 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let scale = compensation(f0, e) * ((opaque * below) * specular);
         reflect = scale * f0;
         reflect_rise = scale * (Vec3::ONE - f0);
-        reflect_chance = luma(albedo) * (opaque * below);
+        reflect_probability = luma(albedo) * (opaque * below);
         entered = Vec3::ONE - albedo;
     }
     if lobes.metal {
         let scale = compensation(base, e) * (metallic * below);
         reflect += scale * base;
         reflect_rise += scale * (Vec3::ONE - base);
-        reflect_chance += luma(reflect_albedo(base, e)) * (metallic * below);
+        reflect_probability += luma(reflect_albedo(base, e)) * (metallic * below);
     }
     let diffuse_albedo = (base * entered) * (opaque * below);
     let retro = if lobes.retro { strength } else { 0.0 };
@@ -288,13 +290,13 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
     let mut glass = Vec3::ZERO;
     let mut glass_reflect = Vec3::ZERO;
     let mut eta = 1.0;
-    let mut glass_chance = 0.0;
+    let mut glass_probability = 0.0;
     let ior = surface.ior.clamp(1.0, MAX_REFRACTING_IOR);
     let thin = surface.thin || ior < MIN_REFRACTING_IOR;
     if lobes.transmission {
         eta = if surface.entering || thin { ior } else { 1.0 / ior };
         glass_reflect = (surface.specular_color * strength).clamp(Vec3::ZERO, Vec3::ONE);
-        // What single scattering returns with Fresnel's reflectance, and without it but for total internal reflection.
+        // Albedo of single scattering with Fresnel's reflectance, and with total internal reflection only.
         let mut returned = Vec2::new(e.x, e.x);
         if !thin {
             returned = glass_albedo(tables, z, mean_width, ior, surface.entering);
@@ -304,14 +306,15 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let f = glass_fresnel(glass_reflect, fresnel_dielectric(z, eta));
         // From inside, some facets reflect totally whatever the colors.
         let least = if eta < 1.0 { 0.1 } else { 0.0 };
-        glass_chance = luma((Vec3::ONE - f) * base + f).max(least) * amount;
+        glass_probability = luma((Vec3::ONE - f) * base + f).max(least) * amount;
     }
 
-    let diffuse_chance = luma(diffuse_albedo) + sheen_chance;
-    let total = ((diffuse_chance + reflect_chance) + coat_albedo) + glass_chance;
-    let mut chances = [0.0; 4];
+    let diffuse_probability = luma(diffuse_albedo) + sheen_probability;
+    let total = ((diffuse_probability + reflect_probability) + coat_albedo) + glass_probability;
+    let mut probabilities = [0.0; 4];
     if total > 1e-30 {
-        chances = [diffuse_chance / total, reflect_chance / total, coat_albedo / total, glass_chance / total];
+        probabilities =
+            [diffuse_probability / total, reflect_probability / total, coat_albedo / total, glass_probability / total];
     }
     Layers {
         widths,
@@ -332,6 +335,6 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         glass_reflect,
         eta,
         thin,
-        chances,
+        probabilities,
     }
 }

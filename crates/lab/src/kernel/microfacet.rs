@@ -1,21 +1,23 @@
-//! Microfacets: GGX, its visible normals, Fresnel's equations, Charlie sheen. Local frame, z is the normal.
+//! Microfacet functions: GGX, sampling of visible normals, Fresnel's equations, Charlie sheen. In the local frame, z is
+//! the normal.
 
 use super::direction::unit;
 use afterimage::kernel::approx::{exp, ln, sin_cos_turns};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Smallest width of GGX: no lobe is a delta, so that every direction has a density that f32 holds.
+/// Smallest GGX width. Keeps lobes from becoming delta functions, so that f32 can represent every density.
 pub const MIN_WIDTH: f32 = 1e-3;
 
-/// Smallest roughness of the sheen: below it the exponent leaves what f32 resolves near the horizon.
+/// Smallest roughness of the sheen. Below it, the distribution near the horizon exceeds f32 precision.
 pub const MIN_SHEEN_ROUGHNESS: f32 = 0.1;
 
-/// Smallest cosine of the sheen's visibility, 0.06 degrees above the horizon: the fitted shadowing rises without bound below.
+/// Smallest cosine in the sheen's visibility, 0.06 degrees above the horizon. Below it the fitted shadowing grows
+/// without bound.
 pub const MIN_SHEEN_COSINE: f32 = 1e-3;
 
-/// Widths of GGX along x and y: the square of the perceptual `roughness`, stretched by Burley's aspect sqrt(1 - 0.9 `anisotropy`)
-/// (2012, section 5.4), to 1 at most.
+/// GGX widths along x and y: squared perceptual `roughness`, stretched by Burley's aspect sqrt(1 - 0.9 `anisotropy`)
+/// (2012, section 5.4), at most 1.
 #[inline]
 pub fn ggx_widths(roughness: f32, anisotropy: f32) -> Vec2 {
     let width = (roughness * roughness).clamp(MIN_WIDTH, 1.0);
@@ -23,13 +25,14 @@ pub fn ggx_widths(roughness: f32, anisotropy: f32) -> Vec2 {
     Vec2::new((width / aspect).min(1.0), (width * aspect).max(MIN_WIDTH))
 }
 
-/// Width of the isotropic GGX with the same mean square of slopes along both axes.
+/// Width of an isotropic GGX with the same mean square slope.
 #[inline]
 pub fn ggx_mean_width(a: Vec2) -> f32 {
     (0.5 * (a.x * a.x + a.y * a.y)).sqrt()
 }
 
-/// Length of `v` stretched by the widths: sqrt(ax^2 x^2 + ay^2 y^2 + z^2), |z| sqrt(1 + tan^2 a^2) = |z| (1 + 2 Lambda).
+/// Length of `v` scaled by the widths: sqrt(ax^2 x^2 + ay^2 y^2 + z^2), equal to |z| sqrt(1 + a^2 tan^2) = |z| (1 + 2
+/// Lambda).
 #[inline]
 pub fn ggx_length(v: Vec3, a: Vec2) -> f32 {
     let x = v.x * a.x;
@@ -37,7 +40,8 @@ pub fn ggx_length(v: Vec3, a: Vec2) -> f32 {
     (x * x + y * y + v.z * v.z).sqrt()
 }
 
-/// GGX' distribution of the unit normals `h` (Trowbridge and Reitz 1975; Walter et al. 2007; anisotropic: Burley 2012), 1/sr.
+/// GGX distribution of unit normals `h` in 1/sr (Trowbridge and Reitz 1975; Walter et al. 2007; anisotropic: Burley
+/// 2012).
 #[inline]
 pub fn ggx_d(h: Vec3, a: Vec2) -> f32 {
     let x = h.x / a.x;
@@ -46,7 +50,7 @@ pub fn ggx_d(h: Vec3, a: Vec2) -> f32 {
     1.0 / (((PI * a.x) * a.y) * (e * e))
 }
 
-/// Smith's masking of one direction: the share of the facets' area that it sees (Heitz 2014, eq. 43).
+/// Smith's masking: share of the facets' projected area that is visible from `v` (Heitz 2014, eq. 43).
 #[inline]
 pub fn smith_g1(v: Vec3, a: Vec2) -> f32 {
     let z = v.z.abs();
@@ -54,35 +58,35 @@ pub fn smith_g1(v: Vec3, a: Vec2) -> f32 {
     if sum > 0.0 { 2.0 * z / sum } else { 0.0 }
 }
 
-/// Height-correlated masking and shadowing 1 / (1 + Lambda(o) + Lambda(i)) (Heitz 2014, eq. 99), from the cosines and the
-/// stretched lengths of both directions.
+/// Height-correlated masking-shadowing 1 / (1 + Lambda(o) + Lambda(i)) (Heitz 2014, eq. 99), from the cosines and
+/// [`ggx_length`] of both directions.
 #[inline]
 pub fn smith_g2(cos_o: f32, length_o: f32, cos_i: f32, length_i: f32) -> f32 {
     let sum = cos_i * length_o + cos_o * length_i;
     if sum > 0.0 { 2.0 * (cos_o * cos_i) / sum } else { 0.0 }
 }
 
-/// A normal that `v` (z > 0) sees, from GGX: spherical caps (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical
-/// Caps", 2023).
+/// Samples a GGX normal visible from `v` (z > 0), by spherical caps (Dupuy and Benyoub, "Sampling Visible GGX Normals
+/// with Spherical Caps", 2023).
 #[inline]
 pub fn vndf_sample(v: Vec3, a: Vec2, u: Vec2) -> Vec3 {
     let s = unit(Vec3::new(v.x * a.x, v.y * a.y, v.z));
     let [sin, cos] = sin_cos_turns(u.x);
-    // The cap's point has z = 1 - q; its sine and the sum with s.z, each without cancellation.
+    // The point on the cap has z = 1 - q. Its sine, and its sum with s.z, are computed without cancellation.
     let q = u.y * (1.0 + s.z);
     let r = (q * (2.0 - q)).max(0.0).sqrt();
     let h = Vec3::new(r * cos + s.x, r * sin + s.y, (1.0 - u.y) * (1.0 + s.z));
     unit(Vec3::new(h.x * a.x, h.y * a.y, h.z))
 }
 
-/// Density of [`vndf_sample`] in 1/sr of normals: D G1 (v.h) / v.z, written without the quotient G1 / v.z, which has no limit in
-/// f32 (Heitz 2018, eq. 3).
+/// Density of [`vndf_sample`] in 1/sr of normals: D G1 (v.h) / v.z, without the quotient G1 / v.z, which overflows f32
+/// near the horizon (Heitz 2018, eq. 3).
 #[inline]
 pub fn vndf_pdf(v: Vec3, h: Vec3, a: Vec2) -> f32 {
     2.0 * ggx_d(h, a) * v.dot(h).max(0.0) / (v.z + ggx_length(v, a))
 }
 
-/// (1 - `cosine`)^5 of Schlick's approximation (1994), by which reflectance rises from normal incidence to 1.
+/// (1 - `cosine`)^5 of Schlick's approximation (1994): weight between reflectance at normal incidence and 1.
 #[inline]
 pub fn schlick_weight(cosine: f32) -> f32 {
     let x = (1.0 - cosine).clamp(0.0, 1.0);
@@ -90,15 +94,15 @@ pub fn schlick_weight(cosine: f32) -> f32 {
     (x2 * x2) * x
 }
 
-/// Reflectance at normal incidence of the boundary with relative index of refraction `ior`.
+/// Reflectance at normal incidence of a boundary with relative index of refraction `ior`.
 #[inline]
 pub fn reflectance_at_normal(ior: f32) -> f32 {
     let r = (ior - 1.0) / (ior + 1.0);
     r * r
 }
 
-/// Reflectance of unpolarised light by Fresnel's equations under the cosine `cosine` >= 0; `eta` is the index behind the
-/// boundary over the one before it. 1 under total internal reflection.
+/// Fresnel reflectance of unpolarized light at `cosine` >= 0. `eta` is the index of refraction behind the boundary over
+/// that in front. 1 under total internal reflection.
 #[inline]
 pub fn fresnel_dielectric(cosine: f32, eta: f32) -> f32 {
     let c = cosine.clamp(0.0, 1.0);
@@ -112,21 +116,22 @@ pub fn fresnel_dielectric(cosine: f32, eta: f32) -> f32 {
     0.5 * (s * s + p * p)
 }
 
-/// Square of the refracted ray's cosine, from the incident one's (Snell); not positive under total internal reflection.
+/// Squared cosine of the refracted ray, from that of the incident ray (Snell). Not positive under total internal
+/// reflection.
 #[inline]
 pub fn refraction_discriminant(cosine: f32, eta: f32) -> f32 {
     1.0 - (1.0 - cosine) * (1.0 + cosine) / (eta * eta)
 }
 
-/// `v` mirrored at the normal `h`.
+/// `v` reflected about the normal `h`.
 #[inline]
 pub fn mirrored(v: Vec3, h: Vec3) -> Vec3 {
     let d = 2.0 * v.dot(h);
     Vec3::new(d * h.x - v.x, d * h.y - v.y, d * h.z - v.z)
 }
 
-/// `v` refracted at the normal `h`, v.h > 0, into the side where the index of refraction is `eta` times that before. Call it
-/// where [`refraction_discriminant`] of v.h is positive.
+/// `v` refracted at the normal `h` (v.h > 0) into the side whose index of refraction is `eta` times larger. Requires a
+/// positive [`refraction_discriminant`] of v.h.
 #[inline]
 pub fn refracted(v: Vec3, h: Vec3, eta: f32) -> Vec3 {
     let c = v.dot(h);
@@ -135,8 +140,9 @@ pub fn refracted(v: Vec3, h: Vec3, eta: f32) -> Vec3 {
     Vec3::new(d * h.x - v.x / eta, d * h.y - v.y / eta, d * h.z - v.z / eta)
 }
 
-/// Charlie's distribution of normals with the cosine `cosine`, (2 + 1/a) sin^(1/a) / (2 pi) (Estevez and Kulla, "Production
-/// Friendly Microfacet Sheen BRDF", 2017), at least e^-60 of its top so that nothing leaves the normal floats; `a` is the squared perceptual roughness.
+/// Charlie distribution of normals with cosine `cosine`: (2 + 1/a) sin^(1/a) / (2 pi) (Estevez and Kulla, "Production
+/// Friendly Microfacet Sheen BRDF", 2017). The power is clamped to at least e^-60, to avoid denormals. `a` is the
+/// squared perceptual roughness.
 #[inline]
 pub fn charlie_d(cosine: f32, a: f32) -> f32 {
     let inverse = 1.0 / a;
@@ -144,7 +150,7 @@ pub fn charlie_d(cosine: f32, a: f32) -> f32 {
     (2.0 + inverse) * exp((ln(sin2) * (0.5 * inverse)).max(-60.0)) / (2.0 * PI)
 }
 
-/// The curve L of their shadowing, fitted for a = 1 and a = 0 and blended by (1 - a)^2.
+/// Charlie's shadowing curve L, fitted for a = 1 and a = 0 and blended by (1 - a)^2.
 #[inline]
 pub fn charlie_curve(x: f32, a: f32) -> f32 {
     let w = (1.0 - a) * (1.0 - a);
@@ -157,7 +163,7 @@ pub fn charlie_curve(x: f32, a: f32) -> f32 {
     (top / (slope * raised + 1.0) + offset) + linear * x
 }
 
-/// Charlie's Lambda of a direction with the cosine `cosine` in \[0, 1\].
+/// Charlie's Lambda for a direction with cosine `cosine` in \[0, 1\].
 #[inline]
 pub fn charlie_lambda(cosine: f32, a: f32) -> f32 {
     let c = cosine.clamp(MIN_SHEEN_COSINE, 1.0);

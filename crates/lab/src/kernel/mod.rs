@@ -1,6 +1,7 @@
-//! The mathematics of the tracer and the rasteriser, as scalar functions without state; twins as those of the drop-in's kernel.
+//! Mathematics of the path tracer and the rasterizer: scalar functions without state, with WGSL twins as in the
+//! drop-in's kernel.
 //!
-//! Every file here but `albedo_quadrature` has a WGSL twin of the same stem and the same function names.
+//! Every file except `albedo_quadrature` has a WGSL twin with the same stem and the same function names.
 
 pub mod albedo;
 mod albedo_quadrature;

@@ -1,19 +1,19 @@
-//! Directions in 32 bits: the octahedral code (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-//! Vectors", JCGT 3(2), 2014), two 16-bit signed fractions. Within 0.004 degrees.
+//! Directions in 32 bits: octahedral code of two 16-bit signed fractions (Cigolle et al., "A Survey of Efficient
+//! Representations for Independent Unit Vectors", JCGT 3(2), 2014). Error below 0.004 degrees.
 
 use glam::Vec3;
 
-/// Steps of a component from 0 to 1.
+/// Quantization steps of a component between 0 and 1.
 pub const DIRECTION_STEPS: f32 = 32767.0;
 
-/// Folds the octahedron's lower half outwards, or back.
+/// Folds the octahedron's lower half outwards; its own inverse.
 #[inline]
 fn folded(x: f32, y: f32) -> f32 {
     let size = 1.0 - y.abs();
     if x < 0.0 { -size } else { size }
 }
 
-/// A signed fraction, two's complement in the low 16 bits.
+/// Signed fraction as two's complement in the low 16 bits.
 #[inline]
 fn fraction_bits(x: f32) -> u32 {
     ((x * DIRECTION_STEPS + 0.5).floor() as i32) as u32 & 0xffff
@@ -25,7 +25,7 @@ fn fraction(bits: u32) -> f32 {
     ((bits << 16) as i32 >> 16) as f32 / DIRECTION_STEPS
 }
 
-/// Code of a finite vector that is not zero; its length does not matter.
+/// Octahedral code of a finite, nonzero vector of any length.
 #[inline]
 pub fn encode_direction(n: Vec3) -> u32 {
     let sum = n.x.abs() + (n.y.abs() + n.z.abs());
@@ -36,7 +36,7 @@ pub fn encode_direction(n: Vec3) -> u32 {
     fraction_bits(x) | fraction_bits(y) << 16
 }
 
-/// The direction of a code, of length 1.
+/// Unit vector of an octahedral code.
 #[inline]
 pub fn decode_direction(code: u32) -> Vec3 {
     let (x, y) = (fraction(code), fraction(code >> 16));

@@ -1,5 +1,5 @@
-//! The thesis' material: Lambert's kd / pi and Phong's ks (n + 2) / (2 pi) (r.o)^n, sampled uniformly over the hemisphere, one lobe
-//! a sample, chosen by mean albedo. Local frame, z is the normal.
+//! The thesis' material: Lambert's kd / pi and Phong's ks (n + 2) / (2 pi) (r.o)^n. Directions are sampled uniformly
+//! over the hemisphere; each sample evaluates one lobe, chosen by mean albedo. In the local frame, z is the normal.
 
 use super::bsdf::{Sampled, Scatter};
 use super::sampling::{uniform_hemisphere, uniform_hemisphere_pdf};
@@ -7,18 +7,18 @@ use afterimage::kernel::approx::{exp, ln};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// The lobes' albedos; together at most 1 for a material that creates no light.
+/// Albedos of the lobes. They conserve energy if their sum is at most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhongSurface {
-    /// Lambert's.
+    /// Albedo of Lambert's lobe.
     pub diffuse: Vec3,
-    /// Phong's, at normal incidence.
+    /// Albedo of Phong's lobe at normal incidence.
     pub specular: Vec3,
-    /// 0 or more.
+    /// Phong's exponent, 0 or more.
     pub exponent: f32,
 }
 
-/// `x`^`y` for x in \[0, 1\], y in \[0, 1e6\]; 0^0 is 1. Results below e^-60 are e^-60, or 0 at x = 0.
+/// `x`^`y` for x in \[0, 1\] and y in \[0, 1e6\]; 0^0 is 1. Results below e^-60 become e^-60; 0 at x = 0.
 #[inline]
 pub fn phong_power(x: f32, y: f32) -> f32 {
     if y <= 0.0 {
@@ -30,22 +30,22 @@ pub fn phong_power(x: f32, y: f32) -> f32 {
     exp((ln(x.max(1e-30)) * y).max(-60.0))
 }
 
-/// Probability that a sample is of Phong's lobe: its share of the mean albedo.
+/// Probability of choosing Phong's lobe: its share of the mean albedo.
 #[inline]
-pub fn phong_chance(surface: &PhongSurface) -> f32 {
+pub fn phong_specular_probability(surface: &PhongSurface) -> f32 {
     let diffuse = (surface.diffuse.x + surface.diffuse.y) + surface.diffuse.z;
     let specular = (surface.specular.x + surface.specular.y) + surface.specular.z;
     let sum = diffuse + specular;
     if sum > 0.0 { specular / sum } else { 0.0 }
 }
 
-/// Lambert's lobe: f |cos wi|.
+/// f |cos wi| of Lambert's lobe.
 #[inline]
 pub fn phong_diffuse(surface: &PhongSurface, wi: Vec3) -> Vec3 {
     surface.diffuse * (wi.z.max(0.0) * FRAC_1_PI)
 }
 
-/// Phong's lobe: f |cos wi|; `r` is `wi` mirrored at the normal.
+/// f |cos wi| of Phong's lobe, whose `r` is `wi` mirrored at the normal.
 #[inline]
 pub fn phong_specular(surface: &PhongSurface, wo: Vec3, wi: Vec3) -> Vec3 {
     let cosine = (wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y)).clamp(0.0, 1.0);
@@ -53,7 +53,7 @@ pub fn phong_specular(surface: &PhongSurface, wo: Vec3, wi: Vec3) -> Vec3 {
     surface.specular * ((top * phong_power(cosine, surface.exponent)) * wi.z.max(0.0))
 }
 
-/// Both lobes and the density of [`phong_sample`]; 0 below the horizon.
+/// Value of both lobes and density of [`phong_sample`]; 0 below the horizon.
 #[inline]
 pub fn phong_eval(surface: &PhongSurface, wo: Vec3, wi: Vec3) -> Scatter {
     if wo.z <= 0.0 || wi.z <= 0.0 {
@@ -62,19 +62,19 @@ pub fn phong_eval(surface: &PhongSurface, wo: Vec3, wi: Vec3) -> Scatter {
     Scatter { value: phong_diffuse(surface, wi) + phong_specular(surface, wo, wi), pdf: uniform_hemisphere_pdf(wi.z) }
 }
 
-/// A direction, uniform over the hemisphere. The value is of the one lobe that `u[0]` chooses, over its probability; its mean is
-/// [`phong_eval`]'s.
+/// Samples a direction uniformly over the hemisphere. `u[0]` chooses a lobe; the value is that lobe's over its
+/// probability, so its mean is [`phong_eval`]'s value.
 #[inline]
 pub fn phong_sample(surface: &PhongSurface, wo: Vec3, u: [f32; 3]) -> Sampled {
     let wi = uniform_hemisphere(Vec2::new(u[1], u[2]));
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Sampled { wi, scatter: Scatter::NONE };
     }
-    let chance = phong_chance(surface);
-    let value = if u[0] < chance {
-        phong_specular(surface, wo, wi) / chance
+    let probability = phong_specular_probability(surface);
+    let value = if u[0] < probability {
+        phong_specular(surface, wo, wi) / probability
     } else {
-        phong_diffuse(surface, wi) / (1.0 - chance)
+        phong_diffuse(surface, wi) / (1.0 - probability)
     };
     Sampled { wi, scatter: Scatter { value, pdf: uniform_hemisphere_pdf(wi.z) } }
 }

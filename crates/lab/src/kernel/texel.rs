@@ -1,15 +1,15 @@
-//! From texture coordinates to texels: wrapping, the four texels around a point, their bytes.
+//! Texture addressing: wrap modes and texel decoding.
 
 use glam::Vec4;
 
-/// The image again beyond its edge.
+/// Wrap mode: repeat.
 pub const WRAP_REPEAT: u32 = 0;
-/// The image again, every second time reversed.
+/// Wrap mode: mirrored repeat.
 pub const WRAP_MIRROR: u32 = 1;
-/// The texel at the edge.
+/// Wrap mode: clamp to edge.
 pub const WRAP_CLAMP: u32 = 2;
 
-/// `u` within one period of its wrapping: \[0, 1\], of mirrored images \[0, 2\].
+/// Texture coordinate reduced to one period: \[0, 1\], or \[0, 2\] for mirrored repeat.
 #[inline]
 pub fn wrap_coordinate(u: f32, wrap: u32) -> f32 {
     match wrap {
@@ -19,7 +19,7 @@ pub fn wrap_coordinate(u: f32, wrap: u32) -> f32 {
     }
 }
 
-/// The texel that place `i` of one period shows, `i` from -1 (the neighbour on the left) to one past the period.
+/// Texel index at position `i`, which ranges from -1 to one past the period.
 #[inline]
 pub fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
     let n = size as i32;
@@ -33,7 +33,7 @@ pub fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
     j as u32
 }
 
-/// Red, green, blue and alpha in \[0, 1\] of a texel's bytes, red lowest.
+/// Red, green, blue and alpha in \[0, 1\] of a packed texel, red in the lowest byte.
 #[inline]
 pub fn texel_value(bits: u32) -> Vec4 {
     let byte = |shift: u32| ((bits >> shift) & 255) as f32;

@@ -1,27 +1,28 @@
-//! Rays and triangles: the watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection", JCGT 2(1), 2013),
-//! and the place to start the next ray.
+//! Watertight ray/triangle intersection (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1),
+//! 2013), and origins of secondary rays.
 //!
-//! The test shears space so that the ray runs along an axis, and asks on which side of each edge the axis passes. A vertex is
-//! sheared alike in every triangle, and the two triangles of an edge compute the same two products with opposite signs, so their
-//! answers never leave a gap. An answer of zero counts as inside on both sides.
+//! The test shears space so that the ray runs along an axis, then asks on which side of each edge the axis passes. A
+//! vertex is sheared alike in every triangle, and the two triangles at an edge compute the same two products with
+//! opposite signs, so no gap opens between them. Zero counts as inside on both sides.
 //!
-//! Edges shorter than a rounding of their distance from the ray give random answers. Whether the ray passes through the
-//! triangle's bounds is answered exactly, and asked first.
+//! Edges shorter than the rounding error at their distance from the ray give random answers. A test of the triangle's
+//! bounds, which is exact, therefore comes first.
 
 use glam::{Vec3, Vec3A};
 
-/// Spacing of the origin of a secondary ray from its surface, as a share of the largest coordinate of the triangle's vertices.
-/// A hit point made of barycentrics is off by at most 7 * 2^-24 of it (Pharr, Jakob and Humphreys, "Physically Based Rendering",
-/// 4th edition, 6.8.5), the test's distance by as much; this is 32 times 2^-23.
+/// Offset of a secondary ray's origin from its surface, as a share of the largest vertex coordinate. A hit point from
+/// barycentrics is off by at most 7 * 2^-24 of that coordinate (Pharr, Jakob and Humphreys, "Physically Based
+/// Rendering", 4th edition, 6.8.5), and the test's distance by as much; this is 32 times 2^-23.
 pub const ORIGIN_OFFSET: f32 = 1.0 / 262_144.0;
 
-/// Sums of edge functions below this are zero-area triangles: their products have left the normal floats.
+/// Triangles whose edge functions sum to less than this count as having no area: the products have become denormal.
 pub const MIN_DET: f32 = 1e-36;
 
-/// Bounds whose lower end lies above this are beside the ray; along it they may begin anywhere.
+/// Upper bound for the lower corner of a sheared triangle's bounds. Across the ray it is 0; along the ray there is
+/// none.
 const ACROSS: Vec3A = Vec3A::new(0.0, 0.0, f32::MAX);
 
-/// Columns of the matrix that shears a ray's direction onto (0, 0, 1).
+/// Columns of the matrix that shears a ray's direction to (0, 0, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     /// Image of the x axis.
@@ -32,19 +33,19 @@ pub struct Shear {
     pub z: Vec3A,
 }
 
-/// Where a ray meets a triangle.
+/// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
-    /// Distance in lengths of the ray's direction; 0 where they do not meet.
+pub struct Intersection {
+    /// Distance in units of the ray direction's length; 0 if there is no intersection.
     pub t: f32,
-    /// Weight of the second vertex.
+    /// Barycentric weight of the second vertex.
     pub u: f32,
-    /// Weight of the third vertex.
+    /// Barycentric weight of the third vertex.
     pub v: f32,
 }
 
-/// The shear of a direction, which is finite and not zero. The axis of its largest component becomes z. Each row has at most two
-/// entries that are not zero: sums over a row do not depend on their order.
+/// Shear for a finite, nonzero direction; the axis of its largest component becomes z. Each row has at most two nonzero
+/// entries, so row sums do not depend on their order.
 #[inline]
 pub fn shear(direction: Vec3) -> Shear {
     let size = direction.abs();
@@ -68,23 +69,23 @@ pub fn shear(direction: Vec3) -> Shear {
     Shear { x: Vec3A::X, y: Vec3A::Y, z: Vec3A::new(-(direction.x / direction.z), -(direction.y / direction.z), inv) }
 }
 
-/// A vertex relative to the ray's origin, sheared: x and y across the ray, z along it.
+/// Sheared position of a vertex given relative to the ray's origin: x and y across the ray, z along it.
 #[inline]
 pub fn sheared(shear: Shear, from_origin: Vec3A) -> Vec3A {
     shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z
 }
 
-/// Twice the signed area that the ray's axis and the edge from `a` to `b` span; changes sign, and nothing else, with its
-/// arguments swapped.
+/// Edge function: twice the signed area spanned by the ray's axis and the edge from `a` to `b`. Swapping the arguments
+/// changes only the sign.
 #[inline]
 pub fn edge(a: Vec3A, b: Vec3A) -> f32 {
     a.x * b.y - a.y * b.x
 }
 
-/// Where the ray from `origin` meets the triangle, from either side.
+/// Intersects the ray from `origin` with the triangle, from either side.
 #[inline]
-pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -> Meeting {
-    let miss = Meeting { t: 0.0, u: 0.0, v: 0.0 };
+pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -> Intersection {
+    let miss = Intersection { t: 0.0, u: 0.0, v: 0.0 };
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
     let c = sheared(shear, v2 - origin);
@@ -103,30 +104,30 @@ pub fn intersect(shear: Shear, origin: Vec3A, v0: Vec3A, v1: Vec3A, v2: Vec3A) -
     if det.abs() < MIN_DET {
         return miss;
     }
-    // Not negative but for the sign of a zero.
+    // The quotient is not negative, except for the sign of a zero.
     let u = (e1 / det).abs();
     let v = (e2 / det).abs();
-    // A vertex' depth and two differences, not three products: one order of operations on every compiler.
-    Meeting { t: (a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v }
+    // One vertex' depth plus two differences instead of three products: every compiler keeps this order of operations.
+    Intersection { t: (a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v }
 }
 
-/// The point of a triangle at barycentrics. Nearer to the surface than a point along the ray, whose error grows with distance.
+/// Point of a triangle at barycentric weights. More accurate than a point along the ray, whose error grows with
+/// distance.
 #[inline]
 pub fn point_at(v0: Vec3, v1: Vec3, v2: Vec3, u: f32, v: f32) -> Vec3 {
     (v0 + (v1 - v0) * u) + (v2 - v0) * v
 }
 
-/// Largest coordinate of a triangle's vertices, which bounds the rounding of its points.
+/// Largest coordinate of a triangle's vertices; bounds the rounding error of its points.
 #[inline]
 pub fn magnitude(v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
     let largest = v0.abs().max(v1.abs()).max(v2.abs());
     largest.x.max(largest.y.max(largest.z))
 }
 
-/// Origin of a ray that leaves a surface to the side that `normal` (of length 1) points to: far enough not to meet the same
-/// triangle again, near enough not to be seen. After Waechter and Binder ("A Fast and Robust Method for Avoiding
-/// Self-Intersection", Ray Tracing Gems, 2019, chapter 6), whose offset grows with the position, too, but stays 2^-16 m near the
-/// world's origin.
+/// Origin of a ray leaving a surface on the side of unit vector `normal`: far enough to miss the same triangle, near
+/// enough to be invisible. After Waechter and Binder ("A Fast and Robust Method for Avoiding Self-Intersection", Ray
+/// Tracing Gems, 2019, chapter 6), whose offset also grows with the position but stays 2^-16 m near the world's origin.
 #[inline]
 pub fn offset_ray(point: Vec3, normal: Vec3, magnitude: f32) -> Vec3 {
     point + normal * (magnitude * ORIGIN_OFFSET)

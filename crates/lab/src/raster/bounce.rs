@@ -1,6 +1,6 @@
-//! A guess at the light that surfaces send to each other, for scenes whose light is inside them.
+//! Estimate of indirect light, for scenes whose lights are inside them.
 
-use super::lighting::LightWords;
+use super::lighting::LightRecord;
 use crate::kernel::direction::{basis, to_world};
 use crate::kernel::sampling::{barycentrics, cosine_hemisphere};
 use crate::kernel::triangle::{magnitude, offset_ray, point_at};
@@ -10,17 +10,17 @@ use afterimage::kernel::rng::path_draws;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Rays that tell how far a scene surrounds itself.
+/// Number of rays that measure how enclosed a scene is.
 const RAYS: u32 = 1024;
 
-/// Radiance after many bounces, as in an integrating sphere with holes: of the power, the share that meets a surface, over the
-/// walls' area, times albedo over what is lost. The walls are those of the scene's box; a share of `enclosure` of all light that
-/// leaves a surface meets another.
+/// Radiance after many bounces, as in an integrating sphere with openings: power times albedo times enclosure squared,
+/// over (1 - albedo times enclosure) times wall area times pi. The walls are the faces of the scene's bounding box;
+/// `enclosure` is the share of light leaving a surface that hits another.
 pub(super) fn radiance(
     scene: &Scene,
     moving: &Triangles,
     lights: &[PunctualLight],
-    panels: &[LightWords],
+    panels: &[LightRecord],
     size: Vec3,
 ) -> Vec3 {
     let walls = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
@@ -61,7 +61,7 @@ fn area([a, b, c]: [Vec3; 3]) -> f32 {
     if area.is_finite() { area } else { 0.0 }
 }
 
-/// Share of the rays from the fronts of surfaces, uniform over their area and by the cosine, that meet another surface.
+/// Enclosure: share of cosine-distributed rays from front faces, uniform over their area, that hit another surface.
 pub(super) fn enclosure(scene: &Scene, moving: &Triangles) -> f32 {
     let triangles: Vec<_> = all(scene, moving).map(|(t, _)| t).collect();
     let mut sums: Vec<f64> = vec![];
@@ -79,7 +79,7 @@ pub(super) fn enclosure(scene: &Scene, moving: &Triangles) -> f32 {
     };
     let meets = |i: u32| {
         let [u, v, s, t] = path_draws(i, 0, 0, 0);
-        // One ray in each of as many equal parts of the area.
+        // Stratified: one ray in each of equal parts of the area.
         let at = (f64::from(i) + 0.5) / f64::from(RAYS) * sum;
         let [a, b, c] = triangles[sums.partition_point(|&s| s <= at).min(triangles.len() - 1)];
         let weights = barycentrics(Vec2::new(u, v));
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn a_room_surrounds_itself_and_a_ball_does_not() {
         let cornell = builtin::cornell();
-        // Open in front: of a cube, a sixth; what faces away counts for nothing there.
+        // A cube open in front would lose a sixth; back faces do not count.
         let room = enclosure(&cornell, &Triangles::default());
         assert!((0.6..0.95).contains(&room), "{room}");
         let ball = enclosure(&builtin::furnace(), &Triangles::default());

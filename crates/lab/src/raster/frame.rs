@@ -1,10 +1,10 @@
-//! What a frame is told, as `shaders/raster/raster_frame.wgsl` reads it.
+//! Frame uniforms. Twin of `RasterFrame` in `shaders/raster/raster_frame.wgsl`.
 
 use crate::trace::view::View;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-/// A camera: from the eye to homogeneous pixels.
+/// Camera: projects points relative to the eye to homogeneous pixels.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct Eye {
@@ -15,13 +15,13 @@ struct Eye {
     along: [f32; 4],
 }
 
-/// The uniform of a frame.
+/// Uniforms of a frame.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct FrameWords {
-    now: Eye,
-    before: Eye,
-    turned: [[f32; 4]; 3],
+pub(super) struct FrameUniforms {
+    current: Eye,
+    previous: Eye,
+    previous_px_from_px: [[f32; 4]; 3],
     corner: [f32; 4],
     right: [f32; 4],
     down: [f32; 4],
@@ -30,7 +30,7 @@ pub(super) struct FrameWords {
     unused: f32,
 }
 
-/// Rows from a direction to homogeneous pixels, and columns from pixels to a direction, in f64.
+/// Projection in f64: rows from direction to homogeneous pixels, and columns from pixels to direction.
 struct Pixels {
     rows: [DVec3; 3],
     corner: DVec3,
@@ -68,18 +68,19 @@ fn row(v: DVec3) -> [f32; 4] {
     v.as_vec3().extend(0.0).to_array()
 }
 
-impl FrameWords {
-    /// A frame seen through `view` that was seen through `previous`; what is nearer than `near` metres is not seen.
+impl FrameUniforms {
+    /// Uniforms for camera `view`, previous camera `previous` and near plane `near` in metres.
     pub fn new(view: &View, previous: &View, near: f32) -> Self {
-        let (now, before) = (Pixels::of(view), Pixels::of(previous));
-        let turned = [now.right, now.down, now.corner].map(|d| row(DVec3::from(before.rows.map(|r| r.dot(d)))));
+        let (current_px, previous_px) = (Pixels::of(view), Pixels::of(previous));
+        let previous_px_from_px = [current_px.right, current_px.down, current_px.corner]
+            .map(|d| row(DVec3::from(previous_px.rows.map(|r| r.dot(d)))));
         Self {
-            now: Eye::of(view, &now),
-            before: Eye::of(previous, &before),
-            turned,
-            corner: row(now.corner),
-            right: row(now.right),
-            down: row(now.down),
+            current: Eye::of(view, &current_px),
+            previous: Eye::of(previous, &previous_px),
+            previous_px_from_px,
+            corner: row(current_px.corner),
+            right: row(current_px.right),
+            down: row(current_px.down),
             size: view.geometry().size_px().map(|s| s as f32),
             near,
             unused: 0.0,

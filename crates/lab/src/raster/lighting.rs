@@ -1,4 +1,4 @@
-//! Light as the rasteriser has it: a list of lights without extent, panels, a sun with a shadow map, and what comes from all around.
+//! Lights of the rasterizer: punctual lights, emissive panels, a sun with a shadow map, and ambient light.
 
 use super::bounce;
 use crate::scene::{Environment, Material, PunctualKind, PunctualLight, Scene, Triangles};
@@ -10,20 +10,20 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
 
-/// Lights that are looked at; of more, the strongest.
+/// Largest number of lights; beyond it, the strongest are kept.
 pub(super) const MAX_LIGHTS: usize = 64;
 
-/// Sky of scenes without any light: radiance.
+/// Sky radiance of scenes without light.
 pub const DEFAULT_SKY: [f32; 3] = [0.35, 0.42, 0.5];
-/// Their sun's irradiance.
+/// Irradiance of the sun added to scenes without light.
 pub const DEFAULT_SUN: [f32; 3] = [3.6, 3.3, 2.9];
-/// Where it shines to.
+/// Direction in which that sun shines.
 pub const DEFAULT_SUN_DIRECTION: [f32; 3] = [-0.35, -0.87, -0.35];
 
-/// A light, as the shader reads it.
+/// A light in the shader's layout. Twin of `RasterLight` in `shaders/raster/raster_frame.wgsl`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct LightWords {
+pub(super) struct LightRecord {
     position: [f32; 3],
     kind: u32,
     direction: [f32; 3],
@@ -36,22 +36,22 @@ pub(super) struct LightWords {
     unused: f32,
 }
 
-impl LightWords {
-    /// What a panel sends, W.
+impl LightRecord {
+    /// Power that a panel emits, per color channel.
     pub fn power(&self) -> Vec3 {
         let sides = if self.kind == TWO_SIDED { 2.0 } else { 1.0 };
         Vec3::from(self.intensity) * (sides * PI * self.area)
     }
 }
 
-/// Kinds of panels.
+/// Light kinds of one-sided and two-sided panels.
 const ONE_SIDED: u32 = 3;
 const TWO_SIDED: u32 = 4;
 
-/// All of them.
+/// All lights in the shader's layout. Twin of `RasterLights` in `shaders/raster/raster_frame.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct LightsWords {
+pub(super) struct LightingRecord {
     ambient: [[f32; 4]; 6],
     sun: [[f32; 4]; 3],
     bounced: [f32; 3],
@@ -59,21 +59,21 @@ pub(super) struct LightsWords {
     texel: f32,
     last_level: f32,
     unused: [f32; 2],
-    lights: [LightWords; MAX_LIGHTS],
+    lights: [LightRecord; MAX_LIGHTS],
 }
 
-/// Light of a scene that does not change.
+/// Lights that do not change over time.
 #[derive(Clone, Debug)]
 pub(super) struct Lighting {
-    /// What surrounds the scene; that of the file, or the default.
+    /// The scene's environment, or the default sky.
     pub environment: Environment,
-    /// Whether a sun was added, as the scene has no light of its own.
+    /// Whether a sun was added because the scene has no light.
     added_sun: bool,
-    panels: Vec<LightWords>,
+    panels: Vec<LightRecord>,
     ambient: [Vec3; 6],
     bounced: Vec3,
     center: Vec3,
-    /// Of the sphere around the scene, metres.
+    /// Radius of the scene's bounding sphere, metres.
     pub radius: f32,
 }
 
@@ -103,7 +103,7 @@ impl Lighting {
         }
     }
 
-    /// Which of `lights` is the sun: the strongest from infinitely far.
+    /// The strongest directional light of `lights`, or the added sun.
     pub fn sun(&self, lights: &[PunctualLight]) -> Option<PunctualLight> {
         if self.added_sun {
             return Some(PunctualLight {
@@ -118,8 +118,9 @@ impl Lighting {
         far.copied().max_by(|a, b| strength(a).total_cmp(&strength(b)))
     }
 
-    /// The uniform, with the punctual lights at a time; `last_level` is the sky map's, `shadow_side` the shadow map's.
-    pub fn words(&self, lights: &[PunctualLight], last_level: f32, shadow_side: u32) -> LightsWords {
+    /// Shader record with the punctual lights at one time. `last_level` is the last mip level of the sky, `shadow_side`
+    /// the shadow map's size in texels.
+    pub fn record(&self, lights: &[PunctualLight], last_level: f32, shadow_side: u32) -> LightingRecord {
         let sun = self.sun(lights);
         let mut all = lights.to_vec();
         all.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
@@ -127,14 +128,14 @@ impl Lighting {
             all.retain(|l| *l != sun);
             all.insert(0, sun);
         }
-        let mut words: Vec<LightWords> = all.iter().map(punctual).chain(self.panels.iter().copied()).collect();
-        words.truncate(MAX_LIGHTS);
-        if let (Some(_), Some(first)) = (sun, words.first_mut()) {
+        let mut records: Vec<LightRecord> = all.iter().map(punctual).chain(self.panels.iter().copied()).collect();
+        records.truncate(MAX_LIGHTS);
+        if let (Some(_), Some(first)) = (sun, records.first_mut()) {
             first.has_shadow = 1.0;
         }
-        let count = words.len() as u32;
-        words.resize(MAX_LIGHTS, LightWords::default());
-        LightsWords {
+        let count = records.len() as u32;
+        records.resize(MAX_LIGHTS, LightRecord::default());
+        LightingRecord {
             ambient: self.ambient.map(|c| c.extend(0.0).to_array()),
             sun: self.sun_rows(sun.map_or(Vec3::NEG_Y, |s| s.direction)),
             bounced: self.bounced.to_array(),
@@ -142,16 +143,17 @@ impl Lighting {
             texel: 2.0 * self.radius / shadow_side as f32,
             last_level,
             unused: [0.0; 2],
-            lights: words.try_into().expect("as many as there may be"),
+            lights: records.try_into().expect("as many as there may be"),
         }
     }
 
-    /// From world space to the shadow map, which holds the sphere around the scene; depth is 1 next to the sun.
+    /// Matrix rows from world space to the shadow map, which covers the scene's bounding sphere. Depth is 1 nearest to
+    /// the sun.
     fn sun_rows(&self, direction: Vec3) -> [[f32; 4]; 3] {
         let along = direction.normalize_or(Vec3::NEG_Y);
         let right = along.any_orthonormal_vector();
         let up = right.cross(along);
-        // A little more than the sphere, so that rounding leaves nothing out.
+        // Slightly larger than the sphere, to allow for rounding.
         let scale = 1.0 / (1.01 * self.radius);
         let row = |axis: Vec3, scale: f32, middle: f32| {
             (axis * scale).extend(middle - axis.dot(self.center) * scale).to_array()
@@ -164,16 +166,16 @@ fn strength(light: &PunctualLight) -> f32 {
     luma(Vec3::from(light.intensity))
 }
 
-/// As the tracer has it.
-fn punctual(l: &PunctualLight) -> LightWords {
+/// A punctual light with the tracer's parameters.
+fn punctual(l: &PunctualLight) -> LightRecord {
     let PunctualRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, .. } =
         PunctualRecord::new(l);
-    LightWords { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightWords::default() }
+    LightRecord { position, kind, direction, range, intensity, cos_inner, cos_outer, ..LightRecord::default() }
 }
 
-/// Triangles that emit, those of one material and about one direction as one disk of their area at their middle. Where they are
-/// at time 0, as bright as the material says: emissive textures are not looked at.
-fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
+/// Panels: emissive triangles of one material and similar orientation, merged into a disk of their total area at their
+/// centroid. Uses the pose at time 0 and ignores emissive textures.
+fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightRecord> {
     struct Sum {
         material: u32,
         facing: Vec3,
@@ -205,18 +207,18 @@ fn panels(parts: &[&Triangles], materials: &[Material]) -> Vec<LightWords> {
             }
         }
     }
-    let words = |s: &Sum| {
+    let records = |s: &Sum| {
         let material = &materials[s.material as usize];
-        LightWords {
+        LightRecord {
             position: (s.middle / s.area).as_vec3().to_array(),
             kind: if material.double_sided { TWO_SIDED } else { ONE_SIDED },
             direction: s.normal.normalize_or(DVec3::NEG_Y).as_vec3().to_array(),
             intensity: material.emissive,
             area: s.area as f32,
-            ..LightWords::default()
+            ..LightRecord::default()
         }
     };
-    let mut panels: Vec<LightWords> = sums.iter().map(words).collect();
+    let mut panels: Vec<LightRecord> = sums.iter().map(records).collect();
     panels.sort_by(|a, b| luma(b.power()).total_cmp(&luma(a.power())));
     panels.truncate(MAX_LIGHTS / 2);
     panels
@@ -257,7 +259,7 @@ mod tests {
     fn a_constant_map_lights_like_a_constant() {
         let map = Image::filled([64, 32], [0.5, 1.0, 2.0]);
         for face in irradiance(&map) {
-            // The midpoint rule on 32 rows is off by (pi / 32)^2 / 12 of the whole, and by as much again at the horizon.
+            // The midpoint rule on 32 rows has a relative error of (pi / 32)^2 / 12, and as much again at the horizon.
             assert!((face / PI - Vec3::new(0.5, 1.0, 2.0)).abs().max_element() < 0.005, "{face}");
         }
     }
@@ -270,7 +272,7 @@ mod tests {
         let at = |p: Vec3| rows.map(|r| Vec3::new(r[0], r[1], r[2]).dot(p) + r[3]);
         let [x, y, z] = at(lighting.center);
         assert!(x.abs() < 1e-5 && y.abs() < 1e-5 && (z - 0.5).abs() < 1e-5);
-        // Nearer to the sun is larger.
+        // Depth grows towards the sun.
         assert!(at(lighting.center + Vec3::Y * 0.1)[2] > z);
     }
 }

@@ -1,4 +1,4 @@
-//! Materials and their textures on the device.
+//! Materials and textures on the device.
 
 use super::mipmaps::levels;
 use super::pipelines::{Layouts, SLOTS, slot_binding};
@@ -11,7 +11,7 @@ use wgpu::{
     TextureUsages, TextureView,
 };
 
-/// Bind groups of all materials of a scene, at least one.
+/// Bind groups of a scene's materials; at least one.
 pub(super) fn bind_groups(
     device: &Device,
     queue: &Queue,
@@ -25,7 +25,7 @@ pub(super) fn bind_groups(
     let max_side = device.limits().max_texture_dimension_2d;
     let mut textures = HashMap::new();
     let mut samplers = HashMap::new();
-    // Only what a material shows: a texture for colors and for data has a copy of each kind.
+    // Upload only textures in use. One that serves as color and as data is uploaded in both formats.
     for m in materials {
         for (slot, is_color) in slots(m) {
             if let Some((r, t)) = slot.and_then(|r| Some((r.texture, scene.textures.get(r.texture as usize)?))) {
@@ -78,7 +78,7 @@ pub(super) fn bind_groups(
     groups.collect()
 }
 
-/// Textures in the order of their bindings, and whether they hold colors.
+/// Textures in the order of their bindings, and whether each holds colors.
 fn slots(m: &Material) -> [(Option<TextureRef>, bool); SLOTS] {
     [
         (m.base_color_texture, true),
@@ -95,7 +95,7 @@ fn slots(m: &Material) -> [(Option<TextureRef>, bool); SLOTS] {
     ]
 }
 
-/// How a texture is sampled, and a key for it.
+/// Sampler description of a texture, and a key to share samplers.
 fn addressing(texture: Option<&Texture>, anisotropy: u16) -> ([u8; 3], wgpu::SamplerDescriptor<'static>) {
     let (wrap, nearest) = texture.map_or(([Wrap::Repeat; 2], false), |t| (t.wrap, t.nearest));
     let mode = |wrap| match wrap {
@@ -117,13 +117,13 @@ fn addressing(texture: Option<&Texture>, anisotropy: u16) -> ([u8; 3], wgpu::Sam
     ([wrap[0] as u8, wrap[1] as u8, u8::from(nearest)], description)
 }
 
-/// A texture with all its levels.
+/// Uploads an 8-bit texture with all its mip levels.
 fn upload(device: &Device, queue: &Queue, label: &str, levels: &[Image<[u8; 4]>], is_color: bool) -> TextureView {
     let format = if is_color { TextureFormat::Rgba8UnormSrgb } else { TextureFormat::Rgba8Unorm };
     upload_levels(device, queue, label, levels, format)
 }
 
-/// Levels of any kind of texel of four numbers, largest first.
+/// Uploads mip levels of four-channel texels, largest first.
 pub(super) fn upload_levels<T: bytemuck::NoUninit>(
     device: &Device,
     queue: &Queue,

@@ -1,4 +1,4 @@
-//! Smaller and smaller copies of images, each texel the mean of those it covers.
+//! Mip levels of textures by box filtering.
 
 use crate::scene::Texture;
 use afterimage::Image;
@@ -6,9 +6,10 @@ use afterimage::kernel::color::{srgb_decode, srgb_encode};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 
-/// A texture's levels, largest first, the last 1x1; those larger than `max_side` are left out.
+/// Mip levels of a texture, largest first down to 1x1, without those larger than `max_side`.
 ///
-/// Colors are averaged as light and by their alpha, so that what is transparent does not tint its neighbours; data as numbers.
+/// Colors are averaged in linear space weighted by alpha, so that transparent texels do not tint their neighbours; data
+/// is averaged as numbers.
 pub(super) fn levels(texture: &Texture, is_color: bool, max_side: u32) -> Vec<Image<[u8; 4]>> {
     let [w, h] = texture.size;
     let first = Image::from_fn([w, h], |[x, y]| texture.texels.get((y * w + x) as usize).copied().unwrap_or([255; 4]));
@@ -28,7 +29,7 @@ pub(super) fn levels(texture: &Texture, is_color: bool, max_side: u32) -> Vec<Im
 /// Linear values of sRGB bytes.
 static DECODED: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| srgb_decode(i as f32 / 255.0)));
 
-/// sRGB bytes of linear values: a step of 1/8192 is below half a byte's everywhere but in the darkest 7.
+/// sRGB bytes of linear values. A step of 1/8192 is less than half a byte step, except in the 7 darkest.
 static ENCODED: LazyLock<Vec<u8>> =
     LazyLock::new(|| (0..=8192).map(|i| (srgb_encode(i as f32 / 8192.0) * 255.0).round() as u8).collect());
 
@@ -38,7 +39,7 @@ fn halved(image: &Image<[u8; 4]>, is_color: bool) -> Image<[u8; 4]> {
     let rows: Vec<Vec<[u8; 4]>> = (0..size[1] as usize)
         .into_par_iter()
         .map(|y| {
-            // A side of one texel has no second.
+            // Where a side is a single texel, repeat it.
             let at = |x: usize, y: usize| image.at(x.min(w - 1), y.min(h - 1));
             let row = |x: usize| {
                 let (x, y) = (2 * x, 2 * y);
@@ -66,7 +67,7 @@ fn mean(four: [[u8; 4]; 4], is_color: bool) -> [u8; 4] {
     [color(0), color(1), color(2), ((alpha + 2) / 4) as u8]
 }
 
-/// The same for the sky: colors of half floats.
+/// Mip levels of the sky in linear radiance, largest first down to 1x1, without those larger than `max_side`.
 pub(super) fn sky_levels(map: &Image<[f32; 3]>, max_side: u32) -> Vec<Image<[f32; 3]>> {
     let mut levels = vec![map.clone()];
     while let Some(last) = levels.last()
@@ -98,7 +99,7 @@ mod tests {
     #[test]
     fn colors_are_averaged_as_light_and_data_as_numbers() {
         let t = texture([2, 1], vec![[255, 0, 0, 255], [0, 0, 0, 255]]);
-        // Half the light of 255 is sRGB 188.
+        // Half the linear value of 255 is 188 in sRGB.
         assert_eq!(levels(&t, true, 8192)[1].at(0, 0), [188, 0, 0, 255]);
         assert_eq!(levels(&t, false, 8192)[1].at(0, 0), [128, 0, 0, 255]);
     }

@@ -1,32 +1,31 @@
-//! Scenes by render passes: what an engine would hand to the post-process.
+//! Rasterizes scenes into the color, depth and motion buffers that an engine hands to the post-process.
 //!
-//! A frame is three passes. **Sun**: a shadow map of 2048² from the one light that is infinitely far, if there is one; scenes
-//! without any light get a sun and a sky. **Surfaces**: depth and motion of what is behind each pixel's centre, one sample a pixel.
-//! **Color**: four samples a pixel, which are averaged; surfaces are shaded once a pixel, by the tracer's own scattering
-//! functions and tables.
+//! A frame has three passes. **Sun**: a shadow map of the strongest directional light, if there is one; scenes without
+//! any light get a sun and a sky. **Surfaces**: depth and motion at each pixel's centre, one sample per pixel.
+//! **Color**: four samples per pixel, resolved by averaging; surfaces are shaded once per pixel with the tracer's
+//! scattering functions and tables.
 //!
-//! | target | format | what |
+//! | target | format | contents |
 //! |---|---|---|
 //! | color | `Rgba16Float` | linear, scene-referred; alpha 1 |
-//! | depth | `Depth32Float` | reversed, infinite far: [`near`](Raster::near) / distance along the view axis, 0 where there is nothing |
-//! | motion | `Rg32Float` | pixels, y down, previous minus current; 1e6 for what was behind the previous camera |
+//! | depth | `Depth32Float` | reversed, infinite far: [`near`](Raster::near) / distance along the view axis, 0 where there is no surface |
+//! | motion | `Rg32Float` | pixels, y down, previous minus current; 1e6 for points behind the previous camera |
 //!
-//! Those are [`DepthConvention::Reversed`](afterimage::DepthConvention) and the default
-//! [`MotionConvention`](afterimage::MotionConvention). Motion is of both the camera and the vertices (rigid, skinned,
-//! morphing); that of the sky is the camera's rotation.
+//! These match [`DepthConvention::Reversed`](afterimage::DepthConvention) and the default
+//! [`MotionConvention`](afterimage::MotionConvention). Motion includes the camera's and the vertices' (rigid, skinned,
+//! morphing); the sky's is the camera's rotation.
 //!
-//! - **Alpha.** MASK: with holes by the cutoff; in the color an edge covers samples as far as opacity says. BLEND and what light
-//!   passes through: after the sky, from back to front by material and within it by triangle, without writing the color pass'
-//!   depth. Depth and motion are theirs where they are more than half opaque, as [`Surfaces`](crate::trace::surfaces::Surfaces) has it;
-//!   surfaces that light passes through count as there.
-//! - **Light.** Punctual lights and the sun as the tracer has them, up to 64, only the sun with shadows. Emissive triangles as
-//!   one disk a material and direction, at most 32, without shadows, where they are at time 0. The sky without occlusion: its
-//!   irradiance on six faces, its mirror image by roughness. Light from other surfaces is that of an integrating sphere with
-//!   the walls of the scene's box and as open as the scene is, in scenes without a sky.
-//! - **Refraction** is not there: through glass one sees straight on, dimmed by the base color's luminance.
+//! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
+//!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
+//!   writing the color pass' depth. Depth and motion include them where they are more than half opaque, as in
+//!   [`Surfaces`](crate::trace::surfaces::Surfaces); transmissive surfaces count as opaque.
+//! - **Light.** Punctual lights and the sun as in the tracer, up to 64; only the sun casts shadows. Emissive triangles
+//!   become one disk per material and direction, at most 32, without shadows, in their pose at time 0. The sky is not
+//!   occluded: irradiance from six faces, reflections from a mip level by roughness. In scenes without a sky, indirect
+//!   light is that of an integrating sphere with the area of the scene's bounding box and the scene's openness.
+//! - **Refraction** is not simulated: glass shows what is straight behind it, dimmed by the base color's luminance.
 
 mod bounce;
-mod corners;
 mod frame;
 mod lighting;
 mod materials;
@@ -34,6 +33,7 @@ mod mipmaps;
 mod pipelines;
 mod record;
 mod targets;
+mod vertices;
 
 pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
@@ -45,18 +45,18 @@ use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use crate::trace::effects::Effects;
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
-use corners::{Blended, Corner, Grouped, STRIDE};
 use lighting::Lighting;
 use materials::upload_levels;
 use pipelines::{Layouts, Pipelines};
 use std::sync::LazyLock;
+use vertices::{Blended, GroupedTriangles, STRIDE, Vertex};
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureFormat, TextureView};
 
-/// What a rasteriser is made for.
+/// Settings of the rasterizer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RasterSettings {
-    /// Most texels that are averaged along the longer side of a pixel's footprint, 1 to 16; more is sharper at grazing angles and
-    /// costs reads. Devices without it take 1. Default 16.
+    /// Maximum anisotropy of texture filtering, 1 to 16. More is sharper at grazing angles and costs texture reads.
+    /// Devices without anisotropic filtering use 1. Default 16.
     pub anisotropy: u16,
     /// Side of the sun's shadow map in texels, 1 to 8192. Default 2048.
     pub shadow_side: u32,
@@ -68,51 +68,51 @@ impl Default for RasterSettings {
     }
 }
 
-/// A scene on a device, and the targets that it is drawn to. Same device, same frames, same bytes.
+/// A scene on a device, with the targets it is drawn to. The same frames on the same device give the same bytes.
 #[derive(Debug)]
 pub struct Raster {
     layouts: Layouts,
     pipelines: Pipelines,
     materials: Vec<BindGroup>,
-    /// Between surfaces; without the shadow map's texture this could not be bound while that is drawn.
-    scenery: BindGroup,
+    /// Bind group of the color pass. It includes the shadow map, so it is not bound while that is drawn.
+    lighting_maps: BindGroup,
     shadow: TextureView,
     lighting: Lighting,
     last_level: f32,
     shadow_side: u32,
-    still: Set,
-    moving: Set,
-    /// Where what moves was a frame ago.
+    still: VertexSet,
+    moving: VertexSet,
+    /// Vertices of the moving triangles in the previous frame.
     previous: Buffer,
-    /// What moves, to be uploaded with the next frame, now and a frame ago.
-    pending: Option<[Vec<Corner>; 2]>,
+    /// Moving vertices of this and the previous frame, to be uploaded with the next frame.
+    pending: Option<[Vec<Vertex>; 2]>,
     lights: Vec<PunctualLight>,
     has_sun: bool,
-    /// Whether the shadow map is of an earlier pose.
-    is_shadow_old: bool,
+    /// Whether the shadow map shows an earlier pose.
+    is_shadow_stale: bool,
     near: f32,
     targets: Targets,
 }
 
-/// Triangles in one buffer.
+/// Triangles that share a vertex buffer.
 #[derive(Debug)]
-struct Set {
-    grouped: Grouped,
+struct VertexSet {
+    grouped: GroupedTriangles,
     buffer: Buffer,
     blended: Vec<Blended>,
 }
 
-/// The albedos' tables; the same for all scenes.
+/// Tables of the lobes' directional albedos, for all scenes.
 static TABLES: LazyLock<AlbedoTables> = LazyLock::new(AlbedoTables::compute);
 
-/// Cells of the tables in a row of their texture.
+/// Width in cells of the texture that holds the tables.
 const TABLE_ROW: u32 = 256;
 
 impl Raster {
     /// Uploads `scene` at time 0 for frames of `size` pixels.
     ///
     /// # Errors
-    /// If the frame or the scene's triangles are more than the device takes.
+    /// If the frame or the scene's triangles exceed the device's limits.
     pub fn new(
         device: &Device,
         queue: &Queue,
@@ -132,22 +132,22 @@ impl Raster {
         let shadow_side = if has_sun { settings.shadow_side.clamp(1, 8192) } else { 1 };
         let shadow = targets::attachment(device, [shadow_side; 2], DEPTH_FORMAT, 1).create_view(&Default::default());
         let (sky, last_level) = sky(device, queue, &lighting.environment);
-        let scenery = scenery(device, queue, &layouts, &shadow, &sky);
-        let grouped = Grouped::new(scene.still(), &scene.materials);
-        let corners = grouped.corners(scene.still());
-        let buffer = vertex_buffer(device, corners.len());
-        queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&corners));
-        let still = Set { blended: grouped.blended(&corners), grouped, buffer };
-        let grouped = Grouped::new(&pose.moving, &scene.materials);
+        let lighting_maps = lighting_maps(device, queue, &layouts, &shadow, &sky);
+        let grouped = GroupedTriangles::new(scene.still(), &scene.materials);
+        let vertices = grouped.vertices(scene.still());
+        let buffer = vertex_buffer(device, vertices.len());
+        queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&vertices));
+        let still = VertexSet { blended: grouped.blended(&vertices), grouped, buffer };
+        let grouped = GroupedTriangles::new(&pose.moving, &scene.materials);
         let count = 3 * pose.moving.len();
-        let moving = Set { grouped, buffer: vertex_buffer(device, count), blended: vec![] };
-        // Far below what is looked at, and not so small that 1/near leaves the floats.
+        let moving = VertexSet { grouped, buffer: vertex_buffer(device, count), blended: vec![] };
+        // Much nearer than anything of interest, but not so near that 1/near overflows.
         let near = (lighting.radius * 1e-4).clamp(1e-6, 1e-2);
         let mut raster = Self {
             layouts,
             pipelines,
             materials,
-            scenery,
+            lighting_maps,
             shadow,
             last_level,
             shadow_side,
@@ -157,7 +157,7 @@ impl Raster {
             pending: None,
             lights: vec![],
             has_sun,
-            is_shadow_old: true,
+            is_shadow_stale: true,
             near,
             lighting,
             targets: Targets::new(device, size),
@@ -166,7 +166,7 @@ impl Raster {
         Ok(raster)
     }
 
-    /// Moves what moves to its place at `time_s`; `previous_s` is when motion is told from.
+    /// Poses the scene at `time_s` (seconds). Motion vectors refer to the pose at `previous_s`.
     pub fn pose(&mut self, scene: &Scene, time_s: f64, previous_s: f64) {
         if scene.duration_s() > 0.0 {
             self.place(scene.pose(time_s), scene.pose(previous_s));
@@ -175,20 +175,20 @@ impl Raster {
 
     fn place(&mut self, pose: Pose, previous: Pose) {
         if !pose.moving.is_empty() {
-            let now = self.moving.grouped.corners(&pose.moving);
+            let now = self.moving.grouped.vertices(&pose.moving);
             self.moving.blended = self.moving.grouped.blended(&now);
-            self.pending = Some([now, self.moving.grouped.corners(&previous.moving)]);
+            self.pending = Some([now, self.moving.grouped.vertices(&previous.moving)]);
         }
         self.lights = pose.lights;
-        self.is_shadow_old = true;
+        self.is_shadow_stale = true;
     }
 
-    /// Distance of the near plane, metres: a ten-thousandth of the scene's radius, at most a centimetre.
+    /// Distance of the near plane in metres: 1e-4 of the scene's radius, between 1e-6 and 1e-2.
     pub fn near(&self) -> f32 {
         self.near
     }
 
-    /// Where frames are drawn to.
+    /// Targets that frames are drawn to.
     pub fn targets(&self) -> &Targets {
         &self.targets
     }
@@ -215,17 +215,17 @@ fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> R
     Ok(())
 }
 
-/// A buffer for corners, at least one.
-fn vertex_buffer(device: &Device, corners: usize) -> Buffer {
+/// A buffer with room for `vertices`; at least one.
+fn vertex_buffer(device: &Device, vertices: usize) -> Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("corners"),
-        size: STRIDE * corners.max(1) as u64,
+        label: Some("vertices"),
+        size: STRIDE * vertices.max(1) as u64,
         usage: BufferUsages::VERTEX | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
 }
 
-/// The sky with its blurred copies, and the number of the last of these.
+/// The sky texture with its mip levels, and the number of the last level.
 fn sky(device: &Device, queue: &Queue, environment: &Environment) -> (TextureView, f32) {
     let levels = match environment {
         Environment::Constant(radiance) => vec![afterimage::Image::filled([1, 1], *radiance)],
@@ -236,7 +236,13 @@ fn sky(device: &Device, queue: &Queue, environment: &Environment) -> (TextureVie
     (upload_levels(device, queue, "sky", &halves, TextureFormat::Rgba16Float), (levels.len() - 1) as f32)
 }
 
-fn scenery(device: &Device, queue: &Queue, layouts: &Layouts, shadow: &TextureView, sky: &TextureView) -> BindGroup {
+fn lighting_maps(
+    device: &Device,
+    queue: &Queue,
+    layouts: &Layouts,
+    shadow: &TextureView,
+    sky: &TextureView,
+) -> BindGroup {
     let mut words: Vec<[u32; 4]> = TABLES.words().collect();
     words.resize(words.len().next_multiple_of(TABLE_ROW as usize), Zeroable::zeroed());
     let size = [TABLE_ROW, words.len() as u32 / TABLE_ROW];
@@ -267,8 +273,8 @@ fn scenery(device: &Device, queue: &Queue, layouts: &Layouts, shadow: &TextureVi
     let entries: Vec<_> =
         resources.into_iter().zip(0..).map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("scenery"),
-        layout: &layouts.scenery,
+        label: Some("lighting_maps"),
+        layout: &layouts.lighting_maps,
         entries: &entries,
     })
 }

@@ -1,6 +1,6 @@
-//! Render pipelines and the layouts of what is bound.
+//! Render pipelines and bind group layouts.
 
-use super::corners::{Kind, LAYOUTS};
+use super::vertices::{AlphaKind, LAYOUTS};
 use crate::shader::SHADERS;
 use crate::trace::effects::{Effect, Effects};
 use wgpu::{
@@ -9,22 +9,22 @@ use wgpu::{
     TextureSampleType, TextureViewDimension,
 };
 
-/// Linear color.
+/// Format of linear color.
 pub const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Reversed, without a far plane.
+/// Format of depth, reversed and without a far plane.
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
-/// Pixels.
+/// Format of motion in pixels.
 pub const MOTION_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 
-/// Samples of a pixel's color, which every device has.
+/// Samples per pixel of the color pass. Every device supports 4.
 pub(super) const SAMPLES: u32 = 4;
 
-/// What groups 0 to 2 hold.
+/// Layouts of bind groups 0 to 2.
 #[derive(Debug)]
 pub(super) struct Layouts {
     pub frame: BindGroupLayout,
     pub material: BindGroupLayout,
-    pub scenery: BindGroupLayout,
+    pub lighting_maps: BindGroupLayout,
 }
 
 #[derive(Debug)]
@@ -37,18 +37,18 @@ pub(super) struct Pipelines {
 }
 
 impl Pipelines {
-    /// Depth and motion of surfaces of a kind.
-    pub fn motion(&self, kind: Kind) -> &RenderPipeline {
-        &self.motion[usize::from(kind != Kind::Opaque)]
+    /// Depth and motion of a kind of surface.
+    pub fn motion(&self, kind: AlphaKind) -> &RenderPipeline {
+        &self.motion[usize::from(kind != AlphaKind::Opaque)]
     }
 
-    /// Their shadow.
-    pub fn sun(&self, kind: Kind) -> &RenderPipeline {
-        &self.sun[usize::from(kind != Kind::Opaque)]
+    /// Shadow map of a kind of surface.
+    pub fn sun(&self, kind: AlphaKind) -> &RenderPipeline {
+        &self.sun[usize::from(kind != AlphaKind::Opaque)]
     }
 
-    /// Their color.
-    pub fn color(&self, kind: Kind) -> &RenderPipeline {
+    /// Color of a kind of surface.
+    pub fn color(&self, kind: AlphaKind) -> &RenderPipeline {
         &self.color[kind as usize]
     }
 
@@ -79,18 +79,18 @@ impl Pipelines {
         );
         shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
         let two = [Some(&layouts.frame), Some(&layouts.material)];
-        let three = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.scenery)];
+        let three = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.lighting_maps)];
         let make = |recipe: Recipe<'_>| recipe.make(device, if recipe.samples > 1 { &three } else { &two });
         let motion = |fragment, depth| {
-            make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "follow", fragment, MOTION_FORMAT) })
+            make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "motion_vertex", fragment, MOTION_FORMAT) })
         };
         let shadow = |fragment| {
             make(Recipe {
                 constants: &base,
                 format: None,
-                // Away from the sun, more where the surface is steep in it.
+                // Away from the sun, and more on surfaces steep to it.
                 bias: DepthBiasState { constant: -2, slope_scale: -2.0, clamp: 0.0 },
-                ..Recipe::new(&sun, "from_sun", fragment, COLOR_FORMAT)
+                ..Recipe::new(&sun, "shadow_vertex", fragment, COLOR_FORMAT)
             })
         };
         let shade = |depth, blend, coverage| {
@@ -100,17 +100,17 @@ impl Pipelines {
                 blend,
                 coverage,
                 samples: SAMPLES,
-                ..Recipe::new(&color, "stand", Some("shade"), COLOR_FORMAT)
+                ..Recipe::new(&color, "shade_vertex", Some("shade"), COLOR_FORMAT)
             })
         };
         Self {
             motion: [motion(Some("motion_opaque"), true), motion(Some("motion"), true)],
             motion_far: make(Recipe {
                 depth: false,
-                corners: false,
-                ..Recipe::new(&surface, "far", Some("motion_far"), MOTION_FORMAT)
+                vertices: false,
+                ..Recipe::new(&surface, "fullscreen", Some("motion_far"), MOTION_FORMAT)
             }),
-            sun: [shadow(None), shadow(Some("holes"))],
+            sun: [shadow(None), shadow(Some("alpha_test"))],
             color: [
                 shade(true, None, false),
                 shade(true, None, true),
@@ -118,9 +118,9 @@ impl Pipelines {
             ],
             sky: make(Recipe {
                 depth: false,
-                corners: false,
+                vertices: false,
                 samples: SAMPLES,
-                ..Recipe::new(&sky, "far", Some("sky"), COLOR_FORMAT)
+                ..Recipe::new(&sky, "fullscreen", Some("sky"), COLOR_FORMAT)
             }),
         }
     }
@@ -130,24 +130,24 @@ fn constants(effects: Effects, list: &[(&'static str, Effect)]) -> Vec<(&'static
     list.iter().map(|&(name, effect)| (name, f64::from(u8::from(effects.has(effect))))).collect()
 }
 
-/// What pipelines differ in.
+/// Parameters that differ between pipelines.
 #[derive(Clone, Copy)]
 struct Recipe<'a> {
     module: &'a ShaderModule,
     vertex: &'a str,
     fragment: Option<&'a str>,
     constants: &'a [(&'static str, f64)],
-    /// `None`: depth only.
+    /// `None` for depth only.
     format: Option<TextureFormat>,
     /// Whether depth is written.
     depth: bool,
     bias: DepthBiasState,
     blend: Option<BlendState>,
-    /// Whether alpha says how many of a pixel's samples are covered.
+    /// Alpha to coverage.
     coverage: bool,
     samples: u32,
-    /// Whether vertices are read.
-    corners: bool,
+    /// Whether vertex buffers are read.
+    vertices: bool,
 }
 
 impl<'a> Recipe<'a> {
@@ -163,7 +163,7 @@ impl<'a> Recipe<'a> {
             blend: None,
             coverage: false,
             samples: 1,
-            corners: true,
+            vertices: true,
         }
     }
 
@@ -185,9 +185,9 @@ impl<'a> Recipe<'a> {
                 module: self.module,
                 entry_point: Some(self.vertex),
                 compilation_options: if self.fragment.is_some() { options() } else { Default::default() },
-                buffers: if self.corners { &buffers } else { &[] },
+                buffers: if self.vertices { &buffers } else { &[] },
             },
-            // Counter-clockwise is the front; backs are seen, too.
+            // Counter-clockwise is the front. Back faces are drawn, too.
             primitive: wgpu::PrimitiveState::default(),
             depth_stencil: Some(DepthStencilState {
                 format: DEPTH_FORMAT,
@@ -213,10 +213,10 @@ impl<'a> Recipe<'a> {
     }
 }
 
-/// Textures of a material, in the order of their bindings; the first four have samplers of their own.
+/// Textures of a material, in the order of their bindings. The first four have a sampler each.
 pub(super) const SLOTS: usize = 11;
 
-/// Binding of the texture of slot `i`.
+/// Binding of slot `i`'s texture.
 pub(super) fn slot_binding(i: usize) -> u32 {
     if i < 4 { 2 * i as u32 + 1 } else { i as u32 + 5 }
 }
@@ -250,8 +250,8 @@ impl Layouts {
         Self {
             frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
             material: make("material", &material),
-            scenery: make(
-                "scenery",
+            lighting_maps: make(
+                "lighting_maps",
                 &[
                     entry(0, fragment, texture(TextureSampleType::Depth)),
                     entry(1, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),

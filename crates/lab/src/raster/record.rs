@@ -1,9 +1,9 @@
-//! The passes of a frame.
+//! Recording of a frame's passes.
 
-use super::corners::{Kind, STRIDE};
-use super::frame::FrameWords;
-use super::lighting::LightsWords;
-use super::{Raster, Set};
+use super::frame::FrameUniforms;
+use super::lighting::LightingRecord;
+use super::vertices::{AlphaKind, STRIDE};
+use super::{Raster, VertexSet};
 use crate::trace::view::View;
 use afterimage::gpu::filled;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use wgpu::{
     StoreOp,
 };
 
-/// Triangles of one material that are blended, as a range of the index buffer.
+/// Index range of blended triangles with one material.
 struct Run {
     is_moving: bool,
     material: u32,
@@ -20,31 +20,31 @@ struct Run {
 }
 
 impl Raster {
-    /// Records a frame seen through `view` that was seen through `previous` a frame ago. Both must be of the targets' size.
-    /// Several frames may be recorded into one encoder; each has uniforms of its own.
+    /// Records a frame for camera `view` and previous camera `previous`, both of the targets' size. Several frames may
+    /// be recorded into one encoder; each has its own uniforms.
     pub fn record(&mut self, device: &Device, encoder: &mut CommandEncoder, view: &View, previous: &View) {
         self.upload(device, encoder);
-        let frame = FrameWords::new(view, previous, self.near);
-        let lights = self.lighting.words(&self.lights, self.last_level, self.shadow_side);
+        let frame = FrameUniforms::new(view, previous, self.near);
+        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
         let group = self.frame_group(device, &frame, &lights);
-        if self.has_sun && self.is_shadow_old {
+        if self.has_sun && self.is_shadow_stale {
             self.sun_pass(encoder, &group);
-            self.is_shadow_old = false;
+            self.is_shadow_stale = false;
         }
         self.surface_pass(encoder, &group);
         self.color_pass(device, encoder, &group, view);
     }
 
-    /// What moved since the last frame.
+    /// Uploads vertices that moved since the last frame.
     fn upload(&mut self, device: &Device, encoder: &mut CommandEncoder) {
         let Some([now, before]) = self.pending.take() else { return };
-        for (to, corners) in [(&self.moving.buffer, now), (&self.previous, before)] {
-            let from = filled(device, "raster frame", bytemuck::cast_slice(&corners), BufferUsages::COPY_SRC);
-            encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * corners.len() as u64);
+        for (to, vertices) in [(&self.moving.buffer, now), (&self.previous, before)] {
+            let from = filled(device, "raster frame", bytemuck::cast_slice(&vertices), BufferUsages::COPY_SRC);
+            encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * vertices.len() as u64);
         }
     }
 
-    fn frame_group(&self, device: &Device, frame: &FrameWords, lights: &LightsWords) -> BindGroup {
+    fn frame_group(&self, device: &Device, frame: &FrameUniforms, lights: &LightingRecord) -> BindGroup {
         let buffers = [
             filled(device, "raster frame", bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
             filled(device, "raster frame", bytemuck::bytes_of(lights), BufferUsages::STORAGE),
@@ -61,9 +61,9 @@ impl Raster {
     fn sun_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {
         let mut pass = begin(encoder, "sun", None, &self.shadow, StoreOp::Store);
         pass.set_bind_group(0, group, &[]);
-        self.each_part(|set, is_moving, part| {
-            // What light passes through, and thin veils, cast no shadow worth the name.
-            if part.kind != Kind::Blend {
+        self.for_each_draw(|set, is_moving, part| {
+            // Transmissive and blended surfaces cast no shadow.
+            if part.kind != AlphaKind::Blend {
                 pass.set_pipeline(self.pipelines.sun(part.kind));
                 self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
             }
@@ -80,7 +80,7 @@ impl Raster {
         };
         let mut pass = begin(encoder, "surfaces", Some(color), depth, StoreOp::Store);
         pass.set_bind_group(0, group, &[]);
-        self.each_part(|set, is_moving, part| {
+        self.for_each_draw(|set, is_moving, part| {
             pass.set_pipeline(self.pipelines.motion(part.kind));
             self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
         });
@@ -101,9 +101,9 @@ impl Raster {
         };
         let mut pass = begin(encoder, "color", Some(color), depth, StoreOp::Discard);
         pass.set_bind_group(0, group, &[]);
-        pass.set_bind_group(2, &self.scenery, &[]);
-        self.each_part(|set, is_moving, part| {
-            if part.kind != Kind::Blend {
+        pass.set_bind_group(2, &self.lighting_maps, &[]);
+        self.for_each_draw(|set, is_moving, part| {
+            if part.kind != AlphaKind::Blend {
                 pass.set_pipeline(self.pipelines.color(part.kind));
                 self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
             }
@@ -112,7 +112,7 @@ impl Raster {
         pass.set_pipeline(&self.pipelines.sky);
         pass.draw(0..3, 0..1);
         if let Some(indices) = &indices {
-            pass.set_pipeline(self.pipelines.color(Kind::Blend));
+            pass.set_pipeline(self.pipelines.color(AlphaKind::Blend));
             pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
             for run in runs {
                 let set = if run.is_moving { &self.moving } else { &self.still };
@@ -122,9 +122,9 @@ impl Raster {
         }
     }
 
-    /// Parts of what stands still and of what moves, opaque ones of both first.
-    fn each_part(&self, mut f: impl FnMut(&Set, bool, &super::corners::Part)) {
-        let of = |set: &'_ Set| set.grouped.parts.clone();
+    /// Calls `f` on the draw ranges of static and moving triangles, opaque ones first.
+    fn for_each_draw(&self, mut f: impl FnMut(&VertexSet, bool, &super::vertices::DrawRange)) {
+        let of = |set: &'_ VertexSet| set.grouped.parts.clone();
         let mut parts: Vec<_> = of(&self.still).into_iter().map(|p| (false, p)).collect();
         parts.extend(of(&self.moving).into_iter().map(|p| (true, p)));
         parts.sort_by_key(|(_, p)| p.kind);
@@ -133,21 +133,22 @@ impl Raster {
         }
     }
 
-    fn bind(&self, pass: &mut RenderPass<'_>, set: &Set, is_moving: bool, material: u32) {
+    fn bind(&self, pass: &mut RenderPass<'_>, set: &VertexSet, is_moving: bool, material: u32) {
         let material = self.materials.get(material as usize).unwrap_or(&self.materials[0]);
         pass.set_bind_group(1, material, &[]);
         pass.set_vertex_buffer(0, set.buffer.slice(..));
         pass.set_vertex_buffer(1, if is_moving { &self.previous } else { &set.buffer }.slice(..));
     }
 
-    fn draw(&self, pass: &mut RenderPass<'_>, set: &Set, is_moving: bool, material: u32, vertices: Range<u32>) {
+    fn draw(&self, pass: &mut RenderPass<'_>, set: &VertexSet, is_moving: bool, material: u32, vertices: Range<u32>) {
         self.bind(pass, set, is_moving, material);
         pass.draw(vertices, 0..1);
     }
 
-    /// The triangles that are blended: groups of one material by the mean of their middles' distances along the view axis,
-    /// farthest first, and within each the triangles by theirs. A draw a group, as a draw a triangle would cost more than the
-    /// order of interlocked groups is worth.
+    /// Index buffer of the blended triangles and its draws. Groups of one material are ordered by the mean distance of
+    /// their triangles' centroids along the view axis, farthest first; triangles within a group likewise. Sorting per
+    /// group instead of per triangle allows one draw per group; interlocked groups may therefore blend in the wrong
+    /// order.
     fn back_to_front(&self, device: &Device, view: &View) -> (Option<Buffer>, Vec<Run>) {
         let at = view.world_from_camera().w_axis.truncate().as_vec3();
         let ahead = -view.world_from_camera().z_axis.truncate().as_vec3();
@@ -155,7 +156,7 @@ impl Raster {
         for (is_moving, set) in [(false, &self.still), (true, &self.moving)] {
             for blended in set.blended.chunk_by(|a, b| a.material == b.material) {
                 let mut group: Vec<_> = blended.iter().map(|b| ((b.middle - at).dot(ahead), b.first)).collect();
-                // Stable: what is as far stays in the file's order.
+                // Stable: triangles at the same distance keep their order in the file.
                 group.sort_by(|a, b| b.0.total_cmp(&a.0));
                 let mean = group.iter().map(|(far, _)| f64::from(*far)).sum::<f64>() / group.len() as f64;
                 groups.push((mean, is_moving, blended[0].material, group));

@@ -1,4 +1,4 @@
-//! What frames are drawn to, and how they come back to memory.
+//! Render targets, and reading them back.
 
 use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT, SAMPLES};
 use crate::device::Headless;
@@ -6,17 +6,17 @@ use afterimage::Image;
 use afterimage::kernel::pack::half_value;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 
-/// The textures of a frame. They can be bound by what comes after, and copied from.
+/// Textures of a frame. They can be bound by later passes and copied.
 #[derive(Debug)]
 pub struct Targets {
     /// Linear color.
     pub color: Texture,
-    /// Near plane over distance; 0 where there is nothing.
+    /// Near plane divided by distance; 0 where there is no surface.
     pub depth: Texture,
-    /// Pixels, y down, previous minus current.
+    /// Motion in pixels, y down, previous minus current.
     pub motion: Texture,
     pub(super) views: [TextureView; 3],
-    /// Color and depth of all samples.
+    /// Multisampled color and depth.
     pub(super) samples: [TextureView; 2],
 }
 
@@ -30,24 +30,24 @@ impl Targets {
         Self { color, depth, motion, views, samples }
     }
 
-    /// Waits for all that was submitted; the color.
+    /// Waits for all submitted work, then reads the color.
     pub fn read_color(&self, device: &Headless) -> Image<[f32; 3]> {
         device.read::<[u16; 4]>(&self.color, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
     }
 
-    /// Waits for all that was submitted; distance along the view axis in metres, infinity where there is nothing. `near` is
-    /// [`Raster::near`](super::Raster::near).
+    /// Waits for all submitted work, then reads distance along the view axis in metres; infinity where there is no
+    /// surface. `near` is [`Raster::near`](super::Raster::near).
     pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
         device.read::<f32>(&self.depth, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
     }
 
-    /// Waits for all that was submitted; the motion vectors.
+    /// Waits for all submitted work, then reads the motion vectors.
     pub fn read_motion(&self, device: &Headless) -> Image<[f32; 2]> {
         device.read::<[f32; 2]>(&self.motion, 0)
     }
 }
 
-/// A texture to draw to; of one sample, one that can be bound and copied.
+/// A render target. With one sample, it can also be bound and copied.
 pub(super) fn attachment(device: &Device, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
     let one = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
     device.create_texture(&wgpu::TextureDescriptor {

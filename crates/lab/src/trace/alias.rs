@@ -1,7 +1,8 @@
-//! Picking one of many by weight in constant time: Walker's alias method.
+//! Walker's alias method: draws an index with given probabilities in constant time.
 
-/// A row of the table for each weight: the probability to stay in the row that was hit, and where to go else; and the
-/// probability of each weight. Weights that are negative or not finite count as 0; if none is above 0, all are alike.
+/// The alias table, and each weight's probability. A row is (probability to keep the row's own index, index to take
+/// otherwise). Weights that are negative or not finite count as 0. If no weight is above 0, all indices are equally
+/// probable.
 pub fn alias_table(weights: &[f64]) -> (Vec<(f32, u32)>, Vec<f32>) {
     let n = weights.len();
     let mut weights: Vec<f64> = weights.iter().map(|w| if w.is_finite() && *w > 0.0 { *w } else { 0.0 }).collect();

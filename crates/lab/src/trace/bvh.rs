@@ -1,4 +1,4 @@
-//! Triangles under an eight-wide hierarchy, and rays through it on the CPU.
+//! Eight-wide bounding volume hierarchy over triangles, and its traversal on the CPU.
 
 use super::bvh2;
 use super::node::NodeRay;
@@ -10,52 +10,53 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
-/// Entries of a traversal's stack; `shaders/trace/traverse.wgsl` has as many.
+/// Entries of the traversal stack, as in `shaders/trace/traverse.wgsl`.
 const STACK: usize = 32;
 
-/// Coordinates beyond this are taken for broken: squares of their differences would leave the floats.
+/// Triangles with larger coordinates (metres) are dropped: squares of coordinate differences would overflow f32.
 const MAX_COORDINATE: f32 = 1e15;
 
-/// What is searched for hits.
+/// A ray segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Metres. Not finite: hits nothing.
+    /// Metres. A ray whose origin is not finite hits nothing.
     pub origin: Vec3,
-    /// Not zero, of any length around 1; distances are in its lengths.
+    /// Not zero. Length about 1; distances are in units of this length.
     pub direction: Vec3,
-    /// Hits count if nearer than this; may be infinite.
+    /// Only hits nearer than this count. May be infinite.
     pub t_max: f32,
 }
 
 /// The nearest hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Which triangle: of [`Geometry`](super::Geometry) or of [`Bvh::triangles`], whichever was asked.
+    /// Triangle index: into the whole [`Geometry`](super::Geometry) for its queries, into [`Bvh::triangles`] for a
+    /// [`Bvh`]'s.
     pub triangle: u32,
-    /// Distance in lengths of the ray's direction, above 0.
+    /// Distance in units of the ray direction's length, above 0.
     pub t: f32,
-    /// Weight of the second corner.
+    /// Barycentric weight of the second corner.
     pub u: f32,
-    /// Weight of the third corner.
+    /// Barycentric weight of the third corner.
     pub v: f32,
 }
 
 impl Hit {
-    /// Before the first hit: the ray's own limit, at which no triangle comes before.
+    /// Start value of a search: any triangle nearer than the ray's `t_max` replaces it.
     pub(super) const fn none(t_max: f32) -> Self {
         Self { triangle: 0, t: t_max, u: 0.0, v: 0.0 }
     }
 }
 
-/// A ray made ready for nodes and triangles.
-pub(super) struct Prepared {
+/// A ray with everything precomputed that node and triangle tests need.
+pub(super) struct PreparedRay {
     origin: Vec3A,
     shear: Shear,
     node_ray: NodeRay,
 }
 
-impl Prepared {
-    /// `None` for rays that hit nothing.
+impl PreparedRay {
+    /// `None` for rays that cannot hit anything.
     #[inline]
     pub fn new(ray: &Ray) -> Option<Self> {
         let usable = ray.origin.is_finite() && ray.direction.is_finite() && ray.direction != Vec3::ZERO;
@@ -67,7 +68,7 @@ impl Prepared {
     }
 }
 
-/// Triangles in the order of the hierarchy's leaves, and the hierarchy.
+/// The hierarchy, and its triangles in leaf order.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     pub(super) nodes: Vec<CwBvhNode>,
@@ -78,8 +79,9 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Of all triangles with an area and finite corners within 1e15 m; the others no ray can meet. `previous` is where the corners
-    /// were a frame ago, if they move. n log n steps whatever the input.
+    /// Builds the hierarchy over all triangles that have an area and finite corners within 1e15 m; rays cannot hit the
+    /// others. `previous` holds the corners' positions in the previous frame, for triangles that move. Takes n log n
+    /// steps for any input.
     pub fn build(triangles: &Triangles, previous: Option<&[[Vec3; 3]]>, materials: &[Material]) -> Self {
         let count = triangles.len().min(u32::MAX as usize) as u32;
         let sources: Vec<u32> = (0..count).filter(|&i| is_sound(&triangles.positions[i as usize])).collect();
@@ -99,27 +101,27 @@ impl Bvh {
         }
     }
 
-    /// Triangles in the order of leaves: what [`Hit::triangle`] indexes.
+    /// Triangles in leaf order, as [`Hit::triangle`] indexes them.
     pub fn triangles(&self) -> &[TriangleRecord] {
         &self.triangles
     }
 
-    /// Their shading, in the same order.
+    /// Shading attributes of the triangles, in leaf order.
     pub fn attributes(&self) -> &[AttributeRecord] {
         &self.attributes
     }
 
-    /// Where they were a frame ago, in the same order; empty if that was not said.
+    /// Corner positions in the previous frame, in leaf order; empty if none were given.
     pub fn previous(&self) -> &[PreviousRecord] {
         &self.previous
     }
 
-    /// How many triangles were left out: without area, not finite, or too far away.
+    /// Number of input triangles that were dropped: without area, not finite, or too far away.
     pub fn dropped(&self) -> u32 {
         self.dropped
     }
 
-    /// Entries of its stack of 32 that the deepest traversal takes.
+    /// Stack entries that the deepest traversal needs, of the 32 there are.
     pub fn stack_needed(&self) -> usize {
         stack_needed(&self.nodes)
     }
@@ -129,25 +131,25 @@ impl Bvh {
         self.nodes.len()
     }
 
-    /// The nearest hit; of equally near ones that of the lowest index. `accept(triangle, u, v)` is asked about triangles whose
-    /// opacity matters ([`TriangleFlags::ALPHA`]); its answers may not depend on the order of questions.
+    /// Nearest hit; among equally near hits the lowest triangle index wins. `accept(triangle, u, v)` runs the alpha
+    /// test on triangles flagged [`TriangleFlags::ALPHA`]. Its answer must not depend on the order of calls.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
         let mut hit = Hit::none(ray.t_max);
-        self.traverse::<false>(&Prepared::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
+        self.traverse::<false>(&PreparedRay::new(ray)?, 0, &mut hit, &mut accept).then_some(hit)
     }
 
-    /// Whether anything is hit.
+    /// Whether the ray hits anything.
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> bool {
         let mut hit = Hit::none(ray.t_max);
-        Prepared::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
+        PreparedRay::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
     }
 
-    /// Puts the nearest hit, if nearer than `hit`, there; with `ANY` stops at the first. Whether there was one. The indices of
-    /// triangles start at `first`.
+    /// Replaces `hit` by the nearest hit if that is nearer, and returns whether it did. With `ANY`, stops at the first
+    /// hit. Triangle indices start at `first`.
     #[inline]
     pub(super) fn traverse<const ANY: bool>(
         &self,
-        ray: &Prepared,
+        ray: &PreparedRay,
         first: u32,
         hit: &mut Hit,
         accept: &mut impl FnMut(u32, f32, f32) -> bool,
@@ -159,7 +161,7 @@ impl Bvh {
         let mut met = false;
         let mut stack = [(0_u32, 0_u32); STACK];
         let mut depth = 0;
-        // Children of a node that are to be visited: index of the first, and hits above the mask of inner ones.
+        // Children left to visit: index of the first child, then hit bits (24 to 31) above the mask of inner children.
         let mut group = (0_u32, 0x8000_0000_u32);
         loop {
             let bit = 31 - group.1.leading_zeros();
@@ -180,14 +182,14 @@ impl Bvh {
                 leaves &= leaves - 1;
                 let triangle = &self.triangles[index as usize];
                 let [v0, v1, v2] = triangle.corners();
-                let meeting = intersect(ray.shear, ray.origin, v0, v1, v2);
+                let intersection = intersect(ray.shear, ray.origin, v0, v1, v2);
                 let index = first + index;
-                let nearer = meeting.t < hit.t || meeting.t == hit.t && index < hit.triangle;
-                if meeting.t > 0.0 && nearer && meeting.t < f32::INFINITY {
-                    if triangle.has(TriangleFlags::ALPHA) && !accept(index, meeting.u, meeting.v) {
+                let nearer = intersection.t < hit.t || intersection.t == hit.t && index < hit.triangle;
+                if intersection.t > 0.0 && nearer && intersection.t < f32::INFINITY {
+                    if triangle.has(TriangleFlags::ALPHA) && !accept(index, intersection.u, intersection.v) {
                         continue;
                     }
-                    *hit = Hit { triangle: index, t: meeting.t, u: meeting.u, v: meeting.v };
+                    *hit = Hit { triangle: index, t: intersection.t, u: intersection.u, v: intersection.v };
                     met = true;
                     if ANY {
                         return true;
@@ -207,7 +209,7 @@ impl Bvh {
 
 fn is_sound(corners: &[Vec3; 3]) -> bool {
     let [a, b, c] = corners;
-    // False for what is not finite, too.
+    // Also false for coordinates that are not finite.
     let near = corners.iter().all(|v| v.abs().max_element() <= MAX_COORDINATE);
     near && (b - a).as_dvec3().cross((c - a).as_dvec3()).length_squared() > 0.0
 }
@@ -217,8 +219,9 @@ fn bounds(corners: &[Vec3; 3]) -> Aabb {
     Aabb::new(a.min(b).min(c), a.max(b).max(c))
 }
 
-/// Nodes, and indices of boxes in the order of leaves. Halves have at most 32 levels, of which the last has no inner nodes: they
-/// always fit the stack. No scene is known that needs them.
+/// Wide nodes, and box indices in leaf order. Falls back to halving by count if traversal of the SAH tree would
+/// overflow the stack: halving has at most 32 levels, of which the last has no inner nodes, so it always fits. No known
+/// scene needs the fallback.
 fn hierarchy(boxes: &[Aabb]) -> (Vec<CwBvhNode>, Vec<u32>) {
     for halve in [false, true] {
         let binary = bvh2::build(boxes, halve);
@@ -230,8 +233,8 @@ fn hierarchy(boxes: &[Aabb]) -> (Vec<CwBvhNode>, Vec<u32>) {
     unreachable!("the second round returns")
 }
 
-/// Entries of the stack that the deepest traversal takes: one a node with two inner children or more. Children come after their
-/// parents.
+/// Stack entries of the deepest traversal: one for each node with two or more inner children. Children are stored after
+/// their parents.
 fn stack_needed(nodes: &[CwBvhNode]) -> usize {
     let mut needed = vec![0_usize; nodes.len()];
     for (i, node) in nodes.iter().enumerate().rev() {

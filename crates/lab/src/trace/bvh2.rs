@@ -1,21 +1,21 @@
-//! A binary hierarchy by the surface area heuristic, for `obvhs` to collapse into wide nodes.
+//! Binary hierarchy by the surface area heuristic, which `obvhs` collapses into wide nodes.
 //!
-//! `obvhs` has a builder of its own (PLOC). It merges neighbours that agree on each other as the cheapest partner: of boxes that
-//! are all alike, or that grow along the curve, one pair a sweep. A hundred thousand copies of a triangle then take minutes, and
-//! the chain that comes of it overflows the stack. Splitting from the top takes n log n steps on every input, and is as fast.
+//! The builder of `obvhs` (PLOC) merges neighbours that are each other's cheapest partner. If all boxes are alike, or
+//! grow along the curve, it merges one pair a sweep: a hundred thousand copies of a triangle take minutes, and the
+//! resulting linear tree overflows the stack. Splitting top-down takes n log n steps for any input and is as fast.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Places where a node may be split, an axis.
+/// Candidate bins per axis for a node's split.
 const BINS: usize = 16;
 
-/// Levels of the heuristic's own choice; below, nodes are halved by count.
+/// Levels that the heuristic splits; below, nodes are halved by count.
 const MAX_DEPTH: u32 = 64;
 
-/// One leaf a box. `halve` splits by count only, which gives the least depth.
+/// A tree with one box per leaf. `halve` splits by count only, which gives the least depth.
 pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
     let mut bvh = Bvh2 { primitive_indices: (0..boxes.len() as u32).collect(), ..Bvh2::default() };
     if boxes.is_empty() {
@@ -35,7 +35,7 @@ pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
         }
         let indices = &mut bvh.primitive_indices[begin..end];
         let split = if depth < max_depth { cheapest(range).map(|s| partition(range, indices, s)) } else { None };
-        // Boxes with one centre, or all on one side by rounding: any halves do.
+        // All boxes share a centre, or rounding put them on one side: halve by count.
         let left = split.filter(|&n| n > 0 && n < range.len()).unwrap_or(range.len() / 2);
         bvh.nodes[node] = Bvh2Node::new(bounds, 0, used as u32);
         open.push(Open { node: used, begin, end: begin + left, depth: depth + 1 });
@@ -45,7 +45,7 @@ pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
     bvh
 }
 
-/// A node to be made of the boxes `begin..end`.
+/// A node still to be built from the boxes `begin..end`.
 struct Open {
     node: usize,
     begin: usize,
@@ -53,7 +53,7 @@ struct Open {
     depth: u32,
 }
 
-/// Boxes whose centres fall into bins up to `last` go left.
+/// A split: boxes whose centre falls into a bin up to `last` go left.
 #[derive(Clone, Copy)]
 struct Split {
     binning: Binning,
@@ -61,7 +61,7 @@ struct Split {
     last: usize,
 }
 
-/// From twice a box's centre to its bins.
+/// Map from twice a box's centre to its bin on each axis.
 #[derive(Clone, Copy)]
 struct Binning {
     low: Vec3A,
@@ -82,7 +82,8 @@ fn bounds(boxes: &[Aabb]) -> Aabb {
     boxes.iter().fold(Aabb::INVALID, |a, b| Aabb::new(a.min.min(b.min), a.max.max(b.max)))
 }
 
-/// The cheapest split (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), if centres differ.
+/// The cheapest split (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007); `None` if all
+/// centres coincide.
 fn cheapest(boxes: &[Aabb]) -> Option<Split> {
     let centers = boxes.iter().fold(Aabb::INVALID, |a, b| {
         let c = b.min + b.max;
@@ -90,7 +91,7 @@ fn cheapest(boxes: &[Aabb]) -> Option<Split> {
     });
     let extent = centers.max - centers.min;
     let count = boxes.len().clamp(4, BINS);
-    // Just below the count: the largest centre falls into the last bin. An axis without extent has one bin.
+    // The factor just below 1 puts the largest centre into the last bin. An axis without extent has a single bin.
     let wide = extent.cmpgt(Vec3A::splat(f32::MIN_POSITIVE));
     let scale = Vec3A::select(wide, Vec3A::splat(count as f32 * 0.999_999) / extent, Vec3A::ZERO);
     let binning = Binning { low: centers.min, scale, count };
@@ -129,7 +130,7 @@ fn cheapest(boxes: &[Aabb]) -> Option<Split> {
     best.1
 }
 
-/// Brings the left boxes to the front; how many they are.
+/// Moves the boxes of the left side to the front; returns their number.
 fn partition(boxes: &mut [Aabb], indices: &mut [u32], split: Split) -> usize {
     let (mut left, mut right) = (0, boxes.len());
     while left < right {

@@ -1,14 +1,14 @@
-//! What a scene calls for, so that only that is simulated.
+//! Rendering effects that a scene needs; kernels are compiled with only those.
 //!
-//! An effect that is left out costs nothing: its code is not compiled into the kernels. The law that makes this safe: a kernel
-//! with more effects than a scene needs gives the same image, bit for bit. Unused parameters are exact zeros and ones, and every
-//! random number belongs to a purpose, not to a place in a sequence.
+//! An effect that is left out costs nothing, as its code is not compiled. Leaving it out is safe because a kernel with
+//! more effects than the scene needs gives the same image, bit for bit: unused parameters are exact zeros and ones, and
+//! every random number belongs to a purpose, not to a place in a sequence.
 
 use crate::scene::{Alpha, Environment, Material, PunctualLight, Scene};
 
 macro_rules! effects {
     ($($name:ident $text:literal $reason:literal,)*) => {
-        /// Something that rays may meet.
+        /// A rendering feature that can be compiled in or left out.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u32)]
         pub enum Effect {
@@ -16,15 +16,15 @@ macro_rules! effects {
         }
 
         impl Effect {
-            /// All of them.
+            /// All effects.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// As `--effects` spells it.
+            /// Name in `--effects`.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$name => $text,)* }
             }
 
-            /// What in a scene calls for it.
+            /// The scene feature that needs this effect.
             pub fn reason(self) -> &'static str {
                 match self { $(Self::$name => $reason,)* }
             }
@@ -33,22 +33,22 @@ macro_rules! effects {
 }
 
 effects! {
-    Dielectric "dielectric" "a material that is not all metal reflects at its surface",
+    Dielectric "dielectric" "a material with dielectric reflection",
     Metal "metal" "a metallic material",
-    Anisotropy "anisotropy" "a highlight that is stretched",
-    Clearcoat "clearcoat" "a coated material",
+    Anisotropy "anisotropy" "a material with anisotropic highlights",
+    Clearcoat "clearcoat" "a material with a clear coat",
     Sheen "sheen" "a material with sheen",
-    Transmission "transmission" "a material that light passes through, and that may absorb it",
-    BaseColor "base-color" "a base color from an image or on vertices",
-    SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from an image",
+    Transmission "transmission" "a material that transmits light, and may absorb it",
+    BaseColor "base-color" "a base color from a texture or vertex colors",
+    SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from a texture",
     NormalMap "normal-map" "a normal map",
-    EmissiveTexture "emissive-texture" "an emissive color from an image",
-    Alpha "alpha" "a surface with holes or partly transparent",
+    EmissiveTexture "emissive-texture" "an emissive texture",
+    Alpha "alpha" "an alpha-tested or partly transparent surface",
     EmissiveTriangles "emissive-triangles" "a surface that emits light",
     PunctualLights "punctual-lights" "a point, spot or directional light",
-    Environment "environment" "light from all around",
-    EnvironmentMap "environment-map" "light from all around that differs by direction",
-    MovingObjects "moving-objects" "triangles that move",
+    Environment "environment" "an environment that emits light",
+    EnvironmentMap "environment-map" "an environment map",
+    MovingObjects "moving-objects" "moving triangles",
 }
 
 /// A set of effects.
@@ -56,10 +56,10 @@ effects! {
 pub struct Effects(u32);
 
 impl Effects {
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// All of them.
+    /// The set of all effects.
     pub fn all() -> Self {
         Effect::ALL.iter().copied().collect()
     }
@@ -69,33 +69,33 @@ impl Effects {
         self.0 >> effect as u32 & 1 != 0
     }
 
-    /// Whether all of `other` are in the set.
+    /// Whether the set contains all of `other`.
     pub fn covers(self, other: Self) -> bool {
         other.0 & !self.0 == 0
     }
 
-    /// Those in either set.
+    /// Effects in either set.
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Those of this set that `other` lacks.
+    /// Effects of this set that are not in `other`.
     pub fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// With or without `effect`.
+    /// The set with `effect` added (`on`) or removed.
     pub fn set(self, effect: Effect, on: bool) -> Self {
         let bit = 1 << effect as u32;
         Self(if on { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// Those in the set, in the order of [`Effect::ALL`].
+    /// Effects in the set, in the order of [`Effect::ALL`].
     pub fn iter(self) -> impl Iterator<Item = Effect> {
         Effect::ALL.iter().copied().filter(move |e| self.has(*e))
     }
 
-    /// What `scene` calls for, whatever its pose.
+    /// Effects that `scene` needs in any pose.
     pub fn needed(scene: &Scene) -> Self {
         let rest = scene.pose(0.0);
         let mut used = vec![false; scene.materials.len()];
@@ -123,7 +123,7 @@ impl Effects {
             m.sheen_roughness_texture,
             m.transmission_texture,
         ];
-        let glows = m.emissive != [0.0; 3];
+        let emits = m.emissive != [0.0; 3];
         Self::NONE
             .set(Effect::Dielectric, m.metallic < 1.0 && m.specular > 0.0 || m.metallic_roughness_texture.is_some())
             .set(Effect::Metal, m.metallic > 0.0)
@@ -134,9 +134,9 @@ impl Effects {
             .set(Effect::BaseColor, m.base_color_texture.is_some())
             .set(Effect::SurfaceTexture, surface_textures.iter().any(Option::is_some))
             .set(Effect::NormalMap, m.normal_texture.is_some())
-            .set(Effect::EmissiveTexture, glows && m.emissive_texture.is_some())
+            .set(Effect::EmissiveTexture, emits && m.emissive_texture.is_some())
             .set(Effect::Alpha, m.alpha != Alpha::Opaque)
-            .set(Effect::EmissiveTriangles, glows)
+            .set(Effect::EmissiveTriangles, emits)
     }
 
     fn of_light(lights: &[PunctualLight], environment: &Environment) -> Self {

@@ -1,10 +1,11 @@
-//! Where samples are averaged, and how far their mean can be trusted.
+//! Per-pixel sample statistics: mean, variance and noise estimates.
 
 use afterimage::Image;
 use afterimage::kernel::color::luma;
 use glam::Vec3;
 
-/// Running mean and squared deviations of one pixel's samples (Welford 1962): no cancellation, whatever the number of samples.
+/// Running mean and squared deviations of one pixel's samples (Welford 1962), without cancellation for any number of
+/// samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     /// Mean radiance.
@@ -16,7 +17,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Takes one more sample into account.
+    /// Adds a sample.
     #[inline]
     pub fn add(&mut self, sample: Vec3) {
         self.count += 1;
@@ -25,7 +26,7 @@ impl Moments {
         self.squares += off * (sample - self.mean);
     }
 
-    /// Variance of the mean; infinite below two samples.
+    /// Variance of the mean; infinite for fewer than two samples.
     pub fn variance_of_mean(&self) -> Vec3 {
         match self.count {
             0 | 1 => Vec3::INFINITY,
@@ -34,15 +35,15 @@ impl Moments {
     }
 }
 
-/// An image that is being sampled, or a window of it.
+/// Sample statistics of an image, or of a window of it.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// One entry a pixel of the window.
+    /// Statistics of each pixel of the window.
     pub moments: Image<Moments>,
     first: [u32; 2],
-    /// Samples that were not finite and count as black.
+    /// Number of samples that were not finite; they count as black.
     pub nonfinite: u64,
-    /// Rays traced, of all kinds.
+    /// Number of rays traced, camera, scattered and shadow rays together.
     pub rays: u64,
 }
 
@@ -52,59 +53,60 @@ impl Film {
         Self::window([0; 2], size)
     }
 
-    /// An empty film of `size` pixels of an image, the top left of them pixel `first`: all that is sampled must lie in it.
+    /// An empty film for a window of an image: `size` pixels with pixel `first` at the top left. Every sampled pixel
+    /// must lie in it.
     pub fn window(first: [u32; 2], size: [u32; 2]) -> Self {
         Self { moments: Image::filled(size, Moments::default()), first, nonfinite: 0, rays: 0 }
     }
 
-    /// What is known of a pixel of the image: outside the window, nothing.
+    /// Statistics of an image pixel; empty outside the window.
     #[inline]
     pub fn at(&self, [x, y]: [u32; 2]) -> Moments {
-        // Left of the window wraps to a number beyond it.
+        // Coordinates left of or above the window wrap to large numbers, which lie outside it.
         let [x, y] = [x.wrapping_sub(self.first[0]), y.wrapping_sub(self.first[1])];
         let [width, height] = self.moments.size();
         if x < width && y < height { self.moments.at(x as usize, y as usize) } else { Moments::default() }
     }
 
-    /// What to take from y * width + x to find a pixel of the image in `moments`.
+    /// Offset to subtract from y * width + x to index `moments` by image pixel.
     pub(super) fn base(&self) -> u32 {
         self.first[1] * self.moments.size()[0] + self.first[0]
     }
 
-    /// Mean radiance; black where there is no sample.
+    /// Mean radiance; black where there are no samples.
     pub fn color(&self) -> Image<[f32; 3]> {
         self.moments.map(|m| m.mean.to_array())
     }
 
-    /// Variance of each mean; infinite below two samples.
+    /// Variance of each mean; infinite for fewer than two samples.
     pub fn variance(&self) -> Image<[f32; 3]> {
         self.moments.map(|m| m.variance_of_mean().to_array())
     }
 
-    /// Noise of a pixel's mean: the standard error of its luma, and its number of samples (0 where there is none). Of a single sample
-    /// the error is how far its neighbours scatter, which counts their detail as noise, too.
+    /// Noise of a pixel's mean: standard error of its luma, and number of samples (0 where there are none). For a
+    /// single sample the error is the spread of the 3x3 neighbourhood, which also counts detail as noise.
     pub fn noise_at(&self, pixel: [u32; 2]) -> [f32; 2] {
         let own = self.at(pixel);
         let error = match own.count {
             0 => return [0.0; 2],
-            1 => self.scatter(pixel),
-            // As if the channels' noise were one and the same: never too small.
+            1 => self.spread(pixel),
+            // Assumes fully correlated channels, an upper bound.
             _ => luma(own.variance_of_mean().map(f32::sqrt)),
         };
         [error, own.count as f32]
     }
 
-    /// Standard deviation of the lumas of 3x3 pixels.
-    fn scatter(&self, [x, y]: [u32; 2]) -> f32 {
+    /// Standard deviation of luma over the 3x3 neighbourhood.
+    fn spread(&self, [x, y]: [u32; 2]) -> f32 {
         let mut lumas = Moments::default();
         for (dx, dy) in (0..9).map(|i| (i % 3, i / 3)) {
-            // Left of the image wraps to a pixel that no film has.
+            // Coordinates left of or above the image wrap to pixels that no film holds.
             let near = self.at([x.wrapping_add(dx).wrapping_sub(1), y.wrapping_add(dy).wrapping_sub(1)]);
             if near.count > 0 {
                 lumas.add(Vec3::splat(luma(near.mean)));
             }
         }
-        // A pixel alone is as uncertain as it is bright.
+        // Without neighbours, assume an error as large as the luma itself.
         if lumas.count < 2 { lumas.mean.x } else { (lumas.squares.x / (lumas.count - 1) as f32).sqrt() }
     }
 }

@@ -1,14 +1,15 @@
-//! All triangles of a scene, at rest and in motion.
+//! All triangles of a scene: static and moving.
 
-use super::bvh::{Bvh, Hit, Prepared, Ray};
+use super::bvh::{Bvh, Hit, PreparedRay, Ray};
 use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleRecord};
 
-/// The triangles that never move and those that do. Indices of the moving ones come after those at rest.
+/// Static and moving triangles, each under a hierarchy of its own. Indices of moving triangles follow those of static
+/// ones.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
-    /// Built once.
+    /// Static triangles, built once.
     pub still: Bvh,
-    /// Built for each frame.
+    /// Moving triangles, rebuilt every frame.
     pub moving: Bvh,
 }
 
@@ -23,12 +24,12 @@ impl Geometry {
         self.first_moving() + self.moving.triangles().len() as u32
     }
 
-    /// Whether there is none.
+    /// Whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Says which row of the table of lights a triangle is.
+    /// Stores the row of the light table that a triangle belongs to.
     pub(super) fn set_light(&mut self, index: u32, light: u32) {
         let first_moving = self.first_moving();
         match index.checked_sub(first_moving) {
@@ -37,47 +38,47 @@ impl Geometry {
         }
     }
 
-    /// A triangle of a hit.
+    /// The triangle with index `index`, as hits report it.
     ///
     /// # Panics
-    /// If there is no such triangle.
+    /// If the index is out of range.
     #[inline]
     pub fn triangle(&self, index: u32) -> &TriangleRecord {
         let (bvh, i) = self.place(index);
         &bvh.triangles()[i]
     }
 
-    /// Its shading.
+    /// Shading attributes of a triangle.
     ///
     /// # Panics
-    /// If there is no such triangle.
+    /// If the index is out of range.
     #[inline]
     pub fn attributes(&self, index: u32) -> &AttributeRecord {
         let (bvh, i) = self.place(index);
         &bvh.attributes()[i]
     }
 
-    /// Where it was a frame ago; `None` if it is at rest or that is not known.
+    /// Corner positions in the previous frame; `None` if the triangle is static or they are unknown.
     #[inline]
     pub fn previous(&self, index: u32) -> Option<&PreviousRecord> {
         let (bvh, i) = self.place(index);
         bvh.previous().get(i)
     }
 
-    /// The nearest hit, as [`Bvh::closest`].
+    /// Nearest hit, as [`Bvh::closest`].
     #[inline]
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> Option<Hit> {
-        let prepared = Prepared::new(ray)?;
+        let prepared = PreparedRay::new(ray)?;
         let mut hit = Hit::none(ray.t_max);
         let still = self.still.traverse::<false>(&prepared, 0, &mut hit, &mut accept);
         let moving = self.moving.traverse::<false>(&prepared, self.first_moving(), &mut hit, &mut accept);
         (still || moving).then_some(hit)
     }
 
-    /// Whether anything is hit, as [`Bvh::occluded`].
+    /// Whether the ray hits anything, as [`Bvh::occluded`].
     #[inline]
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(u32, f32, f32) -> bool) -> bool {
-        let Some(prepared) = Prepared::new(ray) else { return false };
+        let Some(prepared) = PreparedRay::new(ray) else { return false };
         let mut hit = Hit::none(ray.t_max);
         self.still.traverse::<true>(&prepared, 0, &mut hit, &mut accept)
             || self.moving.traverse::<true>(&prepared, self.first_moving(), &mut hit, &mut accept)

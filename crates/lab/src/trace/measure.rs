@@ -1,4 +1,4 @@
-//! What traversal costs: rates on the CPU against `obvhs`' own, and build times.
+//! Traversal cost: ray rates on the CPU against `obvhs`' own traversal, and build times.
 
 use super::{Bvh, Geometry, Hit, Ray};
 use crate::clock::Stopwatch;
@@ -11,54 +11,54 @@ use obvhs::ray::RayHit;
 use obvhs::rt_triangle::RtTriangle;
 use obvhs::triangle::Triangle;
 
-/// Rays, and the CPU time that they took.
+/// A ray count and the CPU time it took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// How many rays.
+    /// Number of rays.
     pub rays: usize,
-    /// How many of them hit something.
+    /// Number of rays that hit something.
     pub hits: usize,
-    /// CPU time of the process; wall time where the system does not tell.
+    /// CPU time of the process; wall time where the system reports none.
     pub cpu_ms: f64,
 }
 
 impl Rate {
-    /// Million rays per second of one core.
+    /// Million rays per second on one core.
     pub fn mrays(&self) -> f64 {
         self.rays as f64 / self.cpu_ms * 1e-3
     }
 }
 
-/// CPU time of some work, in milliseconds; wall time where the system does not tell.
+/// Runs `work` and returns its CPU time in milliseconds; wall time where the system reports none.
 pub fn cpu_ms<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let watch = Stopwatch::start();
     let result = work();
     (result, watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()))
 }
 
-/// Nearest hits on the CPU, one thread.
+/// Nearest hits on one CPU thread.
 pub fn closest(geometry: &Geometry, rays: &[Ray]) -> (Vec<Option<Hit>>, Rate) {
     let (hits, cpu_ms) = cpu_ms(|| rays.iter().map(|r| geometry.closest(r, |_, _, _| true)).collect::<Vec<_>>());
     let rate = Rate { rays: rays.len(), hits: hits.iter().flatten().count(), cpu_ms };
     (hits, rate)
 }
 
-/// Whether anything is hit, on the CPU, one thread.
+/// Occlusion queries on one CPU thread.
 pub fn occluded(geometry: &Geometry, rays: &[Ray]) -> Rate {
     let (hits, cpu_ms) = cpu_ms(|| rays.iter().filter(|r| geometry.occluded(r, |_, _, _| true)).count());
     Rate { rays: rays.len(), hits, cpu_ms }
 }
 
-/// The same triangles as `obvhs` builds and traverses them.
+/// Triangles in `obvhs`' own hierarchy and intersection format, for comparison.
 pub struct Obvhs {
     bvh: CwBvh,
     triangles: Vec<RtTriangle>,
-    /// CPU time of the build.
+    /// CPU time of the build in milliseconds.
     pub build_ms: f64,
 }
 
 impl Obvhs {
-    /// By `obvhs`' own builder.
+    /// Builds with `obvhs`' own builder.
     pub fn build(triangles: &Triangles, params: BvhBuildParams) -> Self {
         let soup: Vec<Triangle> = triangles.positions.iter().map(of_obvhs).collect();
         let (bvh, build_ms) = cpu_ms(|| build_cwbvh_from_tris(&soup, params, &mut Default::default()));
@@ -66,14 +66,14 @@ impl Obvhs {
         Self { bvh, triangles, build_ms }
     }
 
-    /// With the nodes of another hierarchy: what differs is traversal only.
+    /// Shares the nodes of `bvh`, so that only the traversal differs.
     pub fn sharing(bvh: &Bvh) -> Self {
         let nodes = CwBvh { nodes: bvh.nodes.clone(), ..CwBvh::default() };
         let triangles = bvh.triangles().iter().map(|t| RtTriangle::from(&of_obvhs(&t.positions()))).collect();
         Self { bvh: nodes, triangles, build_ms: 0.0 }
     }
 
-    /// Nearest hits, one thread.
+    /// Nearest hits on one CPU thread.
     pub fn closest(&self, rays: &[Ray]) -> Rate {
         let (hits, cpu_ms) = cpu_ms(|| {
             let hit = |r: &&Ray| {
@@ -91,7 +91,7 @@ fn of_obvhs(corners: &[Vec3; 3]) -> Triangle {
     Triangle { v0, v1, v2 }
 }
 
-/// One ray through each pixel's centre of a pinhole camera, in row order.
+/// One ray through each pixel centre of a pinhole camera, in row order.
 pub fn primary_rays(size: [u32; 2], eye: Vec3, target: Vec3, fov_y_deg: f32) -> Vec<Ray> {
     let forward = (target - eye).normalize();
     let right = forward.cross(Vec3::Y).normalize();
@@ -106,7 +106,8 @@ pub fn primary_rays(size: [u32; 2], eye: Vec3, target: Vec3, fov_y_deg: f32) -> 
     (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
 }
 
-/// A ray from each hit into the half space above its surface, cosine distributed: what paths do after their first hit.
+/// A cosine-distributed ray from each hit into the half space above its surface, as paths continue after their first
+/// hit.
 pub fn bounce_rays(geometry: &Geometry, rays: &[Ray], hits: &[Option<Hit>]) -> Vec<Ray> {
     use crate::kernel::triangle::{magnitude, offset_ray, point_at};
     use afterimage::kernel::rng::{pcg4d, unit_draw};

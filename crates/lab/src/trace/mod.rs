@@ -1,11 +1,12 @@
 //! Path tracing of scenes, on the CPU and on a GPU, foveated or not. `docs/path-tracing.md` has the formulas.
 //!
-//! - [`world::World`]: a scene made ready; in it [`Geometry`], the triangles that never move and those that do, each under a hierarchy
-//!   of its own.
-//! - [`Tracer`]: [`cpu`] or [`gpu`], the same paths; specialised to [`effects::Effects`] that the scene calls for. It adds the samples
-//!   of a [`work::Work`] to a [`film::Film`].
-//! - [`sampling`]: where a frame is sampled for a gaze. [`surfaces`]: exact depth and motion. [`stereo`]: a gaze for each eye.
-//! - [`heap`]: everything that the tracer on a GPU reads, as one array of `vec4<u32>`.
+//! - [`world::World`]: a scene prepared for tracing, with its [`Geometry`]: static and moving triangles, each under a
+//!   hierarchy of its own.
+//! - [`Tracer`]: [`cpu`] or [`gpu`], which trace the same paths, specialized to the [`effects::Effects`] that the scene
+//!   needs. It adds the samples of a [`work::Work`] to a [`film::Film`].
+//! - [`sampling`]: foveated sampling patterns. [`surfaces`]: exact depth and motion. [`stereo`]: views and gaze of two
+//!   eyes.
+//! - [`scene_buffer`]: the scene as one array of `vec4<u32>`, which the GPU tracer reads.
 
 mod alias;
 mod bvh;
@@ -15,10 +16,10 @@ pub mod effects;
 pub mod film;
 mod geometry;
 pub mod gpu;
-pub mod heap;
 pub mod measure;
 mod node;
 pub mod sampling;
+pub mod scene_buffer;
 pub mod settings;
 pub mod shading_records;
 pub mod stereo;

@@ -1,30 +1,31 @@
-//! A ray against the eight boxes of a node of an eight-wide hierarchy with quantised boxes (CWBVH; Ylitie, Karras and Laine,
+//! Ray test against the eight quantized boxes of a node of an eight-wide hierarchy (CWBVH; Ylitie, Karras and Laine,
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017).
 //!
-//! `obvhs` tests them, too, but takes boxes nearer than 1e-4 for missed, divides small components of the direction by a limit, and
-//! rounds without slack: rays leak. Here every box is widened by what rounding can amount to (after Ize, "Robust BVH Ray
-//! Traversal", JCGT 2(2), 2013), so that no triangle that the watertight test would accept is passed by. What is hit then does not
-//! depend on this test at all, and it needs no bit-equal twin: `shaders/trace/traverse.wgsl` has the same formulas.
+//! The test in `obvhs` leaks rays: it rejects boxes nearer than 1e-4, clamps small direction components, and leaves no
+//! margin for rounding. Here every box is widened by the largest possible rounding error (after Ize, "Robust BVH Ray
+//! Traversal", JCGT 2(2), 2013), so a triangle that the watertight test accepts is never culled. Hits therefore do not
+//! depend on this test, and the formulas in `shaders/trace/traverse.wgsl` need not be bit-equal.
 
 use glam::{Vec3, Vec3A, Vec4};
 use obvhs::cwbvh::node::CwBvhNode;
 
-/// Boxes are widened by this share of the distance from the ray's origin to the node's far side. Rounding, u = 2^-24: of the
-/// planes and their distances 4 u, of quantisation 2 u, of the test of triangles, whose shear moves a vertex across the ray,
-/// 7 u; where division is as bad as Vulkan allows (2.5 ulp), twice as much. That makes 26 u; this is 32 u.
+/// Widening of boxes, as a share of the distance from the ray's origin to the node's far side. Rounding with u = 2^-24:
+/// 4 u from the planes and their distances, 2 u from quantization, 7 u from the triangle test, whose shear moves a
+/// vertex across the ray. Twice as much where division has Vulkan's largest error (2.5 ulp): 26 u. This is 32 u.
 const SLACK: f32 = 1.0 / 524_288.0;
 
-/// Directions more parallel to a plane than this are taken to be so parallel: reciprocals and their products stay finite.
+/// Smallest magnitude of a direction component; smaller ones are raised to it, so that reciprocals and their products
+/// stay finite.
 const MIN_DIRECTION: f32 = 1.0 / (1_u64 << 60) as f32;
 
-/// What tests of nodes need of a ray.
+/// Per-ray constants of the node test.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeRay {
     origin: Vec3A,
     inverse: Vec3A,
     widening: Vec3A,
     backward: [bool; 3],
-    /// Octant that is visited first, in each byte.
+    /// Octant that is visited first, repeated in each byte.
     pub octant: u32,
 }
 
@@ -41,8 +42,8 @@ impl NodeRay {
         Self { origin: Vec3A::from(origin), inverse, widening: size_inverse * SLACK, backward, octant }
     }
 
-    /// Children that the ray meets nearer than `t_max`: inner ones in bits 24 to 31 in the order of visits, the highest first,
-    /// triangles of leaves in bits 0 to 23.
+    /// Children that the ray hits nearer than `t_max`: inner children in bits 24 to 31, highest bit visited first, and
+    /// leaf triangles in bits 0 to 23.
     #[inline(always)]
     pub fn hits(&self, node: &CwBvhNode, t_max: f32) -> u32 {
         let extent = node.compute_extent();

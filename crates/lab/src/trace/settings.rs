@@ -1,43 +1,43 @@
-//! How light is followed.
+//! Settings of the path tracer.
 
 use super::effects::Effects;
 
-/// How paths find light.
+/// Strategy by which paths collect light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// Both by looking for lights and by meeting them, weighted by the power heuristic (Veach 1997): least noise.
+    /// Next event estimation and scattered rays, combined by the power heuristic (Veach 1997). Least noise.
     #[default]
     Mis,
-    /// By looking for lights at every surface.
+    /// Next event estimation only: a light sample at every surface.
     Nee,
-    /// By meeting them only: the thesis' tracer. Punctual lights, which have no size, are never met.
+    /// Scattered rays only, as in the thesis. They never hit punctual lights, which have no size.
     Naive,
 }
 
-/// How surfaces scatter.
+/// Scattering model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bsdf {
-    /// Disney's principled model in glTF's parameters.
+    /// Disney's principled model with glTF's parameters.
     #[default]
     Principled,
-    /// The thesis' model: Lambert and Phong, sampled uniformly.
+    /// The thesis' model: Lambert and Phong lobes, sampled uniformly over the hemisphere.
     Phong,
 }
 
-/// What a tracer is made for. The defaults are those of the command line.
+/// Settings of a tracer. The defaults are those of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TraceSettings {
-    /// How paths find light. Default: both ways.
+    /// Strategy by which paths collect light. Default: multiple importance sampling.
     pub integrator: Integrator,
-    /// How surfaces scatter. Default: the principled model.
+    /// Scattering model. Default: the principled model.
     pub bsdf: Bsdf,
-    /// Most scattering events after the camera ray, 0 to 64; 0 shows only what emits, 1 direct light. More costs time in
-    /// proportion. Default 3.
+    /// Maximum number of scattering events after the camera ray, 0 to 64. 0 shows emission only, 1 adds direct light.
+    /// Time grows in proportion. Default 3.
     pub max_depth: u32,
-    /// Seed of all draws: same seed, same frames, same image. Default 0.
+    /// Seed of all random draws: the same seed and frame number give the same image. Default 0.
     pub seed: u64,
-    /// What is simulated; `None`: what the scene needs. Effects that are left out are not there, those that nothing needs change
-    /// no bit of the image. Default `None`.
+    /// Effects to simulate; `None`: those that the scene needs. Effects left out are missing from the image; effects
+    /// that the scene does not need change no bit of it. Default `None`.
     pub effects: Option<Effects>,
 }
 

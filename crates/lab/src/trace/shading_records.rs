@@ -1,24 +1,25 @@
-//! Materials, textures and lights as both tracers read them: plain words, 16 bytes a row, twins of `shaders/trace/records.wgsl`.
-// Fields are those of `scene`, documented there.
+//! Materials, textures and lights in the layout that both tracers read: rows of 16 bytes, described in
+//! `shaders/trace/records.wgsl`.
+// Fields are documented in `scene`, under the same names.
 #![allow(missing_docs)]
 
 use crate::kernel::texel;
 use crate::scene::{Alpha, Material, PunctualKind, PunctualLight, Texture, TextureRef, Wrap};
 use bytemuck::{Pod, Zeroable};
 
-/// No texture.
+/// Index that stands for no texture.
 pub const NO_TEXTURE: u32 = u32::MAX;
 
-/// The surface is not there below the cutoff.
+/// Alpha mode MASK: the surface is absent where opacity is below the cutoff.
 pub const FLAG_MASK: u32 = 1;
-/// The surface is there for a share of the light.
+/// Alpha mode BLEND: the surface is present with the probability of its opacity.
 pub const FLAG_BLEND: u32 = 2;
-/// Both sides emit.
+/// Both sides of the surface emit.
 pub const FLAG_DOUBLE_SIDED: u32 = 4;
-/// The surface bounds a body that refracts.
+/// The surface encloses a volume that refracts.
 pub const FLAG_VOLUME: u32 = 8;
 
-/// A [`Material`] in 12 rows.
+/// A [`Material`] in 12 rows of 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct MaterialRecord {
@@ -59,11 +60,11 @@ pub struct MaterialRecord {
     pub unused: [f32; 2],
 }
 
-/// Rows of 16 bytes a material takes.
+/// Rows of a material.
 pub const MATERIAL_ROWS: u32 = (size_of::<MaterialRecord>() / 16) as u32;
 
 impl MaterialRecord {
-    /// The material's words.
+    /// Converts a material.
     pub fn new(m: &Material) -> Self {
         let texture = |t: Option<TextureRef>| t.map_or(NO_TEXTURE, |t| t.texture);
         let (alpha_flag, cutoff) = match m.alpha {
@@ -72,14 +73,14 @@ impl MaterialRecord {
             Alpha::Blend => (FLAG_BLEND, 0.0),
         };
         let flag = |bit: u32, on: bool| if on { bit } else { 0 };
-        // Without a lobe of its own, what Phong's model can say of the others: metal and interface are its highlight.
+        // Without explicit Phong parameters, metal and dielectric reflection become the Phong highlight.
         let alpha = (m.roughness * m.roughness).max(0.03);
         let dielectric = 0.04 * m.specular * (1.0 - m.metallic);
         let derived = m.base_color.map(|c| c * m.metallic + dielectric);
         let (phong_specular, phong_exponent) =
             m.phong.map_or((derived, 2.0 / (alpha * alpha) - 2.0), |p| (p.specular, p.exponent));
         let diffuse_share = 1.0 - m.metallic;
-        // What nothing enters has no inside.
+        // A surface that transmits nothing has no interior to absorb.
         let absorption = if m.volume && m.transmission > 0.0 { m.absorption } else { [0.0; 3] };
         Self {
             base_color: m.base_color,
@@ -121,20 +122,20 @@ impl MaterialRecord {
     }
 }
 
-/// Where a texture's texels are and how they are addressed; one row.
+/// A texture's location and addressing, one row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TextureRecord {
-    /// First row of its texels, four texels a row.
+    /// Row of its first texel, relative to the texels' section; four texels per row.
     pub first: u32,
     pub width: u32,
     pub height: u32,
-    /// Wrapping along u in bits 0 and 1, along v in bits 2 and 3; bit 4: the nearest texel.
+    /// Wrap mode along u in bits 0 and 1, along v in bits 2 and 3; bit 4 selects nearest filtering.
     pub addressing: u32,
 }
 
 impl TextureRecord {
-    /// A texture whose texels begin at row `first`.
+    /// Converts a texture whose texels begin at row `first`.
     pub fn new(t: &Texture, first: u32) -> Self {
         let wrap = |w: Wrap| match w {
             Wrap::Repeat => texel::WRAP_REPEAT,
@@ -146,30 +147,30 @@ impl TextureRecord {
     }
 }
 
-/// A triangle of the list of lights.
+/// Kind of a light: emissive triangle.
 pub const LIGHT_TRIANGLE: u32 = 0;
-/// A punctual light.
+/// Kind of a light: punctual.
 pub const LIGHT_PUNCTUAL: u32 = 1;
-/// What surrounds the scene.
+/// Kind of a light: the environment.
 pub const LIGHT_ENVIRONMENT: u32 = 2;
 
-/// Index of the light in [`PickRecord::what`].
+/// Mask of the light's index in [`PickRecord::kind_and_index`].
 pub const LIGHT_INDEX: u32 = 0x3fff_ffff;
 
-/// One row of the table that lights are picked by (Walker's alias method): row i stands for light i with probability `keep`,
-/// else for light `alias`.
+/// A row of the alias table over all lights (Walker's alias method): row i picks light i with probability `keep`,
+/// otherwise light `alias`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PickRecord {
     pub keep: f32,
     pub alias: u32,
     /// Probability that this light is picked.
-    pub chosen: f32,
-    /// Kind in the upper two bits, index of the triangle or punctual light in the others.
-    pub what: u32,
+    pub probability: f32,
+    /// Kind of the light in the upper two bits, index of its triangle or punctual light in the others.
+    pub kind_and_index: u32,
 }
 
-/// A [`PunctualLight`] in four rows.
+/// A [`PunctualLight`] in four rows of 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PunctualRecord {
@@ -184,11 +185,11 @@ pub struct PunctualRecord {
     pub unused: [f32; 3],
 }
 
-/// Rows of 16 bytes a punctual light takes.
+/// Rows of a punctual light.
 pub const PUNCTUAL_ROWS: u32 = (size_of::<PunctualRecord>() / 16) as u32;
 
 impl PunctualRecord {
-    /// The light's words.
+    /// Converts a light.
     pub fn new(l: &PunctualLight) -> Self {
         let (kind, cos_inner, cos_outer) = match l.kind {
             PunctualKind::Directional => (0, 0.0, 0.0),
@@ -208,18 +209,18 @@ impl PunctualRecord {
     }
 }
 
-/// A texel of the environment map in two rows.
+/// A texel of the environment map in two rows of 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct MapRecord {
     pub radiance: [f32; 3],
     /// Probability that this texel is picked.
-    pub chosen: f32,
-    /// As in [`PickRecord`].
+    pub probability: f32,
+    /// `keep` and `alias` as in [`PickRecord`].
     pub keep: f32,
     pub alias: u32,
     pub unused: [f32; 2],
 }
 
-/// Rows of 16 bytes a texel of the environment map takes.
+/// Rows of an environment map texel.
 pub const MAP_ROWS: u32 = (size_of::<MapRecord>() / 16) as u32;

@@ -1,4 +1,4 @@
-//! What the pixel centres see: distance and motion, exact, without noise.
+//! Exact, noise-free depth and motion at pixel centres.
 
 use super::effects::{Effect, Effects};
 use super::view::View;
@@ -8,22 +8,23 @@ use crate::kernel::direction::unit;
 use afterimage::Image;
 use glam::{DVec3, Vec3};
 
-/// Distance and motion of the first surface behind each pixel's centre. Surfaces that light passes through count, those that
-/// are less than half opaque do not.
+/// Distance and motion of the first surface at each pixel centre. Transmissive surfaces count; surfaces less than half
+/// opaque do not.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
-    /// Distance along the view axis in metres; infinity where there is nothing.
+    /// Distance along the view axis in metres; infinity where nothing is hit.
     pub depth: Image<f32>,
-    /// Pixels, y down, previous minus current. Of what was behind the previous camera: far off the frame.
+    /// Motion in pixels, y down, previous minus current position. Points behind the previous camera get a motion far
+    /// off the frame.
     pub motion: Image<[f32; 2]>,
 }
 
-/// Motion of what the previous camera could not have seen.
+/// Motion of points behind the previous camera, and the bound of all motion, in pixels.
 const OFF_FRAME_PX: f32 = 1e6;
 
 impl Surfaces {
-    /// Of `world` seen through `view`; `previous` is the view a frame ago, when moving triangles were where
-    /// [`World::pose`] was told.
+    /// Traces `world` through `view`. `previous` is the previous frame's view, at the `previous_s` given to
+    /// [`World::pose`].
     pub fn trace(world: &World, view: &View, previous: &View, effects: Effects) -> Self {
         let size = view.geometry().size_px();
         let rays = view.rays();
@@ -34,28 +35,28 @@ impl Surfaces {
                 let before = previous.project_direction(direction.as_dvec3());
                 return (f32::INFINITY, motion(px, before));
             };
-            let depth = view.project(seen.at).map_or(f32::INFINITY, |(_, depth)| depth as f32);
-            (depth, motion(px, previous.project(seen.was).map(|(px, _)| px)))
+            let depth = view.project(seen.current).map_or(f32::INFINITY, |(_, depth)| depth as f32);
+            (depth, motion(px, previous.project(seen.previous).map(|(px, _)| px)))
         });
         Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
     }
 }
 
-/// A place on a surface, in world space: now, and a frame ago.
-pub(super) struct Seen {
-    pub at: DVec3,
-    pub was: DVec3,
+/// World-space positions of a surface point, in this frame and in the previous one.
+pub(super) struct SurfacePosition {
+    pub current: DVec3,
+    pub previous: DVec3,
 }
 
-/// What a ray meets first.
-pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<Seen> {
+/// First surface on a ray.
+pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effects: Effects) -> Option<SurfacePosition> {
     let ray = Ray { origin, direction, t_max: f32::INFINITY };
     let hit = world.geometry.closest(&ray, |triangle, u, v| {
-        !effects.has(Effect::Alpha) || cpu::is_mostly_there(world, triangle, u, v, effects)
+        !effects.has(Effect::Alpha) || cpu::is_half_opaque(world, triangle, u, v, effects)
     })?;
     let corners = world.geometry.triangle(hit.triangle).positions();
-    let was = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
-    Some(Seen { at: at(corners, hit.u, hit.v), was: at(was, hit.u, hit.v) })
+    let previous = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
+    Some(SurfacePosition { current: at(corners, hit.u, hit.v), previous: at(previous, hit.u, hit.v) })
 }
 
 fn at(corners: [Vec3; 3], u: f32, v: f32) -> DVec3 {

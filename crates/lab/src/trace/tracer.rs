@@ -1,10 +1,10 @@
-//! A tracer on whatever there is.
+//! A path tracer on either backend.
 
 use super::cpu::CpuTracer;
 use super::effects::Effects;
 use super::film::Film;
 use super::gpu::GpuTracer;
-use super::heap::HeapError;
+use super::scene_buffer::SceneBufferError;
 use super::settings::TraceSettings;
 use super::view::View;
 use super::work::Work;
@@ -13,28 +13,28 @@ use crate::device::Backend;
 use afterimage::FrameError;
 use std::time::Duration;
 
-/// On the CPU or on a device: the same paths, the same film.
+/// A tracer on the CPU or on a GPU: the same paths, the same film.
 #[derive(Debug)]
 pub enum Tracer {
-    /// With all threads.
+    /// On all CPU threads.
     Cpu(CpuTracer),
-    /// With kernels made for the scene.
+    /// On a GPU, with kernels specialized to the scene.
     Gpu(Box<GpuTracer>),
 }
 
 impl Tracer {
-    /// A tracer of `world`.
+    /// Creates a tracer of `world`.
     ///
     /// # Errors
-    /// If the device has no room for the scene.
-    pub fn new(backend: &Backend, world: &World, settings: TraceSettings) -> Result<Self, HeapError> {
+    /// If the scene does not fit on the device.
+    pub fn new(backend: &Backend, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         Ok(match backend {
             Backend::Cpu => Self::Cpu(CpuTracer::new(settings)),
             Backend::Gpu(device) => Self::Gpu(Box::new(GpuTracer::new(device.clone(), world, settings)?)),
         })
     }
 
-    /// What is simulated.
+    /// Effects that are simulated.
     pub fn effects(&self, world: &World) -> Effects {
         match self {
             Self::Cpu(tracer) => tracer.effects(world),
@@ -42,7 +42,7 @@ impl Tracer {
         }
     }
 
-    /// Time that compiling kernels took; none on the CPU.
+    /// Time spent compiling kernels; zero on the CPU.
     pub fn compile_time(&self) -> Duration {
         match self {
             Self::Cpu(_) => Duration::ZERO,
@@ -50,7 +50,7 @@ impl Tracer {
         }
     }
 
-    /// Bytes of the scene on the device; `None` on the CPU.
+    /// Size of the scene on the device in bytes; `None` on the CPU.
     pub fn scene_bytes(&self) -> Option<u64> {
         match self {
             Self::Cpu(_) => None,
@@ -58,18 +58,18 @@ impl Tracer {
         }
     }
 
-    /// To be called after [`World::pose`].
+    /// Uploads moved geometry and lights. Call it after [`World::pose`].
     ///
     /// # Errors
-    /// If more moves than at first.
-    pub fn update(&mut self, world: &World) -> Result<(), HeapError> {
+    /// If more triangles or lights move than the capacity reserved at creation.
+    pub fn update(&mut self, world: &World) -> Result<(), SceneBufferError> {
         match self {
             Self::Cpu(_) => Ok(()),
             Self::Gpu(tracer) => tracer.update(world),
         }
     }
 
-    /// To be called after [`trace`](Self::trace): on a lost device the film gets black samples.
+    /// Reports a lost device. Call it after [`trace`](Self::trace): on a lost device the film receives black samples.
     ///
     /// # Errors
     /// [`FrameError::DeviceLost`].
@@ -80,7 +80,8 @@ impl Tracer {
         }
     }
 
-    /// Adds the samples of `work`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    /// Adds the samples of `work` to `film`, which must contain all its pixels. `frame` is the frame number; every
+    /// frame has its own random draws.
     pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         match self {
             Self::Cpu(tracer) => tracer.trace(world, view, frame, work, film),

@@ -1,23 +1,23 @@
-//! Triangles as both tracers read them.
+//! Triangle records that both tracers read.
 
 use crate::kernel::octahedral::{decode_direction, encode_direction};
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3A, Vec4};
 
-/// What a tracer must know of a triangle's material before it looks it up.
+/// Material properties stored with each triangle, so that traversal needs no material lookup.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TriangleFlags;
 
 impl TriangleFlags {
-    /// Whether a hit counts depends on the opacity there.
+    /// Alpha mode MASK or BLEND: hits need an alpha test.
     pub const ALPHA: u32 = 1 << 24;
-    /// It emits light.
+    /// Emits light.
     pub const EMISSIVE: u32 = 1 << 25;
-    /// Light may pass through it.
+    /// Transmits light.
     pub const TRANSMISSIVE: u32 = 1 << 26;
 
-    /// Of a material.
+    /// Flags of a material.
     pub fn of(material: &Material) -> u32 {
         let mut flags = 0;
         if material.alpha != Alpha::Opaque {
@@ -33,12 +33,13 @@ impl TriangleFlags {
     }
 }
 
-/// A triangle for traversal: three `vec4<u32>` of the heap. A vertex and a word: material (24 bits) and [`TriangleFlags`], index
-/// of the triangle in its source, and one more than its row in the table of lights (0: it is no light).
+/// A triangle for traversal: three elements of the scene buffer. Each element holds a vertex and one word: material (24
+/// bits) with [`TriangleFlags`]; index of the triangle in its source; one plus its row in the light table, or 0 if it
+/// does not emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TriangleRecord {
-    /// The words are floats of the same bits.
+    /// Vertex in the first three floats; the fourth holds the word's bits.
     rows: [[f32; 4]; 3],
 }
 
@@ -54,13 +55,13 @@ impl TriangleRecord {
         Self { rows: [row(v0, material | flags), row(v1, source), row(v2, 0)] }
     }
 
-    /// Corners in world space.
+    /// Corner positions in world space, metres.
     #[inline]
     pub fn positions(&self) -> [Vec3; 3] {
         self.rows.map(|[x, y, z, _]| Vec3::new(x, y, z))
     }
 
-    /// The same in registers.
+    /// Corner positions as SIMD vectors.
     #[inline(always)]
     pub(super) fn corners(&self) -> [Vec3A; 3] {
         self.rows.map(|row| Vec3A::from_vec4(Vec4::from_array(row)))
@@ -78,7 +79,7 @@ impl TriangleRecord {
         self.rows[0][3].to_bits() & flags == flags
     }
 
-    /// Its row in the table that lights are picked by; `None` if it is no light.
+    /// Row in the light table; `None` if the triangle does not emit.
     #[inline]
     pub fn light(&self) -> Option<u32> {
         self.rows[2][3].to_bits().checked_sub(1)
@@ -88,14 +89,14 @@ impl TriangleRecord {
         self.rows[2][3] = f32::from_bits(light + 1);
     }
 
-    /// Its index in the [`Triangles`] it comes from.
+    /// Index in the [`Triangles`] that it was built from.
     #[inline]
     pub fn source(&self) -> u32 {
         self.rows[1][3].to_bits()
     }
 }
 
-/// Where a moving triangle's corners were a frame ago: three `vec4<u32>` of the heap.
+/// Corner positions of a moving triangle in the previous frame: three elements of the scene buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PreviousRecord {
@@ -107,56 +108,56 @@ impl PreviousRecord {
         Self { corners: positions.map(|p| p.extend(0.0).to_array()) }
     }
 
-    /// Corners in world space.
+    /// Corner positions in world space, metres.
     pub fn positions(&self) -> [Vec3; 3] {
         self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z))
     }
 }
 
-/// A triangle for shading: four `vec4<u32>` of the heap.
+/// Shading attributes of a triangle: four elements of the scene buffer.
 ///
-/// | words | hold |
+/// | words | contents |
 /// |---|---|
 /// | 0 to 2 | normals, octahedral, two 16-bit signed fractions |
 /// | 3, 7, 11 | vertex colors, 8 bits a channel, red lowest |
-/// | 4 to 6 | tangents, as normals but the lowest bit: 1 for a bitangent sign of -1 |
+/// | 4 to 6 | tangents as normals, but the lowest bit is 1 for a bitangent sign of -1 |
 /// | 8 to 10, 12 to 14 | texture coordinates, u then v of each vertex, as floats |
-/// | 15 | spare |
+/// | 15 | unused |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct AttributeRecord {
     words: [u32; 16],
 }
 
-/// What an [`AttributeRecord`] holds.
+/// Decoded [`AttributeRecord`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attributes {
-    /// Shading normals of length 1.
+    /// Shading normals, unit length.
     pub normals: [Vec3; 3],
-    /// Directions of growing u, of length 1, and the bitangent's sign.
+    /// Tangents in xyz, unit length, towards growing u; sign of the bitangent in w.
     pub tangents: [Vec4; 3],
     /// Texture coordinates.
     pub uvs: [Vec2; 3],
-    /// Factors of color and alpha, in steps of 1/255.
+    /// Factors of base color and alpha, in steps of 1/255.
     pub colors: [Vec4; 3],
 }
 
-/// Attributes at a point of a triangle.
+/// Interpolated attributes at a point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributesAt {
-    /// Shading normal, not normalised.
+    /// Shading normal, not normalized.
     pub normal: Vec3,
-    /// Direction of growing u, not normalised.
+    /// Tangent towards growing u, not normalized.
     pub tangent: Vec3,
-    /// Sign of the bitangent: the first corner's.
+    /// Sign of the bitangent at the first corner.
     pub bitangent_sign: f32,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Factors of color and alpha.
+    /// Factors of base color and alpha.
     pub color: Vec4,
 }
 
-/// Words of the texture coordinates' components.
+/// Word index of each texture coordinate component.
 const UV_WORDS: [usize; 6] = [8, 9, 10, 12, 13, 14];
 
 impl AttributeRecord {
@@ -181,7 +182,8 @@ impl AttributeRecord {
         Self { words }
     }
 
-    /// Interpolated with the weights of the second and the third corner. Twin: `attributes_at` in `shaders/trace/geometry.wgsl`.
+    /// Attributes at barycentric weights `u` (second corner) and `v` (third corner). Twin: `attributes_at` in
+    /// `shaders/trace/geometry.wgsl`.
     #[inline]
     pub fn at(&self, u: f32, v: f32) -> AttributesAt {
         let Attributes { normals: n, tangents: t, uvs, colors: c } = self.unpack();
@@ -191,12 +193,13 @@ impl AttributeRecord {
             tangent: (t[0].truncate() * w + t[1].truncate() * u) + t[2].truncate() * v,
             bitangent_sign: t[0].w,
             uv: (uvs[0] * w + uvs[1] * u) + uvs[2] * v,
-            // Corners alike are that color exactly, so that white ones change nothing.
+            // This form returns exactly the corners' color if all three are equal, so white vertex colors change
+            // nothing.
             color: (c[0] + (c[1] - c[0]) * u) + (c[2] - c[0]) * v,
         }
     }
 
-    /// All of it, decoded.
+    /// Decodes the record.
     #[inline]
     pub fn unpack(&self) -> Attributes {
         let w = &self.words;
@@ -210,7 +213,7 @@ impl AttributeRecord {
     }
 }
 
-/// Octahedral code; of a vector that is no direction, that of +z.
+/// Octahedral code of a direction; code of +z if `n` is zero or not finite.
 fn direction_code(n: Vec3) -> u32 {
     let sum = n.abs().element_sum();
     if sum.is_finite() && sum >= f32::MIN_POSITIVE { encode_direction(n) } else { 0 }

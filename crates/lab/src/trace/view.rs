@@ -1,11 +1,11 @@
-//! The view that a frame is traced for.
+//! Camera view of a traced frame.
 
 use crate::scene::Camera;
 use crate::trace::sampling::Lattice;
 use afterimage::{SettingsError, ViewGeometry};
 use glam::{DMat4, DVec3, Vec3};
 
-/// Where a frame is seen from, and through which pixels.
+/// A camera pose, its pixels and angles, and optionally the lattice that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     geometry: ViewGeometry,
@@ -13,28 +13,30 @@ pub struct View {
     lattice: Option<Lattice>,
 }
 
-/// Rays of a view: `corner + right x + down y` goes through pixel (x, y), whose centre is at integers.
+/// Rays of a view: `corner + right x + down y` passes through pixel (x, y). Pixel centres are at integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRays {
-    /// Where all rays start.
+    /// Origin of all rays, metres.
     pub origin: Vec3,
-    /// Through pixel (0, 0).
+    /// Direction through pixel (0, 0).
     pub corner: Vec3,
-    /// From one pixel to its neighbour on the right.
+    /// Step from a pixel to its right neighbour.
     pub right: Vec3,
-    /// From one pixel to its neighbour below.
+    /// Step from a pixel to the neighbour below.
     pub down: Vec3,
-    /// Edge of the square that samples are spread over, in pixels.
+    /// Edge length in pixels of the square that samples are jittered over.
     pub jitter: f32,
 }
 
 impl View {
-    /// `geometry` seen from `world_from_camera` (rigid; x right, y up, looking along -z).
+    /// A view with pixels and angles `geometry` and camera pose `world_from_camera` (rigid; x right, y up, looking
+    /// along -z).
     pub fn new(geometry: ViewGeometry, world_from_camera: DMat4) -> Self {
         Self { geometry, world_from_camera, lattice: None }
     }
 
-    /// What a scene's camera sees in a picture of `size_px`, with its own field of view or `hfov_deg` (horizontal, degrees).
+    /// View of a scene's camera at `size_px` pixels. Field of view: `hfov_deg` (horizontal, degrees), or the camera's
+    /// own if `None`.
     ///
     /// # Errors
     /// If the field of view is not in (0, 180) degrees.
@@ -50,33 +52,33 @@ impl View {
         Ok(Self::new(geometry, camera.world_from_camera))
     }
 
-    /// Pixels and angles.
+    /// Pixels and angles of the view.
     pub fn geometry(&self) -> &ViewGeometry {
         &self.geometry
     }
 
-    /// Camera to world.
+    /// Transform from camera to world space.
     pub fn world_from_camera(&self) -> DMat4 {
         self.world_from_camera
     }
 
-    /// Takes a point from this view's space (x right, y down, z forward) to `previous`'; row-major, for column vectors.
+    /// Matrix from this view's space (x right, y down, z forward) to that of `previous`; row-major, for column vectors.
     pub fn previous_from_current(&self, previous: &Self) -> [[f32; 4]; 4] {
         let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
         let matrix = flip * previous.world_from_camera.inverse() * self.world_from_camera * flip;
         matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
 
-    /// The same view of which only the points of a lattice are sampled: its pixels are those points.
+    /// This view restricted to the points of a lattice: pixel (x, y) becomes the lattice's point (x, y).
     pub fn on_lattice(&self, lattice: &Lattice) -> Self {
         Self { lattice: Some(*lattice), ..*self }
     }
 
-    /// Its rays.
+    /// Camera rays.
     pub fn rays(&self) -> ViewRays {
         let (scale, offset) = self.geometry.scale_offset();
         let to_world = |x: f32, y: f32, z: f32| {
-            // The view's y is down and its z forward, the camera's y up and its z back.
+            // View space has y down and z forward; the camera has y up and z backward.
             let v = DVec3::new(f64::from(x), -f64::from(y), -f64::from(z));
             self.world_from_camera.transform_vector3(v).as_vec3()
         };
@@ -92,14 +94,15 @@ impl View {
         }
     }
 
-    /// Pixel and distance along the axis (metres) of a point in world space; `None` behind the camera.
+    /// Projects a world-space point to its pixel and its distance along the view axis in metres; `None` behind the
+    /// camera.
     pub fn project(&self, world: DVec3) -> Option<([f64; 2], f64)> {
         let c = self.world_from_camera.inverse().transform_point3(world);
         let depth = -c.z;
         self.pixel(c).map(|px| (px, depth))
     }
 
-    /// Pixel of a direction in world space; `None` behind the camera.
+    /// Projects a world-space direction to its pixel; `None` behind the camera.
     pub fn project_direction(&self, world: DVec3) -> Option<[f64; 2]> {
         self.pixel(self.world_from_camera.inverse().transform_vector3(world))
     }

@@ -1,14 +1,14 @@
-//! What is to be traced: samples of pixels, as a list or as spans that a device makes the list of.
+//! Samples to trace: pixels with sample numbers, as a list or as spans that the device expands.
 
 use std::ops::Range;
 
-/// One sample of one pixel. Lists hold the samples of a pixel one after the other.
+/// One sample of one pixel. In a list, samples of the same pixel are adjacent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct WorkItem {
-    /// x in the low, y in the high 16 bits.
+    /// x in the low 16 bits, y in the high 16 bits.
     pub pixel: u32,
-    /// Which of the pixel's samples: what its random draws hang on.
+    /// Number of the sample within its pixel; it seeds the sample's random draws.
     pub sample: u32,
 }
 
@@ -18,31 +18,31 @@ impl WorkItem {
         Self { pixel: x | y << 16, sample }
     }
 
-    /// The pixel.
+    /// Pixel coordinates.
     pub fn xy(self) -> [u32; 2] {
         [self.pixel & 0xffff, self.pixel >> 16]
     }
 }
 
-/// Samples `samples` of every pixel in the rows `rows` of an image `width` pixels wide.
+/// All samples with numbers `samples` of every pixel in rows `rows` of an image `width` pixels wide.
 pub fn uniform(width: u32, rows: Range<u32>, samples: Range<u32>) -> Vec<WorkItem> {
     let pixels = rows.flat_map(|y| (0..width).map(move |x| (x, y)));
     pixels.flat_map(|(x, y)| samples.clone().map(move |s| WorkItem::new(x, y, s))).collect()
 }
 
-/// Pixels of a row, side by side. Twin of `Span` in `shaders/trace/expand_pass.wgsl`.
+/// Adjacent pixels of a row. Twin of `Span` in `shaders/trace/expand_pass.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Span {
     /// First pixel, as in [`WorkItem::pixel`].
     pub pixel: u32,
-    /// How many.
+    /// Number of pixels.
     pub count: u32,
-    /// How many pixels all earlier spans have.
+    /// Number of pixels in all earlier spans.
     pub before: u32,
 }
 
-/// The same samples of every pixel of a set.
+/// A set of pixels, each with the same range of sample numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Spans {
     spans: Vec<Span>,
@@ -50,7 +50,7 @@ pub struct Spans {
 }
 
 impl Spans {
-    /// Samples `samples` of pixels that come row by row, left to right.
+    /// Samples `samples` of `pixels`, which are ordered by row, then by column.
     pub fn new(pixels: impl IntoIterator<Item = [u32; 2]>, samples: Range<u32>) -> Self {
         let mut spans: Vec<Span> = vec![];
         for [x, y] in pixels {
@@ -66,7 +66,7 @@ impl Spans {
         Self { spans, samples }
     }
 
-    /// Samples `samples` of runs of pixels, each columns and a row, that come row by row, left to right.
+    /// Samples `samples` of pixel runs (columns, row), which are ordered by row, then by column.
     pub fn of_runs(runs: impl IntoIterator<Item = (Range<u32>, u32)>, samples: Range<u32>) -> Self {
         let mut before = 0;
         let span = |(columns, y): (Range<u32>, u32)| {
@@ -78,14 +78,14 @@ impl Spans {
         Self { spans, samples }
     }
 
-    /// Samples `samples` of every pixel in the rows `rows` of an image `width` pixels wide.
+    /// Samples `samples` of every pixel in rows `rows` of an image `width` pixels wide.
     pub fn uniform(width: u32, rows: Range<u32>, samples: Range<u32>) -> Self {
         let first = rows.start;
         let span = |y: u32| Span { pixel: y << 16, count: width, before: (y - first) * width };
         Self { spans: if width == 0 { vec![] } else { rows.map(span).collect() }, samples }
     }
 
-    /// The corner and the size of the smallest window that holds all the pixels of all `work`.
+    /// Corner and size in pixels of the smallest window that contains all pixels of `work`.
     pub fn window(work: &[Self]) -> ([u32; 2], [u32; 2]) {
         let spans = || work.iter().flat_map(|w| &w.spans);
         let columns = |s: &Span| (s.pixel & 0xffff, (s.pixel & 0xffff) + s.count);
@@ -96,12 +96,12 @@ impl Spans {
         ([left, top], [right - left, bottom - top])
     }
 
-    /// The pixels, span by span.
+    /// Spans of the pixels.
     pub fn spans(&self) -> &[Span] {
         &self.spans
     }
 
-    /// The samples of each.
+    /// Sample numbers of each pixel.
     pub fn samples(&self) -> Range<u32> {
         self.samples.clone()
     }
@@ -111,23 +111,23 @@ impl Spans {
         self.spans.last().map_or(0, |s| s.before + s.count)
     }
 
-    /// Number of samples of all pixels.
+    /// Number of samples over all pixels.
     pub fn len(&self) -> u64 {
         u64::from(self.pixels()) * self.samples.len() as u64
     }
 
-    /// Whether there is nothing to do.
+    /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Something to trace.
+/// Samples to trace.
 #[derive(Clone, Copy, Debug)]
 pub enum Work<'a> {
-    /// Item by item.
+    /// An explicit list of samples.
     List(&'a [WorkItem]),
-    /// Pixels by spans; the list is made where it is worked off.
+    /// Spans of pixels. A GPU tracer expands them on the device.
     Spans(&'a Spans),
 }
 
@@ -155,7 +155,7 @@ impl<'a> From<&'a Spans> for Work<'a> {
     }
 }
 
-/// A pixel's samples.
+/// Sample numbers of one pixel.
 #[derive(Clone)]
 pub(super) enum Samples<'a> {
     Listed(&'a [WorkItem]),
@@ -163,7 +163,7 @@ pub(super) enum Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// Their numbers.
+    /// Iterates over the sample numbers.
     pub fn numbers(&self) -> impl Iterator<Item = u32> + '_ {
         let (listed, range) = match self {
             Self::Listed(items) => (*items, 0..0),
@@ -174,7 +174,7 @@ impl Samples<'_> {
 }
 
 impl<'a> Work<'a> {
-    /// Pixel after pixel with its samples.
+    /// Groups the samples by pixel.
     pub(super) fn by_pixel(self) -> Vec<(u32, Samples<'a>)> {
         match self {
             Self::List(items) => {

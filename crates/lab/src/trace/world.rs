@@ -1,4 +1,4 @@
-//! A scene made ready for tracing: what both tracers read.
+//! A scene prepared for tracing, as both tracers read it.
 
 use super::alias::alias_table;
 use super::effects::{Effect, Effects};
@@ -14,45 +14,46 @@ use afterimage::kernel::color::{luma, srgb_decode};
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Triangles under hierarchies, materials, texels and lights at one time.
+/// Geometry, materials, textures and lights of a scene at one time.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// Triangles at rest and in motion.
+    /// Static and moving triangles.
     pub geometry: Geometry,
-    /// One a material of the scene; at least one.
+    /// Materials of the scene; at least one.
     pub materials: Vec<MaterialRecord>,
-    /// One a texture of the scene.
+    /// Textures of the scene.
     pub textures: Vec<TextureRecord>,
-    /// Texels of all textures, four bytes each, red lowest; every texture begins at a multiple of four.
+    /// Texels of all textures, four bytes each, red lowest. Every texture begins at a multiple of four texels.
     pub texels: Vec<u32>,
-    /// Table that lights are picked by; empty if there is no light.
+    /// Alias table over all lights; empty if there are none.
     pub picks: Vec<PickRecord>,
     /// Punctual lights.
     pub punctual: Vec<PunctualRecord>,
-    /// Radiance from everywhere; black where there is a map.
+    /// Radiance of a constant environment; black if there is an environment map.
     pub sky: Vec3,
-    /// Width and height of the environment map; 0 if there is none.
+    /// Width and height of the environment map in texels; 0 if there is none.
     pub map_size: [u32; 2],
-    /// Its texels, row by row.
+    /// Texels of the environment map, row by row.
     pub map: Vec<MapRecord>,
-    /// Probability that the environment is picked.
-    pub sky_chosen: f32,
-    /// Albedos of the lobes.
+    /// Probability that light sampling picks the environment.
+    pub sky_probability: f32,
+    /// Tables of the lobes' directional albedos.
     pub tables: AlbedoTables,
-    /// What the scene calls for.
+    /// Effects that the scene needs.
     pub needs: Effects,
-    /// Most triangles that can move, and most lights that there can be, at any time: some may be without area now.
-    pub(super) most_moving: usize,
-    pub(super) most_lights: usize,
-    /// Luminance that each material emits, both sides together.
-    glow: Vec<f64>,
+    /// Capacity: largest number of moving triangles and of lights at any time. Triangles count even while they have no
+    /// area.
+    pub(super) max_moving: usize,
+    pub(super) max_lights: usize,
+    /// Luminance that each material emits, summed over both sides if it is double-sided.
+    emitted_luma: Vec<f64>,
     /// Mean luminance of the environment.
     sky_luma: f64,
     still_bounds: [Vec3; 2],
 }
 
 impl World {
-    /// The scene at time 0, nothing having moved.
+    /// Prepares the scene at time 0, without motion.
     pub fn new(scene: &Scene) -> Self {
         let materials: Vec<_> = scene.materials.iter().map(MaterialRecord::new).collect();
         let mut textures = vec![];
@@ -70,7 +71,7 @@ impl World {
             Environment::Constant(radiance) => f64::from(luma(Vec3::from(*radiance))),
             Environment::Map(image) => mean_radiance(image),
         };
-        let glow = scene
+        let emitted_luma = scene
             .materials
             .iter()
             .map(|m| {
@@ -81,7 +82,7 @@ impl World {
             .collect();
         let rest = scene.pose(0.0);
         let shining = |m: &&u32| scene.materials.get(**m as usize).is_some_and(|m| m.emissive.iter().any(|&e| e > 0.0));
-        let most_lights = scene.still().materials.iter().chain(&rest.moving.materials).filter(shining).count()
+        let max_lights = scene.still().materials.iter().chain(&rest.moving.materials).filter(shining).count()
             + rest.lights.len()
             + 1;
         let mut world = Self {
@@ -94,13 +95,13 @@ impl World {
             sky,
             map_size,
             map,
-            sky_chosen: 0.0,
+            sky_probability: 0.0,
             tables: AlbedoTables::compute(),
             needs: Effects::needed(scene),
-            glow,
+            emitted_luma,
             sky_luma,
-            most_moving: rest.moving.len(),
-            most_lights,
+            max_moving: rest.moving.len(),
+            max_lights,
             still_bounds: [Vec3::INFINITY, Vec3::NEG_INFINITY],
         };
         world.still_bounds = bounds(world.geometry.still.triangles());
@@ -108,7 +109,7 @@ impl World {
         world
     }
 
-    /// Moves what moves to its place at `time_s`; `previous_s` is when motion is told from.
+    /// Poses the scene at `time_s` (seconds). Motion vectors refer to the pose at `previous_s`.
     pub fn pose(&mut self, scene: &Scene, time_s: f64, previous_s: f64) {
         let pose = scene.pose(time_s);
         if !pose.moving.is_empty() {
@@ -119,26 +120,27 @@ impl World {
         self.pick_lights(&pose.lights);
     }
 
-    /// Every light's share of all the power, roughly: what it sends into the scene's bounding sphere.
+    /// Builds the light table. A light's probability is its approximate share of the power sent into the scene's
+    /// bounding sphere.
     fn pick_lights(&mut self, lights: &[PunctualLight]) {
         let moving = bounds(self.geometry.moving.triangles());
         let [low, high] = [self.still_bounds[0].min(moving[0]), self.still_bounds[1].max(moving[1])];
         let radius = (0.5 * f64::from((high - low).length())).max(1e-6);
         let disk = if radius.is_finite() { PI * radius * radius } else { 1.0 };
-        let mut what = vec![];
+        let mut kinds_and_indices = vec![];
         let mut power = vec![];
         for i in 0..self.geometry.len() {
             let triangle = self.geometry.triangle(i);
-            let glow = self.glow.get(triangle.material() as usize).copied().unwrap_or(0.0);
-            if triangle.has(TriangleFlags::EMISSIVE) && glow > 0.0 {
+            let emitted_luma = self.emitted_luma.get(triangle.material() as usize).copied().unwrap_or(0.0);
+            if triangle.has(TriangleFlags::EMISSIVE) && emitted_luma > 0.0 {
                 let [a, b, c] = triangle.positions().map(|p| p.as_dvec3());
-                what.push(LIGHT_TRIANGLE << 30 | i);
-                power.push(PI * glow * 0.5 * (b - a).cross(c - a).length());
+                kinds_and_indices.push(LIGHT_TRIANGLE << 30 | i);
+                power.push(PI * emitted_luma * 0.5 * (b - a).cross(c - a).length());
             }
         }
         for (i, l) in lights.iter().enumerate() {
             let intensity = f64::from(luma(Vec3::from(l.intensity)));
-            what.push(LIGHT_PUNCTUAL << 30 | i as u32);
+            kinds_and_indices.push(LIGHT_PUNCTUAL << 30 | i as u32);
             power.push(
                 intensity
                     * match l.kind {
@@ -149,26 +151,31 @@ impl World {
             );
         }
         if self.needs.has(Effect::Environment) {
-            what.push(LIGHT_ENVIRONMENT << 30);
+            kinds_and_indices.push(LIGHT_ENVIRONMENT << 30);
             power.push(4.0 * PI * self.sky_luma * disk);
         }
-        let (rows, chosen) = alias_table(&power);
+        let (rows, probability) = alias_table(&power);
         self.picks.clear();
         for (i, (keep, alias)) in rows.into_iter().enumerate() {
-            self.picks.push(PickRecord { keep, alias, chosen: chosen[i], what: what[i] });
-            if what[i] >> 30 == LIGHT_TRIANGLE {
-                self.geometry.set_light(what[i] & LIGHT_INDEX, i as u32);
+            self.picks.push(PickRecord {
+                keep,
+                alias,
+                probability: probability[i],
+                kind_and_index: kinds_and_indices[i],
+            });
+            if kinds_and_indices[i] >> 30 == LIGHT_TRIANGLE {
+                self.geometry.set_light(kinds_and_indices[i] & LIGHT_INDEX, i as u32);
             }
         }
         let has_sky = self.needs.has(Effect::Environment);
-        self.sky_chosen = if has_sky { chosen.last().copied().unwrap_or(0.0) } else { 0.0 };
+        self.sky_probability = if has_sky { probability.last().copied().unwrap_or(0.0) } else { 0.0 };
     }
 }
 
-/// Radiance of the sky that scenes without light get.
+/// Sky radiance of scenes without light.
 const SOFT_WHITE: [f32; 3] = [1.0; 3];
 
-/// Gives a scene a soft white sky if nothing in it shines.
+/// Adds a constant white sky to a scene without any light.
 pub fn light_if_dark(scene: &mut Scene) {
     let needs = Effects::needed(scene);
     let shines = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
@@ -177,7 +184,7 @@ pub fn light_if_dark(scene: &mut Scene) {
     }
 }
 
-/// Smallest and largest corner.
+/// Smallest and largest corner coordinates.
 fn bounds(triangles: &[TriangleRecord]) -> [Vec3; 2] {
     let corners = triangles.iter().flat_map(|t| t.positions());
     corners.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
@@ -189,11 +196,11 @@ fn mean_luma(texture: &Texture) -> f64 {
     let value = |b: u8| decoded[usize::from(b)];
     let sum: f64 =
         texture.texels.iter().map(|t| f64::from(luma(Vec3::new(value(t[0]), value(t[1]), value(t[2]))))).sum();
-    // Never 0: what may glow may be hit, and must then have been worth a look.
+    // Never 0: a path can hit any emitting texel, so light sampling must have a density there.
     (sum / texture.texels.len().max(1) as f64).max(1e-6)
 }
 
-/// Rows of texels as seen from the middle: each row's share of all directions.
+/// Share of all directions that a row of environment texels covers.
 fn row_share(height: usize, row: usize) -> f64 {
     let edge = |r: usize| (PI * r as f64 / height as f64).cos();
     0.5 * (edge(row) - edge(row + 1))
@@ -207,7 +214,8 @@ fn mean_radiance(map: &Image<[f32; 3]>) -> f64 {
     rows.sum()
 }
 
-/// Texels with probabilities by radiance and solid angle. A texel counts its neighbours, into which the filter reaches.
+/// Environment texels with probabilities proportional to radiance times solid angle. Neighbours contribute, as bilinear
+/// filtering reaches into them.
 fn map_records(map: &Image<[f32; 3]>) -> Vec<MapRecord> {
     let [w, h] = [map.width(), map.height()];
     let at = |x: usize, y: usize| f64::from(luma(Vec3::from(map.at(x % w, y.min(h - 1)))));
@@ -219,9 +227,15 @@ fn map_records(map: &Image<[f32; 3]>) -> Vec<MapRecord> {
             (0.125 * row(y.saturating_sub(1)) + 0.75 * row(y) + 0.125 * row(y + 1)) * row_share(h, y)
         })
         .collect();
-    let (rows, chosen) = alias_table(&weights);
-    let records = map.pixels().iter().zip(rows).zip(chosen);
+    let (rows, probability) = alias_table(&weights);
+    let records = map.pixels().iter().zip(rows).zip(probability);
     records
-        .map(|((&radiance, (keep, alias)), chosen)| MapRecord { radiance, chosen, keep, alias, unused: [0.0; 2] })
+        .map(|((&radiance, (keep, alias)), probability)| MapRecord {
+            radiance,
+            probability,
+            keep,
+            alias,
+            unused: [0.0; 2],
+        })
         .collect()
 }

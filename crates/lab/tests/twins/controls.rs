@@ -1,4 +1,4 @@
-//! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
+//! Planted errors in the shaders: each must be caught by the comparison of its function.
 
 use super::probe::caught;
 use super::{facets, lighting, scattering, scattering_lobes, triangles};
@@ -30,12 +30,17 @@ fn a_direction_folded_or_rounded_wrongly_is_caught() {
 fn a_wrong_direction_or_density_is_caught() {
     caught(scattering::PROBES, "power_heuristic", "return 1.0 / (r * r + 1.0);", "return 1.0 / (r + 1.0);");
     caught(facets::PROBES, "vndf_sample", "(1.0 - u.y) * (1.0 + s.z)", "(1.0 - u.y) + s.z");
-    caught(scattering::PROBES, "phong_sample", "/ (1.0 - chance)", "");
+    caught(scattering::PROBES, "phong_sample", "/ (1.0 - probability)", "");
 }
 
 #[test]
 fn a_wrong_lobe_is_caught() {
-    caught(scattering_lobes::PROBES, "eval", "pdf += layers.chances.y * density;", "pdf += layers.chances.y * shape;");
+    caught(
+        scattering_lobes::PROBES,
+        "eval",
+        "pdf += layers.probabilities.y * density;",
+        "pdf += layers.probabilities.y * shape;",
+    );
     caught(
         scattering_lobes::PROBES,
         "eval",

@@ -1,4 +1,4 @@
-//! Functions of microfacets.
+//! Probes of microfacet functions.
 
 use crate::probe::{Probe, Rows};
 use crate::scattering::{above, draw, one_share, put, put_two, two, two_draws};
@@ -14,7 +14,7 @@ fn width(d: &mut Draws) -> f32 {
     }
 }
 
-/// Rows of a direction above and widths.
+/// Rows of a direction above the horizon and two widths.
 fn seen(name: &str, more: usize) -> Rows {
     Rows::new(5 + more).random(name, |d, row| {
         put(row, above(d));

@@ -1,4 +1,4 @@
-//! Every function of every module; one test a module, named after its hard cases.
+//! Every function of every module; one test per module, named after its hard cases.
 
 use super::probe::check_module;
 use super::{facets, lighting, scattering, scattering_lobes, triangles};

@@ -1,22 +1,22 @@
-//! The library under test: that of the tracer and the rasteriser.
+//! The WGSL library of the tracer and the rasterizer, as the shared twin tests see it.
 
 use super::probe::Probe;
-pub use super::scattering_lobes::heap;
+pub use super::scattering_lobes::table_data;
 use super::{facets, lighting, scattering, scattering_lobes, triangles};
 pub use afterimage_lab::shader::SHADERS;
 
-/// Where `shaders/lib` and `src/kernel` are.
+/// Folder that contains `shaders/lib` and `src/kernel`.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
-/// (WGSL file stem, function there) without a Rust twin of that name.
+/// WGSL functions without a Rust twin of the same name, as (file stem, function).
 pub const WGSL_ONLY: &[(&str, &str)] = &[];
 
-/// (Rust file stem, function there) without a WGSL twin.
+/// Rust functions without a WGSL twin, as (file stem, function).
 pub const RUST_ONLY: &[(&str, &str)] = &[];
 
-/// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
+/// Functions that are not public in the Rust kernel; probed through their callers.
 pub const PRIVATE: &[&str] =
-    &["compensation", "eval_reflection", "eval_transmission", "folded", "glass_fresnel", "mirror_chance"];
+    &["compensation", "eval_reflection", "eval_transmission", "folded", "glass_fresnel", "mirror_probability"];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {

@@ -1,4 +1,4 @@
-//! Functions of light and texture: light, shading, texel, and the draws of paths.
+//! Probes of light and texture functions: light, shading, texel, and path draws.
 
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::scattering::{anywhere, put, share, two};
@@ -15,7 +15,7 @@ fn color(d: &mut Draws, row: &mut Vec<u32>) {
     (0..3).for_each(|_| row.push(share(d).to_bits()));
 }
 
-/// Two directions that are not opposite, as a shading normal and its face.
+/// Two directions that are not opposite, such as a shading normal and its geometric normal.
 fn beside(d: &mut Draws, v: Vec3) -> Vec3 {
     let off = Vec3::new(d.range(-1.0, 1.0), d.range(-1.0, 1.0), d.range(-1.0, 1.0));
     (v + off * d.uniform()).normalize_or(v)
@@ -34,7 +34,7 @@ pub const PROBES: &[Probe] = &[
         rust: |r, o| o.f(light::distance_falloff(r.f(0), r.f(1))),
         rows: || {
             let distances = [around(&[1e-3, 1.0, 10.0]), floats(&[0.0, 1e-6, 1e4])].concat();
-            // Lights without an end have an infinite range.
+            // An infinite range means a light without a window.
             let ranges = [around(&[1.0, 10.0]), floats(&[0.5, 1e6, f32::INFINITY])].concat();
             Rows::new(2)
                 .cross(&[&distances, &ranges])
@@ -82,7 +82,7 @@ pub const PROBES: &[Probe] = &[
             o.f(sine);
         },
         rows: || {
-            // Without the places where a sine is a denormal's breadth from 0: their products may be flushed.
+            // Without arguments whose sine is nearly denormal: a device may flush their products to zero.
             let ends = floats(&[0.0, 0.125, 0.25, 0.5, 0.75, 0.999, 1.0]);
             Rows::new(2)
                 .cross(&[&ends, &ends])
@@ -186,7 +186,7 @@ pub const PROBES: &[Probe] = &[
             Rows::new(3).random("wrap_texel", |d, row| {
                 let (size, wrap) = (1 + d.bits() % if d.bits() % 2 == 0 { 4 } else { 5000 }, d.bits() % 3);
                 let period = if wrap == texel::WRAP_MIRROR { 2 * size } else { size };
-                // From the neighbour before a period to the one after it.
+                // From one before the period to one after it.
                 row.extend([(d.bits() % (period + 2)).wrapping_sub(1), size, wrap]);
             })
         },

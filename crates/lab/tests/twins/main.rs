@@ -1,4 +1,5 @@
-//! The WGSL library of the tracer and the rasteriser against its Rust kernel, function by function, bit for bit; hard cases H80, H83.
+//! The WGSL library of the tracer and the rasterizer against its Rust kernel, function by function, bit for bit; hard
+//! cases H80, H83.
 
 #[path = "../../../../tests/gpu/twins/modules.rs"]
 mod modules;

@@ -1,4 +1,4 @@
-//! Functions of scattering that need no tables: direction, sampling, phong.
+//! Probes of scattering functions without tables: direction, sampling, phong.
 
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
@@ -21,7 +21,7 @@ pub fn put(row: &mut Vec<u32>, v: Vec3) {
     row.extend(v.to_array().map(f32::to_bits));
 }
 
-/// A unit vector, with its z from the horizon to the pole, both among them.
+/// Unit vector in the upper hemisphere, including the horizon and the pole.
 pub fn above(d: &mut Draws) -> Vec3 {
     let z = match d.bits() % 8 {
         0 => 1.0,
@@ -38,13 +38,13 @@ fn around_z(d: &mut Draws, z: f32) -> Vec3 {
     Vec3::new(r * c, r * s, z)
 }
 
-/// A unit vector of either side.
+/// Unit vector in either hemisphere.
 pub fn anywhere(d: &mut Draws) -> Vec3 {
     let v = above(d);
     if d.bits() & 1 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
 }
 
-/// 0, 1, or anything between.
+/// 0, 1 or uniform in between.
 pub fn share(d: &mut Draws) -> f32 {
     match d.bits() % 4 {
         0 => 0.0,
@@ -57,7 +57,7 @@ pub fn draw(d: &mut Draws) -> u32 {
     range(d, 0.0, 1.0)
 }
 
-/// Rows of two draws, their ends among them.
+/// Rows of two draws, including their ends.
 pub fn two_draws(name: &str) -> Rows {
     let ends = [draws(), floats(&[1.0])].concat();
     Rows::new(2).cross(&[&ends, &ends]).random(name, |d, row| row.extend([draw(d), draw(d)]))
@@ -242,12 +242,12 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "phong_chance",
+        name: "phong_specular_probability",
         module: "phong",
         words: [7, 1],
-        wgsl: concat!(material!(), "out_f(phong_chance(s));"),
-        rust: |r, o| o.f(phong::phong_chance(&material(r))),
-        rows: || materials("phong_chance", |_, _| {}, 0),
+        wgsl: concat!(material!(), "out_f(phong_specular_probability(s));"),
+        rust: |r, o| o.f(phong::phong_specular_probability(&material(r))),
+        rows: || materials("phong_specular_probability", |_, _| {}, 0),
     },
     Probe {
         name: "phong_diffuse",

@@ -1,4 +1,4 @@
-//! Functions of scattering that read tables: albedo, bsdf; the law of compiled lobes.
+//! Probes of scattering functions that read tables: albedo, bsdf. Also: unused lobes change no bit.
 
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::scattering::{above, anywhere, put, put_sampled, put_scatter, share, two};
@@ -14,8 +14,8 @@ use std::sync::LazyLock;
 
 static TABLES: LazyLock<AlbedoTables> = LazyLock::new(AlbedoTables::compute);
 
-/// What `load` reads while `module` is probed.
-pub fn heap(module: &str) -> Vec<u32> {
+/// Words that `load` reads while `module` is probed: the albedo tables where it needs them.
+pub fn table_data(module: &str) -> Vec<u32> {
     if ["albedo", "bsdf", "layers"].contains(&module) { TABLES.words().flatten().collect() } else { vec![] }
 }
 
@@ -73,10 +73,10 @@ fn put_layers(o: &mut Out, l: &Layers) {
     o.v(l.glass_reflect);
     o.f(l.eta);
     o.b(l.thin);
-    l.chances.into_iter().for_each(|x| o.f(x));
+    l.probabilities.into_iter().for_each(|x| o.f(x));
 }
 
-/// WGSL of [`surface`], and of [`layers`] after it.
+/// WGSL code for [`surface`], followed by [`layers`].
 macro_rules! layered {
     ($rest:literal) => {
         concat!(
@@ -88,7 +88,7 @@ macro_rules! layered {
     };
 }
 
-/// Surface, `wo`, and `more`.
+/// Rows of a surface, `wo`, and the words that `more` adds.
 fn surfaces(name: &str, words: usize, more: fn(&mut Draws, &mut Vec<u32>)) -> Rows {
     Rows::new(SURFACE + 3 + words).random(name, |d, row| {
         put_surface(d, row);
@@ -164,17 +164,17 @@ pub const PROBES: &[Probe] = &[
         rows: || pair("ggx_albedo").within(|r| r.f(1) >= 1e-3),
     },
     Probe {
-        name: "stretched_albedo",
+        name: "anisotropic_albedo",
         module: "albedo",
         words: [5, 2],
-        wgsl: "let e = stretched_albedo(0u, in_v(0u), vec2<f32>(in_f(3u), in_f(4u))); out_f(e.x); out_f(e.y);",
+        wgsl: "let e = anisotropic_albedo(0u, in_v(0u), vec2<f32>(in_f(3u), in_f(4u))); out_f(e.x); out_f(e.y);",
         rust: |r, o| {
-            let e = albedo::stretched_albedo(&TABLES, r.v(0), two(r, 3));
+            let e = albedo::anisotropic_albedo(&TABLES, r.v(0), two(r, 3));
             o.f(e.x);
             o.f(e.y);
         },
         rows: || {
-            Rows::new(5).random("stretched_albedo", |d, row| {
+            Rows::new(5).random("anisotropic_albedo", |d, row| {
                 put(row, above(d));
                 let a: Vec2 = afterimage_lab::kernel::microfacet::ggx_widths(share(d), share(d));
                 row.extend([a.x, a.y].map(f32::to_bits));
@@ -248,7 +248,7 @@ pub const PROBES: &[Probe] = &[
             "out_f(l.widths.x); out_f(l.widths.y); out_v(l.diffuse); out_f(l.retro); out_f(l.retro_roughness);
     out_f(l.retro_scale); out_v(l.reflect); out_v(l.reflect_rise); out_f(l.coat_width); out_f(l.coat);
     out_f(l.coat_rise); out_v(l.sheen); out_f(l.sheen_width); out_f(l.sheen_lambda); out_v(l.glass);
-    out_v(l.glass_color); out_v(l.glass_reflect); out_f(l.eta); out_b(l.thin); out_v(l.chances.xyz); out_f(l.chances.w);"
+    out_v(l.glass_color); out_v(l.glass_reflect); out_f(l.eta); out_b(l.thin); out_v(l.probabilities.xyz); out_f(l.probabilities.w);"
         ),
         rust: |r, o| put_layers(o, &layers_of(r)),
         rows: || surfaces("layers", 0, |_, _| {}),
@@ -279,7 +279,7 @@ pub const PROBES: &[Probe] = &[
 
 type Switch = (&'static str, fn(&Lobes) -> bool);
 
-/// Name of each override, and whether a surface needs it.
+/// Override of each lobe, and whether a surface needs it.
 const SWITCHES: [Switch; 7] = [
     ("LOBE_RETRO", |l| l.retro),
     ("LOBE_SPECULAR", |l| l.specular),
@@ -290,8 +290,8 @@ const SWITCHES: [Switch; 7] = [
     ("LOBE_TRANSMISSION", |l| l.transmission),
 ];
 
-/// Rows of `probe` whose surface needs none of the switches that are off, and how many of them a device with these switches off
-/// computes otherwise than Rust with all on.
+/// Rows of `probe` whose surfaces need none of the lobes in `off`, and their differences between a device without these
+/// lobes and Rust with all lobes.
 fn without(probe: &Probe, off: &[usize]) -> Option<(usize, Vec<String>)> {
     let mut source = probe.source();
     for &k in off {

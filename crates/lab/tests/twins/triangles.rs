@@ -1,4 +1,4 @@
-//! Rays and triangles, directions.
+//! Probes of intersection and direction functions.
 
 use crate::probe::{Out, Probe, Row, Rows};
 use crate::values::*;
@@ -20,7 +20,7 @@ fn push(row: &mut Vec<u32>, v: impl Into<Vec3>) {
     row.extend(v.into().to_array().map(f32::to_bits));
 }
 
-/// A ray, and far from it a triangle as small as a rounding of its distance: signs of edges are random.
+/// A ray, and a distant triangle as small as the rounding error at its distance: edge signs are random.
 fn ray_and_speck(d: &mut Draws, row: &mut Vec<u32>) {
     let (at, direction) = (vector(d, 1.0), vector(d, 1.0).normalize_or(Vec3::X));
     let shear = triangle::shear(direction);
@@ -30,7 +30,7 @@ fn ray_and_speck(d: &mut Draws, row: &mut Vec<u32>) {
     }
 }
 
-/// A ray and a triangle that it meets, near its middle, at an edge, at a corner, or not quite.
+/// A ray and a triangle that it hits in the middle, at an edge, at a corner, or just misses.
 fn ray_and_triangle(d: &mut Draws, row: &mut Vec<u32>) {
     let corners = [0; 3].map(|_| vector(d, 1.0));
     let distance = 10_f32.powf(d.range(-2.0, 3.0));
@@ -92,7 +92,7 @@ pub const PROBES: &[Probe] = &[
         name: "edge",
         module: "triangle",
         words: [6, 2],
-        // The sign of a zero is left open.
+        // The sign of a zero may differ.
         wgsl: "let e = edge(in_v(0u), in_v(3u)); out_f(abs(e)); out_b(e < 0.0);",
         rust: |r, o| {
             let e = triangle::edge(r.v(0).into(), r.v(3).into());

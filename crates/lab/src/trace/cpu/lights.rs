@@ -1,4 +1,4 @@
-//! Light that is looked for: `shaders/trace/lights.wgsl`.
+//! Light sampling (next event estimation) and environment lookup. Twin of `shaders/trace/lights.wgsl`.
 
 use super::surface::emission_at;
 use crate::kernel::direction::{to_world, unit};
@@ -13,31 +13,31 @@ use crate::trace::shading_records::{
 use crate::trace::world::World;
 use glam::{Vec2, Vec3};
 
-/// Light that may arrive at a point.
+/// A sampled point on a light, as seen from a surface point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arriving {
-    /// Unit vector towards it.
+pub(super) struct LightSample {
+    /// Unit vector towards the light.
     pub direction: Vec3,
-    /// Metres to it; infinity for what is infinitely far.
+    /// Distance in metres; infinity for lights at infinity.
     pub distance: f32,
-    /// Radiance; of punctual lights irradiance on a surface that faces them.
+    /// Radiance; for punctual lights, irradiance on a surface facing the light.
     pub radiance: Vec3,
-    /// Density of finding it, 1/sr; of punctual lights the probability.
+    /// Density of the sample in 1/sr; for punctual lights, the probability of picking the light.
     pub pdf: f32,
-    /// Whether a path that scatters may find it, too.
+    /// Whether scattered rays can also hit the light, so that the sample needs a MIS weight.
     pub can_be_hit: bool,
 }
 
-/// Picks a light and a place on it, as seen from `position` with shading frame `frame`. `draws` pick the light and the place,
-/// `more` the texel of an environment map.
-pub(super) fn look(
+/// Samples a light and a point on it, seen from `position` with shading frame `frame`. `draws` choose the light and the
+/// point, `more` the texel of an environment map.
+pub(super) fn sample_light(
     world: &World,
     position: Vec3,
     frame: &[Vec3; 3],
     draws: [f32; 4],
     more: [f32; 4],
     effects: Effects,
-) -> Option<Arriving> {
+) -> Option<LightSample> {
     let count = world.picks.len() as u32;
     if count == 0 {
         return None;
@@ -48,16 +48,16 @@ pub(super) fn look(
         pick = world.picks[pick.alias as usize];
     }
     let place = Vec2::new(draws[2], draws[3]);
-    let index = pick.what & LIGHT_INDEX;
-    match pick.what >> 30 {
+    let index = pick.kind_and_index & LIGHT_INDEX;
+    match pick.kind_and_index >> 30 {
         LIGHT_TRIANGLE if effects.has(Effect::EmissiveTriangles) => {
-            from_triangle(world, position, index, pick.chosen, place, effects)
+            from_triangle(world, position, index, pick.probability, place, effects)
         }
         LIGHT_PUNCTUAL if effects.has(Effect::PunctualLights) => {
-            Some(from_punctual(world, position, index, pick.chosen))
+            Some(from_punctual(world, position, index, pick.probability))
         }
         LIGHT_ENVIRONMENT if effects.has(Effect::Environment) => {
-            from_environment(world, frame, pick.chosen, place, more, effects)
+            from_environment(world, frame, pick.probability, place, more, effects)
         }
         _ => None,
     }
@@ -67,10 +67,10 @@ fn from_triangle(
     world: &World,
     position: Vec3,
     index: u32,
-    chosen: f32,
+    probability: f32,
     place: Vec2,
     effects: Effects,
-) -> Option<Arriving> {
+) -> Option<LightSample> {
     let light = world.geometry.triangle(index);
     let [v0, v1, v2] = light.positions();
     let weights = barycentrics(place);
@@ -82,19 +82,19 @@ fn from_triangle(
     if cosine <= 0.0 && !double_sided {
         return None;
     }
-    // To just before the light: the ray must not end on it.
+    // The shadow ray ends just before the light, so that it does not hit the light itself.
     let side = if cosine > 0.0 { face } else { -face };
     let to = offset_ray(on_light, side, magnitude(v0, v1, v2)) - position;
     let squared = to.dot(to);
     let direction = unit(to);
     let area = 0.5 * across.dot(across).sqrt();
-    let pdf = chosen * area_pdf(area, squared, face.dot(direction));
+    let pdf = probability * area_pdf(area, squared, face.dot(direction));
     let radiance = emission_at(world, index, weights.y, weights.z, effects);
     let distance = squared.sqrt();
-    (pdf > 0.0).then_some(Arriving { direction, distance, radiance, pdf, can_be_hit: true })
+    (pdf > 0.0).then_some(LightSample { direction, distance, radiance, pdf, can_be_hit: true })
 }
 
-fn from_punctual(world: &World, position: Vec3, index: u32, chosen: f32) -> Arriving {
+fn from_punctual(world: &World, position: Vec3, index: u32, probability: f32) -> LightSample {
     let light = world.punctual[index as usize];
     let axis = Vec3::from(light.direction);
     let mut radiance = Vec3::from(light.intensity);
@@ -108,17 +108,17 @@ fn from_punctual(world: &World, position: Vec3, index: u32, chosen: f32) -> Arri
     if light.kind == 2 {
         radiance *= cone_falloff(-direction.dot(axis), light.cos_inner, light.cos_outer);
     }
-    Arriving { direction, distance, radiance, pdf: chosen, can_be_hit: false }
+    LightSample { direction, distance, radiance, pdf: probability, can_be_hit: false }
 }
 
 fn from_environment(
     world: &World,
     frame: &[Vec3; 3],
-    chosen: f32,
+    probability: f32,
     place: Vec2,
     more: [f32; 4],
     effects: Effects,
-) -> Option<Arriving> {
+) -> Option<LightSample> {
     let (direction, pdf) = if has_map(world, effects) {
         let count = world.map.len() as u32;
         let mut index = ((more[0] * count as f32) as u32).min(count - 1);
@@ -129,21 +129,21 @@ fn from_environment(
         let u = ((index % w) as f32 + place.x) / w as f32;
         let v = ((index / w) as f32 + place.y) / h as f32;
         let (direction, sine) = map_direction(u, v);
-        (direction, map_pdf(world.map[index as usize].chosen, count as f32, sine))
+        (direction, map_pdf(world.map[index as usize].probability, count as f32, sine))
     } else {
         let local = cosine_hemisphere(place);
         (to_world(local, frame[0], frame[1], frame[2]), cosine_hemisphere_pdf(local.z))
     };
-    let pdf = chosen * pdf;
+    let pdf = probability * pdf;
     let radiance = sky(world, direction, effects);
-    (pdf > 0.0).then_some(Arriving { direction, distance: f32::INFINITY, radiance, pdf, can_be_hit: true })
+    (pdf > 0.0).then_some(LightSample { direction, distance: f32::INFINITY, radiance, pdf, can_be_hit: true })
 }
 
 fn has_map(world: &World, effects: Effects) -> bool {
     effects.has(Effect::EnvironmentMap) && world.map_size[0] > 0
 }
 
-/// Radiance from a direction that meets nothing.
+/// Radiance of the environment in a direction.
 pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
     if !has_map(world, effects) {
         return world.sky;
@@ -163,26 +163,28 @@ pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
     top * (1.0 - t) + bottom * t
 }
 
-/// Density with which [`look`] finds the sky in a direction under `cosine` to the shading normal that it is looked from.
+/// Density in 1/sr with which [`sample_light`] would sample this direction of the environment. `cosine` is that of the
+/// direction to the shading normal.
 pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effects) -> f32 {
     if !has_map(world, effects) {
-        return world.sky_chosen * cosine_hemisphere_pdf(cosine);
+        return world.sky_probability * cosine_hemisphere_pdf(cosine);
     }
     let [w, h] = world.map_size;
     let [u, v] = map_coordinates(direction);
     let i = ((u * w as f32) as u32).min(w - 1);
     let j = ((v * h as f32) as u32).min(h - 1);
     let sine = (direction.x * direction.x + direction.z * direction.z).sqrt();
-    let chosen = world.map[(j * w + i) as usize].chosen;
-    world.sky_chosen * map_pdf(chosen, world.map.len() as f32, sine)
+    let probability = world.map[(j * w + i) as usize].probability;
+    world.sky_probability * map_pdf(probability, world.map.len() as f32, sine)
 }
 
-/// Density with which [`look`] finds the point of triangle `index` that a path from `distance` away met under `cosine`.
+/// Density in 1/sr with which [`sample_light`] would sample the point where a path hit triangle `index`, at `distance`
+/// and with `cosine` to the triangle's normal.
 pub(super) fn triangle_pdf(world: &World, index: u32, distance: f32, cosine: f32) -> f32 {
     let light = world.geometry.triangle(index);
     let Some(row) = light.light() else { return 0.0 };
     let [v0, v1, v2] = light.positions();
     let across = (v1 - v0).cross(v2 - v0);
     let area = 0.5 * across.dot(across).sqrt();
-    world.picks[row as usize].chosen * area_pdf(area, distance * distance, cosine)
+    world.picks[row as usize].probability * area_pdf(area, distance * distance, cosine)
 }

@@ -1,4 +1,4 @@
-//! The tracer on the CPU: the oracle, and the tracer of machines without a GPU.
+//! Path tracer on the CPU: the reference for the GPU tracer, and the fallback without a GPU.
 
 mod lights;
 mod path;
@@ -17,24 +17,25 @@ use glam::Vec3;
 use path::{DRAWS_CAMERA, Paths};
 use rayon::prelude::*;
 
-/// Traces with all threads of the machine. The image does not depend on their number.
+/// Traces on all CPU threads. The image does not depend on their number.
 #[derive(Clone, Copy, Debug)]
 pub struct CpuTracer {
     settings: TraceSettings,
 }
 
 impl CpuTracer {
-    /// A tracer.
+    /// A tracer with these settings.
     pub fn new(settings: TraceSettings) -> Self {
         Self { settings }
     }
 
-    /// What it simulates in `world`.
+    /// Effects that it simulates in `world`.
     pub fn effects(&self, world: &World) -> Effects {
         self.settings.effects.unwrap_or(world.needs)
     }
 
-    /// Adds the samples of `work`, whose pixels must be on it, to `film`. `frame` is the frame's number: each has draws of its own.
+    /// Adds the samples of `work` to `film`, which must contain all its pixels. `frame` is the frame number; every
+    /// frame has its own random draws.
     pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         let paths = Paths {
             world,
@@ -48,13 +49,13 @@ impl CpuTracer {
         let (width, base) = (film.moments.size()[0], film.base());
         let moments = &film.moments;
         let pixels = work.into().by_pixel();
-        let done: Vec<Done> = pixels
+        let done: Vec<PixelResult> = pixels
             .par_iter()
             .with_min_len(32)
             .map(|(id, samples)| {
                 let [x, y] = [id & 0xffff, id >> 16];
                 let index = (y * width + x - base) as usize;
-                let mut done = Done { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
+                let mut done = PixelResult { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
                 for sample in samples.numbers() {
                     let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);
                     let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
@@ -77,21 +78,21 @@ impl CpuTracer {
     }
 }
 
-/// A pixel with its samples.
-struct Done {
+/// Result of one pixel.
+struct PixelResult {
     index: usize,
     moments: Moments,
     rays: u64,
     nonfinite: u64,
 }
 
-/// Key of a frame's draws.
+/// Key of a frame's random draws.
 pub(in crate::trace) fn path_key(seed: u64, frame: u64) -> u32 {
-    // The counter's low word is no argument of a path's draws: it goes into the key.
+    // Path draws take no argument for the counter's low word, so it is mixed into the key.
     stream_key(seed, frame as u32, Purpose::Path, frame)
 }
 
-/// Whether a surface with holes is at least half there.
-pub(super) fn is_mostly_there(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
-    surface::is_there(world, triangle, u, v, 0.5, effects)
+/// Alpha test with a fixed threshold: opacity above one half, or above the material's cutoff.
+pub(super) fn is_half_opaque(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> bool {
+    surface::passes_alpha_test(world, triangle, u, v, 0.5, effects)
 }

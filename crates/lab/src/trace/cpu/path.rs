@@ -1,7 +1,8 @@
-//! One path of light. `shaders/trace/shade.wgsl` and its companions do the same a step at a time.
+//! A light path, traced from the camera. `shaders/trace/shade_pass.wgsl` and the other passes do the same one step at a
+//! time.
 
-use super::lights::{Arriving, look, sky, sky_pdf, triangle_pdf};
-use super::surface::{Point, is_there, lobes, point};
+use super::lights::{LightSample, sample_light, sky, sky_pdf, triangle_pdf};
+use super::surface::{SurfacePoint, lobes, passes_alpha_test, surface_point};
 use crate::kernel::bsdf::{Layers, Lobes, Sampled, Scatter, eval, layers, sample};
 use crate::kernel::direction::{to_local, to_world, unit};
 use crate::kernel::phong::{phong_eval, phong_sample};
@@ -15,7 +16,7 @@ use afterimage::kernel::approx::exp;
 use afterimage::kernel::rng::path_draws;
 use glam::Vec3;
 
-/// What all paths of a frame have in common.
+/// Constants of all paths of a frame.
 pub(super) struct Paths<'a> {
     pub world: &'a World,
     pub integrator: Integrator,
@@ -25,31 +26,32 @@ pub(super) struct Paths<'a> {
     pub key: u32,
 }
 
-/// Every decision of a path has draws of its own: where in the pixel it starts ...
+/// Index of random draws: position within the pixel. Each decision of a path has draws of its own.
 pub(super) const DRAWS_CAMERA: u32 = 0;
-/// ... and at each bounce where it goes,
+/// Index of random draws: scattered direction. This one and the next two are relative to the bounce.
 const DRAWS_SCATTER: u32 = 1;
-/// which light it looks for and where on it,
+/// Index of random draws: light and point on it.
 const DRAWS_LIGHT: u32 = 2;
-/// and where in the environment map.
+/// Index of random draws: texel of the environment map.
 const DRAWS_MAP: u32 = 3;
-/// From one bounce to the next.
+/// Increment of draw indices per bounce.
 const DRAWS_STRIDE: u32 = 4;
-/// Whether it meets a surface with holes: apart from all others, and by triangle.
-const DRAWS_HOLES: u32 = 0x8000_0000;
+/// Index of random draws: alpha test. The high bit keeps it apart from all others; the triangle index is mixed into the
+/// key.
+const DRAWS_ALPHA_TEST: u32 = 0x8000_0000;
 
-/// Where a path is.
+/// State of a path between bounces.
 struct State {
     ray: Ray,
     throughput: Vec3,
-    /// Density of the ray's direction; 0 for the camera's.
+    /// Density of the ray's direction in 1/sr; 0 for camera rays.
     pdf: f32,
-    /// Density with which the sky in the ray's direction could have been looked for instead.
+    /// Density in 1/sr with which light sampling would have chosen this direction of the environment.
     sky_pdf: f32,
 }
 
 impl Paths<'_> {
-    /// Radiance that arrives along `direction` (of length 1), and rays traced for it.
+    /// Radiance arriving along `direction` (unit length), and the number of rays traced for it.
     pub fn radiance(&self, origin: Vec3, direction: Vec3, pixel: u32, sample: u32) -> (Vec3, u64) {
         let mut radiance = Vec3::ZERO;
         let mut rays = 0;
@@ -61,7 +63,7 @@ impl Paths<'_> {
                 radiance += state.throughput * self.sky_light(&state);
                 break;
             };
-            let p = point(self.world, &hit, state.ray.direction, self.effects);
+            let p = surface_point(self.world, &hit, state.ray.direction, self.effects);
             if self.effects.has(Effect::Transmission) && !p.front {
                 state.throughput *= (p.absorption * -hit.t).map(exp);
             }
@@ -75,7 +77,7 @@ impl Paths<'_> {
             if self.integrator != Integrator::Naive {
                 let draws = path_draws(pixel, sample, first + DRAWS_LIGHT, self.key);
                 let more = path_draws(pixel, sample, first + DRAWS_MAP, self.key);
-                if let Some((ray, light)) = self.light(&p, &scattering, draws, more) {
+                if let Some((ray, light)) = self.direct_light(&p, &scattering, draws, more) {
                     rays += 1;
                     if !self.occluded(&ray, pixel, sample, 2 * bounce + 1) {
                         radiance += state.throughput * light;
@@ -87,9 +89,9 @@ impl Paths<'_> {
                 break;
             }
             let direction = unit(to_world(sampled.wi, x, y, z));
-            let Some(origin) = leaving(&p, direction, sampled.wi.z) else { break };
+            let Some(origin) = spawn_origin(&p, direction, sampled.wi.z) else { break };
             state.throughput *= sampled.scatter.value / sampled.scatter.pdf;
-            if !brings_light(state.throughput) {
+            if !any_positive(state.throughput) {
                 break;
             }
             state.ray = Ray { origin, direction, t_max: f32::INFINITY };
@@ -99,9 +101,9 @@ impl Paths<'_> {
         (radiance, rays)
     }
 
-    /// The nearest surface; `number` tells a path's rays apart.
+    /// Nearest surface on a ray; `number` distinguishes the rays of a path in alpha tests.
     fn closest(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> Option<Hit> {
-        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let accept = |t, u, v| self.accept_hit(t, u, v, pixel, sample, number);
         let geometry = &self.world.geometry;
         if self.effects.has(Effect::MovingObjects) {
             geometry.closest(ray, accept)
@@ -111,7 +113,7 @@ impl Paths<'_> {
     }
 
     fn occluded(&self, ray: &Ray, pixel: u32, sample: u32, number: u32) -> bool {
-        let accept = |t, u, v| self.meets(t, u, v, pixel, sample, number);
+        let accept = |t, u, v| self.accept_hit(t, u, v, pixel, sample, number);
         let geometry = &self.world.geometry;
         if self.effects.has(Effect::MovingObjects) {
             geometry.occluded(ray, accept)
@@ -120,16 +122,16 @@ impl Paths<'_> {
         }
     }
 
-    fn meets(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {
+    fn accept_hit(&self, triangle: u32, u: f32, v: f32, pixel: u32, sample: u32, number: u32) -> bool {
         if !self.effects.has(Effect::Alpha) {
             return true;
         }
-        let draws = path_draws(pixel, sample, DRAWS_HOLES | number, self.key ^ triangle);
-        is_there(self.world, triangle, u, v, draws[0], self.effects)
+        let draws = path_draws(pixel, sample, DRAWS_ALPHA_TEST | number, self.key ^ triangle);
+        passes_alpha_test(self.world, triangle, u, v, draws[0], self.effects)
     }
 
-    /// Share of what a scattered ray finds that is not counted where it was looked for.
-    fn share(&self, state: &State, light_pdf: f32) -> f32 {
+    /// MIS weight of light that a scattered ray hits, given the density with which light sampling would have found it.
+    fn mis_weight(&self, state: &State, light_pdf: f32) -> f32 {
         match self.integrator {
             _ if state.pdf <= 0.0 => 1.0,
             Integrator::Naive => 1.0,
@@ -142,44 +144,50 @@ impl Paths<'_> {
         if !self.effects.has(Effect::Environment) {
             return Vec3::ZERO;
         }
-        sky(self.world, state.ray.direction, self.effects) * self.share(state, state.sky_pdf)
+        sky(self.world, state.ray.direction, self.effects) * self.mis_weight(state, state.sky_pdf)
     }
 
-    fn surface_light(&self, state: &State, p: &Point, hit: &Hit) -> Vec3 {
-        if !self.effects.has(Effect::EmissiveTriangles) || !brings_light(p.emitted) {
+    fn surface_light(&self, state: &State, p: &SurfacePoint, hit: &Hit) -> Vec3 {
+        if !self.effects.has(Effect::EmissiveTriangles) || !any_positive(p.emitted) {
             return Vec3::ZERO;
         }
         let cosine = p.geometric.dot(state.ray.direction);
-        p.emitted * self.share(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
+        p.emitted * self.mis_weight(state, triangle_pdf(self.world, hit.triangle, hit.t, cosine))
     }
 
-    /// A ray towards a light, and what arrives if nothing is in between.
-    fn light(&self, p: &Point, scattering: &Scattering, draws: [f32; 4], more: [f32; 4]) -> Option<(Ray, Vec3)> {
-        let arriving = look(self.world, p.position, &p.frame, draws, more, self.effects)?;
+    /// Shadow ray to a sampled light, and its contribution if unoccluded.
+    fn direct_light(
+        &self,
+        p: &SurfacePoint,
+        scattering: &Scattering,
+        draws: [f32; 4],
+        more: [f32; 4],
+    ) -> Option<(Ray, Vec3)> {
+        let sampled = sample_light(self.world, p.position, &p.frame, draws, more, self.effects)?;
         let [x, y, z] = p.frame;
-        let wi = to_local(arriving.direction, x, y, z);
+        let wi = to_local(sampled.direction, x, y, z);
         let scatter = scattering.eval(wi);
         let mut weight = 1.0;
-        if arriving.can_be_hit && self.integrator == Integrator::Mis {
-            weight = power_heuristic(arriving.pdf, scatter.pdf);
+        if sampled.can_be_hit && self.integrator == Integrator::Mis {
+            weight = power_heuristic(sampled.pdf, scatter.pdf);
         }
-        let light = scatter.value * arriving.radiance * (weight / arriving.pdf);
-        if !brings_light(light) {
+        let light = scatter.value * sampled.radiance * (weight / sampled.pdf);
+        if !any_positive(light) {
             return None;
         }
-        let origin = leaving(p, arriving.direction, wi.z)?;
-        Some((shadow_ray(origin, p.position, &arriving), light))
+        let origin = spawn_origin(p, sampled.direction, wi.z)?;
+        Some((shadow_ray(origin, p.position, &sampled), light))
     }
 }
 
-/// Whether any channel is above 0; not if it is no number.
-fn brings_light(light: Vec3) -> bool {
-    light.x.max(light.y.max(light.z)) > 0.0
+/// Whether any channel is above 0; false for NaN.
+fn any_positive(v: Vec3) -> bool {
+    v.x.max(v.y.max(v.z)) > 0.0
 }
 
-/// Where a ray starts that leaves `p` along `direction`, whose cosine to the shading normal is `cosine`; `None` where the shading
-/// normal and the surface disagree about the side: light would leak through.
-fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
+/// Origin of a ray leaving `p` along `direction`, whose cosine to the shading normal is `cosine`. `None` where shading
+/// and geometric normal disagree about the side, as light would leak through.
+fn spawn_origin(p: &SurfacePoint, direction: Vec3, cosine: f32) -> Option<Vec3> {
     let side = p.geometric.dot(direction);
     if side * cosine <= 0.0 {
         return None;
@@ -188,30 +196,30 @@ fn leaving(p: &Point, direction: Vec3, cosine: f32) -> Option<Vec3> {
     Some(offset_ray(p.position, normal, p.magnitude))
 }
 
-/// From `origin`, off the surface point at `position`, to what was found from there. Both ends being off their surfaces, the
-/// segment between them meets neither; it ends a little early for what rounding adds over its length.
-fn shadow_ray(origin: Vec3, position: Vec3, arriving: &Arriving) -> Ray {
-    if arriving.distance == f32::INFINITY {
-        return Ray { origin, direction: arriving.direction, t_max: f32::INFINITY };
+/// Shadow ray from `origin` to the light sampled from `position`. Both ends are offset from their surfaces, so the
+/// segment meets neither. It ends slightly early to allow for rounding over its length.
+fn shadow_ray(origin: Vec3, position: Vec3, light: &LightSample) -> Ray {
+    if light.distance == f32::INFINITY {
+        return Ray { origin, direction: light.direction, t_max: f32::INFINITY };
     }
-    let to = arriving.direction * arriving.distance + (position - origin);
-    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * BEFORE_LIGHT }
+    let to = light.direction * light.distance + (position - origin);
+    Ray { origin, direction: unit(to), t_max: to.dot(to).sqrt() * SHADOW_RAY_SCALE }
 }
 
-/// Share of the way to a light that is looked at.
-const BEFORE_LIGHT: f32 = 1.0 - 1.0 / 1_048_576.0;
+/// Share of the distance to a light that the shadow ray covers.
+const SHADOW_RAY_SCALE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
-/// How light scatters at a point, seen along `wo`.
+/// Scattering at a surface point for the outgoing direction `wo`.
 struct Scattering<'a> {
-    point: &'a Point,
+    point: &'a SurfacePoint,
     wo: Vec3,
     lobes: Lobes,
-    /// `None`: Phong's model.
+    /// `None` for Phong's model.
     layers: Option<Layers>,
 }
 
 impl<'a> Scattering<'a> {
-    fn new(paths: &Paths, point: &'a Point, wo: Vec3) -> Self {
+    fn new(paths: &Paths, point: &'a SurfacePoint, wo: Vec3) -> Self {
         let lobes = lobes(paths.effects);
         let principled = paths.bsdf == Bsdf::Principled;
         let layers = principled.then(|| layers(&point.surface, wo, &paths.world.tables, lobes));

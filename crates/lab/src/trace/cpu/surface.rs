@@ -1,4 +1,4 @@
-//! From a hit to what scatters there: `shaders/trace/surface.wgsl`.
+//! Surface properties at a hit. Twin of `shaders/trace/surface_point.wgsl`.
 
 use super::texture::texture;
 use crate::kernel::bsdf::{Lobes, Surface};
@@ -14,30 +14,30 @@ use crate::trace::world::World;
 use crate::trace::{AttributesAt, Hit};
 use glam::{Vec2, Vec3, Vec4};
 
-/// A point on a surface as a ray from outside or inside sees it.
-pub(super) struct Point {
-    /// World space.
+/// A surface point as seen along an incoming ray.
+pub(super) struct SurfacePoint {
+    /// World space, metres.
     pub position: Vec3,
     /// Largest coordinate of the triangle, which bounds the position's rounding.
     pub magnitude: f32,
-    /// Of the triangle, on the side of the ray's origin.
+    /// Geometric normal, on the side of the ray's origin.
     pub geometric: Vec3,
-    /// Shading frame: tangent, bitangent, normal; the normal on the side of the ray's origin.
+    /// Shading frame: tangent, bitangent, normal. The normal is on the side of the ray's origin.
     pub frame: [Vec3; 3],
-    /// Whether the ray came from the front.
+    /// Whether the ray hit the front face.
     pub front: bool,
-    /// Emitted towards the ray's origin.
+    /// Radiance emitted towards the ray's origin.
     pub emitted: Vec3,
-    /// Absorption per metre of what is behind the surface.
+    /// Absorption coefficient in 1/m of the volume behind the surface.
     pub absorption: Vec3,
-    /// What scatters.
+    /// Parameters of the principled BSDF.
     pub surface: Surface,
-    /// The same as the thesis models it.
+    /// Parameters of the thesis' Phong model.
     pub phong: PhongSurface,
 }
 
-/// The point that a ray of direction `direction` (of length 1) hits.
-pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> Point {
+/// Surface point at `hit` of a ray with unit `direction`.
+pub(super) fn surface_point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> SurfacePoint {
     let triangle = world.geometry.triangle(hit.triangle);
     let place = world.geometry.attributes(hit.triangle).at(hit.u, hit.v);
     let material = &world.materials[triangle.material() as usize];
@@ -50,7 +50,7 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
     let geometric = face * side;
 
     let mut normal = unit(place.normal);
-    // A shading normal on the wrong side of its own face says nothing.
+    // Shading normals on the wrong side of the triangle are replaced by the geometric normal.
     if normal.dot(face) <= 0.0 {
         normal = face;
     }
@@ -81,13 +81,14 @@ pub(super) fn point(world: &World, hit: &Hit, direction: Vec3, effects: Effects)
     }
     let surface = resolve(world, material, &place, front, effects);
     let phong = PhongSurface {
-        // Held to what conserves energy, as the principled model does; it also keeps compilers from taking the factor out of sums.
+        // Clamped to conserve energy, as in the principled model. The clamp also keeps compilers from moving the factor
+        // out of sums.
         diffuse: (surface.base_color * material.phong_diffuse).clamp(Vec3::ZERO, Vec3::ONE),
         specular: Vec3::from(material.phong_specular),
         exponent: material.phong_exponent,
     };
     let (position, magnitude) = (point_at(v0, v1, v2, hit.u, hit.v), magnitude(v0, v1, v2));
-    Point { position, magnitude, geometric, frame, front, emitted, absorption, surface, phong }
+    SurfacePoint { position, magnitude, geometric, frame, front, emitted, absorption, surface, phong }
 }
 
 /// Base color and opacity.
@@ -102,8 +103,8 @@ fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects:
     base
 }
 
-/// Whether a path whose draw is `draw` meets a surface with holes at this point.
-pub(super) fn is_there(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
+/// Alpha test: opacity against the cutoff (MASK) or against the random `draw` (BLEND).
+pub(super) fn passes_alpha_test(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
     let place = world.geometry.attributes(triangle).at(u, v);
     let opacity = base(world, material, &place, effects).w;
@@ -113,7 +114,7 @@ pub(super) fn is_there(world: &World, triangle: u32, u: f32, v: f32, draw: f32, 
     material.flags & FLAG_BLEND == 0 || draw < opacity
 }
 
-/// Radiance that a material emits at texture coordinates.
+/// Radiance that a material emits at texture coordinates `uv`.
 fn emission(world: &World, material: &MaterialRecord, uv: Vec2, effects: Effects) -> Vec3 {
     let mut radiance = Vec3::from(material.emissive);
     if effects.has(Effect::EmissiveTexture) && material.emissive_texture != NO_TEXTURE {
@@ -122,14 +123,14 @@ fn emission(world: &World, material: &MaterialRecord, uv: Vec2, effects: Effects
     radiance
 }
 
-/// Radiance that a triangle emits at barycentrics.
+/// Radiance that a triangle emits at barycentric weights `u` and `v`.
 pub(super) fn emission_at(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> Vec3 {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
     let place = world.geometry.attributes(triangle).at(u, v);
     emission(world, material, place.uv, effects)
 }
 
-/// Parameters with their textures and tints.
+/// BSDF parameters with textures and tints applied.
 fn resolve(world: &World, m: &MaterialRecord, place: &AttributesAt, front: bool, effects: Effects) -> Surface {
     let base_color = base(world, m, place, effects).truncate();
     let mut s = Surface {
@@ -178,7 +179,7 @@ fn resolve(world: &World, m: &MaterialRecord, place: &AttributesAt, front: bool,
     s
 }
 
-/// The lobes that are compiled in.
+/// Lobes that the effects include.
 pub(super) fn lobes(effects: Effects) -> Lobes {
     Lobes {
         retro: effects.has(Effect::Dielectric),

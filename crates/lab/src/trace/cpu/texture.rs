@@ -1,11 +1,11 @@
-//! Values of textures: `shaders/trace/texture.wgsl`.
+//! Texture lookup. Twin of `shaders/trace/texture.wgsl`.
 
 use crate::kernel::texel::{texel_value, wrap_coordinate, wrap_texel};
 use crate::trace::world::World;
 use afterimage::kernel::color::srgb_decode;
 use glam::{Vec2, Vec4};
 
-/// A texture's value, between its four nearest texels unless it asks for the nearest.
+/// Texture value at `uv`: bilinear, or the nearest texel if the texture asks for that. Colors are decoded from sRGB.
 pub(super) fn texture(world: &World, id: u32, uv: Vec2, is_color: bool) -> Vec4 {
     let t = world.textures[id as usize];
     let (wrap_u, wrap_v) = (t.addressing & 3, t.addressing >> 2 & 3);

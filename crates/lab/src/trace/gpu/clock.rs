@@ -1,5 +1,6 @@
-//! Times of batches by the device's own clock.
+//! Device timestamps around batches.
 
+use super::compute::empty_buffer;
 use crate::device::Headless;
 use std::time::Duration;
 use wgpu::BufferUsages;
@@ -11,7 +12,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// For `batches` batches; `None` if the device has no clock or a query set not so many timestamps.
+    /// For `batches` batches. `None` if the device has no timestamps, or a query set cannot hold that many.
     pub fn new(device: &Headless, batches: u32) -> Option<Self> {
         let count = batches.checked_mul(2).filter(|n| (1..=wgpu::QUERY_SET_MAX_QUERIES).contains(n))?;
         device.device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| Self {
@@ -20,16 +21,16 @@ impl Clock {
                 ty: wgpu::QueryType::Timestamp,
                 count,
             }),
-            resolved: device.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("batches"),
-                size: u64::from(count) * 8,
-                usage: BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
+            resolved: empty_buffer(
+                &device.device,
+                "batches",
+                u64::from(count) * 8,
+                BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC,
+            ),
         })
     }
 
-    /// What is written around batch `index`.
+    /// Timestamp writes around batch `index`.
     pub fn around(&self, index: u32) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -38,7 +39,7 @@ impl Clock {
         }
     }
 
-    /// Time between the timestamps, all batches together. All must have been submitted.
+    /// Sum of all batches' times. All batches must have been submitted.
     pub fn read(&self, device: &Headless) -> Duration {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let count = (self.resolved.size() / 8) as u32;

@@ -1,17 +1,18 @@
-//! The tracer on a GPU: a wavefront (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013). Paths are advanced
-//! together, one step of one kind at a time: `generate`, then for each bounce `extend`, `shade`, `shadow`; how many are left is
-//! known on the device only.
+//! Path tracer on a GPU: a wavefront tracer (Laine, Karras and Aila, "Megakernels Considered Harmful", HPG 2013). All
+//! paths advance together, one kernel at a time: `generate`, then for each bounce `extend`, `shade` and `shadow`. Only
+//! the device knows how many paths are still alive.
 
 mod clock;
-pub mod device_heap;
+mod compute;
 mod expand;
 mod passes;
 mod paths;
 pub mod ray_lists;
+pub mod scene_buffer;
 
 use super::effects::{Effect, Effects};
 use super::film::{Film, Moments};
-use super::heap::{Heap, HeapBuilder, HeapError, Section};
+use super::scene_buffer::{SceneBuffer, SceneBufferBuilder, SceneBufferError, Section};
 use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
 use super::work::Work;
@@ -19,38 +20,38 @@ use super::world::World;
 use crate::device::Headless;
 use afterimage::{FrameError, Image};
 use clock::Clock;
-use device_heap::{GpuHeap, Storage, traversal_constants};
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
-use paths::{FrameWords, Paths};
+use paths::{FrameUniforms, Paths};
+use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Paths in flight at once.
+/// Number of paths in flight.
 pub const BATCH: u32 = 1 << 17;
 
-/// Work items on the device at once.
-const MOST_ITEMS: usize = 1 << 22;
+/// Largest number of listed work items on the device at once.
+const MAX_ITEMS: usize = 1 << 22;
 
-/// A scene's tracer on a device. Same seed, same device, same image: appending to lists is unordered, but no result depends on
-/// the order.
+/// Tracer of one scene on one device. The same seed on the same device gives the same image: appending to path lists is
+/// unordered, but no result depends on the order.
 #[derive(Debug)]
 pub struct GpuTracer {
     device: Arc<Headless>,
     settings: TraceSettings,
     effects: Effects,
-    heap: Heap,
-    on_device: GpuHeap,
+    scene_buffer: SceneBuffer,
+    on_device: GpuSceneBuffer,
     passes: Passes,
     expand: Expand,
     paths: Paths,
-    /// Time that compiling the kernels took, as far as the driver does it now.
+    /// Time spent compiling kernels, as far as the driver compiles them at creation.
     pub compile_time: Duration,
 }
 
 impl GpuTracer {
-    /// To be called after tracing: on a lost device the film gets black samples.
+    /// Reports a lost device. Call it after tracing: on a lost device the film receives black samples.
     ///
     /// # Errors
     /// [`FrameError::DeviceLost`].
@@ -61,13 +62,13 @@ impl GpuTracer {
     /// Uploads `world` and compiles kernels for it.
     ///
     /// # Errors
-    /// If the scene is too large for the device.
-    pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, HeapError> {
+    /// If the scene exceeds the device's limits.
+    pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         let storage = Storage::of(device.info.device_type);
         Self::with_storage(device, world, settings, storage)
     }
 
-    /// As [`new`](Self::new), with the scene kept as `storage`.
+    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -76,70 +77,72 @@ impl GpuTracer {
         world: &World,
         settings: TraceSettings,
         storage: Storage,
-    ) -> Result<Self, HeapError> {
-        Self::with_text(device, world, settings, storage, |text| text)
+    ) -> Result<Self, SceneBufferError> {
+        Self::with_shader_edit(device, world, settings, storage, |text| text)
     }
 
-    /// As [`with_storage`](Self::with_storage), with each kernel's text as `edit` returns it: for measurements of what text costs.
+    /// As [`with_storage`](Self::with_storage), with `edit` applied to each kernel's WGSL source, to measure the cost
+    /// of code.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn with_text(
+    pub fn with_shader_edit(
         device: Arc<Headless>,
         world: &World,
         settings: TraceSettings,
         storage: Storage,
         edit: impl Fn(String) -> String,
-    ) -> Result<Self, HeapError> {
+    ) -> Result<Self, SceneBufferError> {
         let effects = settings.effects.unwrap_or(world.needs);
-        let heap = heap(world, effects, storage.limits(&device.device.limits()))?;
-        let on_device = GpuHeap::new(&device.device, &device.queue, &heap, storage);
+        let scene_buffer = scene_buffer(world, effects, storage.limits(&device.device.limits()))?;
+        let on_device = GpuSceneBuffer::new(&device.device, &device.queue, &scene_buffer, storage);
         let started = Instant::now();
-        let constants = constants(world, &heap, &settings, effects, storage);
+        let constants = constants(world, &scene_buffer, &settings, effects, storage);
         let passes = Passes::new(&device.device, &on_device, storage, &constants, edit);
         let expand = Expand::new(&device.device);
         let compile_time = started.elapsed();
         let paths = Paths::new(&device.device, &passes, BATCH);
-        Ok(Self { device, settings, effects, heap, on_device, passes, expand, paths, compile_time })
+        Ok(Self { device, settings, effects, scene_buffer, on_device, passes, expand, paths, compile_time })
     }
 
-    /// What is compiled in.
+    /// Effects that are compiled in.
     pub fn effects(&self) -> Effects {
         self.effects
     }
 
-    /// Bytes of the scene on the device.
+    /// Size of the scene buffer in bytes.
     pub fn scene_bytes(&self) -> u64 {
-        self.heap.bytes()
+        self.scene_buffer.bytes()
     }
 
-    /// Uploads what moved since the last frame: to be called after [`World::pose`].
+    /// Uploads moved geometry and lights. Call it after [`World::pose`].
     ///
     /// # Errors
-    /// If there is more of it than at first.
-    pub fn update(&mut self, world: &World) -> Result<(), HeapError> {
-        self.heap.rewrite_moving(&world.geometry)?;
-        self.heap.rewrite(Section::Picks, &world.picks)?;
-        self.heap.rewrite(Section::Punctual, &world.punctual)?;
-        self.on_device.write_moving(&self.device.queue, &self.heap);
+    /// If they exceed the capacity reserved at creation.
+    pub fn update(&mut self, world: &World) -> Result<(), SceneBufferError> {
+        self.scene_buffer.rewrite_moving(&world.geometry)?;
+        self.scene_buffer.rewrite(Section::Picks, &world.picks)?;
+        self.scene_buffer.rewrite(Section::Punctual, &world.punctual)?;
+        self.on_device.write_moving(&self.device.queue, &self.scene_buffer);
         Ok(())
     }
 
-    /// Adds the samples of `work`, whose pixels must be on it, to `film`, as [`CpuTracer::trace`](super::cpu::CpuTracer::trace).
+    /// Adds the samples of `work` to `film`, which must contain all its pixels, as
+    /// [`CpuTracer::trace`](super::cpu::CpuTracer::trace) does.
     pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
         match work.into() {
-            // Longer lists would not fit a binding of default limits.
+            // Longer lists exceed the default limit of a storage binding.
             Work::List(items) => {
-                for items in items.chunks(MOST_ITEMS) {
-                    self.work_off(world, view, frame, items.into(), film, None);
+                for items in items.chunks(MAX_ITEMS) {
+                    self.trace_batches(world, view, frame, items.into(), film, None);
                 }
             }
-            spans => self.work_off(world, view, frame, spans, film, None),
+            spans => self.trace_batches(world, view, frame, spans, film, None),
         }
     }
 
-    /// As [`trace`](Self::trace); how long the kernels took by the device's own clock, transfers not included. `None` if it has
-    /// none, or for more than 2048 batches.
+    /// As [`trace`](Self::trace), and returns the kernels' time by device timestamps, without transfers. `None` if the
+    /// device has no timestamps, or for more than 2048 batches.
     pub fn trace_timed<'w>(
         &self,
         world: &World,
@@ -150,23 +153,31 @@ impl GpuTracer {
     ) -> Option<Duration> {
         let work = work.into();
         let clock = Clock::new(&self.device, batches(work).len() as u32);
-        self.work_off(world, view, frame, work, film, clock.as_ref());
+        self.trace_batches(world, view, frame, work, film, clock.as_ref());
         Some(clock?.read(&self.device))
     }
 
-    fn work_off(&self, world: &World, view: &View, frame: u64, work: Work, film: &mut Film, clock: Option<&Clock>) {
+    fn trace_batches(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        work: Work,
+        film: &mut Film,
+        clock: Option<&Clock>,
+    ) {
         if batches(work).is_empty() {
             return;
         }
         let rays = view.rays();
         let size = film.moments.size();
-        let mut words = FrameWords {
+        let mut uniforms = FrameUniforms {
             origin: rays.origin.to_array(),
             key: super::cpu::path_key(self.settings.seed, frame),
             corner: rays.corner.to_array(),
             lights: world.picks.len() as u32,
             right: rays.right.to_array(),
-            sky_chosen: world.sky_chosen,
+            sky_probability: world.sky_probability,
             down: rays.down.to_array(),
             width: size[0],
             sky: world.sky.to_array(),
@@ -183,14 +194,14 @@ impl GpuTracer {
         let (list, expansion) = self.expand.list(device, work);
         let run = self.paths.run(device, &self.passes, &self.on_device, &list, &before);
         for (batch, index) in batches(work).into_iter().zip(0..) {
-            words.first_item = batch.first_item;
-            words.items = batch.items;
+            uniforms.first_item = batch.first_item;
+            uniforms.items = batch.items;
             let mut encoder = device.create_command_encoder(&Default::default());
             self.expand.record(device, &mut encoder, expansion.as_ref(), &batch);
             let timestamps = clock.map(|c| c.around(index));
-            run.record(device, &mut encoder, &self.passes, &words, self.settings.max_depth, timestamps);
+            run.record(device, &mut encoder, &self.passes, &uniforms, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
-            // A software device would otherwise hold all batches at once.
+            // Without waiting, a software device holds the memory of all batches at once.
             self.device.wait();
         }
         let (rows, counters) = run.read(&self.device);
@@ -210,33 +221,37 @@ fn moments_of(rows: &[[f32; 4]; 2]) -> Moments {
     Moments { mean: Vec3::new(x, y, z), squares: Vec3::new(a, b, c), count: count as u32 }
 }
 
-/// Everything that the kernels read.
-fn heap(world: &World, effects: Effects, limits: super::heap::HeapLimits) -> Result<Heap, HeapError> {
+/// Builds the scene buffer.
+fn scene_buffer(
+    world: &World,
+    effects: Effects,
+    limits: super::scene_buffer::SceneBufferLimits,
+) -> Result<SceneBuffer, SceneBufferError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
-    // Room for one where nothing moves: a node of zeros has no children.
-    let most_moving = if effects.has(Effect::MovingObjects) { world.most_moving.max(1) } else { 0 };
-    let mut builder = HeapBuilder::default();
+    // Room for one triangle even where nothing moves: a zeroed node has no children.
+    let max_moving = if effects.has(Effect::MovingObjects) { world.max_moving.max(1) } else { 0 };
+    let mut builder = SceneBufferBuilder::default();
     builder
-        .geometry(&world.geometry, most_moving)
+        .geometry(&world.geometry, max_moving)
         .fill(Section::Materials, &world.materials)
         .fill(Section::Textures, &world.textures)
         .fill(Section::Texels, &world.texels)
         .fill(Section::Map, &world.map)
         .fill(Section::Albedos, &tables)
-        .reserve(Section::Picks, &world.picks, world.most_lights)
+        .reserve(Section::Picks, &world.picks, world.max_lights)
         .fill(Section::Punctual, &world.punctual);
     builder.finish(limits)
 }
 
-/// Values of all overrides.
+/// Values of all override constants.
 fn constants(
     world: &World,
-    heap: &Heap,
+    scene_buffer: &SceneBuffer,
     settings: &TraceSettings,
     effects: Effects,
     storage: Storage,
 ) -> Vec<(&'static str, f64)> {
-    let mut constants = traversal_constants(heap, &world.geometry, effects.has(Effect::Alpha), storage);
+    let mut constants = traversal_constants(scene_buffer, &world.geometry, effects.has(Effect::Alpha), storage);
     for (name, section) in [
         ("MATERIALS", Section::Materials),
         ("TEXTURES", Section::Textures),
@@ -248,7 +263,7 @@ fn constants(
         ("ATTRIBUTES", Section::Attributes),
         ("MOVING_ATTRIBUTES", Section::MovingAttributes),
     ] {
-        constants.push((name, f64::from(heap.base(section))));
+        constants.push((name, f64::from(scene_buffer.base(section))));
     }
     for (name, effect) in [
         ("EFFECT_ANISOTROPY", Effect::Anisotropy),

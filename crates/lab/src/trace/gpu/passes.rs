@@ -1,13 +1,13 @@
-//! Kernels and the layouts of what they are bound to.
+//! Compute pipelines of the tracer, and their bind group layouts.
 
+use super::compute::Kernel;
 use crate::shader::SHADERS;
-use crate::trace::gpu::device_heap::{GpuHeap, Storage};
-use std::borrow::Cow;
+use crate::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
 
 /// Invocations of a workgroup.
 pub(super) const WORKGROUP: u32 = 64;
 
-/// The kernels, specialised to a scene.
+/// The kernels, specialized to a scene.
 #[derive(Debug)]
 pub(super) struct Passes {
     pub generate: wgpu::ComputePipeline,
@@ -18,18 +18,18 @@ pub(super) struct Passes {
     pub shadow: wgpu::ComputePipeline,
     pub count_paths: wgpu::ComputePipeline,
     pub resolve: wgpu::ComputePipeline,
-    pub heap_layout: wgpu::BindGroupLayout,
+    pub scene_layout: wgpu::BindGroupLayout,
     pub frame_layout: wgpu::BindGroupLayout,
-    /// A storage buffer to write: the plan of `count_pass`, the film of `resolve_pass`.
+    /// One writable storage buffer: the plan for `count_pass`, the film for `resolve_pass`.
     pub written_layout: wgpu::BindGroupLayout,
-    /// The plan, to read.
+    /// The plan as a read-only storage buffer.
     pub plan_layout: wgpu::BindGroupLayout,
 }
 
 impl Passes {
     pub fn new(
         device: &wgpu::Device,
-        heap: &GpuHeap,
+        scene_buffer: &GpuSceneBuffer,
         storage: Storage,
         constants: &[(&'static str, f64)],
         edit: impl Fn(String) -> String,
@@ -37,7 +37,7 @@ impl Passes {
         let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("trace"), entries })
         };
-        let heap_layout = layout(&[heap.layout_entry(0)]);
+        let scene_layout = layout(&[scene_buffer.layout_entry(0)]);
         let frame_layout = layout(&[
             buffer(0, wgpu::BufferBindingType::Uniform),
             buffer(1, wgpu::BufferBindingType::Storage { read_only: true }),
@@ -51,28 +51,14 @@ impl Passes {
         let pipeline = |module: &str, entry: &str, third: Option<&wgpu::BindGroupLayout>| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(entry),
-                bind_group_layouts: &[Some(&heap_layout), Some(&frame_layout), third],
+                bind_group_layouts: &[Some(&scene_layout), Some(&frame_layout), third],
                 immediate_size: 0,
             });
             let source = edit(SHADERS.compose_with(&[storage.module(), module], "").source);
-            // A kernel is told of the overrides that it has.
+            // WebGPU rejects values for overrides that a shader does not declare.
             let has = |name: &str| source.contains(&format!("override {name}:"));
             let constants: Vec<_> = constants.iter().copied().filter(|(name, _)| has(name)).collect();
-            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(module),
-                source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            })
+            Kernel { module, source, entry, layout: Some(&layout), constants: &constants }.pipeline(device)
         };
         Self {
             generate: pipeline("generate_pass", "generate", None),
@@ -83,7 +69,7 @@ impl Passes {
             shadow: pipeline("shadow_pass", "shadow", Some(&plan_layout)),
             count_paths: pipeline("count_pass", "count_paths", Some(&written_layout)),
             resolve: pipeline("resolve_pass", "resolve", Some(&written_layout)),
-            heap_layout,
+            scene_layout,
             frame_layout,
             written_layout,
             plan_layout,

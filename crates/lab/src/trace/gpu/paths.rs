@@ -1,8 +1,9 @@
-//! Buffers that paths live in, and a run of all kernels over a list of work.
+//! Path state on the device, and the sequence of kernels over a batch.
 
+use super::compute::{bind_group, empty_buffer};
 use super::passes::{Passes, WORKGROUP};
 use crate::device::Headless;
-use crate::trace::gpu::device_heap::GpuHeap;
+use crate::trace::gpu::scene_buffer::GpuSceneBuffer;
 use afterimage::gpu::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
@@ -10,13 +11,13 @@ use wgpu::BufferUsages;
 /// Twin of `TraceFrame` in `shaders/trace/frame.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct FrameWords {
+pub(super) struct FrameUniforms {
     pub origin: [f32; 3],
     pub key: u32,
     pub corner: [f32; 3],
     pub lights: u32,
     pub right: [f32; 3],
-    pub sky_chosen: f32,
+    pub sky_probability: f32,
     pub down: [f32; 3],
     pub width: u32,
     pub sky: [f32; 3],
@@ -29,16 +30,16 @@ pub(super) struct FrameWords {
     pub unused: [u32; 2],
 }
 
-/// Bytes of a path: `PATH_ROWS`.
+/// Bytes of a path's state: `PATH_ROWS` rows of 16 bytes.
 const PATH_BYTES: u64 = 8 * 16;
 
-/// Bytes of `counters` and of `plan`.
+/// Sizes of the `counters` and `plan` buffers in bytes.
 const COUNTER_BYTES: u64 = 5 * 4;
 const PLAN_BYTES: u64 = 9 * 4;
-/// Where in the plan the workgroups of `shadow` are.
+/// Byte offset of `shadow`'s workgroup counts in the plan.
 const PLAN_SHADOW: u64 = 3 * 4;
 
-/// What stays from frame to frame.
+/// Buffers that are reused from frame to frame.
 #[derive(Debug)]
 pub(super) struct Paths {
     frame: wgpu::Buffer,
@@ -49,36 +50,35 @@ pub(super) struct Paths {
     plan_read: wgpu::BindGroup,
 }
 
-/// A list of work and the film that it goes to.
+/// Bindings of a list of work and of the film that receives it.
 pub(super) struct Run<'a> {
     paths: &'a Paths,
-    heap: wgpu::BindGroup,
+    scene_buffer: wgpu::BindGroup,
     bound: wgpu::BindGroup,
     counters: wgpu::Buffer,
     film: wgpu::Buffer,
     film_bound: wgpu::BindGroup,
 }
 
-/// What was counted.
-pub(super) struct Counted {
+/// Counters that the kernels add to.
+pub(super) struct Counters {
     pub rays: u64,
     pub nonfinite: u64,
 }
 
 impl Paths {
     pub fn new(device: &wgpu::Device, passes: &Passes, capacity: u32) -> Self {
-        let buffer = |label, size, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-        };
-        let plan = buffer("plan", PLAN_BYTES, BufferUsages::STORAGE | BufferUsages::INDIRECT);
-        let bind = |layout| {
-            let entries = &[wgpu::BindGroupEntry { binding: 0, resource: plan.as_entire_binding() }];
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("plan"), layout, entries })
-        };
+        let plan = empty_buffer(device, "plan", PLAN_BYTES, BufferUsages::STORAGE | BufferUsages::INDIRECT);
+        let bind = |layout| bind_group(device, "plan", layout, &[plan.as_entire_binding()]);
         Self {
-            frame: buffer("frame", size_of::<FrameWords>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST),
-            paths: buffer("paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
-            lists: buffer("lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
+            frame: empty_buffer(
+                device,
+                "frame",
+                size_of::<FrameUniforms>() as u64,
+                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            ),
+            paths: empty_buffer(device, "paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
+            lists: empty_buffer(device, "lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
             plan_written: bind(&passes.written_layout),
             plan_read: bind(&passes.plan_layout),
             plan,
@@ -90,23 +90,18 @@ impl Paths {
         &'a self,
         device: &wgpu::Device,
         passes: &Passes,
-        heap: &GpuHeap,
+        scene_buffer: &GpuSceneBuffer,
         work: &wgpu::Buffer,
         film: &[[f32; 4]],
     ) -> Run<'a> {
         let to_read = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let film = filled(device, "film", bytemuck::cast_slice(film), to_read);
         let counters = filled(device, "counters", &[0; COUNTER_BYTES as usize], to_read);
-        let bind = |layout, resources: &[wgpu::BindingResource]| {
-            let numbered = resources.iter().cloned().zip(0..);
-            let entries: Vec<_> =
-                numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("trace"), layout, entries: &entries })
-        };
+        let bind = |layout, resources: &[wgpu::BindingResource]| bind_group(device, "trace", layout, resources);
         let shared = [&self.frame, work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
         Run {
             paths: self,
-            heap: bind(&passes.heap_layout, &[heap.binding()]),
+            scene_buffer: bind(&passes.scene_layout, &[scene_buffer.binding()]),
             bound: bind(&passes.frame_layout, &shared),
             film_bound: bind(&passes.written_layout, &[film.as_entire_binding()]),
             counters,
@@ -116,18 +111,18 @@ impl Paths {
 }
 
 impl Run<'_> {
-    /// All kernels over the batch that `words` names.
+    /// Records all kernels over the batch that `uniforms` describes.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         passes: &Passes,
-        words: &FrameWords,
+        uniforms: &FrameUniforms,
         max_depth: u32,
         timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
-        // Through the encoder: a write by the queue would give all batches of a submission the last words.
-        let contents = bytemuck::bytes_of(words);
+        // Copied through the encoder: a queue write would give all batches of a submission the last batch's uniforms.
+        let contents = bytemuck::bytes_of(uniforms);
         let staged = filled(device, "frame", contents, BufferUsages::COPY_SRC);
         encoder.copy_buffer_to_buffer(&staged, 0, &self.paths.frame, 0, contents.len() as u64);
 
@@ -135,9 +130,9 @@ impl Run<'_> {
         let (written, read) = (&self.paths.plan_written, &self.paths.plan_read);
         let desc = wgpu::ComputePassDescriptor { label: Some("trace"), timestamp_writes: timestamps };
         let mut pass = encoder.begin_compute_pass(&desc);
-        pass.set_bind_group(0, &self.heap, &[]);
+        pass.set_bind_group(0, &self.scene_buffer, &[]);
         pass.set_bind_group(1, &self.bound, &[]);
-        let groups = words.items.div_ceil(WORKGROUP);
+        let groups = uniforms.items.div_ceil(WORKGROUP);
         pass.set_pipeline(&passes.generate);
         pass.dispatch_workgroups(groups, 1, 1);
         pass.set_pipeline(&passes.start);
@@ -167,12 +162,13 @@ impl Run<'_> {
         pass.dispatch_workgroups(groups, 1, 1);
     }
 
-    /// Waits for all batches, and reads the film and what was counted.
-    pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counted) {
+    /// Waits for all batches, then reads the film and the counters.
+    pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counters) {
         let film = device.read_buffer(&self.film);
         let words = device.read_buffer(&self.counters);
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&words);
-        let counted = Counted { rays: u64::from(words[2]) | u64::from(words[3]) << 32, nonfinite: u64::from(words[4]) };
+        let counted =
+            Counters { rays: u64::from(words[2]) | u64::from(words[3]) << 32, nonfinite: u64::from(words[4]) };
         (bytemuck::pod_collect_to_vec(&film), counted)
     }
 }

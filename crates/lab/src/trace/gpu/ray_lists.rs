@@ -1,31 +1,31 @@
-//! Hits of a list of rays on a device: for tests and measurements.
+//! Hits for a list of rays on a device, for tests and measurements.
 
-use super::device_heap::{GpuHeap, Storage, traversal_constants};
+use super::compute::{Kernel, bind_group, empty_buffer};
+use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use crate::shader::SHADERS;
-use crate::trace::heap::Heap;
+use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
-use std::borrow::Cow;
 use wgpu::BufferUsages;
 
-/// What is asked about each ray.
+/// Kind of traversal query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Question {
-    /// The nearest hit.
+pub enum HitQuery {
+    /// Nearest hit.
     Closest,
-    /// Whether anything is hit.
+    /// Whether the ray hits anything.
     Any,
 }
 
-/// Traversal as a pipeline of its own.
+/// A pipeline that only traverses.
 #[derive(Debug)]
 pub struct GpuRays {
     device: wgpu::Device,
     queue: wgpu::Queue,
     pipeline: wgpu::ComputePipeline,
-    question: Question,
+    query: HitQuery,
 }
 
-/// Rays on the device, and room for their hits.
+/// Rays and their hits on the device.
 #[derive(Debug)]
 pub struct Batch {
     group: wgpu::BindGroup,
@@ -37,49 +37,42 @@ pub struct Batch {
 const WORKGROUP: u32 = 64;
 
 impl GpuRays {
-    /// Largest number of rays of a batch: a dispatch has no more workgroups along an axis, and a binding no more bytes.
+    /// Largest number of rays in a batch, from WebGPU's default limits: 65,535 workgroups per dispatch and 128 MiB per
+    /// binding.
     pub const MAX_RAYS: usize = 4_000_000;
 
-    /// For a scene's heap, as it was finished. `source` is the text of the shader; `None` for the package's own, where every hit
-    /// is accepted.
+    /// A pipeline for `scene_buffer`. `source` is WGSL; `None` uses [`source`](Self::source), which accepts every hit.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        heap: &Heap,
+        scene_buffer: &SceneBuffer,
         geometry: &Geometry,
         storage: Storage,
-        question: Question,
+        query: HitQuery,
         source: Option<&str>,
     ) -> Self {
         let source = source.map_or_else(|| Self::source(storage), str::to_owned);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("hits"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("hits"),
-            layout: None,
-            module: &module,
-            entry_point: Some(match question {
-                Question::Closest => "closest_hits",
-                Question::Any => "any_hits",
-            }),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &traversal_constants(heap, geometry, false, storage),
-                zero_initialize_workgroup_memory: false,
+        let kernel = Kernel {
+            module: "hits",
+            source,
+            entry: match query {
+                HitQuery::Closest => "closest_hits",
+                HitQuery::Any => "any_hits",
             },
-            cache: None,
-        });
-        Self { device: device.clone(), queue: queue.clone(), pipeline, question }
+            layout: None,
+            constants: &traversal_constants(scene_buffer, geometry, false, storage),
+        };
+        let pipeline = kernel.pipeline(device);
+        Self { device: device.clone(), queue: queue.clone(), pipeline, query }
     }
 
-    /// The package's own shader.
+    /// WGSL source of this crate's kernel.
     pub fn source(storage: Storage) -> String {
         SHADERS.compose_with(&[storage.module(), "accept_all", "hits_pass"], "").source
     }
 
-    /// Uploads rays.
-    pub fn batch(&self, heap: &GpuHeap, rays: &[Ray]) -> Batch {
+    /// Uploads rays; those beyond [`MAX_RAYS`](Self::MAX_RAYS) are left out.
+    pub fn batch(&self, scene_buffer: &GpuSceneBuffer, rays: &[Ray]) -> Batch {
         let rays = &rays[..rays.len().min(Self::MAX_RAYS)];
         let floats: Vec<[f32; 8]> = rays
             .iter()
@@ -88,26 +81,16 @@ impl GpuRays {
                 [o.x, o.y, o.z, r.t_max, d.x, d.y, d.z, 0.0]
             })
             .collect();
-        let buffer = |size: usize, usage| {
-            let size = size.max(32) as u64;
-            self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
-        let input = buffer(rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let buffer = |label, size: usize, usage| empty_buffer(&self.device, label, size.max(32) as u64, usage);
+        let input = buffer("rays", rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         self.queue.write_buffer(&input, 0, bytemuck::cast_slice(&floats));
-        let hits = buffer(rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: heap.binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: hits.as_entire_binding() },
-            ],
-        });
+        let hits = buffer("hits", rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let resources = [scene_buffer.binding(), input.as_entire_binding(), hits.as_entire_binding()];
+        let group = bind_group(&self.device, "hits", &self.pipeline.get_bind_group_layout(0), &resources);
         Batch { group, hits, count: rays.len() as u32 }
     }
 
-    /// Traces a batch and waits for it.
+    /// Traces a batch and waits for the result.
     pub fn run(&self, batch: &Batch) {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -116,19 +99,18 @@ impl GpuRays {
         pass.dispatch_workgroups(batch.count.div_ceil(WORKGROUP), 1, 1);
         drop(pass);
         self.queue.submit([encoder.finish()]);
-        // A lost device shows at the next map.
+        // A lost device is reported by the next map.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// The hits of a batch that ran; where anything is asked, those of triangle 0 at distance 0.
+    /// Hits of a batch that has run. [`HitQuery::Any`] reports only whether there is a hit, with all fields 0.
     ///
     /// # Panics
     /// If the device was lost.
     pub fn hits(&self, batch: &Batch) -> Vec<Option<Hit>> {
         let size = batch.hits.size();
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
-        let readback = self.device.create_buffer(&desc);
+        let readback = empty_buffer(&self.device, "hits read back", size, usage);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&batch.hits, 0, &readback, 0, size);
         self.queue.submit([encoder.finish()]);
@@ -137,11 +119,11 @@ impl GpuRays {
         let mapped = readback.get_mapped_range(..).expect("the buffer was mapped and waited for");
         let words: &[[u32; 4]] = bytemuck::cast_slice(&mapped);
         let hit = |&[triangle, t, u, v]: &[u32; 4]| {
-            let found = match self.question {
-                Question::Closest => triangle != u32::MAX,
-                Question::Any => triangle == 1,
+            let found = match self.query {
+                HitQuery::Closest => triangle != u32::MAX,
+                HitQuery::Any => triangle == 1,
             };
-            let triangle = if self.question == Question::Any { 0 } else { triangle };
+            let triangle = if self.query == HitQuery::Any { 0 } else { triangle };
             found.then(|| Hit { triangle, t: f32::from_bits(t), u: f32::from_bits(u), v: f32::from_bits(v) })
         };
         words[..batch.count as usize].iter().map(hit).collect()

@@ -1,40 +1,40 @@
-//! Samples as dense as the eye's cells.
+//! Sampling density that follows visual acuity.
 
 use afterimage::kernel::acuity::{candidate_weight, cell_density};
 use afterimage::{Image, ViewGeometry};
 
-/// The pattern: every pixel of the fovea, outside it a share of the pixels that falls as the density of retinal cells, another set
-/// every frame.
+/// Every pixel in the fovea; outside it a share of pixels proportional to a power of retinal cell density, with a
+/// different subset each frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Acuity {
-    /// Radius in degrees of what is sampled in full.
+    /// Radius of full sampling, degrees.
     pub fovea_deg: f32,
-    /// Smallest share of pixels, so that the far periphery is still looked at: 0 to 1.
+    /// Smallest share of sampled pixels, 0 to 1. Keeps the far periphery up to date.
     pub least: f32,
-    /// Exponent of the cells' relative density: 1 follows the cells, less thins out more slowly.
+    /// Exponent of relative cell density: 1 follows the cells, smaller values fall off more slowly.
     pub falloff: f32,
 }
 
 impl Default for Acuity {
     fn default() -> Self {
-        // With these it takes as many samples as regions of 32, 16 and 8, at a smaller error (docs/path-tracing.md).
+        // Takes as many samples as `Regions` with 32, 16 and 8, at a smaller error (docs/path-tracing.md).
         Self { fovea_deg: 1.0, least: 0.02, falloff: 1.0 }
     }
 }
 
 impl Acuity {
-    /// Share of pixels that is sampled at an eccentricity.
+    /// Share of pixels that is sampled at an eccentricity, 0 to 1.
     pub fn share(&self, eccentricity_deg: f32) -> f32 {
         let density = candidate_weight(eccentricity_deg, self.fovea_deg, 1.0 / cell_density(self.fovea_deg));
         density.powf(self.falloff).clamp(self.least.clamp(0.0, 1.0), 1.0)
     }
 
-    /// Expected number of targets.
+    /// Expected number of sampled pixels per frame.
     pub fn expected(&self, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> f64 {
         geometry.eccentricity_map(gaze_px).pixels().iter().map(|&e| f64::from(self.share(e))).sum()
     }
 
-    /// Pixels of frame number `frame`, by rows, and the level of detail everywhere.
+    /// Sampled pixels of frame `frame`, ordered by row, and the level of detail of every pixel.
     pub(super) fn targets(
         &self,
         geometry: &ViewGeometry,
@@ -52,11 +52,11 @@ impl Acuity {
     }
 }
 
-/// A number in \[0, 1) for a pixel of a frame. Along the pixels it is the additive recurrence of Roberts' R2 sequence, so that
-/// the pixels below any bound keep their distance from each other; from frame to frame it moves on by the golden ratio, so that a
-/// pixel's turns are evenly spread over time.
+/// Dither threshold in \[0, 1) of a pixel in a frame. Over pixels it is the additive recurrence of Roberts' R2
+/// sequence, so pixels below any bound keep their distance from each other. Over frames it advances by the golden
+/// ratio, so a pixel's turns are evenly spread in time.
 fn threshold(x: u32, y: u32, frame: u64) -> f32 {
-    // In fractions of 2^32: exact at any coordinate and frame.
+    // Fixed-point fractions of 2^32, exact for any coordinate and frame.
     const ALONG_X: u32 = 3_242_174_889;
     const ALONG_Y: u32 = 2_447_445_414;
     const IN_TIME: u32 = 2_654_435_769;

@@ -1,9 +1,9 @@
-//! Circles on a frame, and the points of lattices in them, row by row.
+//! Circles on a frame, and the lattice points inside them, row by row.
 
 use super::lattice::Lattice;
 use std::ops::Range;
 
-/// A circle on the frame; one of infinite radius holds everything, one of a negative radius nothing.
+/// A circle on the frame. With infinite radius it contains everything, with a negative radius nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Circle {
     pub center_px: [f32; 2],
@@ -11,25 +11,25 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// Holds everything.
+    /// The circle that contains everything.
     pub const EVERYTHING: Self = Self { center_px: [0.0; 2], radius_px: f32::INFINITY };
 
-    /// The same, larger by `by_px`, and by what single precision can be off at its edge.
+    /// The circle enlarged by `by_px`, plus the rounding error of single precision at its edge.
     pub fn grown(self, by_px: f32) -> Self {
         Self { radius_px: self.radius_px + by_px + 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
     }
 
-    /// The same, smaller by `by_px`, and by what single precision can be off at its edge.
+    /// The circle reduced by `by_px`, plus the rounding error of single precision at its edge.
     pub fn shrunk(self, by_px: f32) -> Self {
         Self { radius_px: self.radius_px - by_px - 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
     }
 
-    /// How far a pixel lies from the middle.
+    /// Distance of a pixel from the centre, in pixels.
     pub fn distance_px(&self, px: [f32; 2]) -> f32 {
         (px[0] - self.center_px[0]).hypot(px[1] - self.center_px[1])
     }
 
-    /// The points of a lattice's row that it holds: a chord.
+    /// Points of a lattice row inside the circle.
     pub fn chord(&self, lattice: &Lattice, row: u32) -> Range<u32> {
         let [cx, cy] = self.center_px.map(f64::from);
         let [x0, y0] = lattice.first_px.map(f64::from);
@@ -39,22 +39,22 @@ impl Circle {
             return 0..0;
         }
         let half = ((radius - down) * (radius + down)).sqrt();
-        // Conversions of floats to integers saturate: 0 is the first point, whatever lies left of it.
+        // Float to integer conversion saturates, so points left of the first become 0.
         let first = ((cx - half - x0) / step).ceil() as u32;
         let beyond = ((cx + half - x0) / step + 1.0).floor() as u32;
         first..beyond.min(lattice.points[0]).max(first)
     }
 }
 
-/// Points of a lattice's row that lie in both `outer`, but not in `inner`: up to two runs.
+/// Points of a lattice row inside both `outer` circles and outside `inner`: up to two runs.
 pub(super) fn runs(outer: [Circle; 2], inner: Circle, lattice: &Lattice, row: u32) -> [Range<u32>; 2] {
     let [a, b] = outer.map(|circle| circle.chord(lattice, row));
     let (start, end) = (a.start.max(b.start), a.end.min(b.end));
-    let hole = inner.chord(lattice, row);
-    if hole.is_empty() {
+    let excluded = inner.chord(lattice, row);
+    if excluded.is_empty() {
         return [start..end, 0..0];
     }
-    [start..end.min(hole.start), start.max(hole.end)..end]
+    [start..end.min(excluded.start), start.max(excluded.end)..end]
 }
 
 #[cfg(test)]
@@ -63,8 +63,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    /// Point by point; `None` where a point lies so near a circle that rounding decides.
-    fn is_wanted(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
+    /// Reference test of one point; `None` if it is so near a circle that rounding decides.
+    fn is_inside(outer: [Circle; 2], inner: Circle, px: [f64; 2]) -> Option<bool> {
         let inside = |circle: Circle| {
             let [cx, cy] = circle.center_px.map(f64::from);
             let (distance, radius) = ((px[0] - cx).hypot(px[1] - cy), f64::from(circle.radius_px));
@@ -76,10 +76,10 @@ mod tests {
     #[test]
     fn runs_are_what_a_look_at_every_point_finds() {
         let mut rng = Pcg64::seed_from_u64(7);
-        let (mut points, mut wanted, mut undecided) = (0, 0, 0);
+        let (mut points, mut inside_count, mut undecided) = (0, 0, 0);
         for case in 0..4000 {
             let size_px = [rng.random_range(1..90), rng.random_range(1..60)];
-            // Off the frame on all sides, and far off.
+            // Also gazes off the frame on all sides, some far off.
             let reach = if case % 10 == 0 { 1e6 } else { 60.0 };
             let gaze: [f32; 2] = size_px.map(|s| rng.random_range(-reach..s as f32 + reach));
             let step = rng.random_range(1..6);
@@ -101,21 +101,21 @@ mod tests {
                 assert!(runs[1].is_empty() || runs[0].is_empty() || runs[0].end <= runs[1].start, "{runs:?}");
                 for x in 0..lattice.points[0] {
                     points += 1;
-                    let Some(is_wanted) = is_wanted(outer, inner, lattice.px([x, row]).map(f64::from)) else {
+                    let Some(is_inside) = is_inside(outer, inner, lattice.px([x, row]).map(f64::from)) else {
                         undecided += 1;
                         continue;
                     };
-                    wanted += u32::from(is_wanted);
+                    inside_count += u32::from(is_inside);
                     let found = runs.iter().any(|r| r.contains(&x));
                     assert_eq!(
-                        found, is_wanted,
+                        found, is_inside,
                         "case {case}: point {x}, {row} of {lattice:?}, {outer:?} less {inner:?}"
                     );
                 }
             }
         }
-        println!("{points} points, {wanted} in, {undecided} on an edge");
-        assert!(wanted * 20 > points && wanted * 2 < points && undecided * 1000 < points);
+        println!("{points} points, {inside_count} in, {undecided} on an edge");
+        assert!(inside_count * 20 > points && inside_count * 2 < points && undecided * 1000 < points);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Values between samples.
+//! Reconstruction of pixels between samples.
 
 use super::lattice::Lattice;
 use crate::trace::film::{Film, Moments};
@@ -6,20 +6,20 @@ use afterimage::Image;
 use afterimage::kernel::resample::catmull_rom;
 use glam::Vec3;
 
-/// Between the points of a lattice.
+/// Interpolation between lattice points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Filter {
-    /// Of the four nearest points.
+    /// Bilinear, from four points.
     Linear,
-    /// Catmull-Rom's cubic, of sixteen.
+    /// Catmull-Rom bicubic, from sixteen points.
     Bicubic,
 }
 
 impl Filter {
-    /// How far from a pixel the points lie that it looks at, at most, in pixels.
+    /// Largest distance in pixels from a pixel to a lattice point that the filter reads there.
     pub fn reach_px(self, lattice: &Lattice) -> f32 {
-        // Pixels lie on points or off them by no less than this along an axis: by 1, by a half from the middles of even blocks. A
-        // tap a whole step away has the weight 0.
+        // Along an axis, a pixel that is not on a point is at least this far from one: a whole pixel, or half a pixel
+        // for blocks of even size, whose centres lie between pixels. A tap a whole step away has zero weight.
         let least = 1.0 - lattice.first_px[0].fract();
         let farther = match self {
             Self::Linear => 0.0,
@@ -29,12 +29,13 @@ impl Filter {
     }
 }
 
-/// The film's value at a pixel. Points without samples are left out, where a cubic lacks one the linear blend stands in.
+/// Value of the film at a pixel. Points without samples are skipped; the bicubic filter falls back to bilinear if it
+/// lacks one.
 pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Filter) -> Vec3 {
     let at = lattice.coordinate(px);
     let base = at.map(|v| v.floor());
     let part = [at[0] - base[0], at[1] - base[1]];
-    // Columns and rows of points around it; those at 1 and 2 are its neighbours.
+    // Columns and rows of the surrounding points; indices 1 and 2 are the nearest.
     let around = |axis: usize| {
         let last = lattice.points[axis] as i32 - 1;
         [-1, 0, 1, 2].map(|d| (base[axis] as i32 + d).clamp(0, last) as u32)
@@ -44,7 +45,7 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
         let moments = film.at([xs[i], ys[j]]);
         (moments.count > 0).then_some(moments.mean)
     };
-    // On a point: its own value, whoever its neighbours are.
+    // A pixel on a point takes that point's value, whether or not its neighbours have samples.
     if part == [0.0; 2]
         && let Some(value) = tap(1, 1)
     {
@@ -55,14 +56,14 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
         let mut sum = Some(Vec3::ZERO);
         for (j, wy) in wy.iter().enumerate() {
             for (i, wx) in wx.iter().enumerate() {
-                // On a row or column of points the others have no weight, and may have no samples.
+                // On a row or column of points the other taps have zero weight and may have no samples.
                 if wx * wy != 0.0 {
                     sum = sum.zip(tap(i, j)).map(|(sum, value)| sum + value * (wx * wy));
                 }
             }
         }
         if let Some(sum) = sum {
-            // The cubic overshoots at edges; radiance has no negative values.
+            // The bicubic filter overshoots at edges; radiance must not be negative.
             return sum.max(Vec3::ZERO);
         }
     }
@@ -77,8 +78,8 @@ pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Fil
     if weights > 0.0 { sum / weights } else { Vec3::ZERO }
 }
 
-/// A frame from scattered samples by pull and push (Gortler et al., "The Lumigraph", 1996, section 3.4): means of 2x2 pixels upwards until
-/// all is covered, then each level fills what the one below it lacks.
+/// Fills a frame from scattered samples by pull-push (Gortler et al., "The Lumigraph", 1996, section 3.4): averages 2x2
+/// pixels upwards until everything is covered, then fills each level's gaps from the coarser level.
 pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
     let mut levels: Vec<Image<(Vec3, f32)>> = vec![film.moments.map(|m| (m.mean, if m.count > 0 { 1.0 } else { 0.0 }))];
     while let Some(last) = levels.last()
@@ -95,7 +96,7 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
                     weight += w;
                 }
             }
-            // A covered pixel is covered, however many samples it has.
+            // Coverage saturates at 1, whatever the number of samples.
             (if weight > 0.0 { sum / weight } else { Vec3::ZERO }, weight.min(1.0))
         }));
     }
@@ -109,7 +110,7 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
     coarse.map(|c| c.to_array())
 }
 
-/// Noise of scattered samples: of a pixel without any, the mean of those around it.
+/// Noise of scattered samples; pixels without samples take the mean of those around them.
 pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
     let mut as_means = Film::new(film.moments.size());
     as_means.moments = Image::from_fn_parallel(film.moments.size(), |pixel| {
@@ -119,7 +120,7 @@ pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
     pull_push(&as_means).map(|[error, samples, _]| [error, samples])
 }
 
-/// The coarser level at a pixel of the finer one, between its nearest four.
+/// The coarser level interpolated at a pixel of the finer level, from its nearest four pixels.
 fn upsampled(coarse: &Image<Vec3>, x: u32, y: u32) -> Vec3 {
     let axis = |v: u32, len: usize| {
         let near = (v / 2) as i32;

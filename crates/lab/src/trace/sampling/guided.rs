@@ -1,17 +1,18 @@
-//! Samples where they are missed: a plan's samples shared out by what a history already knows.
+//! Guided sampling: distributes a plan's samples by the noise of the history.
 //!
-//! A point of which `known` samples are held and `n` new ones are taken, each of standard deviation `deviation`, is left with the
-//! variance deviation^2 / (known + n). Under a budget the sum over the points is least (Lagrange; Neyman 1934 where nothing is
-//! known) for
+//! Taking `n` new samples of standard deviation `deviation` at a point that already holds `known` samples leaves the
+//! variance deviation^2 / (known + n). For a fixed budget, the sum of variances over the points is smallest (Lagrange;
+//! Neyman 1934 for known = 0) at
 //!
 //! n = clamp(deviation t - known, least, most)
 //!
-//! with the one t that spends the budget. Each ring has its own, so the fovea stays the fovea. Whole
-//! numbers are made of n by chance: `floor(n + draw)` has the mean n.
+//! with the one t that spends the budget. Each ring has a budget of its own, so the fovea keeps its samples. `floor(n +
+//! draw)` rounds n stochastically; its mean is n.
 //!
-//! n hangs on frames gone by and on a draw that no path uses, never on this frame's samples; so every point's mean is unbiased,
-//! given what the guide says. Whoever weights frames by their counts, and makes the guide of the same frames, should know that
-//! their *sum* is biased (Kirk and Arvo 1991): where the first samples happened to agree, fewer follow that could mend it.
+//! n depends on past frames and on a draw that no path uses, never on this frame's samples, so every point's mean is
+//! unbiased given the guide. A caller that weights frames by their sample counts, and derives the guide from the same
+//! frames, gets a biased *sum* (Kirk and Arvo 1991): points whose first samples happen to agree receive fewer later
+//! samples to correct them.
 
 use super::lattice::Lattice;
 use super::{Part, Plan};
@@ -24,19 +25,20 @@ use afterimage::kernel::rng::path_draws;
 use afterimage::{Image, SettingsError};
 use rayon::prelude::*;
 
-/// Every sampled point has at least one sample: what has changed is seen.
-const LEAST: u32 = 1;
+/// Samples that every sampled point gets at least, so that changes are seen.
+const MIN_SAMPLES: u32 = 1;
 
-/// A point has at most so many times the samples that its ring would give it: what more buys elsewhere is worth more, and the
-/// deviation may be wrong.
-const MOST: u32 = 8;
+/// Largest number of samples of a point, as a multiple of its ring's. Further samples gain more elsewhere, and the
+/// deviation estimate may be wrong.
+const MAX_FACTOR: u32 = 8;
 
-/// Number of a sample that no path has: its draws round.
-const ROUNDING: u32 = u32::MAX;
+/// Sample number reserved for the draws that round counts; no path has it.
+const ROUNDING_SAMPLE: u32 = u32::MAX;
 
 impl Guide {
-    /// Of frames that were added up in `film`, seen as they are: counts, and deviations of luma on a screen that shows
-    /// x / (1 + x). Deviations are those of 3 x 3 pixels together, as a few samples may agree by chance.
+    /// Guide from frames accumulated in `film`, displayed without reprojection: sample counts, and standard deviations
+    /// of luma after the tone curve x / (1 + x). Deviations are pooled over 3x3 pixels, as a few samples may agree by
+    /// chance.
     pub fn of_film(film: &Film) -> Self {
         let moments = &film.moments;
         let [width, height] = moments.size().map(|s| s as i64);
@@ -48,25 +50,25 @@ impl Guide {
                     continue;
                 }
                 let m: Moments = moments.at(x as usize, y as usize);
-                // Channels of a path rise and fall together, so their deviations add up.
+                // Channels of a path are correlated, so their deviations add up.
                 squares += luma(m.squares.map(f32::sqrt)).powi(2);
                 freedom += m.count.saturating_sub(1) as f32;
                 mean += luma(m.mean) * m.count as f32;
                 count += m.count as f32;
             }
-            // The slope of x / (1 + x) there.
+            // Derivative of x / (1 + x) at the mean.
             (squares / freedom).sqrt() / (1.0 + mean / count).powi(2)
         });
         Self { known: moments.map(|m| m.count as f32), deviation }
     }
 
-    /// What is known of a point that stands for the pixels around it: the least of theirs, and their mean deviation.
-    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> Known {
+    /// Guide for a lattice point: the smallest sample count of the pixels it stands for, and their mean deviation.
+    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> PointHistory {
         let [xs, ys] = lattice.cell(point, self.known.size());
         let mut known = f32::INFINITY;
         let (mut sum, mut count) = (0.0, 0.0);
         for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x as usize, y as usize))) {
-            // A NaN counts as 0.
+            // NaN counts as 0.
             known = known.min(if self.known.at(x, y) > 0.0 { self.known.at(x, y) } else { 0.0 });
             let deviation = self.deviation.at(x, y);
             if deviation >= 0.0 && deviation.is_finite() {
@@ -74,17 +76,17 @@ impl Guide {
                 count += 1.0;
             }
         }
-        Known { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
+        PointHistory { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
     }
 }
 
 impl Plan {
-    /// The same points and, on average over frames, at most as many samples of each ring, shared out by `guide`: at least one a
-    /// point, at most eight times the ring's. Fewer than the plan's only where more would gain nothing. `seed` and `frame` are those
-    /// that it is traced with.
+    /// A plan with the same points whose samples are distributed by `guide`. Each ring spends at most its former number
+    /// of samples on average over frames; fewer only where further samples gain nothing. Every point gets at least one
+    /// sample and at most eight times its ring's. `frame` and `seed` must be those used for tracing.
     ///
     /// # Errors
-    /// If the guide is not of the frame's size.
+    /// If the guide's size differs from the frame's.
     pub fn guided(&self, guide: &Guide, frame: u64, seed: u64) -> Result<Self, SettingsError> {
         for (setting, size) in [("guide.known", guide.known.size()), ("guide.deviation", guide.deviation.size())] {
             if size != self.size_px {
@@ -97,9 +99,9 @@ impl Plan {
         }
         let key = path_key(seed, frame);
         let work = self.parts().into_iter().zip(0..).map(|(part, ring)| {
-            let known: Vec<Known> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
+            let known: Vec<PointHistory> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
             let rounded = |([x, y], share): (&[u32; 2], f64)| {
-                (share + f64::from(path_draws(x | y << 16, ROUNDING, ring, key)[0])).floor() as u32
+                (share + f64::from(path_draws(x | y << 16, ROUNDING_SAMPLE, ring, key)[0])).floor() as u32
             };
             let counts: Vec<u32> = part.targets.par_iter().zip(shares(&known, part.samples)).map(rounded).collect();
             spans(&part, &counts)
@@ -108,16 +110,16 @@ impl Plan {
     }
 }
 
-/// What is known of a point.
+/// Samples held at a point, and their standard deviation if known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Known {
+struct PointHistory {
     samples: f64,
     deviation: Option<f64>,
 }
 
-/// Samples that each point is given on average, as many as `samples` of each would be.
-fn shares(points: &[Known], samples: u32) -> Vec<f64> {
-    let (least, most) = (f64::from(samples.min(LEAST)), f64::from(samples) * f64::from(MOST));
+/// Mean number of samples for each point, with a total of `samples` per point.
+fn shares(points: &[PointHistory], samples: u32) -> Vec<f64> {
+    let (least, most) = (f64::from(samples.min(MIN_SAMPLES)), f64::from(samples) * f64::from(MAX_FACTOR));
     let deviations = || points.iter().filter_map(|p| p.deviation);
     let mean = match deviations().count() {
         0 => 1.0,
@@ -125,7 +127,8 @@ fn shares(points: &[Known], samples: u32) -> Vec<f64> {
     };
     let known: Vec<[f64; 2]> = points.iter().map(|p| [p.deviation.unwrap_or(mean), p.samples]).collect();
     let share = |[deviation, samples]: [f64; 2], t: f64| (deviation * t - samples).clamp(least, most);
-    // The sum of all shares, and its slope. In parts of a fixed size: it must not hang on the number of threads.
+    // Sum of all shares, and its derivative. Summed in chunks of fixed size, so that it does not depend on the number
+    // of threads.
     let sum = |t: f64| {
         let of = |part: &[[f64; 2]]| {
             part.iter().fold([0.0; 2], |[sum, slope], &p| {
@@ -137,11 +140,11 @@ fn shares(points: &[Known], samples: u32) -> Vec<f64> {
         parts.iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
     };
     let budget = points.len() as f64 * f64::from(samples);
-    // Between these are all quotients of f32s.
+    // Bounds that contain every quotient of two f32 values.
     let (mut low, mut high) = ((-300.0_f64).exp2(), 300.0_f64.exp2());
     let mut t = high;
     if sum(high)[0] > budget {
-        // What it would be without bounds.
+        // Start at the solution without bounds on n.
         let finite = || known.iter().filter(|p| p[1].is_finite());
         let sums = finite().fold([budget, 0.0], |[samples, deviation], p| [samples + p[1], deviation + p[0]]);
         t = (sums[0] / sums[1]).clamp(low, high);
@@ -153,7 +156,8 @@ fn shares(points: &[Known], samples: u32) -> Vec<f64> {
                 break;
             }
             *(if sum > budget { &mut high } else { &mut low }) = t;
-            // The sum is straight between the points' bounds, where Newton's step is exact; where it gains little, halve what is left.
+            // The sum is piecewise linear, and Newton's step is exact within a piece. Where it gains little, bisect (in
+            // the logarithm).
             let newton = t + (budget - sum) / slope;
             t = if off < 0.5 * last && newton > low && newton < high { newton } else { (low * high).sqrt() };
             last = off;
@@ -162,8 +166,8 @@ fn shares(points: &[Known], samples: u32) -> Vec<f64> {
     known.iter().map(|&p| share(p, t)).collect()
 }
 
-/// Work with so many samples of each target. A number is the sum of powers of two: samples 2^b to 2^(b+1) - 1 are traced of the
-/// targets whose number has bit b, so that a few spans serve any numbers.
+/// Spans with `counts` samples of each target. A count is a sum of powers of two: samples 2^b to 2^(b+1) - 1 are traced
+/// for the targets whose count has bit b set. So a few spans cover any counts.
 fn spans(part: &Part, counts: &[u32]) -> Vec<Spans> {
     let bits = u32::BITS - counts.iter().max().map_or(u32::BITS, |most| most.leading_zeros());
     let of_bit = |bit: u32| {
@@ -178,13 +182,13 @@ mod tests {
     use super::*;
     use afterimage::kernel::rng::{pcg4d, unit_draw};
 
-    /// Counts from 0 to 40, deviations from 1e-4 to 1, some points of which nothing is known.
-    fn points(count: u32, seed: u32) -> Vec<Known> {
+    /// Counts from 0 to 40, deviations from 1e-4 to 1, and some unknown deviations.
+    fn points(count: u32, seed: u32) -> Vec<PointHistory> {
         let draws = |i| pcg4d([i, seed, 0, 0]).map(|bits| f64::from(unit_draw(bits)));
         (0..count)
             .map(|i| {
                 let [samples, deviation, unknown, _] = draws(i);
-                Known { samples: 40.0 * samples, deviation: (unknown > 0.1).then(|| 1e-4_f64.powf(deviation)) }
+                PointHistory { samples: 40.0 * samples, deviation: (unknown > 0.1).then(|| 1e-4_f64.powf(deviation)) }
             })
             .collect()
     }
@@ -198,9 +202,9 @@ mod tests {
             let shares = shares(&points, samples);
             let spent = shares.iter().sum::<f64>();
             assert!((spent / (5000.0 * f64::from(samples)) - 1.0).abs() < 1e-7, "{spent} spent");
-            // Karush, Kuhn and Tucker: what one more sample takes off the variance is the same at all points between the bounds, less at
-            // those with the least, more at those with the most.
-            let gain = |(p, share): (&Known, &f64)| (p.deviation.unwrap_or(mean) / (p.samples + share)).powi(2);
+            // Karush-Kuhn-Tucker conditions: the variance reduction of one more sample is equal at all points between
+            // the bounds, smaller at those with the least samples, larger at those with the most.
+            let gain = |(p, share): (&PointHistory, &f64)| (p.deviation.unwrap_or(mean) / (p.samples + share)).powi(2);
             let (mut least, mut between, mut most) = (0.0_f64, [f64::INFINITY, 0.0_f64], f64::INFINITY);
             for (p, share) in points.iter().zip(&shares) {
                 let gain = gain((p, share));
@@ -217,8 +221,10 @@ mod tests {
 
     #[test]
     fn extremes_of_a_float_stay_within_the_bounds() {
-        let known =
-            |samples: f32, deviation: f32| Known { samples: f64::from(samples), deviation: Some(f64::from(deviation)) };
+        let known = |samples: f32, deviation: f32| PointHistory {
+            samples: f64::from(samples),
+            deviation: Some(f64::from(deviation)),
+        };
         let tiny = f32::from_bits(1);
         let points = [known(f32::MAX, tiny), known(0.0, f32::MAX), known(f32::INFINITY, f32::MAX), known(0.0, 0.0)];
         let all = shares(&points, 3);

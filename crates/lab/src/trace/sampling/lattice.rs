@@ -1,22 +1,22 @@
-//! Points on a frame at equal distances.
+//! Regular lattices of sample points on a frame.
 
 use std::ops::Range;
 
-/// A lattice of points over a frame, and how far around each its samples lie.
+/// A lattice of points, and the area that each point's samples cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
-    /// Pixels from point to point.
+    /// Distance between neighbouring points in pixels.
     pub step: u32,
-    /// Pixel of point (0, 0).
+    /// Position of point (0, 0) in pixels.
     pub first_px: [f32; 2],
-    /// Points along x and y.
+    /// Number of points along x and y.
     pub points: [u32; 2],
-    /// Edge of the square around a point that its samples are spread over, in pixels.
+    /// Edge length in pixels of the square around a point that its samples are jittered over.
     pub footprint_px: f32,
 }
 
 impl Lattice {
-    /// Blocks of `step` x `step` pixels from the corner on, sampled all over.
+    /// Blocks of `step` x `step` pixels from the frame's corner; samples cover the whole block.
     pub fn blocks(step: u32, size_px: [u32; 2]) -> Self {
         let step = step.max(1);
         let half = (step - 1) as f32 * 0.5;
@@ -24,14 +24,14 @@ impl Lattice {
         Self { step, first_px: [half; 2], points, footprint_px: step as f32 }
     }
 
-    /// Single pixels, every `step`-th, one of them under the gaze, which is finite.
+    /// Every `step`-th pixel, aligned so that one point lies under the gaze. The gaze must be finite.
     pub fn through(step: u32, gaze_px: [f32; 2], size_px: [u32; 2]) -> Self {
         let step = step.max(1);
         let mut first_px = [0.0; 2];
         let mut points = [0; 2];
         for axis in 0..2 {
             let last = size_px[axis].saturating_sub(1) as f32;
-            // A gaze off the frame shifts the lattice all the same.
+            // A gaze off the frame also aligns the lattice.
             let first = gaze_px[axis].round().rem_euclid(step as f32);
             first_px[axis] = first;
             points[axis] = ((last - first).max(0.0) / step as f32).floor() as u32 + 1;
@@ -39,16 +39,16 @@ impl Lattice {
         Self { step, first_px, points, footprint_px: 1.0 }
     }
 
-    /// Pixel of a point.
+    /// Position of a point in pixels.
     pub fn px(&self, point: [u32; 2]) -> [f32; 2] {
         [0, 1].map(|i| self.first_px[i] + (point[i] * self.step) as f32)
     }
 
-    /// Where a pixel lies between points.
+    /// Lattice coordinate of a pixel.
     pub fn coordinate(&self, px: [f32; 2]) -> [f32; 2] {
         [0, 1].map(|i| (px[i] - self.first_px[i]) / self.step as f32)
     }
-    /// Pixels that a point stands for: the square of its step around it, as far as it lies on a frame of `size_px`.
+    /// Pixels that a point stands for: a square of `step` pixels around it, clipped to a frame of `size_px`.
     pub fn cell(&self, point: [u32; 2], size_px: [u32; 2]) -> [Range<u32>; 2] {
         let half = (self.step - 1) as f32 * 0.5;
         let px = self.px(point);

@@ -1,4 +1,4 @@
-//! Nested lattices offset by the gaze (thesis: foveated path tracing for VR, KTH 2020).
+//! Nested lattices aligned to the gaze (thesis: foveated path tracing for VR, KTH 2020).
 
 use super::circle::Circle;
 use super::fill::Filter;
@@ -7,15 +7,15 @@ use super::regions::tangent_px;
 use super::rings::Ring;
 use afterimage::ViewGeometry;
 
-/// The pattern. Defaults are the thesis'.
+/// Four nested lattices. Defaults are the thesis'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layers {
     /// Radii of the three inner layers around the gaze, degrees.
     pub radii_deg: [f32; 3],
-    /// Pixels between the target pixels of the four layers.
+    /// Distance in pixels between the sampled pixels of the four layers.
     pub steps: [u32; 4],
-    /// Radius in degrees of what a headset's lens shows around the view's axis; nothing is traced outside. `None`: a screen, all of
-    /// it is seen.
+    /// Radius in degrees around the view's axis that a headset's lens shows; nothing is traced outside. `None` for a
+    /// screen, which shows everything.
     pub lens_deg: Option<f32>,
 }
 

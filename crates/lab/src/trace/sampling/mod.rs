@@ -1,7 +1,7 @@
-//! Foveated sampling: where a frame is sampled how densely for a gaze, and how the rest is filled in.
+//! Foveated sampling: sample density over the frame for a gaze, and reconstruction between samples.
 //!
-//! A frame is traced on lattices: points a few pixels apart, in rings around the gaze. A tracer sees a lattice as a small frame of
-//! its own ([`View::on_lattice`]) and traces a list of its points; nothing is done for the others.
+//! A frame is traced on lattices, in rings around the gaze. A tracer treats a lattice as a small frame of its own
+//! ([`View::on_lattice`]) and traces a list of its points, at no cost for the others.
 
 mod acuity;
 mod circle;
@@ -28,31 +28,31 @@ use rings::Ring;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// How samples are spread over a frame.
+/// Sampling pattern.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sampling {
-    /// As many everywhere.
+    /// The same number of samples everywhere.
     #[default]
     Uniform,
-    /// Three regions with blocks (Mohanto et al. 2023).
+    /// Three regions of pixel blocks (Mohanto et al. 2023).
     Regions(Regions),
-    /// Nested lattices with blend masks (thesis).
+    /// Nested lattices with blended borders (thesis).
     Layers(Layers),
-    /// As dense as the eye's cells, with another set of pixels every frame.
+    /// Density follows visual acuity; a different subset of pixels each frame.
     Acuity(Acuity),
 }
 
-/// What a frame is to be sampled at: from the inside out.
+/// Sample points of a frame, in rings from the inside out.
 #[derive(Clone, Debug)]
 pub struct Plan {
     size_px: [u32; 2],
     gaze_px: [f32; 2],
     kind: Kind,
-    /// Work of each ring, where it is not the same number of samples everywhere.
+    /// Spans of each ring where guided sampling has distributed the samples; otherwise the ring's number everywhere.
     guided: Option<Vec<Vec<Spans>>>,
 }
 
-/// Points on a lattice that a pattern samples as often.
+/// Points of a lattice with the same number of samples.
 struct Part {
     lattice: Lattice,
     targets: Vec<[u32; 2]>,
@@ -62,7 +62,7 @@ struct Part {
 #[derive(Clone, Debug)]
 enum Kind {
     Rings(Vec<Ring>),
-    /// Pixels, one after the other by rows, and samples of each.
+    /// Pixels ordered by row, with the same number of samples each.
     Scattered {
         targets: Vec<[u32; 2]>,
         samples: u32,
@@ -71,7 +71,7 @@ enum Kind {
 }
 
 impl Sampling {
-    /// The pattern as the post-process needs to know it: where full rate ends, and the coarsest it gets.
+    /// Foveation parameters of the pattern for the post-process: the radius of full rate, and the coarsest rates.
     pub fn foveation(&self) -> Foveation {
         let rate = |pixels: f32| (pixels.ceil() as u32).next_power_of_two();
         let of = |fovea_deg: f32, mid_deg: f32, [mid, far]: [f32; 2]| Foveation {
@@ -98,11 +98,12 @@ impl Sampling {
         }
     }
 
-    /// The plan of frame number `frame` for a gaze; `samples` are those of a pixel where it is sampled most, unless the pattern
-    /// states its own.
+    /// Plan of frame `frame` for a gaze. `samples` is the number per pixel where sampling is densest, unless the
+    /// pattern states its own.
     pub fn plan(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], samples: u32, frame: u64) -> Plan {
         let size_px = geometry.size_px();
-        // A gaze that is no place is the middle; one far off is far off, at a distance that floats can tell.
+        // A gaze that is not finite means the centre of the frame. Distant gazes are clamped so that f32 resolves
+        // distances to them.
         let middle = size_px.map(|s| 0.5 * (s as f32 - 1.0));
         let sound = gaze_px.iter().all(|g| g.is_finite());
         let gaze_px = if sound { gaze_px.map(|g| g.clamp(-1e6, 1e6)) } else { middle };
@@ -120,12 +121,12 @@ impl Sampling {
 }
 
 impl Plan {
-    /// Number of samples it asks for, of each ring.
+    /// Number of samples of each ring.
     pub fn samples(&self) -> Vec<u64> {
         self.work().iter().map(|ring| ring.iter().map(Spans::len).sum()).collect()
     }
 
-    /// What is traced of each ring, on its own lattice.
+    /// Spans to trace for each ring, on its own lattice.
     pub fn work(&self) -> Cow<'_, [Vec<Spans>]> {
         match &self.guided {
             Some(work) => work.into(),
@@ -143,7 +144,7 @@ impl Plan {
         }
     }
 
-    /// The pattern's rings.
+    /// Sample points of each ring.
     fn parts(&self) -> Vec<Part> {
         match &self.kind {
             Kind::Rings(rings) => {
@@ -161,7 +162,7 @@ impl Plan {
         }
     }
 
-    /// Points that are sampled, on each ring's own lattice.
+    /// Sampled points, each in its ring's lattice coordinates.
     pub fn targets(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         let (rings, scattered): (&[Ring], &[[u32; 2]]) = match &self.kind {
             Kind::Rings(rings) => (rings, &[]),
@@ -171,7 +172,7 @@ impl Plan {
         rings.iter().enumerate().flat_map(of).chain(scattered.iter().copied())
     }
 
-    /// Traces it and fills in the rest.
+    /// Traces the plan and reconstructs the full frame.
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
         let mut done = FoveatedFrame {
             color: Image::filled(self.size_px, [0.0; 3]),
@@ -215,7 +216,7 @@ impl Plan {
     }
 }
 
-/// The points of runs.
+/// Points of runs (columns, row).
 fn points(runs: impl Iterator<Item = (Range<u32>, u32)>) -> impl Iterator<Item = [u32; 2]> {
     runs.flat_map(|(columns, y)| columns.map(move |x| [x, y]))
 }

@@ -7,16 +7,16 @@ use super::lattice::Lattice;
 use super::rings::Ring;
 use afterimage::ViewGeometry;
 
-/// The pattern. Defaults are the paper's.
+/// Three regions around the gaze. Defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Regions {
-    /// Samples of a pixel in the fovea, of a block in the middle, of a block outside.
+    /// Samples per pixel in the fovea, per block in the middle region, per block in the outer region.
     pub samples: [u32; 3],
-    /// Edges of the blocks in the middle and outside, in pixels.
+    /// Block edges of the middle and outer region, in pixels.
     pub blocks: [u32; 2],
-    /// Diameters of fovea and middle as full visual angles, degrees.
+    /// Diameters of fovea and middle region as full visual angles, degrees.
     pub diameters_deg: [f32; 2],
-    /// Factor of both radii: 0.5 is the paper's variant with halved radii.
+    /// Factor on both radii; 0.5 is the paper's variant with halved radii.
     pub radius_scale: f32,
 }
 
@@ -27,13 +27,13 @@ impl Default for Regions {
 }
 
 impl Regions {
-    /// Radii in pixels of the two inner regions: a = 2 d tan(e/2) on the screen, d being the distance at which the view's pixels have
-    /// its angles.
+    /// Radii in pixels of the two inner regions: a = 2 d tan(e/2) on the screen, where d is the viewing distance that
+    /// the view's angles imply.
     pub fn radii_px(&self, geometry: &ViewGeometry) -> [f32; 2] {
         self.diameters_deg.map(|e| tangent_px(geometry, 0.5 * e) * self.radius_scale)
     }
 
-    /// Samples of a frame with regions as discs that lie fully on it, without blends: what the paper's ideal reduction counts.
+    /// Samples of a frame if both discs lie fully on it, without blending: the paper's ideal reduction.
     pub fn ideal_samples(&self, geometry: &ViewGeometry) -> f64 {
         let [r0, r1] = self.radii_px(geometry).map(f64::from);
         let [w, h] = geometry.size_px().map(f64::from);
@@ -54,7 +54,7 @@ impl Regions {
             filter: Filter::Linear,
             lens: Circle::EVERYTHING,
         };
-        // The outer region takes over within two of its blocks: less shows the border, more costs samples.
+        // Regions blend over two blocks of the outer one. A smaller width shows the border, a larger one costs samples.
         let [m, n] = self.blocks;
         vec![
             ring(1, self.samples[0], fovea, 2.0 * m as f32),
@@ -64,7 +64,7 @@ impl Regions {
     }
 }
 
-/// Pixels that an angle from the axis spans in the middle of the view.
+/// Length in pixels that an angle from the axis spans at the centre of the view.
 pub(super) fn tangent_px(geometry: &ViewGeometry, angle_deg: f32) -> f32 {
     let (scale, _) = geometry.scale_offset();
     angle_deg.clamp(0.0, 89.0).to_radians().tan() / scale[0]

@@ -1,4 +1,4 @@
-//! Rings of lattices around the gaze, and the blend of neighbours.
+//! Rings of lattices around the gaze, and blending between neighbouring rings.
 
 use super::circle::{Circle, runs};
 use super::fill::{Filter, value_at};
@@ -8,23 +8,23 @@ use afterimage::Image;
 use glam::Vec3;
 use std::ops::Range;
 
-/// What lies between two circles around the gaze.
+/// The area between two circles around the gaze.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ring {
     pub lattice: Lattice,
-    /// Samples of a point.
+    /// Samples per point.
     pub samples: u32,
-    /// Where the next ring begins to show; infinity for the last.
+    /// Radius in pixels where the blend to the next ring begins; infinity for the last ring.
     pub radius_px: f32,
-    /// Over how many pixels it takes over.
+    /// Width of the blend to the next ring, in pixels.
     pub blend_px: f32,
     pub filter: Filter,
-    /// What is seen of the frame at all.
+    /// Visible part of the frame.
     pub lens: Circle,
 }
 
 impl Ring {
-    /// One sample set a pixel, everywhere.
+    /// A single ring over the whole frame, with `samples` per pixel.
     pub fn everywhere(size_px: [u32; 2], samples: u32) -> Self {
         let lattice = Lattice::blocks(1, size_px);
         Self {
@@ -37,7 +37,7 @@ impl Ring {
         }
     }
 
-    /// Points that some pixel of the ring or of its blends looks at: columns and row of each run, row by row.
+    /// Lattice points that some pixel of the ring or of its blends reads: columns and row of each run, ordered by row.
     pub fn targets(
         &self,
         rings: &[Self],
@@ -53,7 +53,7 @@ impl Ring {
     }
 }
 
-/// The rings as one frame, and the level of detail of its pixels. Black outside the lens.
+/// Blends the rings into one frame; returns its color and level of detail. Black outside the lens.
 pub(super) fn blend(
     rings: &[Ring],
     films: &[Film],
@@ -71,13 +71,14 @@ pub(super) fn blend(
         let of = |i: usize| value_at(&films[i], &rings[i].lattice, px, rings[i].filter);
         let lod = |i: usize| (rings[i].lattice.step as f32).log2();
         let t = ((distance - rings[i].radius_px) / rings[i].blend_px.max(1e-6)).clamp(0.0, 1.0);
-        // The last ring has no end.
+        // The last ring has no outer blend.
         if t > 0.0 { (of(i) * (1.0 - t) + of(i + 1) * t, lod(i) * (1.0 - t) + lod(i + 1) * t) } else { (of(i), lod(i)) }
     });
     (pixels.map(|(color, _)| color.to_array()), pixels.map(|(_, lod)| lod))
 }
 
-/// Noise of the blended frame: of the ring that shows most, that of the nearest point. 0 outside the lens, where black is certain.
+/// Noise of the blended frame: that of the nearest point in the ring with the larger weight. 0 outside the lens, where
+/// black is exact.
 pub(super) fn noise(rings: &[Ring], films: &[Film], size_px: [u32; 2], gaze_px: [f32; 2]) -> Image<[f32; 2]> {
     Image::from_fn_parallel(size_px, |[x, y]| {
         let px = [x as f32, y as f32];
@@ -97,7 +98,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    /// A film with one sample at each point, another at each.
+    /// A film with one sample at each point, with a different value at each.
     fn film_of(ring: &Ring, points: impl Iterator<Item = [u32; 2]>) -> Film {
         let mut film = Film::new(ring.lattice.points);
         let width = film.moments.width();

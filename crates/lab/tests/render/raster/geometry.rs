@@ -1,4 +1,4 @@
-//! Depth and motion are those of rays through the pixels' centres.
+//! Depth and motion of the rasterizer against rays through pixel centres.
 
 use super::rig::{Difference, compare, device, draw, rays};
 use afterimage_lab::scene::{Scene, SceneLimits};
@@ -8,11 +8,11 @@ use glam::{DMat4, DQuat, DVec3};
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// Pixels are compared away from silhouettes. Vertices are rounded to 1/256 of a pixel, by which the surface point moves at the
-/// most; motion, which differs little over that, keeps 0.01 px.
+/// Compared away from silhouettes. Vertices are snapped to 1/256 pixel, which shifts the surface point by at most that;
+/// motion varies little over that distance, so 0.01 px suffices.
 const MOTION_PX: f32 = 0.01;
 
-/// A view a little aside, turned and farther than another.
+/// A view moved sideways, turned and set back.
 fn moved(view: &View, scale: f64) -> View {
     let turn = DQuat::from_rotation_y(0.01) * DQuat::from_rotation_x(-0.006);
     let step = DMat4::from_translation(DVec3::new(0.02, -0.011, 0.015) * scale);
@@ -44,7 +44,7 @@ fn difference(name: &str, camera: &str, times: [f64; 2]) -> Option<Difference> {
 
 #[test]
 fn a_moving_camera() {
-    // Turned by 0.01: some 4 px everywhere; the same view for both would be off by that.
+    // Turned by 0.01 rad, about 4 px everywhere. Using one view for both frames would be wrong by that much.
     let Some(d) = difference("builtin:courtyard", "lateral", [0.0, 0.0]) else { return };
     assert!(d.motion_px <= MOTION_PX && d.surface_pixels > 10_000 && d.sky_pixels > 1_000);
 }
@@ -85,12 +85,12 @@ fn depth_is_that_of_rays_and_reversed() {
     let frame = draw(&device, &scene, [&view; 2], [0.0; 2]);
     let d = compare(&frame, &rays(&scene, [&view; 2], [0.0; 2]));
     println!("{d:?}");
-    // Eight roundings of 2^-24 in the drawing and as many in the ray, were it not for vertices that may be off by 1/256 px: floors
-    // near the horizon, the steepest here, differ by some percent a pixel.
+    // Eight roundings of 2^-24 in the rasterizer and as many in the ray would be far less; but vertices may be off by
+    // 1/256 px, and floors near the horizon, the steepest here, change by some percent per pixel.
     assert!(d.distance < 1e-3, "{d:?}");
-    // Nothing moves, and that to the bit but for the sky, whose pixels went through a matrix.
+    // Without motion the result is exactly 0, except for the sky, whose pixels pass through a matrix.
     assert!(frame.motion.pixels().iter().flatten().all(|m| m.abs() < 1e-6));
-    // The buffer itself: near over distance, so 0 for the sky and larger for what is nearer.
+    // The depth buffer itself: near over distance, so 0 for the sky and larger for nearer surfaces.
     assert!(frame.distance.pixels().iter().any(|v| v.is_infinite()));
 }
 

@@ -1,4 +1,4 @@
-//! The rasteriser: motion and depth against rays, colors against closed forms, and what it shows of every scene.
+//! The rasterizer: motion and depth against rays, colors against closed forms, and every available scene.
 
 mod geometry;
 mod light;

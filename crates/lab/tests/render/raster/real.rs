@@ -1,4 +1,4 @@
-//! Every scene at hand: finite, and like what is traced.
+//! Every available scene: finite, and similar to the path tracer's image.
 
 use super::rig::{device, draw};
 use afterimage::Image;
@@ -13,7 +13,7 @@ use afterimage_lab::trace::work;
 use afterimage_lab::trace::world::World;
 use std::path::PathBuf;
 
-/// Scenes that are not in the package, or none, after saying so.
+/// Folder of scenes that are not in the repository; if it is missing, prints that and returns `None`.
 pub fn folder() -> Option<PathBuf> {
     let root = afterimage_testing::workspace();
     let places = ["shared/data/scenes", "../shared/data/scenes"];
@@ -34,7 +34,7 @@ fn psnr(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
     -10.0 * (squares / (3 * a.pixels().len()) as f64).log10()
 }
 
-/// PSNR of the tone-mapped picture against 16 paths a pixel, and whether it is finite.
+/// PSNR of the tone-mapped image against 16 paths per pixel; `None` without a device. Panics if the frame is not finite.
 fn likeness(input: &str) -> Option<f64> {
     let device = device()?;
     let mut scene = Scene::open(input, &SceneLimits::default()).unwrap();
@@ -60,7 +60,7 @@ fn likeness(input: &str) -> Option<f64> {
     let psnr = psnr(&shown(&frame.color), &shown(&film.color()));
     println!("{input}: {psnr:.1} dB");
     if input == "builtin:courtyard" {
-        // The planted errors: nothing, and the picture upside down.
+        // Planted errors: a black image, and the image upside down.
         let (h, traced) = (size[1] as usize, shown(&film.color()));
         let turned = Image::from_fn(size, |[x, y]| frame.color.at(x as usize, h - 1 - y as usize));
         for wrong in [Image::filled(size, [0.0; 3]), shown(&turned)] {
@@ -71,8 +71,8 @@ fn likeness(input: &str) -> Option<f64> {
     Some(psnr)
 }
 
-/// Light from other surfaces and the sky's occlusion are guessed, so pictures are alike, not equal: half of the picture black
-/// where it should be white is 3 dB, and all of it off by a quarter of white, as where twice too bright, 12 dB.
+/// Indirect light and sky occlusion are estimates, so images are similar, not equal. Half of the image black instead of
+/// white gives 3 dB; everything off by a quarter of white, as when twice too bright, gives 12 dB.
 const ALIKE_DB: f64 = 12.0;
 
 #[test]
@@ -100,7 +100,8 @@ fn files_look_like_traced_ones() {
     }
 }
 
-/// The frame before, fetched where the vectors say, is this frame wherever the surface was seen: bilinear, distances within 2 %.
+/// The previous frame warped by the motion vectors matches this frame wherever the surface was visible: bilinear,
+/// distances within 2 %.
 #[test]
 fn vectors_explain_the_next_frame() {
     let (Some(device), Some(folder)) = (device(), folder()) else { return };

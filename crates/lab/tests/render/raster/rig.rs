@@ -1,4 +1,4 @@
-//! One device for all tests, and frames with what rays say of them.
+//! One device shared by all tests, and frames compared with rays.
 
 use afterimage::Image;
 use afterimage_lab::device::Headless;
@@ -11,24 +11,24 @@ use afterimage_lab::trace::world::World;
 use afterimage_testing::gpu::adapter;
 use std::sync::{Arc, OnceLock};
 
-/// The device of all tests, or none, after saying so.
+/// The device shared by all tests; without one, prints that and returns `None`.
 pub fn device() -> Option<Arc<Headless>> {
     static DEVICE: OnceLock<Option<Arc<Headless>>> = OnceLock::new();
     adapter()?;
     DEVICE.get_or_init(|| Headless::find_roomy(true)).clone()
 }
 
-/// A frame in memory.
+/// A frame read back from the device.
 pub struct Frame {
     pub color: Image<[f32; 3]>,
     pub distance: Image<f32>,
     pub motion: Image<[f32; 2]>,
 }
 
-/// Software devices filter along a pixel's footprint one texel at a time.
+/// Without anisotropic filtering, which software devices do one texel at a time.
 pub const FAST: RasterSettings = RasterSettings { anisotropy: 1, shadow_side: 1024 };
 
-/// A frame of `scene` at `times[0]` through `views[0]`, the last frame having been at `times[1]` through `views[1]`. Panics on
+/// Draws `scene` at `times[0]` through `views[0]`; the previous frame is at `times[1]` through `views[1]`. Panics on
 /// validation errors.
 pub fn draw(device: &Headless, scene: &Scene, views: [&View; 2], times: [f64; 2]) -> Frame {
     let size = views[0].geometry().size_px();
@@ -47,15 +47,15 @@ pub fn draw(device: &Headless, scene: &Scene, views: [&View; 2], times: [f64; 2]
     })
 }
 
-/// The same by rays.
+/// The path tracer's surfaces for the same arguments.
 pub fn rays(scene: &Scene, views: [&View; 2], times: [f64; 2]) -> Surfaces {
     let mut world = World::new(scene);
     world.pose(scene, times[0], times[1]);
     Surfaces::trace(&world, views[0], views[1], Effects::needed(scene))
 }
 
-/// Largest difference to rays in pixels' motion and in relative distance, away from silhouettes; and how many pixels of surfaces,
-/// and of sky, were compared.
+/// Largest differences from rays away from silhouettes, in pixels of motion and in relative distance; and the numbers
+/// of surface and sky pixels compared.
 #[derive(Debug)]
 pub struct Difference {
     pub motion_px: f32,
@@ -64,7 +64,7 @@ pub struct Difference {
     pub sky_pixels: usize,
 }
 
-/// Compares where the 3x3 pixels around are of one smooth surface: what rays find there is planar in 1/distance.
+/// Compares only pixels whose 3x3 neighbourhood is one smooth surface: planar in 1/distance according to the rays.
 pub fn compare(frame: &Frame, rays: &Surfaces) -> Difference {
     let [w, h] = [frame.distance.width(), frame.distance.height()];
     let mut d = Difference { motion_px: 0.0, distance: 0.0, surface_pixels: 0, sky_pixels: 0 };
@@ -73,7 +73,7 @@ pub fn compare(frame: &Frame, rays: &Surfaces) -> Difference {
             let nearness = |x: usize, y: usize| 1.0 / rays.depth.at(x, y);
             let here = nearness(x, y);
             let bend = |a: f32, b: f32| (a + b - 2.0 * here).abs();
-            // Planes are linear in 1/distance on the screen; a bend of 1 in 1000 is an edge.
+            // Planes are linear in 1/distance on screen; a bend of 1 in 1000 counts as an edge.
             let bends = [
                 bend(nearness(x - 1, y), nearness(x + 1, y)),
                 bend(nearness(x, y - 1), nearness(x, y + 1)),

@@ -1,4 +1,4 @@
-//! The continuous density: how many pixels, which ones, when.
+//! Continuous density: number, position and timing of sampled pixels.
 
 use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Acuity, Regions, Sampling};
@@ -14,15 +14,15 @@ fn there_are_as_many_targets_as_expected_in_every_frame() {
         let expected = acuity.expected(&view(), gaze);
         for frame in 0..20 {
             let count = Sampling::Acuity(acuity).plan(&view(), gaze, 1, frame).samples()[0] as f64;
-            // Far better than by chance, whose standard deviation is at most sqrt(expected).
+            // Much more even than independent draws, whose standard deviation is at most sqrt(expected).
             assert!((count - expected).abs() < 0.25 * expected.sqrt() + 20.0, "frame {frame}: {count} of {expected}");
         }
     }
 }
 
-/// Targets of a frame as a mask.
+/// Sampled pixels of a frame as a mask.
 fn mask(share: f32, frame: u64) -> Vec<bool> {
-    // A fovea of no size and a floor of `share`: the same density everywhere.
+    // No fovea and a floor of `share`: constant density.
     let acuity = Acuity { fovea_deg: 0.01, least: share, falloff: 1e3 };
     let plan = Sampling::Acuity(acuity).plan(&view(), [-1e4, -1e4], 1, frame);
     let mut mask = vec![false; 640 * 360];
@@ -44,13 +44,13 @@ fn every_pixel_has_its_turn() {
         }
     }
     let longest = last.iter().map(|&f| 200 - f).max().unwrap().max(gap);
-    // The golden ratio leaves no gap longer than a few times the mean one.
+    // The golden ratio leaves no gap longer than a few times the mean.
     assert!(longest <= 48, "a pixel waited {longest} frames");
 }
 
 #[test]
 fn targets_keep_their_distance() {
-    // Counts in 8x8 squares vary less than by chance: a binomial has variance n p (1 - p).
+    // Counts in 8x8 squares vary less than a binomial, whose variance is n p (1 - p).
     for share in [1.0 / 16.0, 1.0 / 8.0, 0.3] {
         let mask = mask(share, 7);
         let mut counts = vec![];

@@ -1,4 +1,4 @@
-//! What is made of the samples: constants stay constant, ramps stay ramps, nothing is left open, both tracers agree.
+//! Reconstruction: constants stay constant, ramps stay ramps, no pixel is left empty, both tracers agree.
 
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::scene::{Scene, SceneLimits, builtin};
@@ -23,7 +23,7 @@ fn view(scene: &Scene, size: [u32; 2]) -> View {
 
 #[test]
 fn a_furnace_without_a_ball_is_one_everywhere() {
-    // Every sample is 1: so must be every pixel, whatever is between samples, at any gaze.
+    // Every sample is 1, so every pixel must be 1, for any gaze.
     let mut scene = Scene::open("builtin:control", &SceneLimits::default()).unwrap();
     scene.environment = afterimage_lab::scene::Environment::Constant([1.0; 3]);
     let world = World::new(&scene);
@@ -47,7 +47,7 @@ fn the_fovea_is_what_uniform_sampling_gives() {
     let uniform = Sampling::Uniform.plan(view.geometry(), [0.0; 2], 4, 0).trace(&tracer, &world, &view, 0).color;
     for sampling in &patterns()[1..] {
         let done = sampling.plan(view.geometry(), [80.0, 45.0], 4, 0).trace(&tracer, &world, &view, 0);
-        // Within a degree of the gaze, which every pattern samples in full.
+        // Within one degree of the gaze, which every pattern samples fully.
         for (x, y) in [(80, 45), (79, 44), (81, 46), (80, 44)] {
             assert_eq!(done.color.at(x, y), uniform.at(x, y), "{sampling:?} at {x}, {y}");
         }
@@ -58,7 +58,7 @@ fn the_fovea_is_what_uniform_sampling_gives() {
 
 #[test]
 fn foveated_means_are_those_of_uniform_sampling() {
-    // Filling in blurs, it does not brighten: the mean over the frame stays within what noise allows.
+    // Reconstruction blurs but does not brighten: the frame's mean stays within noise.
     let scene = builtin::courtyard_of(2000);
     let world = World::new(&scene);
     let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
@@ -77,7 +77,7 @@ fn foveated_means_are_those_of_uniform_sampling() {
 
 #[test]
 fn the_device_traces_the_same_foveated_frames() {
-    // Says so where there is no adapter, and fails where one is required.
+    // Prints that there is no adapter, and fails where one is required.
     if afterimage_testing::gpu::device().is_none() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Samples by guide: the budget is met and well spent, means stay what they are, nonsense is harmless.
+//! Guided sampling: it meets its budget and uses it well, means stay unbiased, invalid guides are harmless.
 
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
@@ -33,14 +33,14 @@ fn guide(known: f32, deviation: f32) -> Guide {
     Guide { known: Image::filled(SIZE, known), deviation: Image::filled(SIZE, deviation) }
 }
 
-/// As of a scene: counts from 0 to 60, deviations over three powers of ten.
+/// A random guide with realistic values: counts from 0 to 60, deviations over three powers of ten.
 fn some_guide(name: &str) -> Guide {
     let mut draws = Draws::new(name);
     let known = Image::from_fn(SIZE, |_| draws.range(0.0, 60.0).floor());
     Guide { known, deviation: Image::from_fn(SIZE, |_| 10.0_f32.powf(draws.range(-3.0, 0.0))) }
 }
 
-/// Samples of each point of a ring.
+/// Number of samples of each point of a ring.
 fn counts(work: &[Spans]) -> BTreeMap<[u32; 2], u32> {
     let mut counts = BTreeMap::new();
     for spans in work {
@@ -73,7 +73,7 @@ fn every_ring_spends_its_budget_on_average_and_every_point_has_a_sample() {
             }
         }
         for (i, (sum, &budget)) in sums.iter().zip(&budgets).enumerate() {
-            // A rounded number has a variance of 1/4 at most.
+            // A stochastically rounded number has a variance of at most 1/4.
             let sd = (FRAMES as f64 * points[i] as f64 / 4.0).sqrt();
             let what = format!("{name}, ring {i}: {:.1} samples a frame of {budget}", sum / FRAMES as f64);
             accept(&what, p_of_z((sum - FRAMES as f64 * budget as f64) / sd));
@@ -94,7 +94,7 @@ fn what_is_known_well_enough_gets_the_least() {
 
 #[test]
 fn what_was_hidden_gets_what_others_can_spare() {
-    // A tenth of the frame has no history: 1 of 4 samples stays with the rest, the others are 31 a pixel there.
+    // A tenth of the frame has no history. Elsewhere 1 of 4 samples remains; the others amount to 31 per pixel there.
     let mut guide = guide(64.0, 0.3);
     let hidden = |x: u32| (32..48).contains(&x);
     guide.known = Image::from_fn(SIZE, |[x, _]| if hidden(x) { 0.0 } else { 64.0 });
@@ -103,7 +103,7 @@ fn what_was_hidden_gets_what_others_can_spare() {
         let expected = if hidden(x) { 30..=32 } else { 1..=1 };
         assert!(expected.contains(&n), "{n} samples at {x}, {y}");
     }
-    // Blocks and lattices: the fovea's and the periphery's alike.
+    // Blocks and lattices, in the fovea and in the periphery.
     for sampling in &patterns()[1..] {
         let plan = plan(sampling, 8);
         let guided = plan.guided(&guide, 5, 0).unwrap();
@@ -114,7 +114,7 @@ fn what_was_hidden_gets_what_others_can_spare() {
                 _ => 1,
             };
             let counts = counts(work);
-            // Points whose surroundings lie on one side.
+            // Points whose neighbourhood lies on one side.
             let of = |inside: bool| {
                 let is_clear = move |x: u32| hidden(x + step) == inside && hidden(x.saturating_sub(step)) == inside;
                 counts.iter().filter(move |([x, _], _)| is_clear(x * step)).map(|(_, n)| *n)
@@ -128,7 +128,7 @@ fn what_was_hidden_gets_what_others_can_spare() {
 
 #[test]
 fn deviations_decide_where_nothing_is_known() {
-    // Neyman's allocation: as the deviations.
+    // Neyman allocation: proportional to the deviations.
     let mut guide = guide(0.0, 0.1);
     guide.deviation = Image::from_fn(SIZE, |[x, _]| if x < 80 { 0.1 } else { 0.3 });
     let guided = plan(&Sampling::Uniform, 20).guided(&guide, 0, 0).unwrap();
@@ -162,7 +162,7 @@ fn a_number_that_makes_no_sense_says_that_nothing_is_known() {
         same(&with(nonsense), &with(0.5));
         same(&guide(3.0, nonsense), &guide(3.0, 1.0));
     }
-    // Any bits at all.
+    // Arbitrary bit patterns.
     let mut draws = Draws::new("any bits");
     for _ in 0..4 {
         let mut any = || Image::from_fn(SIZE, |_| f32::from_bits(draws.bits()));
@@ -191,7 +191,7 @@ fn a_guide_of_another_size_is_refused_and_no_budget_is_no_work() {
     assert!(error.contains("guide.deviation") && error.contains("90 x 160"), "{error}");
 }
 
-/// The Cornell box, small.
+/// The Cornell box at a small size.
 struct Box {
     world: World,
     tracer: Tracer,
@@ -216,7 +216,7 @@ impl Box {
         film
     }
 
-    /// Sum and sum of squares, over frames that are independent, of the means of 4 x 4 regions.
+    /// Sum and sum of squares of the means of 4x4 regions over independent frames.
     fn sums(&self, frames: std::ops::Range<u64>, guide_of: impl Fn(u64) -> Option<Guide>) -> [[f64; 2]; 16] {
         let plan = Sampling::Uniform.plan(self.view.geometry(), [0.0; 2], 4, 0);
         let mut sums = [[0.0; 2]; 16];
@@ -237,7 +237,7 @@ impl Box {
 
 const FRAMES: u64 = 500;
 
-/// Lowest p-value of the regions' means being the same, for 16 tests.
+/// Smallest p-value for equal means over 16 regions, corrected for 16 tests.
 fn p_of_regions(a: [[f64; 2]; 16], b: [[f64; 2]; 16]) -> f64 {
     let n = FRAMES as f64;
     let of = |[sum, squares]: [f64; 2]| (sum / n, (squares / n - (sum / n).powi(2)) / (n - 1.0));
@@ -252,13 +252,14 @@ fn p_of_regions(a: [[f64; 2]; 16], b: [[f64; 2]; 16]) -> f64 {
 fn means_are_those_without_a_guide() {
     let cornell = Box::new();
     let plain = cornell.sums(FRAMES..2 * FRAMES, |_| None);
-    // Frames gone by have numbers of their own.
+    // Past frames have other frame numbers.
     let past = Guide::of_film(&cornell.film(1 << 40, 0..4));
     let guided = cornell.sums(0..FRAMES, |_| Some(past.clone()));
     accept("guided by a frame gone by", p_of_regions(guided, plain));
     let guided = cornell.sums(0..FRAMES, |f| Some(Guide::of_film(&cornell.film((2 << 40) + f, 0..4))));
     accept("guided by another frame each", p_of_regions(guided, plain));
-    // By what the frame's first sample brings: what happens to be bright is averaged with more, what is dark is left as it is.
+    // A guide from the frame's own first sample: pixels that happen to be bright get more samples to average, dark ones
+    // stay as they are.
     let own = |frame| {
         let bright = cornell.film(frame, 1..2).moments.map(|m| m.mean.y);
         Some(Guide { known: Image::filled(Box::SIZE, 0.0), deviation: bright })
@@ -278,7 +279,7 @@ fn a_plan_is_the_same_whatever_the_number_of_threads() {
 
 #[test]
 fn the_device_traces_the_same_guided_frames() {
-    // Says so where there is no adapter, and fails where one is required.
+    // Prints that there is no adapter, and fails where one is required.
     if afterimage_testing::gpu::device().is_none() {
         return;
     }

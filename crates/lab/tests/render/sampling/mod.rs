@@ -1,4 +1,4 @@
-//! Foveated sampling of traced frames: where samples go, and what is made of them.
+//! Foveated sampling of traced frames: sample positions and reconstruction.
 
 mod acuity;
 mod fills;

@@ -1,9 +1,9 @@
-//! The patterns against the numbers of the papers that they are from.
+//! Sampling patterns against the numbers in their papers.
 
 use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Lattice, Layers, Regions, Sampling};
 
-/// The paper's display: 3840x2160 pixels on 70.848 x 39.852 cm, seen from 60 cm.
+/// The paper's display: 3840x2160 pixels on 70.848 x 39.852 cm, at 60 cm.
 fn display() -> ViewGeometry {
     let half_width = 70.848 / 2.0 / 60.0;
     let half_height = 39.852 / 2.0 / 60.0;
@@ -13,14 +13,14 @@ fn display() -> ViewGeometry {
 #[test]
 fn radii_are_the_papers() {
     let [fovea, middle] = Regions::default().radii_px(&display());
-    // The paper rounds down to 147 and 482, from angles that it rounds itself.
+    // The paper rounds down to 147 and 482, from angles it rounds itself.
     assert!((fovea - 147.6).abs() < 0.2, "{fovea}");
     assert!((middle - 486.0).abs() < 0.5, "{middle}");
 }
 
 #[test]
 fn ideal_samples_are_the_papers() {
-    // Its radii, in place of its angles.
+    // The paper's radii instead of its angles.
     let angle = |px: f32| 2.0 * (px / 3840.0 * 70.848 / 60.0).atan().to_degrees();
     let paper = Regions { diameters_deg: [angle(147.0), angle(482.0)], ..Regions::default() };
     for (samples, millions) in [([32, 16, 8], 8.60), ([32, 8, 4], 5.39), ([32, 2, 1], 2.98)] {
@@ -38,7 +38,7 @@ fn samples_are_the_ideal_ones_and_those_of_borders() {
         let counts = Sampling::Regions(regions).plan(&geometry, center, 32, 0).samples();
         let (sum, ideal) = (counts.iter().sum::<u64>() as f64, regions.ideal_samples(&geometry));
         println!("{samples:?}: {counts:?}, {:.1} % above the ideal {ideal:.0}", (sum / ideal - 1.0) * 100.0);
-        // Blends of two blocks, and what linear interpolation looks at.
+        // The excess: blends over two blocks, and neighbours read by linear interpolation.
         assert!(sum > ideal && sum < 1.13 * ideal, "{samples:?}: {sum} of {ideal}");
     }
 }
@@ -85,7 +85,8 @@ fn a_lens_leaves_the_corners_untraced() {
     let lens =
         Sampling::Layers(Layers { lens_deg: Some(45.0), ..Layers::default() }).plan(&geometry, gaze, 4, 0).samples();
     assert_eq!(screen[..3], lens[..3]);
-    // Of the background's lattice pi/4 lies in the circle that touches the edges, and three steps around it.
+    // The circle that touches the frame's edges contains pi/4 of the background's lattice; three more steps around it
+    // are sampled.
     assert!(lens[3] < screen[3] * 7 / 8, "{lens:?} of {screen:?}");
 }
 

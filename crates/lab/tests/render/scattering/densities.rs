@@ -1,4 +1,4 @@
-//! Samplers against their densities: chi-squared over bins of (cosine, azimuth), and densities that integrate to what is sampled.
+//! Samplers against their densities: chi-squared tests over bins of (cosine, azimuth), and integrals of densities.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -11,9 +11,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Bins along the cosine and the azimuth.
 const BINS: [usize; 2] = [16, 12];
-/// Points of the midpoint rule in a bin, along each axis.
+/// Midpoint rule points per bin, along each axis.
 const POINTS: usize = 48;
-/// Samples of each test.
+/// Samples per test.
 const SAMPLES: u64 = 200_000;
 
 fn bin(w: Vec3) -> usize {
@@ -23,7 +23,7 @@ fn bin(w: Vec3) -> usize {
     z * BINS[1] + a
 }
 
-/// Probability of each bin, by quadrature of `pdf`.
+/// Probability of each bin by quadrature of `pdf`.
 fn expected(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
     let steps = [BINS[0] * POINTS, BINS[1] * POINTS];
     let mut bins = vec![0.0; BINS[0] * BINS[1]];
@@ -39,8 +39,8 @@ fn expected(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
     bins
 }
 
-/// p-value of samples against `pdf`; what is not sampled, in the one and in the other, is a bin of its own. Bins that expect
-/// fewer than 5 are one bin, left out where it expects fewer, too.
+/// p-value of samples against `pdf`. Draws without a direction have a bin of their own. Bins that expect fewer than 5
+/// samples are merged; the merged bin is left out if it still expects fewer.
 fn p_of(name: &str, sample: impl Fn(&mut Draws) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> f64 {
     let probabilities = expected(pdf);
     let mut counts = vec![0; probabilities.len()];
@@ -69,7 +69,7 @@ fn p_of(name: &str, sample: impl Fn(&mut Draws) -> Option<Vec3>, pdf: impl Fn(Ve
         kept.0.push(rest.0);
         kept.1.push(rest.1);
     } else {
-        // A Poisson count: 5 expected give more than 30 with probability 2e-14.
+        // Poisson counts with 5 expected exceed 30 with probability 2e-14.
         assert!(rest.0 <= 30, "{name}: {} samples where {} are expected", rest.0, rest.1);
     }
     p_of_counts(&kept.0, &kept.1)
@@ -85,7 +85,7 @@ fn shapes_are_sampled_by_their_densities() {
     accept("hemisphere", p_of("hemisphere", |d| Some(uniform_hemisphere(two(d))), |w| uniform_hemisphere_pdf(w.z)));
     accept("sphere", p_of("sphere", |d| Some(uniform_sphere(two(d))), |_| uniform_sphere_pdf()));
     reject("cosine as uniform", p_of("wrong", |d| Some(uniform_hemisphere(two(d))), |w| cosine_hemisphere_pdf(w.z)));
-    // Triangle and disk by equal areas.
+    // Triangle and disk, in bins of equal area.
     let mut counts = [vec![0; 16], vec![0; 16]];
     let mut d = Draws::new("triangle and disk");
     for _ in 0..SAMPLES {
@@ -157,8 +157,8 @@ fn every_lobe_is_sampled_by_its_density() {
             let name = format!("{name} from {z}");
             let pdf = |w: Vec3| bsdf::eval(&layers, wo, w, Lobes::ALL).pdf;
             accept(&name, p_of(&name, |d| sampled(&layers, wo, d), pdf));
-            // Planted: directions mirrored, which those near the pole hardly notice, and a density 5 % too small on one side of the
-            // plane of incidence.
+            // Planted errors: mirrored directions, which change little near the pole, and a density 5 % too small on
+            // one side of the plane of incidence.
             let mirrored = |d: &mut Draws| sampled(&layers, wo, d).map(|w| Vec3::new(-w.x, -w.y, w.z));
             if z < 0.9 {
                 reject(&name, p_of(&name, mirrored, pdf));

@@ -1,4 +1,4 @@
-//! Energy: a white furnace sees every white surface as itself; colored ones are never brighter.
+//! Energy conservation: white surfaces reflect everything in a white furnace, colored ones never more.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -8,33 +8,33 @@ use afterimage_testing::{ALPHA, Draws};
 use glam::Vec3;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Integral of `eval` over all directions: for each lobe a grid over the draws of its sampler, weighted by the density of the whole
-/// mixture. `value` stands in for the value where an error is planted.
+/// Integral of `eval` over all directions: for each lobe, a grid over its sampler's draws, weighted by the density of
+/// the mixture. `value` replaces the value where an error is planted.
 fn reflected(layers: &Layers, wo: Vec3, grid: u32, value: impl Fn(Vec3, Scatter) -> f32) -> f64 {
     let mut sum = 0.0;
     let mut before = 0.0;
-    for (lobe, &chance) in layers.chances.iter().enumerate() {
-        if chance > 0.0 {
+    for (lobe, &probability) in layers.probabilities.iter().enumerate() {
+        if probability > 0.0 {
             let choices = if lobe == 3 { 16 } else { 1 };
             let mut mean = 0.0;
             for i in 0..grid * grid * choices {
                 let at = |k: u32, n: u32| (k as f32 + 0.5) / n as f32;
-                // Points crowd where directions reach the horizon.
+                // Substitution: points are dense where directions approach the horizon.
                 let t = at(i / grid % grid, grid);
                 let turn = at(i % grid, grid);
                 let power = if lobe == 0 { 4 } else { 2 };
                 let radial = 1.0 - t.powi(power);
                 let [a, b] = if lobe == 0 { [radial, turn] } else { [turn, radial] };
-                let u = [before + 0.5 * chance, a, b, at(i / (grid * grid), choices)];
+                let u = [before + 0.5 * probability, a, b, at(i / (grid * grid), choices)];
                 let s = bsdf::sample(layers, wo, u, Lobes::ALL);
                 if s.scatter.pdf > 0.0 {
                     let weight = f64::from(power) * f64::from(t).powi(power - 1);
                     mean += weight * f64::from(value(s.wi, s.scatter) / s.scatter.pdf);
                 }
             }
-            sum += f64::from(chance) * mean / f64::from(grid * grid * choices);
+            sum += f64::from(probability) * mean / f64::from(grid * grid * choices);
         }
-        before += chance;
+        before += probability;
     }
     sum
 }
@@ -43,11 +43,12 @@ fn energy(surface: &Surface, wo: Vec3, grid: u32) -> f64 {
     reflected(&bsdf::layers(surface, wo, &TABLES, Lobes::ALL), wo, grid, |_, s| s.value.x)
 }
 
-/// A lobe: name, surface of a roughness and an index of refraction, bounds of the root mean square and of the largest error.
+/// A lobe: name; surface of a roughness and an index of refraction; bounds on the root mean square and the largest
+/// error.
 struct Lobe(&'static str, fn(f32, f32) -> Surface, [f64; 2]);
 
-/// The bounds are about 1.3 times what was measured: errors of interpolation in the tables, and 3e-4 of the rule itself, which is
-/// what Lambert's lobe shows.
+/// Bounds are about 1.3 times the measured values: interpolation errors of the tables, and 3e-4 of the quadrature
+/// itself, as Lambert's lobe shows.
 const LOBES: &[Lobe] = &[
     Lobe("Lambert", |_, _| WHITE, [4e-4, 4e-4]),
     Lobe("retro-reflection", |r, _| Surface { roughness: r, specular: 1e-12, ..WHITE }, [4e-4, 4e-4]),
@@ -108,7 +109,7 @@ fn a_furnace_sees_planted_errors() {
     let right = reflected(&layers, wo, 40, |_, s| s.value.x);
     assert!((right - 1.0).abs() < 5e-3, "{right}");
     let a = layers.widths;
-    // Without masking and shadowing; without compensation; without the half vector's Jacobian.
+    // Planted errors: no masking and shadowing; no compensation; no half vector Jacobian.
     let bare = |wi: Vec3, s: Scatter| {
         let length = |v| afterimage_lab::kernel::microfacet::ggx_length(v, a);
         s.value.x * (wi.z * length(wo) + wo.z * length(wi)) / (2.0 * wi.z * wo.z)
@@ -124,7 +125,7 @@ fn a_furnace_sees_planted_errors() {
     }
 }
 
-/// Mean of value / density over random draws, in three channels, with its standard error.
+/// Mean of value / density over random draws in three channels, with its standard error.
 fn monte_carlo(surface: &Surface, wo: Vec3, d: &mut Draws, samples: u32) -> ([f64; 3], f64) {
     let layers = bsdf::layers(surface, wo, &TABLES, Lobes::ALL);
     let (mut sum, mut squares) = ([0.0; 3], 0.0);
@@ -142,14 +143,14 @@ fn monte_carlo(surface: &Surface, wo: Vec3, d: &mut Draws, samples: u32) -> ([f6
     (mean, ((squares / n - mean[0] * mean[0]).max(0.0) / n).sqrt())
 }
 
-/// Largest error of the tables that random surfaces meet, stretched ones left out; see [`LOBES`].
+/// Bound on the tables' error for random surfaces without anisotropy; see [`LOBES`].
 const TABLE_ERROR: f64 = 2e-2;
 
 #[test]
 fn random_white_surfaces_reflect_and_transmit_everything_h83() {
     let mut d = Draws::new("white furnace");
     let tests = 200;
-    // Two-sided, significance shared by all tests.
+    // Two-sided, with the significance shared by all tests.
     let z = Normal::standard().inverse_cdf(1.0 - ALPHA / (2.0 * f64::from(tests)));
     let mut total = 0.0;
     for _ in 0..tests {
@@ -174,7 +175,7 @@ fn no_surface_makes_light() {
         let surface = Surface { base_color, specular_color, sheen_color, ..white(&mut d) };
         let wo = direction(d.uniform().max(1e-3), d.uniform());
         let (mean, error) = monte_carlo(&surface, wo, &mut d, 4_000);
-        // The error is the first channel's; the others' are as large.
+        // Uses the first channel's error; the others' are as large.
         assert!(mean.iter().all(|&m| m < 1.0 + TABLE_ERROR + z * error.max(0.02)), "{surface:?}: {mean:?} +- {error}");
     }
 }

@@ -1,4 +1,4 @@
-//! H83: the ends of every range. Nothing is NaN or infinite, nothing negative, weights sum to 1.
+//! H83: the ends of every parameter range. Nothing is NaN, infinite or negative, and weights sum to 1.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -23,8 +23,8 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
         for z in COSINES {
             let wo = direction(z, d.uniform());
             let layers = bsdf::layers(&surface, wo, &TABLES, Lobes::ALL);
-            let chances: f32 = layers.chances.iter().sum();
-            assert!((chances - 1.0).abs() < 1e-6 || chances == 0.0, "{surface:?} {wo}: {chances}");
+            let probabilities: f32 = layers.probabilities.iter().sum();
+            assert!((probabilities - 1.0).abs() < 1e-6 || probabilities == 0.0, "{surface:?} {wo}: {probabilities}");
             for _ in 0..40 {
                 let u = std::array::from_fn(|_| DRAWS[d.bits() as usize % 5]);
                 let s = bsdf::sample(&layers, wo, u, Lobes::ALL);
@@ -36,7 +36,8 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
                 ] {
                     let good = |x: f32| x.is_finite() && x >= 0.0;
                     assert!(s.value.to_array().into_iter().all(good) && good(s.pdf), "{surface:?} {wo} {u:?}: {s:?}");
-                    // What has light has a density, but for the tail of the sheen, which is cut off at e^-60 and not at 0.
+                    // Directions with light have a density, except in the sheen's tail, which is clamped to e^-60
+                    // instead of 0.
                     assert!(s.pdf > 0.0 || s.value.max_element() < 1e-20, "{surface:?} {wo} {u:?}: {s:?}");
                     if s.pdf > 0.0 {
                         sampled += 1;
@@ -128,7 +129,7 @@ fn phong_is_passive_and_its_samples_have_its_mean() {
             mean += w / f64::from(n);
             squares += w * w / f64::from(n);
         }
-        // Midpoint rule, far finer than the lobe.
+        // Midpoint rule with steps much finer than the lobe.
         let steps = 400;
         for i in 0..steps * steps {
             let at = |k: u32| (k as f32 + 0.5) / steps as f32;

@@ -1,4 +1,4 @@
-//! Lobes that are not used cost no bit; the f32 kernel against the formulas in f64; reciprocity.
+//! Unused lobes change no bit; the f32 kernel matches the formulas in f64; reciprocity.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -34,14 +34,14 @@ fn a_lobe_that_is_not_used_can_be_left_out_bit_for_bit() {
         assert_eq!(results[0], results[1], "{surface:?}");
         assert_eq!(results[0], results[2], "{surface:?}");
     }
-    // The control: a lobe that is used is missed.
+    // Control: removing a lobe that is used changes the result.
     let metal = Surface { metallic: 0.5, ..WHITE };
     let wo = direction(0.5, 0.1);
     let value = |lobes| bsdf::eval(&bsdf::layers(&metal, wo, &TABLES, lobes), wo, Vec3::Z, lobes);
     assert_ne!(value(Lobes::ALL), value(Lobes { metal: false, ..Lobes::ALL }));
 }
 
-/// GGX' D and height-correlated visibility G2 / (4 cos cos), and Fresnel's reflectance, as textbooks have them.
+/// Textbook forms of GGX D, height-correlated visibility G2 / (4 cos cos), and Fresnel reflectance.
 fn ggx(wo: DVec3, wi: DVec3, h: DVec3, a: f64) -> [f64; 2] {
     let t = (h.x * h.x + h.y * h.y) / (h.z * h.z);
     let d = 1.0 / (PI * a * a * h.z.powi(4) * (1.0 + t / (a * a)).powi(2));
@@ -61,7 +61,8 @@ fn fresnel(c: f64, eta: f64) -> f64 {
     0.5 * (((i - t).sin() / (i + t).sin()).powi(2) + ((i - t).tan() / (i + t).tan()).powi(2))
 }
 
-/// Largest relative error of `eval` against `exact`, which takes the layers' strengths as they are: what is compared is shape.
+/// Largest relative error of `eval` against `exact`. `exact` uses the layers' strengths, so only the lobe's shape is
+/// compared.
 fn worst(surface: &Surface, exact: impl Fn(&bsdf::Layers, DVec3, DVec3) -> f64, below: bool) -> f64 {
     let mut d = Draws::new("f64");
     let mut worst = 0.0_f64;
@@ -89,7 +90,7 @@ fn the_kernel_is_its_formulas_in_f64() {
     };
     let glass = Surface { transmission: 1.0, specular: 1.0, roughness: 0.5, ..WHITE };
     let refraction = |l: &bsdf::Layers, wo: DVec3, wi: DVec3| {
-        // Walter et al. 2007, eq. 21, with the indices of the two sides.
+        // Walter et al. 2007, eq. 21, with the indices of both sides.
         let eta = f64::from(l.eta);
         let mut h = (wo + eta * wi).normalize();
         h *= h.z.signum();
@@ -98,7 +99,7 @@ fn the_kernel_is_its_formulas_in_f64() {
         let t = 1.0 - fresnel(wo.dot(h), eta);
         wo.dot(h) * wi.dot(h).abs() / wo.z * eta * eta * t * g * d / (root * root) * f64::from(l.glass.x)
     };
-    // Rounding of the half vector, over the widths, squared in D; more where the two directions nearly cancel.
+    // Rounding of the half vector divided by the widths, squared in D; larger where the two directions nearly cancel.
     for (name, error, bound) in [
         ("reflection", worst(&metal, reflection, false), 1e-4),
         ("refraction in", worst(&glass, refraction, true), 1e-3),
@@ -111,7 +112,7 @@ fn the_kernel_is_its_formulas_in_f64() {
     assert!(wrong > 5e-4, "planted error of 0.1 %: {wrong}");
 }
 
-/// f(wo, wi) / f(wi, wo) - 1, the largest of many pairs.
+/// Largest f(wo, wi) / f(wi, wo) - 1 over many pairs.
 fn asymmetry(surface: &Surface) -> f32 {
     let mut d = Draws::new("reciprocity");
     let f = |o: Vec3, i: Vec3| {
@@ -129,11 +130,12 @@ fn asymmetry(surface: &Surface) -> f32 {
 
 #[test]
 fn reciprocity_holds_without_compensation_and_not_with_it() {
-    // Lambert, and smooth metal, whose compensation is next to nothing.
+    // Lambert, and smooth metal, which needs almost no compensation.
     assert!(asymmetry(&WHITE) < 1e-6);
     let smooth = asymmetry(&Surface { metallic: 1.0, roughness: 0.1, ..WHITE });
     println!("smooth metal {smooth:.1e}");
-    // Everything that is layered or compensated by the albedo seen from `wo` is not reciprocal; that is the price of the furnace.
+    // Layering and compensation use the albedo seen from `wo`, so these lobes are not reciprocal. That is the price of
+    // conserving energy.
     let rough = asymmetry(&Surface { metallic: 1.0, roughness: 1.0, ..WHITE });
     let plastic = asymmetry(&Surface { specular: 1.0, roughness: 0.3, ..WHITE });
     println!("rough metal {rough:.2}, plastic {plastic:.2}");

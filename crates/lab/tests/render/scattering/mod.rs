@@ -1,4 +1,4 @@
-//! The scattering kernels: energy, densities, reciprocity, hard cases; H83.
+//! Scattering kernels: energy, densities, reciprocity, hard cases; H83.
 
 mod densities;
 mod furnace;

@@ -1,4 +1,4 @@
-//! Surfaces and directions that the tests scatter from.
+//! Surfaces and directions for the scattering tests.
 
 use afterimage_lab::kernel::albedo::AlbedoTables;
 use afterimage_lab::kernel::bsdf::Surface;
@@ -6,10 +6,10 @@ use afterimage_testing::Draws;
 use glam::Vec3;
 use std::sync::LazyLock;
 
-/// The tables, once for all tests.
+/// Albedo tables, computed once for all tests.
 pub static TABLES: LazyLock<AlbedoTables> = LazyLock::new(AlbedoTables::compute);
 
-/// White Lambert.
+/// White Lambertian surface.
 pub const WHITE: Surface = Surface {
     base_color: Vec3::ONE,
     metallic: 0.0,
@@ -27,14 +27,14 @@ pub const WHITE: Surface = Surface {
     entering: true,
 };
 
-/// A unit vector at the cosine `z`, `turns` around.
+/// Unit vector with cosine `z` and azimuth `turns`.
 pub fn direction(z: f32, turns: f32) -> Vec3 {
     let r = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
     let angle = turns * std::f32::consts::TAU;
     Vec3::new(r * angle.cos(), r * angle.sin(), z)
 }
 
-/// 0, 1 or anything between.
+/// 0, 1 or uniform in between.
 pub fn share(d: &mut Draws) -> f32 {
     match d.bits() % 4 {
         0 => 0.0,
@@ -43,7 +43,7 @@ pub fn share(d: &mut Draws) -> f32 {
     }
 }
 
-/// Any white surface: nothing absorbs.
+/// Random white surface, which absorbs nothing.
 pub fn white(d: &mut Draws) -> Surface {
     let sheen = share(d);
     Surface {

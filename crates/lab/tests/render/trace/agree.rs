@@ -1,4 +1,4 @@
-//! The three integrators are three ways to the same image.
+//! The three integrators converge to the same image.
 
 use super::rig::Rig;
 use super::scenes::{builtin, under_a_map, under_a_screen, under_lamps};
@@ -10,7 +10,7 @@ use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_testing::{accept, reject};
 
 fn film(rig: &Rig, integrator: Integrator, bsdf: Bsdf, spp: u32) -> Film {
-    // A seed of its own each: with the same draws films would be alike where they need not be.
+    // A seed for each: with shared draws the films would be correlated.
     let settings = TraceSettings { integrator, bsdf, max_depth: 3, seed: 10 + integrator as u64, effects: None };
     rig.cpu(settings, spp)
 }
@@ -38,7 +38,7 @@ fn in_the_cornell_box() {
 #[test]
 fn in_the_furnace() {
     check(builtin("furnace"), &[ALL[0], ALL[2]]);
-    // Who only looks for light misses narrow highlights, nearly always: no sound statistics of them in so few samples.
+    // Light sampling alone nearly always misses narrow highlights, so its sample statistics would be meaningless.
     let rough = Material { roughness: 0.7, ..Material::default() };
     let metal = Material { metallic: 1.0, ..rough.clone() };
     check(furnace_of(vec![rough, metal]), &ALL);
@@ -57,7 +57,7 @@ fn under_a_screen_that_shows_an_image() {
 #[test]
 fn under_punctual_lights() {
     check(under_lamps(), &ALL[..2]);
-    // They have no size: by chance no path meets them.
+    // Punctual lights have no size, so scattered rays never hit them.
     let rig = Rig::new(under_lamps(), [16, 16]);
     let dark = film(&rig, Integrator::Naive, Bsdf::Principled, 4);
     assert!(dark.moments.pixels().iter().all(|m| m.mean == glam::Vec3::ZERO));
@@ -68,7 +68,7 @@ fn a_light_picked_with_a_wrong_probability_is_caught() {
     let mut rig = Rig::new(under_a_screen(), [32, 32]);
     let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
     for pick in &mut rig.world.picks {
-        pick.chosen *= 1.1;
+        pick.probability *= 1.1;
     }
     reject(
         "chosen 1.1 times as often",
@@ -81,7 +81,7 @@ fn a_texel_picked_with_a_wrong_probability_is_caught() {
     let mut rig = Rig::new(under_a_map(), [32, 32]);
     let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
     for texel in &mut rig.world.map {
-        texel.chosen *= 1.1;
+        texel.probability *= 1.1;
     }
     reject(
         "texels 1.1 times as often",

@@ -1,9 +1,9 @@
-//! Different seeds: the device's image is the CPU's but for noise.
+//! With different seeds, the CPU's and the device's images differ only by noise.
 
 use super::rig::{Rig, device};
 use super::scenes::{SMALL, builtin, shared};
 use super::statistics::{p_of_means, p_of_pixels};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_testing::{accept, reject};
 
@@ -47,7 +47,7 @@ fn a_lamp_one_percent_brighter_is_caught() {
     for m in &mut rig.world.materials {
         m.emissive = m.emissive.map(|e| 1.01 * e);
     }
-    // Below the lamp, at whose rim the noise is.
+    // Below the lamp, whose rim is noisy.
     let lit = |i: usize| i / 24 > 5;
     reject("a lamp of 1.01", p_of_means(&film, &rig.cpu(settings(2, 1), 768), lit));
 }

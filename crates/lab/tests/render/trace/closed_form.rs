@@ -1,4 +1,4 @@
-//! Images that are known: depth 0, growing depth, furnaces, spheres under a sky.
+//! Images with known results: depth 0, increasing depth, furnaces, spheres under a sky.
 
 use super::rig::Rig;
 use super::scenes::{DARK, builtin};
@@ -19,13 +19,13 @@ fn depth_0_is_what_emits_and_nothing_else() {
     let rig = Rig::new(builtin("cornell"), [64, 64]);
     let film = rig.cpu(depth(0), 8);
     assert_eq!(film.rays, 64 * 64 * 8);
-    // The lamp as a rectangle of radiance 15 at y = 5.54, by similar triangles; pixels on its rim are between.
+    // The lamp is a rectangle of radiance 15 at y = 5.54, placed by similar triangles; pixels on its rim are mixed.
     let scale = 64.0 / (2.0 * 20.0_f64.to_radians().tan());
     let (mut lamp, mut dark) = (0, 0);
     for (i, m) in film.moments.pixels().iter().enumerate() {
         let x = (i % 64) as f64 - 31.5;
         let y = (i / 64) as f64 - 31.5;
-        // Rays up to the lamp's plane: their distance along z there, and their place in x. The camera's right is -x.
+        // Where rays reach the lamp's plane: distance along z, and x. The camera's right is -x.
         let t = (5.54 - 2.78) / (-y / scale);
         let at = |dx: f64, dy: f64| {
             let t = (5.54 - 2.78) / (-(y + dy) / scale);
@@ -53,7 +53,7 @@ fn more_depth_is_more_light() {
             let at = |max_depth| rig.cpu(TraceSettings { integrator, ..depth(max_depth) }, 8);
             let films: Vec<_> = [0, 1, 2, 3, 8].map(at).into();
             for pair in films.windows(2) {
-                // The same paths, cut off later: more in every pixel, but for rounding.
+                // The same paths with a larger depth limit: no pixel gets darker, except by rounding.
                 for (less, more) in pair[0].moments.pixels().iter().zip(pair[1].moments.pixels()) {
                     assert!(more.mean.cmpge(less.mean * (1.0 - 1e-5)).all(), "{name}: {} {}", less.mean, more.mean);
                 }
@@ -64,9 +64,10 @@ fn more_depth_is_more_light() {
     }
 }
 
-/// Mean over a ball and its standard error.
+/// Mean over a ball, and its standard error.
 fn on_ball(material: Material, settings: TraceSettings, spp: u32) -> (f64, f64) {
-    // The ball's radius is asin(1/4) = 14.48 degrees, the picture's diagonal from its middle 14.0.
+    // The ball's angular radius is asin(1/4) = 14.48 degrees, more than the 14.0 degrees from the image centre to its
+    // corner.
     let camera = Camera::look_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, 20.0);
     let rig = Rig::seen_by(furnace_of(vec![material]), &camera, [12, 12]);
     let film = rig.cpu(settings, spp);
@@ -80,7 +81,7 @@ fn white_balls_cannot_be_seen_in_a_furnace_h83() {
     let metal = Material { metallic: 1.0, ..Material::default() };
     let glass = Material { transmission: 1.0, roughness: 0.2, ..Material::default() };
     let body = |roughness| Material { volume: true, roughness, ..glass.clone() };
-    // Largest systematic error: that of the tables of the lobes' albedos over a ball; see `tests/scattering/furnace.rs`.
+    // Bounds of the systematic error of the albedo tables, averaged over a ball; see `tests/scattering/furnace.rs`.
     let balls: Vec<(&str, Material, u32, f64)> = vec![
         ("Lambert", white.clone(), 1, 4e-4),
         ("retro-reflection", Material { specular: 1e-9, ..white.clone() }, 1, 4e-4),
@@ -119,7 +120,7 @@ fn grey_balls_are_as_grey_as_they_are() {
             let (mean, se) = on_ball(grey.clone(), TraceSettings { integrator, bsdf, ..depth(1) }, 256);
             let p = p_of_z((mean - 0.18) / se.max(1e-6));
             println!("{integrator:?}, {bsdf:?}: {mean:.6} +- {se:.6}, p = {p:.3}");
-            // Six tests.
+            // Bonferroni correction for six tests.
             assert!(p > ALPHA / 6.0);
         }
     }
@@ -130,7 +131,8 @@ fn grey_balls_are_as_grey_as_they_are() {
 
 #[test]
 fn a_floor_under_a_lamp_has_its_form_factor() {
-    // A square lamp of side 2 m, 1 m above a floor, parallel to it: radiance of the point below its middle.
+    // Square lamp with 2 m sides, 1 m above a floor and parallel to it. Returns the radiance of the floor point below
+    // its centre.
     let mut t = Triangles::default();
     let v = Vec3::new;
     t.push_quad([v(-9., 0., 9.), v(9., 0., 9.), v(9., 0., -9.), v(-9., 0., -9.)], 0);
@@ -141,7 +143,7 @@ fn a_floor_under_a_lamp_has_its_form_factor() {
     let camera = Camera::look_at(DVec3::new(0.0, 0.5, 0.0), DVec3::ZERO, 0.2);
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let rig = Rig::new(Scene::made("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
-    // Siegel and Howell, configuration factors: a corner above a point, four times.
+    // Siegel and Howell, configuration factors: parallel rectangle with a corner above the point, four times.
     let corner = {
         let (a, b) = (1.0f64, 1.0f64);
         let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
@@ -166,7 +168,7 @@ fn a_plane_under_a_sky_shows_its_albedo() {
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = Environment::Constant([1.0, 2.0, 0.5]);
     let rig = Rig::new(Scene::made("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
-    // By chance every path finds the sky with the density of the cosine: no noise at all.
+    // Lambertian scattering samples exactly the sky's cosine density, so there is no noise.
     let film = rig.cpu(TraceSettings { integrator: Integrator::Naive, ..depth(5) }, 16);
     for m in film.moments.pixels() {
         assert!((m.mean - Vec3::new(0.2, 1.0, 0.4)).abs().max_element() < 1e-6, "{}", m.mean);

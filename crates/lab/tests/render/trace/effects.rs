@@ -1,4 +1,4 @@
-//! The law of effects: a kernel with more effects than a scene needs gives the same image, bit for bit.
+//! A kernel with more effects than a scene needs gives the same image, bit for bit.
 
 use super::rig::{Rig, device, differing};
 use super::scenes::DARK;
@@ -8,7 +8,7 @@ use afterimage_lab::scene::{
     Wrap,
 };
 use afterimage_lab::trace::effects::{Effect, Effects};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, TraceSettings};
 use afterimage_testing::Draws;
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -28,7 +28,7 @@ fn vector(d: &mut Draws, half: f32) -> Vec3 {
     Vec3::from_array(std::array::from_fn(|_| d.range(-half, half)))
 }
 
-/// 0 mostly, 1 at times, else anything between.
+/// Usually 0, sometimes 1, otherwise uniform in between.
 fn some(d: &mut Draws) -> f32 {
     match d.bits() % 6 {
         0 => d.uniform(),
@@ -154,7 +154,7 @@ fn settings(effects: Effects, number: u32) -> TraceSettings {
     TraceSettings { effects: Some(effects), bsdf, max_depth: 3, seed: u64::from(number), ..TraceSettings::default() }
 }
 
-/// All effects, and some beside those that are needed.
+/// Supersets of `needed`: all effects, and random ones.
 fn supersets(needed: Effects, number: u32) -> Vec<Effects> {
     let d = &mut Draws::new(&format!("supersets {number}"));
     let mut random = || needed.union(Effect::ALL.iter().copied().filter(|_| chance(d, 0.4)).collect());

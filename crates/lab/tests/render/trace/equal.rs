@@ -1,9 +1,9 @@
-//! Same seed: the device's film is the CPU's, bit for bit.
+//! With the same seed, the device's film equals the CPU's bit for bit.
 
 use super::rig::{Rig, device, differing};
 use super::scenes::{SMALL, builtin, shared, under_a_map, under_a_screen, under_lamps};
 use afterimage_lab::scene::builtin::courtyard_of;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 
 const INTEGRATORS: [Integrator; 3] = [Integrator::Mis, Integrator::Nee, Integrator::Naive];
@@ -13,14 +13,14 @@ fn other(storage: Storage) -> Storage {
     if storage == Storage::Buffer { Storage::Texture } else { Storage::Buffer }
 }
 
-/// Every integrator and both models, the storages in turns; fails where any bit of the film differs.
+/// Every integrator and both scattering models, with alternating storage. Fails if any bit of the film differs.
 #[track_caller]
 fn check(rig: &Rig) {
     let Some(device) = device() else { return };
     let mut storage = Storage::Buffer;
     let mut failures = vec![];
     for integrator in INTEGRATORS {
-        // Each model with each storage in turn.
+        // Alternates, so that each model runs with each storage.
         storage = other(storage);
         for bsdf in [Bsdf::Principled, Bsdf::Phong] {
             storage = other(storage);

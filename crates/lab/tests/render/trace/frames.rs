@@ -1,4 +1,4 @@
-//! Films: sums, bad samples, the same bits however the work is split.
+//! Films: sums, samples that are not finite, and results independent of how the work is split.
 
 use super::rig::{Rig, device, differing};
 use super::scenes::{DARK, builtin, stage, under_a_map};
@@ -7,7 +7,7 @@ use afterimage_lab::scene::{Pose, Scene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::{Film, Moments};
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::{WorkItem, uniform};
 use afterimage_testing::Draws;
@@ -36,7 +36,7 @@ fn how_the_work_is_split_changes_no_bit() {
     backends.extend(device().map(Backend::Gpu));
     for backend in backends {
         let tracer = Tracer::new(&backend, &rig.world, TraceSettings::default()).unwrap();
-        // Rows apart, and samples apart.
+        // Split by rows, and split by samples.
         let rows = [0..7, 7..8, 8..30].map(|rows| uniform(40, rows, 0..8));
         let samples = [0..3, 3..4, 4..8].map(|samples| uniform(40, 0..30, samples));
         for parts in [rows, samples] {
@@ -47,7 +47,7 @@ fn how_the_work_is_split_changes_no_bit() {
             assert_eq!(differing(&film, &whole), 0);
             assert_eq!(film.rays, whole.rays);
         }
-        // Nothing to do is nothing done.
+        // Empty work changes nothing.
         let mut film = whole.clone();
         tracer.trace(&rig.world, &rig.view, 0, &[], &mut film);
         assert_eq!(differing(&film, &whole), 0);
@@ -100,11 +100,11 @@ fn moments_are_those_of_f64() {
             let squares = samples.iter().map(|s| (f64::from(s[k]) - mean).powi(2)).sum::<f64>();
             let exact = squares / (n * (n - 1.0));
             let got = f64::from(m.variance_of_mean()[k]);
-            // Each step rounds mean and sum by half an ulp; the errors of n steps add up like a random walk, sqrt(n) 6e-8 with
-            // room to spare.
+            // Each step rounds mean and sum by half an ulp. The errors of n steps add up like a random walk: sqrt(n)
+            // 6e-8, with a margin.
             let rounding = 2e-7 * n.sqrt();
             assert!((f64::from(m.mean[k]) - mean).abs() <= rounding * mean, "{} {mean}", m.mean[k]);
-            // The mean's ulp is an error of each deviation.
+            // The mean's ulp adds to the error of each deviation.
             let ulp = 1.2e-7 * mean / (squares / n).sqrt().max(1e-30);
             assert!((got - exact).abs() <= (rounding + 4.0 * ulp) * exact + 1e-30, "{got} {exact}");
         }
@@ -112,7 +112,7 @@ fn moments_are_those_of_f64() {
     assert_eq!(Moments::default().variance_of_mean(), Vec3::INFINITY);
 }
 
-/// The stage with a wall that emits this.
+/// The stage with a wall that emits `emissive`.
 fn wall_of(emissive: [f32; 3]) -> Rig {
     let (mut materials, t, camera) = stage();
     materials[1].emissive = emissive;
@@ -132,7 +132,7 @@ fn samples_that_are_no_numbers_are_counted_and_black_h37() {
         films.extend(device().map(|d| rig.gpu(&d, settings, Storage::Texture, spp)));
         for film in films {
             assert_eq!(film.nonfinite, hits.round() as u64, "{bad}");
-            // A sample is black as a whole: half a color would be a tint.
+            // The whole sample turns black: zeroing only some channels would tint it.
             assert!(film.moments.pixels().iter().all(|m| (m.mean, m.count) == (Vec3::ZERO, spp)));
         }
     }
@@ -148,7 +148,7 @@ fn a_surface_that_is_no_number_stays_in_its_pixels_h17() {
     let bad = Rig::new(Scene::made("a bad ball", materials, t, pose, sky).unwrap(), [32, 24]);
     let film = bad.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
     assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite() && m.squares.is_finite()));
-    // What does not see the ball is as it was with a sound one: at depth 1 nothing is reflected twice.
+    // Pixels that do not see the ball are the same as with a valid ball: at depth 1 nothing is reflected twice.
     let (materials, t, camera) = stage();
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
@@ -157,7 +157,7 @@ fn a_surface_that_is_no_number_stays_in_its_pixels_h17() {
     let mut same = 0;
     for (i, (a, b)) in film.moments.pixels().iter().zip(reference.moments.pixels()).enumerate() {
         let (x, y) = ((i % 32) as f32 - 15.5, (i / 32) as f32 - 11.5);
-        // The ball is to the right of the middle.
+        // The ball is right of the image centre.
         let far = x < 0.0 || y < -9.0;
         assert!(!far || a == b, "pixel {i}");
         same += usize::from(a == b);

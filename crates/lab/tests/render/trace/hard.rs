@@ -1,4 +1,4 @@
-//! Nothing that a scene may be makes the tracer panic or a pixel no number.
+//! Extreme scenes: the tracer never panics, and no pixel becomes NaN.
 
 use super::rig::{Rig, device, differing};
 use super::scenes::{DARK, builtin, stage};
@@ -7,7 +7,7 @@ use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, P
 use afterimage_lab::trace::Bvh;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::gpu::GpuTracer;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::work::uniform;
@@ -38,7 +38,7 @@ fn sky() -> Environment {
     Environment::Constant([1.0; 3])
 }
 
-/// The stage, all of it scaled and moved, lit by a lamp.
+/// The stage, scaled and translated, lit by a lamp.
 fn far_away(scale: f32, offset: Vec3) -> Scene {
     let (materials, mut t, camera) = stage();
     t.positions.iter_mut().flatten().for_each(|p| *p = *p * scale + offset);
@@ -197,18 +197,18 @@ fn without_light_it_is_dark_and_without_surfaces_it_is_sky() {
 fn a_camera_inside_a_body_sees_it_from_inside() {
     let mut t = Triangles::default();
     super::scenes::ball(&mut t, Vec3::ZERO, 1.0, 0);
-    // Closed: no light of the sky gets in.
+    // Closed: no sky light enters.
     let pose = || pose_of(DVec3::new(0.1, 0.2, 0.3), DVec3::X);
     let dark = Rig::new(scene("inside", vec![Material::default()], t.clone(), pose(), sky()), SIZE);
     let film = dark.cpu(TraceSettings { max_depth: 8, ..TraceSettings::default() }, 16);
     assert!(film.moments.pixels().iter().all(|m| m.mean == Vec3::ZERO));
-    // Lit from all around by itself: radiance 1 at depth 0, a geometric series of its albedo after.
+    // A closed room that emits: radiance 1 at depth 0, then a geometric series in its albedo.
     let half = Material { base_color: [0.5; 3], specular: 0.0, emissive: [1.0; 3], ..Material::default() };
     let lit = Rig::new(scene("inside a lamp", vec![half], t, pose(), DARK), SIZE);
     let naive = TraceSettings { integrator: Integrator::Naive, ..TraceSettings::default() };
     for (max_depth, expected) in [(0, 1.0), (1, 1.5), (3, 1.875)] {
         for m in lit.cpu(TraceSettings { max_depth, ..naive }, 4).moments.pixels() {
-            // Each bounce rounds a few times.
+            // Each bounce adds a few rounding errors.
             assert!((m.mean.x - expected).abs() < 1e-5, "{} {expected}", m.mean.x);
         }
     }
@@ -216,7 +216,7 @@ fn a_camera_inside_a_body_sees_it_from_inside() {
 
 #[test]
 fn the_image_is_the_same_far_from_the_origin_h82() {
-    // A power of two away, so that the scene itself is rounded a little only.
+    // The offset is a power of two, so that it hardly rounds the scene itself.
     let near = Rig::new(far_away(1.0, Vec3::ZERO), [32, 24]);
     let settings = TraceSettings { max_depth: 2, ..TraceSettings::default() };
     let reference = near.cpu(settings, 64);
@@ -228,7 +228,7 @@ fn the_image_is_the_same_far_from_the_origin_h82() {
         let film = Rig::new(far_away(scale, offset), [32, 24]).cpu(settings, 64);
         let (got, _) = mean(&film);
         println!("{scale}, {offset}: {got:.5}, {expected:.5} +- {se:.5}");
-        // A position at 16 km has steps of 2 mm, the rays' offset there is 6 cm of a stage of 6 m.
+        // At 16 km positions have steps of 2 mm and the ray offset is 6 cm; the stage is 6 m wide.
         assert!((got / expected - 1.0).abs() < 0.02, "{scale}, {offset}");
     }
 }

@@ -1,5 +1,5 @@
-//! The path tracer as a whole: CPU against GPU, integrators against each other and against closed forms, energy, effects, depth
-//! and motion, bad input; hard cases H80-H84.
+//! The whole path tracer: CPU against GPU, integrators against each other and against closed forms, energy, effects,
+//! depth and motion, invalid input; hard cases H80-H84.
 
 mod agree;
 mod chance;

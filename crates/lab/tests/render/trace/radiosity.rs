@@ -1,5 +1,5 @@
-//! The Cornell box against a second opinion: radiosity in f64 on patches, by quadrature, every ray against every triangle. It
-//! shares the scene's triangles with the tracer, and nothing else.
+//! The Cornell box against an independent solution: radiosity in f64 on patches, by quadrature, with brute-force
+//! visibility. It shares only the scene's triangles with the tracer.
 
 use super::rig::Rig;
 use super::scenes::builtin;
@@ -9,24 +9,24 @@ use afterimage_lab::trace::settings::TraceSettings;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Edge of a patch in metres, about.
+/// Approximate edge of a patch in metres.
 const PATCH_M: f64 = 0.12;
-/// Points on the lamp along each side.
+/// Quadrature points along each side of the lamp.
 const LAMP: usize = 8;
-/// Directions of a gathering: rings of equal weight, and as many spokes.
+/// Directions of final gathering: rings of equal weight, and spokes per ring.
 const GATHER: [usize; 2] = [12, 24];
 
-/// A parallelogram, two triangles of the scene.
+/// A parallelogram made of two of the scene's triangles.
 struct Quad {
     origin: DVec3,
     u: DVec3,
     v: DVec3,
-    /// Towards its front.
+    /// Towards the front.
     normal: DVec3,
     reflectance: DVec3,
     emitted: f64,
     patches: [usize; 2],
-    /// Radiance reflected by each patch after one, two and three bounces of light.
+    /// Radiance reflected by each patch after one, two and more bounces.
     bounces: [Vec<DVec3>; BOUNCES],
 }
 
@@ -78,7 +78,7 @@ impl Room {
         Self { quads: quads.collect() }
     }
 
-    /// The nearest parallelogram between 1e-6 and `far`, and the distance.
+    /// Index of the nearest parallelogram between 1e-6 and `far`, and its distance.
     fn hit(&self, from: DVec3, to: DVec3, far: f64) -> Option<(usize, f64)> {
         let mut best = None;
         let mut limit = far;
@@ -96,7 +96,7 @@ impl Room {
         best.map(|i| (i, limit))
     }
 
-    /// Irradiance from the lamp at a point with a normal: the rule of midpoints over the lamp.
+    /// Irradiance from the lamp at a point, by the midpoint rule over the lamp.
     fn irradiance(&self, p: DVec3, normal: DVec3) -> f64 {
         let lamp = self.quads.iter().find(|q| q.emitted > 0.0).unwrap();
         let mut sum = 0.0;
@@ -113,7 +113,7 @@ impl Room {
         lamp.emitted * sum * lamp.u.cross(lamp.v).length() / (LAMP * LAMP) as f64
     }
 
-    /// Mean radiance of bounce `bounce` over the cosine-weighted directions above a point.
+    /// Mean radiance of bounce `bounce` over cosine-weighted directions above a point.
     fn gather(&self, p: DVec3, normal: DVec3, bounce: usize, turn: f64) -> DVec3 {
         let x = normal.any_orthonormal_vector();
         let y = normal.cross(x);
@@ -126,7 +126,7 @@ impl Room {
                 let w = x * (r * a.cos()) + y * (r * a.sin()) + normal * (1.0 - r * r).sqrt();
                 if let Some((i, t)) = self.hit(p, w, f64::INFINITY) {
                     let q = &self.quads[i];
-                    // Light is reflected by both sides, but only fronts can be seen in this room.
+                    // Both sides reflect, but only fronts are visible in this room.
                     sum += q.bounces[bounce][q.patch_at(p + w * t)];
                 }
             }
@@ -134,7 +134,7 @@ impl Room {
         sum / (rings * spokes) as f64
     }
 
-    /// All bounces of light.
+    /// Computes all bounces.
     fn solve(&mut self) {
         for bounce in 0..BOUNCES {
             let mut lit = vec![];
@@ -144,7 +144,7 @@ impl Room {
                     if bounce == 0 {
                         return q.reflectance / PI * self.irradiance(p, q.normal);
                     }
-                    // Spokes turned from patch to patch, so that their pattern averages out.
+                    // Spokes are rotated from patch to patch, so that their pattern averages out.
                     let turn = (i as f64 * 0.618).fract();
                     q.reflectance * self.gather(p, q.normal, bounce - 1, turn)
                 };
@@ -157,23 +157,24 @@ impl Room {
     }
 }
 
-/// As many as the deepest comparison has.
+/// Depth of the deepest comparison.
 const BOUNCES: usize = 8;
 
 const SIZE: u32 = 56;
 
-/// Walls by the index of their parallelogram.
+/// Walls, by index of their parallelogram.
 const WALLS: [(usize, &str); 5] =
     [(0, "floor"), (1, "ceiling"), (2, "back wall"), (3, "left, red wall"), (4, "right, green wall")];
 
 struct Expected {
-    /// Which parallelogram all of a pixel shows.
+    /// The parallelogram that covers each pixel, if a single one does.
     seen: Vec<Option<usize>>,
-    /// Mean radiance of a pixel after each bounce.
+    /// Mean radiance of each pixel after each bounce.
     radiance: Vec<[DVec3; BOUNCES]>,
 }
 
-/// What the camera at (2.78, 2.78, -8) sees along z, 40 degrees high, at 3 x 3 points of each pixel.
+/// Expected image of a camera at (2.78, 2.78, -8) that looks along +z with a vertical field of view of 40 degrees, from
+/// 3x3 points per pixel.
 fn expected(room: &Room) -> Expected {
     let eye = DVec3::new(2.78, 2.78, -8.0);
     let tan = 20.0_f64.to_radians().tan();
@@ -183,13 +184,13 @@ fn expected(room: &Room) -> Expected {
         let mut sum = [DVec3::ZERO; BOUNCES];
         for k in 0..9 {
             let at = |pixel: u32, k: u32| (f64::from(pixel) + (f64::from(k) + 0.5) / 3.0) / f64::from(SIZE) * 2.0 - 1.0;
-            // Seen along +z the right is -x.
+            // Looking along +z, right is -x.
             let w = DVec3::new(-at(i % SIZE, k % 3) * tan, -at(i / SIZE, k / 3) * tan, 1.0).normalize();
             let hit = room.hit(eye, w, f64::INFINITY);
             quads.push(hit.map(|h| h.0));
             if let Some((q, t)) = hit {
                 let (p, quad) = (eye + w * t, &room.quads[q]);
-                // Edges of shadows are finer than patches: the lamp's light at the very point.
+                // Shadow edges are finer than patches, so the lamp's light is computed at the exact point.
                 sum[0] += quad.reflectance / PI * room.irradiance(p, quad.normal) / 9.0;
                 (1..BOUNCES).for_each(|b| sum[b] += quad.bounces[b][quad.patch_at(p)] / 9.0);
             }
@@ -214,7 +215,7 @@ fn walls_of_the_cornell_box_are_as_bright_as_radiosity_says() {
             let is_in = |i: usize| e.seen[i] == Some(wall);
             let pixels: Vec<usize> = (0..e.seen.len()).filter(|&i| is_in(i)).collect();
             assert!(pixels.len() > 100, "{name}: {} pixels", pixels.len());
-            // In its brightest channel: the colored walls reflect nearly none of the others.
+            // In the wall's brightest channel; colored walls reflect almost nothing in the others.
             let channel = if name.contains("green") { 1 } else { 0 };
             let sum = |i: &usize| (0..max_depth as usize).map(|b| e.radiance[*i][b][channel]).sum::<f64>();
             let exact = pixels.iter().map(sum).sum::<f64>() / pixels.len() as f64;
@@ -222,7 +223,7 @@ fn walls_of_the_cornell_box_are_as_bright_as_radiosity_says() {
             let off = mean / exact - 1.0;
             println!("depth {max_depth}, {name}: {mean:.5} +- {se:.5}, radiosity {exact:.5}, {off:+.4} of it off");
             if max_depth == 1 && name == "ceiling" {
-                // The lamp hangs below it and shines down.
+                // The lamp hangs below the ceiling and emits downwards.
                 assert!(mean == 0.0 && exact == 0.0);
             } else if !(off.abs() < 0.01 && se < 0.006 * mean) {
                 failures.push(format!("depth {max_depth}, {name}: {off:+.4}"));

@@ -1,18 +1,18 @@
-//! Scenes traced on the CPU and on the device.
+//! Traces scenes on the CPU and on the device.
 
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Camera, Scene};
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::gpu::GpuTracer;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{WorkItem, uniform};
 use afterimage_lab::trace::world::World;
 use std::sync::{Arc, OnceLock};
 
-/// A scene ready to be traced.
+/// A scene prepared for tracing.
 pub struct Rig {
     pub name: String,
     pub world: World,
@@ -20,7 +20,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Through the scene's first camera, or one that has all of it in view.
+    /// Views the scene through its first camera, or through one that frames all of it.
     pub fn new(scene: Scene, size: [u32; 2]) -> Self {
         let aspect = size[0] as f32 / size[1] as f32;
         let camera = scene.pose(0.0).cameras.first().cloned().unwrap_or_else(|| scene.framing_camera(aspect));
@@ -56,7 +56,7 @@ impl Rig {
     }
 }
 
-/// Pixels whose mean, squares or count differ in any bit.
+/// Number of pixels whose mean, squares or count differ in any bit.
 pub fn differing(a: &Film, b: &Film) -> usize {
     let words = |film: &Film| -> Vec<[u32; 7]> {
         let row = |m: &afterimage_lab::trace::film::Moments| {
@@ -69,13 +69,13 @@ pub fn differing(a: &Film, b: &Film) -> usize {
     words(a).iter().zip(words(b)).filter(|(a, b)| **a != *b).count()
 }
 
-/// The adapter of this run, one device for all tests; `None` after saying so.
+/// One device shared by all tests; without an adapter, prints that and returns `None`.
 pub fn device() -> Option<Arc<Headless>> {
     static DEVICE: OnceLock<Arc<Headless>> = OnceLock::new();
     let adapter = afterimage_testing::gpu::adapter()?;
     let open = || {
         let offered = adapter.limits();
-        // Sponza is larger than the default limits allow.
+        // Sponza exceeds the default limits.
         let required_limits = wgpu::Limits {
             max_texture_dimension_2d: offered.max_texture_dimension_2d,
             max_buffer_size: offered.max_buffer_size,

@@ -1,4 +1,4 @@
-//! What is traced.
+//! Scenes for the path tracer tests.
 
 use afterimage::Image;
 use afterimage_lab::scene::{
@@ -12,7 +12,7 @@ pub fn builtin(name: &str) -> Scene {
     Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap()
 }
 
-/// Small scenes of the shared data, which others made.
+/// Small scenes of the shared data, made by others.
 pub const SMALL: &[&str] = &[
     "alpha_blend_mode_test/AlphaBlendModeTest.glb",
     "animated_morph_cube/AnimatedMorphCube.gltf",
@@ -24,11 +24,11 @@ pub const SMALL: &[&str] = &[
     "vertex_color/22_vertex_color.gltf",
 ];
 
-/// A scene of the shared data, `None` after saying loudly that it is not there. Scenes without light get a sky.
+/// A scene of the shared data; if it is missing, prints that and returns `None`. Scenes without light get a sky.
 pub fn shared(name: &str) -> Option<Scene> {
     let path = afterimage_testing::workspace().join("../shared/data/scenes").join(name);
     if !path.is_file() {
-        // Not eprintln: the harness would swallow it.
+        // Not eprintln, whose output the test harness captures.
         let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
         return None;
     }
@@ -38,7 +38,7 @@ pub fn shared(name: &str) -> Option<Scene> {
     Some(scene)
 }
 
-/// A floor, a wall, a leaning sheet of metal and a ball, seen from the front; no light.
+/// A floor, a wall, a tilted metal sheet and a ball, seen from the front; no light.
 pub fn stage() -> (Vec<Material>, Triangles, Camera) {
     let materials = vec![
         Material { name: "floor".into(), base_color: [0.6, 0.5, 0.4], specular: 0.0, ..Material::default() },
@@ -68,7 +68,7 @@ pub fn stage() -> (Vec<Material>, Triangles, Camera) {
     (materials, t, camera)
 }
 
-/// A ball of flat faces.
+/// A flat-shaded ball.
 pub fn ball(t: &mut Triangles, center: Vec3, radius: f32, material: u32) {
     let (columns, rows) = (24, 12);
     let at = |i: u32, j: u32| {
@@ -94,7 +94,7 @@ fn made(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environm
     Scene::made(name, materials, t, pose, environment).unwrap()
 }
 
-/// The stage under a sky with a bright spot.
+/// The stage under an environment map with a bright spot.
 pub fn under_a_map() -> Scene {
     let (materials, t, camera) = stage();
     let map = Image::from_fn([16, 8], |[x, y]| {
@@ -104,7 +104,7 @@ pub fn under_a_map() -> Scene {
     made("a map", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, Environment::Map(map))
 }
 
-/// The stage under a lamp of each punctual kind.
+/// The stage with one punctual light of each kind.
 pub fn under_lamps() -> Scene {
     let (materials, t, camera) = stage();
     let light = |kind, position, direction: Vec3, intensity, range| PunctualLight {
@@ -123,7 +123,7 @@ pub fn under_lamps() -> Scene {
     made("lamps", materials, t, Pose { lights, cameras: vec![camera], ..Pose::default() }, DARK)
 }
 
-/// The stage under a screen whose light is an image.
+/// The stage lit by a screen with an emissive texture.
 pub fn under_a_screen() -> Scene {
     let (mut materials, mut t, camera) = stage();
     materials.push(Material {

@@ -1,10 +1,10 @@
-//! Whether two films are of the same image.
+//! Statistical tests of whether two films show the same image.
 
 use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_testing::p_of_z;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Rounding of means in f32, relative: what two films of no noise may differ by.
+/// Relative rounding error of means in f32: allowed difference of films without noise.
 const ROUNDING: f64 = 2e-6;
 
 fn mean(m: &Moments, channel: usize) -> f64 {
@@ -15,8 +15,8 @@ fn variance(m: &Moments, channel: usize) -> f64 {
     f64::from(m.variance_of_mean()[channel])
 }
 
-/// p-value of the pixel and channel that differs most (Welch's t-test, as variances are estimates), for as many tests as there
-/// are.
+/// Smallest p-value over pixels and channels (Welch's t-test, as variances are estimated), corrected for the number of
+/// tests.
 pub fn p_of_pixels(a: &Film, b: &Film) -> f64 {
     let pairs = a.moments.pixels().iter().zip(b.moments.pixels());
     let mut lowest: f64 = 1.0;
@@ -38,13 +38,13 @@ pub fn p_of_pixels(a: &Film, b: &Film) -> f64 {
     (lowest * 3.0 * a.moments.pixels().len() as f64).min(1.0)
 }
 
-/// p-value of the difference of the sums over the pixels that `is_in` picks, all channels together.
+/// p-value for the difference of sums over the pixels selected by `is_in`, channels together.
 pub fn p_of_means(a: &Film, b: &Film, is_in: impl Fn(usize) -> bool) -> f64 {
     let (mut off, mut var, mut size) = (0.0, 0.0, 0.0);
     let pairs = a.moments.pixels().iter().zip(b.moments.pixels()).enumerate();
     for (a, b) in pairs.filter(|(i, _)| is_in(*i)).map(|(_, pair)| pair) {
         let at = |m: &Moments| (0..3).map(|k| mean(m, k)).sum::<f64>();
-        // Channels are one path's, so that their errors may add up.
+        // Channels of a path are correlated, so their errors add up.
         let sd = |m: &Moments| (0..3).map(|k| variance(m, k).sqrt()).sum::<f64>();
         off += at(a) - at(b);
         var += sd(a).powi(2) + sd(b).powi(2);
@@ -53,7 +53,7 @@ pub fn p_of_means(a: &Film, b: &Film, is_in: impl Fn(usize) -> bool) -> f64 {
     if off == 0.0 { 1.0 } else { p_of_z(off / var.sqrt().max(ROUNDING * size)) }
 }
 
-/// The lowest p-value of the means of 4 x 4 regions, for as many tests as there are.
+/// Smallest p-value over the means of 4x4 regions, corrected for the number of tests.
 pub fn p_of_regions(a: &Film, b: &Film) -> f64 {
     let [w, h] = a.moments.size().map(|n| n as usize);
     let region = |i: usize| (i % w * 4 / w, i / w * 4 / h);
@@ -61,7 +61,7 @@ pub fn p_of_regions(a: &Film, b: &Film) -> f64 {
     (all.fold(1.0, f64::min) * 16.0).min(1.0)
 }
 
-/// Mean of a film and its standard error, one channel, over the pixels that `is_in` picks.
+/// Mean of a film in one channel and its standard error, over the pixels selected by `is_in`.
 pub fn mean_of(film: &Film, channel: usize, is_in: impl Fn(usize) -> bool) -> (f64, f64) {
     let (mut sum, mut var, mut count) = (0.0, 0.0, 0.0);
     for (_, m) in film.moments.pixels().iter().enumerate().filter(|(i, _)| is_in(*i)) {

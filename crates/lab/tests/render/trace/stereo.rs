@@ -1,4 +1,4 @@
-//! Two eyes: where they stand, and what they look at.
+//! Stereo views and gaze targets.
 
 use super::scenes::builtin;
 use afterimage::ViewGeometry;
@@ -24,7 +24,7 @@ fn head(eye: DVec3, target: DVec3) -> View {
     View::new(geometry, Camera::look_at(eye, target, 45.0).world_from_camera)
 }
 
-/// Pixels of focal length, along x.
+/// Focal length along x in pixels.
 fn focal_px(view: &View) -> f64 {
     1.0 / f64::from(view.geometry().scale_offset().0[0])
 }
@@ -33,7 +33,7 @@ fn effects() -> Effects {
     Effects::all()
 }
 
-/// A wall square to the axis of a head that looks along -z from the origin.
+/// A wall perpendicular to the axis of a head at the origin that looks along -z.
 fn wall(distance_m: f32) -> World {
     let mut still = Triangles::default();
     let corner = |x: f32, y: f32| Vec3::new(x * 3.0, y * 3.0, -1.0) * distance_m;
@@ -76,7 +76,8 @@ fn gazes_converge_as_ipd_f_over_z() {
             assert!((at.z + f64::from(distance_m)).abs() < 1e-5 * f64::from(distance_m), "{at}");
             let [l, r] = [&left, &right].map(|eye| point.px(eye).unwrap());
             let disparity = IPD_M * focal_px(&head) / f64::from(distance_m);
-            // The left eye sees it farther to the right, by as much as the right eye to the left; neither higher.
+            // The left eye sees the point to the right and the right eye to the left by the same amount, at the same
+            // height.
             for (px, side) in [(l, 0.5), (r, -0.5)] {
                 let expected = [f64::from(gaze[0]) + side * disparity, f64::from(gaze[1])];
                 let off = (f64::from(px[0]) - expected[0]).hypot(f64::from(px[1]) - expected[1]);
@@ -110,10 +111,10 @@ fn behind_the_eyes_there_is_no_pixel() {
             assert_eq!(GazePoint::At(point).px(&eye), None, "{point}");
         }
         assert_eq!(GazePoint::Far(DVec3::Z).px(&eye), None);
-        // So near that no float holds the pixel.
+        // So near that the pixel overflows.
         assert_eq!(GazePoint::At(DVec3::new(1.0, 0.0, -1e-300)).px(&eye), None);
     }
-    // A gaze that is no place is the middle.
+    // A gaze that is not finite means the centre of the frame.
     let world = wall(2.0);
     let middle = GazePoint::seen(&world, &head, [199.5, 149.5], effects());
     for nowhere in [[f32::NAN, 3.0], [0.0, f32::INFINITY]] {
@@ -137,7 +138,7 @@ fn both_eyes_see_the_same_place_where_they_look() {
         let mut both = true;
         for eye in head.stereo(IPD_M) {
             let px = point.px(&eye).unwrap();
-            // What the eye sees at that pixel is the point itself, or what hides it, which is nearer.
+            // The eye sees the point itself at that pixel, or a nearer surface that hides it.
             let GazePoint::At(seen) = GazePoint::seen(&world, &eye, px, effects) else { panic!("{px:?} sees nothing") };
             let [own, there] = [at, seen].map(|p| eye.project(p).unwrap().1);
             assert!(there < own * (1.0 + 1e-4), "{there} m behind {own} m");
@@ -151,7 +152,7 @@ fn both_eyes_see_the_same_place_where_they_look() {
 
 #[test]
 fn depth_and_color_agree_at_the_gazes() {
-    // A matte wall under an even sky: both eyes see the same depth and, but for noise, the same color.
+    // A matte wall under a constant sky: both eyes see the same depth, and the same color except for noise.
     let (head, world) = (head(DVec3::ZERO, DVec3::NEG_Z), wall(0.7));
     let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
     let point = GazePoint::seen(&world, &head, [150.0, 200.0], effects());
@@ -176,13 +177,13 @@ fn the_lens_stays_where_it_is_while_the_eye_turns() {
     let scene = builtin("courtyard");
     let world = World::new(&scene);
     let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings { max_depth: 1, ..Default::default() }).unwrap();
-    // A lens off the frame's middle, as of one eye of a headset.
+    // An off-centre projection, as for one eye of a headset.
     let size = [120, 100];
     let geometry = ViewGeometry::off_axis(size, [-1.2, 0.8], [-0.9, 0.9]).unwrap();
     let camera = scene.pose(0.0).cameras[0].world_from_camera;
     let view = View::new(geometry, camera);
     let layers = Sampling::Layers(Layers { lens_deg: Some(35.0), ..Layers::default() });
-    // Where the ray is the axis.
+    // The ray along the axis.
     let axis = [120.0 * 0.6 - 0.5, 49.5];
     let radius = f64::from(35.0_f32.to_radians().tan()) * 120.0 / 2.0;
     for gaze in [[60.0, 50.0], [100.0, 20.0], [5.0, 95.0]] {

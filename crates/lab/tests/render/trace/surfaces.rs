@@ -1,4 +1,4 @@
-//! Depth and motion of what pixel centres see, against projections by hand in f64 and triangles found by trying all of them.
+//! Depth and motion at pixel centres, against explicit projection in f64 and brute-force intersection.
 
 use super::scenes::{shared, stage};
 use afterimage_lab::scene::{Camera, Environment, Pose, Scene, SceneLimits, Triangles};
@@ -10,13 +10,15 @@ use glam::{DMat4, DVec3};
 use serde_json::json;
 
 const SIZE: [u32; 2] = [48, 36];
-/// Pixels: rays and tangents are f32, whose 1e-7 is some 1e-5 pixels here; motion has the error of two of them.
+/// Tolerance of motion in pixels. Rays and tangents are f32, whose 1e-7 is about 1e-5 pixels here; motion has the error
+/// of two of them.
 const MOTION_PX: f64 = 5e-4;
-/// Motion grows as one over the distance from the previous camera's plane, its error with the square of that.
+/// Additional tolerance for long motion: motion grows as one over the distance from the previous camera's plane, its
+/// error with the square of that.
 const LONG: f64 = 3e-6;
 const DEPTH: f64 = 2e-5;
 
-/// A pinhole camera, written down anew.
+/// Independent implementation of a pinhole camera.
 struct Pinhole {
     world_from_camera: DMat4,
     px_per_tangent: f64,
@@ -28,7 +30,7 @@ impl Pinhole {
         Self { world_from_camera: camera.world_from_camera, px_per_tangent: f64::from(SIZE[1]) / 2.0 / half }
     }
 
-    /// Eye and direction, its component along the axis being 1.
+    /// Eye and ray direction, whose component along the axis is 1.
     fn ray(&self, x: u32, y: u32) -> (DVec3, DVec3) {
         let at = |i: u32, n: u32| (f64::from(i) - (f64::from(n) - 1.0) / 2.0) / self.px_per_tangent;
         let m = self.world_from_camera;
@@ -36,7 +38,7 @@ impl Pinhole {
         (m.w_axis.truncate(), w.truncate())
     }
 
-    /// Pixel of a point at `p` (`w` = 1) or infinitely far in its direction (`w` = 0).
+    /// Pixel of a point `p` (`w` = 1), or of a direction `p` at infinity (`w` = 0).
     fn pixel(&self, p: DVec3, w: f64) -> Option<[f64; 2]> {
         let c = self.world_from_camera.inverse() * p.extend(w);
         let at = |v: f64, n: u32| v / -c.z * self.px_per_tangent + (f64::from(n) - 1.0) / 2.0;
@@ -44,7 +46,7 @@ impl Pinhole {
     }
 }
 
-/// Nearest triangle along a ray by trying all: index, distance, weights of its corners.
+/// Nearest triangle along a ray by brute force: index, distance, weights of the corners.
 fn nearest(t: &Triangles, origin: DVec3, w: DVec3) -> Option<(usize, f64, [f64; 3])> {
     let mut best: Option<(usize, f64, [f64; 3])> = None;
     for (i, corners) in t.positions.iter().enumerate() {
@@ -74,7 +76,7 @@ fn joined(scene: &Scene, time_s: f64) -> Triangles {
     all
 }
 
-/// Compares every pixel; gives how many saw a surface, and the longest motion.
+/// Compares every pixel; returns the number of pixels with a surface and the longest motion.
 fn check(scene: &Scene, [now, before]: [&Camera; 2], [time_s, previous_s]: [f64; 2]) -> (usize, f64) {
     let mut world = World::new(scene);
     world.pose(scene, time_s, previous_s);
@@ -139,7 +141,7 @@ fn a_moving_camera() {
 #[test]
 fn the_sky_follows_rotation_and_nothing_else() {
     let (scene, _) = still_stage();
-    // Above everything.
+    // Looks away from everything.
     let up = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.3, 12.0, 9.0), 45.0);
     let turned = Camera { world_from_camera: up.world_from_camera * DMat4::from_rotation_y(0.1), ..up.clone() };
     let moved =
@@ -155,7 +157,7 @@ fn what_was_behind_the_camera_came_from_off_the_frame() {
     let (scene, now) = still_stage();
     let away = Camera::look_at(DVec3::new(0.0, 1.8, 6.0), DVec3::new(0.0, 1.2, 12.0), 45.0);
     check(&scene, [&now, &away], [0.0, 0.0]);
-    // In the middle of the stage: some of it was in front, some behind.
+    // In the middle of the stage: parts of it are behind the previous camera.
     let within = Camera::look_at(DVec3::new(0.0, 1.0, 0.5), DVec3::new(0.0, 1.0, -3.0), 45.0);
     check(&scene, [&now, &within], [0.0, 0.0]);
 }
@@ -171,14 +173,14 @@ fn skinned_and_morphing_bodies() {
         let camera = scene.framing_camera(4.0 / 3.0);
         let (seen, longest) = check(&scene, [&camera, &camera], times);
         assert!(seen > 50 && longest > 0.3, "{name}");
-        // The camera moves, too.
+        // The camera moves as well.
         let before =
             Camera { world_from_camera: camera.world_from_camera * DMat4::from_rotation_z(0.05), ..camera.clone() };
         check(&scene, [&camera, &before], times);
     }
 }
 
-/// A square that turns a quarter about y and rises 2 m in a second, as a file.
+/// A glTF file with a square that turns a quarter about y and rises 2 m in one second.
 fn turning_square() -> Scene {
     let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -230,7 +232,7 @@ fn a_rigid_body_moves_as_its_matrix_says() {
     let [now_s, before_s] = [0.5, 0.4];
     let (seen, longest) = check(&scene, [&camera, &camera], [now_s, before_s]);
     assert!(seen > 100 && longest > 1.0);
-    // By the matrix itself, without the scene's poses: constant speed about y and along it.
+    // Explicit matrix, without the scene's poses: constant speed about and along y.
     let at =
         |t: f64| DMat4::from_translation(DVec3::Y * 2.0 * t) * DMat4::from_rotation_y(t * std::f64::consts::FRAC_PI_2);
     let mut world = World::new(&scene);
@@ -259,7 +261,7 @@ fn a_flipped_sign_or_a_forgotten_pose_is_caught() {
     let camera = Camera::look_at(DVec3::new(1.0, 1.5, 6.0), DVec3::Y, 50.0);
     let view = View::of_camera(&camera, SIZE, None).unwrap();
     let mut world = World::new(&scene);
-    // Told that nothing moved.
+    // The same time twice: no motion.
     world.pose(&scene, 0.5, 0.5);
     let got = Surfaces::trace(&world, &view, &view, Effects::needed(&scene));
     assert!(got.motion.pixels().iter().all(|m| m[0].hypot(m[1]) < 1e-3));

@@ -1,4 +1,4 @@
-//! What a hierarchy finds is what a loop over all triangles finds, bit for bit.
+//! Traversal finds exactly what a loop over all triangles finds, bit for bit.
 
 use super::scenes::{all, nearest, no_rays, rays, soup};
 use afterimage_lab::trace::{Bvh, Geometry, Ray};
@@ -40,7 +40,7 @@ fn whether_anything_is_hit_within_a_limit() {
             assert!(!bvh.occluded(&ray, all), "ray {i}");
             continue;
         };
-        // A hit at the limit does not count, one step beyond it does.
+        // A hit at the limit does not count; just inside the limit it does.
         assert!(!bvh.occluded(&Ray { t_max: hit.t, ..ray }, all), "ray {i}");
         assert!(bvh.occluded(&Ray { t_max: hit.t.next_up(), ..ray }, all), "ray {i}");
         assert!(bvh.occluded(&ray, all), "ray {i}");

@@ -1,4 +1,4 @@
-//! H81: whatever the triangles, a hierarchy is built and rays go through it.
+//! H81: hierarchies are built and traversed for any triangles.
 
 use super::scenes::{all, nearest, point, rays, soup};
 use afterimage_lab::scene::Triangles;

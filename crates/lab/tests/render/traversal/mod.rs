@@ -1,4 +1,4 @@
-//! Rays and triangles: hierarchies against brute force, watertightness, degenerate input, CPU against GPU; hard cases H80, H81,
+//! Traversal: hierarchies against brute force, watertightness, degenerate input, CPU against GPU; hard cases H80, H81,
 //! H82.
 
 mod brute_force;

@@ -1,10 +1,10 @@
-//! The device's hits are the CPU's, bit for bit: triangle, distance, barycentrics.
+//! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
 use super::scenes::{all, direction, no_rays, rays, soup, sphere};
 use afterimage_lab::scene::{Alpha, Material};
-use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage};
-use afterimage_lab::trace::gpu::ray_lists::{GpuRays, Question};
-use afterimage_lab::trace::heap::{Heap, HeapBuilder};
+use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
+use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
+use afterimage_lab::trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
 use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
@@ -16,33 +16,40 @@ struct Rig {
     device: wgpu::Device,
     queue: wgpu::Queue,
     geometry: Geometry,
-    heap: Heap,
-    on_device: GpuHeap,
+    scene_buffer: SceneBuffer,
+    on_device: GpuSceneBuffer,
     storage: Storage,
 }
 
 impl Rig {
-    fn new(geometry: Geometry, most_moving: usize, storage: Storage) -> Option<Self> {
+    fn new(geometry: Geometry, max_moving: usize, storage: Storage) -> Option<Self> {
         let (device, queue) = afterimage_testing::gpu::device()?;
         let limits = storage.limits(&device.limits());
-        let heap = HeapBuilder::default().geometry(&geometry, most_moving).finish(limits).unwrap();
-        let on_device = GpuHeap::new(&device, &queue, &heap, storage);
-        Some(Self { device, queue, geometry, heap, on_device, storage })
+        let scene_buffer = SceneBufferBuilder::default().geometry(&geometry, max_moving).finish(limits).unwrap();
+        let on_device = GpuSceneBuffer::new(&device, &queue, &scene_buffer, storage);
+        Some(Self { device, queue, geometry, scene_buffer, on_device, storage })
     }
 
-    fn ask(&self, question: Question, rays: &[Ray], source: Option<&str>) -> Vec<Option<Hit>> {
+    fn ask(&self, query: HitQuery, rays: &[Ray], source: Option<&str>) -> Vec<Option<Hit>> {
         afterimage_testing::gpu::validated(&self.device, "the tracer", || {
-            let tracer =
-                GpuRays::new(&self.device, &self.queue, &self.heap, &self.geometry, self.storage, question, source);
+            let tracer = GpuRays::new(
+                &self.device,
+                &self.queue,
+                &self.scene_buffer,
+                &self.geometry,
+                self.storage,
+                query,
+                source,
+            );
             let batch = tracer.batch(&self.on_device, rays);
             tracer.run(&batch);
             tracer.hits(&batch)
         })
     }
 
-    /// Rays whose hits differ from the CPU's in any bit.
+    /// Number of rays whose hits differ from the CPU's in any bit.
     fn differing(&self, rays: &[Ray], source: Option<&str>) -> usize {
-        let got = self.ask(Question::Closest, rays, source);
+        let got = self.ask(HitQuery::Closest, rays, source);
         rays.iter().zip(got).filter(|(ray, got)| self.geometry.closest(ray, all) != *got).count()
     }
 
@@ -51,7 +58,7 @@ impl Rig {
         let differing = self.differing(rays, None);
         println!("{name}, {:?}: {differing} of {} hits differ", self.storage, rays.len());
         assert_eq!(differing, 0, "{name}");
-        let any = self.ask(Question::Any, rays, None);
+        let any = self.ask(HitQuery::Any, rays, None);
         assert!(rays.iter().zip(any).all(|(ray, got)| self.geometry.occluded(ray, all) == got.is_some()), "{name}");
     }
 }
@@ -77,7 +84,7 @@ fn random_soups() {
             let geometry = resting(Bvh::build(&soup(&name, count, center, half), None, &[]));
             let Some(rig) = Rig::new(geometry, 0, storage) else { return };
             let mut rays = rays(&name, 20_000, center, half);
-            // Limits, too.
+            // The same with limits.
             let mut d = Draws::new("limits");
             rays.iter_mut().step_by(3).for_each(|r| r.t_max = half * d.range(0.0, 2.0));
             rig.check(&name, &rays);
@@ -112,10 +119,10 @@ fn moving_triangles_are_where_they_were_last_written() {
         rig.check("first pose", &rays);
         for (i, count) in [(1, 200), (2, 7), (3, 0), (4, 200)] {
             rig.geometry.moving = pose(i, count);
-            // Before the upload the device still sees the pose before.
+            // Until the upload, the device still has the earlier pose.
             assert!(rig.differing(&rays, None) > 0);
-            rig.heap.rewrite_moving(&rig.geometry).unwrap();
-            rig.on_device.write_moving(&rig.queue, &rig.heap);
+            rig.scene_buffer.rewrite_moving(&rig.geometry).unwrap();
+            rig.on_device.write_moving(&rig.queue, &rig.scene_buffer);
             rig.check(&format!("pose {i} of {count}"), &rays);
         }
     }
@@ -138,7 +145,7 @@ fn h80_a_closed_sphere_has_no_holes_on_the_device() {
         }
         let ray = |direction| Ray { origin: center, direction, t_max: f32::INFINITY };
         let rays: Vec<Ray> = directions.into_iter().map(ray).collect();
-        let holes = rig.ask(Question::Closest, &rays, None).iter().filter(|h| h.is_none()).count();
+        let holes = rig.ask(HitQuery::Closest, &rays, None).iter().filter(|h| h.is_none()).count();
         println!("radius {radius} around {center}: {holes} holes, {} rays", rays.len());
         assert_eq!(holes, 0);
         rig.check("sphere", &rays);
@@ -155,11 +162,11 @@ fn opacity_is_asked_where_it_matters_and_only_there() {
     let geometry = resting(Bvh::build(&triangles, None, &materials));
     let Some(rig) = Rig::new(geometry, 0, Storage::Texture) else { return };
     let rays = rays("alpha on the device", 10_000, Vec3::ZERO, 1.0);
-    // Lets through a third of the hits on triangles that ask, by their index.
+    // An alpha test that accepts a third of the hits, by triangle index.
     let source = GpuRays::source(Storage::Texture)
         .replace("    return true;\n}", "    return triangle % 3u != 0u;\n}")
         .replace("if ALPHA {", "if true {");
-    let got = rig.ask(Question::Closest, &rays, Some(&source));
+    let got = rig.ask(HitQuery::Closest, &rays, Some(&source));
     let mut differing = 0;
     for (ray, got) in rays.iter().zip(got) {
         assert_eq!(got, rig.geometry.closest(ray, |triangle, _, _| triangle % 3 != 0));
@@ -177,7 +184,7 @@ fn planted_errors_are_caught() {
     };
     let Some(rig) = Rig::new(geometry("planted"), 300, Storage::Texture) else { return };
     let rays = rays("planted", 20_000, Vec3::ZERO, 1.0);
-    // The same rays with limits at which they hit nothing any more.
+    // The same rays, limited so that they hit nothing.
     let nearest = |r: &Ray| rig.geometry.closest(r, all).map_or(1.0, |h| h.t);
     let limits: Vec<Ray> = rays.iter().map(|r| Ray { t_max: nearest(r), ..*r }).collect();
     let source = GpuRays::source(Storage::Texture);
@@ -203,7 +210,7 @@ fn planted_errors_are_caught() {
 
 #[test]
 fn boxes_that_are_not_widened_let_rays_leak() {
-    // Flat boxes: walls of an axis-aligned room, rays from afar towards them and along their edges.
+    // Flat boxes: walls of an axis-aligned room, with distant rays towards them and along their edges.
     let mut triangles = afterimage_lab::scene::Triangles::default();
     for i in 0..40 {
         for j in 0..40 {

@@ -1,8 +1,8 @@
-//! What is packed comes out again.
+//! Packing and unpacking of triangle records.
 
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material};
-use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, heap};
+use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, scene_buffer};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3, Vec4};
 
@@ -24,8 +24,9 @@ fn attributes_survive_packing() {
         assert_eq!(got.uvs, triangles.uvs[source]);
         for i in 0..3 {
             let (normal, tangent) = (triangles.normals[source][i], triangles.tangents[source][i]);
-            // Half a step of 1/32767 in x and y, and a step more in x of the tangent for the sign's bit; z moves by the sum, and the
-            // sphere is at most sqrt(3) larger than the octahedron: sqrt(3) * |(0.5, 0.5, 1)| and sqrt(3) * |(1.5, 0.5, 2)| steps.
+            // Rounding is half a step of 1/32767 in x and y, plus one step in a tangent's x for the sign bit; z moves
+            // by the sum. The sphere is at most sqrt(3) larger than the octahedron: sqrt(3) |(0.5, 0.5, 1)| and sqrt(3)
+            // |(1.5, 0.5, 2)| steps.
             assert!(got.normals[i].distance(normal) < 2.13 / 32767.0, "{} {normal}", got.normals[i]);
             assert!(got.tangents[i].truncate().distance(tangent.truncate()) < 4.42 / 32767.0);
             assert_eq!(got.tangents[i].w, tangent.w);
@@ -70,45 +71,56 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
     let pose = |name| soup(name, 100, Vec3::ZERO, 1.0);
     let (before, now) = (pose("before"), pose("now"));
     first.moving = Bvh::build(&before, Some(&before.positions), &[]);
-    let limits = heap::HeapLimits { rows: 8192, elements: 1 << 26 };
-    let mut packed = heap::HeapBuilder::default().geometry(&first, 100).finish(limits).unwrap();
-    let resting = packed.elements()[..packed.base(heap::Section::MovingNodes) as usize].to_vec();
+    let limits = scene_buffer::SceneBufferLimits { rows: 8192, elements: 1 << 26 };
+    let mut packed = scene_buffer::SceneBufferBuilder::default().geometry(&first, 100).finish(limits).unwrap();
+    let resting = packed.elements()[..packed.base(scene_buffer::Section::MovingNodes) as usize].to_vec();
 
     let mut second = first.clone();
     second.moving = Bvh::build(&now, Some(&before.positions), &[]);
     packed.rewrite_moving(&second).unwrap();
-    let afresh = heap::HeapBuilder::default().geometry(&second, 100).finish(limits).unwrap();
+    let afresh = scene_buffer::SceneBufferBuilder::default().geometry(&second, 100).finish(limits).unwrap();
     assert_eq!(packed.elements()[..resting.len()], resting);
-    for section in [heap::Section::MovingTriangles, heap::Section::MovingAttributes, heap::Section::MovingPrevious] {
-        let of = |heap: &heap::Heap| {
-            heap.elements()[heap.base(section) as usize..][..heap.capacity(section) as usize].to_vec()
+    for section in [
+        scene_buffer::Section::MovingTriangles,
+        scene_buffer::Section::MovingAttributes,
+        scene_buffer::Section::MovingPrevious,
+    ] {
+        let of = |scene_buffer: &scene_buffer::SceneBuffer| {
+            scene_buffer.elements()[scene_buffer.base(section) as usize..][..scene_buffer.capacity(section) as usize]
+                .to_vec()
         };
         assert_eq!(of(&packed), of(&afresh), "{section:?}");
     }
-    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(heap::Section::MovingNodes));
+    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(scene_buffer::Section::MovingNodes));
     for (record, previous) in second.moving.triangles().iter().zip(second.moving.previous()) {
         assert_eq!(previous.positions(), before.positions[record.source() as usize]);
     }
 
-    // Nothing moves any more, and then more than was reserved.
+    // First nothing moves any more, then more than was reserved.
     second.moving = Bvh::default();
     packed.rewrite_moving(&second).unwrap();
     second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
-    assert!(matches!(packed.rewrite_moving(&second), Err(heap::HeapError::Full { .. })));
+    assert!(matches!(packed.rewrite_moving(&second), Err(scene_buffer::SceneBufferError::Full { .. })));
 }
 
 #[test]
 fn a_heap_that_no_device_takes_is_refused() {
     let geometry =
         Geometry { still: Bvh::build(&soup("large", 3000, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
-    for limits in [heap::HeapLimits { rows: 16, elements: 1 << 20 }, heap::HeapLimits { rows: 8192, elements: 5000 }] {
-        let refused = heap::HeapBuilder::default().geometry(&geometry, 0).finish(limits);
-        assert!(matches!(refused, Err(heap::HeapError::TooLarge { .. })), "{refused:?}");
+    for limits in [
+        scene_buffer::SceneBufferLimits { rows: 16, elements: 1 << 20 },
+        scene_buffer::SceneBufferLimits { rows: 8192, elements: 5000 },
+    ] {
+        let refused = scene_buffer::SceneBufferBuilder::default().geometry(&geometry, 0).finish(limits);
+        assert!(matches!(refused, Err(scene_buffer::SceneBufferError::TooLarge { .. })), "{refused:?}");
     }
-    // Wider rows where the default ones would be too many.
-    let limits = heap::HeapLimits { rows: 2048, elements: 1 << 22 };
-    let mut builder = heap::HeapBuilder::default();
-    let wide =
-        builder.geometry(&geometry, 0).reserve(heap::Section::Texels, &[0_u32; 0], 3 << 20).finish(limits).unwrap();
+    // Rows widen if there would be too many of the default width.
+    let limits = scene_buffer::SceneBufferLimits { rows: 2048, elements: 1 << 22 };
+    let mut builder = scene_buffer::SceneBufferBuilder::default();
+    let wide = builder
+        .geometry(&geometry, 0)
+        .reserve(scene_buffer::Section::Texels, &[0_u32; 0], 3 << 20)
+        .finish(limits)
+        .unwrap();
     assert_eq!((wide.width_log2(), wide.rows() <= 2048), (11, true));
 }

@@ -1,17 +1,17 @@
-//! What the device reads of a triangle is what the CPU reads, bit for bit.
+//! The device decodes triangle records as the CPU does, bit for bit.
 
 use super::scenes::{direction, soup};
 use afterimage_lab::scene::{Alpha, Material, Triangles};
 use afterimage_lab::shader::SHADERS;
-use afterimage_lab::trace::gpu::device_heap::{GpuHeap, Storage, geometry_constants, traversal_constants};
-use afterimage_lab::trace::heap::HeapBuilder;
+use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage, geometry_constants, traversal_constants};
+use afterimage_lab::trace::scene_buffer::SceneBufferBuilder;
 use afterimage_lab::trace::{Bvh, Geometry, TriangleRecord};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3, Vec4};
 
 const STILL: u32 = 400;
 const MOVING: u32 = 100;
-/// Words of a triangle's line.
+/// Words that the probe writes per triangle.
 const WORDS: usize = 34;
 
 const PROBE: &str = "
@@ -71,7 +71,7 @@ fn expected(geometry: &Geometry, weights: &[[f32; 2]]) -> Vec<u32> {
     words
 }
 
-/// Lines that differ between the device and the CPU.
+/// Triangles whose words differ between the device and the CPU.
 fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usize> {
     let materials = [
         Material { emissive: [1.0; 3], transmission: 0.5, ..Material::default() },
@@ -83,16 +83,18 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
         moving: Bvh::build(&moving, Some(&before.positions), &materials),
     };
     let (device, queue) = afterimage_testing::gpu::device()?;
-    let heap =
-        HeapBuilder::default().geometry(&geometry, MOVING as usize).finish(storage.limits(&device.limits())).unwrap();
-    let on_device = GpuHeap::new(&device, &queue, &heap, storage);
+    let scene_buffer = SceneBufferBuilder::default()
+        .geometry(&geometry, MOVING as usize)
+        .finish(storage.limits(&device.limits()))
+        .unwrap();
+    let on_device = GpuSceneBuffer::new(&device, &queue, &scene_buffer, storage);
     let mut d = Draws::new("weights");
     let weights: Vec<[f32; 2]> = (0..STILL + MOVING).map(|_| [d.range(0.0, 0.5), d.range(0.0, 0.5)]).collect();
 
     let text = source(SHADERS.compose_with(&[storage.module(), "accept_all", "geometry"], PROBE).source);
-    let mut constants = traversal_constants(&heap, &geometry, true, storage);
-    constants.extend(geometry_constants(&heap));
-    // Overrides that the probe does not use are not in it.
+    let mut constants = traversal_constants(&scene_buffer, &geometry, true, storage);
+    constants.extend(geometry_constants(&scene_buffer));
+    // Keep only overrides that the probe declares.
     constants.retain(|(name, _)| text.contains(&format!("override {name}:")));
     let words = afterimage_testing::gpu::validated(&device, "the probe", || {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -1,22 +1,22 @@
-//! Triangles and rays that tests share.
+//! Triangles and rays for the traversal tests.
 
-use afterimage_lab::kernel::triangle::{Meeting, intersect, shear};
+use afterimage_lab::kernel::triangle::{Intersection, intersect, shear};
 use afterimage_lab::scene::Triangles;
 use afterimage_lab::trace::{Bvh, Hit, Ray};
 use afterimage_testing::Draws;
 use glam::{Vec3, Vec3A, vec3};
 
-/// Hits everything.
+/// Accepts every hit.
 pub fn all(_: u32, _: f32, _: f32) -> bool {
     true
 }
 
-/// A point in the cube of half width `half`.
+/// Random point in the cube of half width `half`.
 pub fn point(d: &mut Draws, half: f32) -> Vec3 {
     vec3(d.range(-half, half), d.range(-half, half), d.range(-half, half))
 }
 
-/// A uniform direction.
+/// Random direction, uniform over the sphere.
 pub fn direction(d: &mut Draws) -> Vec3 {
     loop {
         let p = point(d, 1.0);
@@ -26,7 +26,7 @@ pub fn direction(d: &mut Draws) -> Vec3 {
     }
 }
 
-/// Random triangles of sizes from `half` down to a thousandth of it, around `center`.
+/// Random triangles around `center`, with sizes from `half` down to a thousandth of it.
 pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
     let mut d = Draws::new(name);
     let mut triangles = Triangles::default();
@@ -38,7 +38,8 @@ pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
     triangles
 }
 
-/// Rays from inside and around the cube of half width `half`; every fourth parallel to an axis, with zeros of both signs.
+/// Random rays from inside and around the cube of half width `half`; every fourth is axis-parallel, with zeros of both
+/// signs.
 pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
     let mut d = Draws::new(name);
     let axes = [
@@ -58,13 +59,13 @@ pub fn rays(name: &str, count: usize, center: Vec3, half: f32) -> Vec<Ray> {
     (0..count).map(ray).collect()
 }
 
-/// The nearest of all triangles of a hierarchy, by the same test of triangles.
+/// Nearest hit by brute force over a hierarchy's triangles, with the same triangle test.
 pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let shear = shear(ray.direction);
     let mut best = Hit { triangle: u32::MAX, t: ray.t_max, u: 0.0, v: 0.0 };
     for (i, triangle) in bvh.triangles().iter().enumerate() {
         let [a, b, c] = triangle.positions().map(Vec3A::from);
-        let Meeting { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
+        let Intersection { t, u, v } = intersect(shear, ray.origin.into(), a, b, c);
         if t > 0.0 && t < best.t {
             best = Hit { triangle: i as u32, t, u, v };
         }
@@ -72,7 +73,7 @@ pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     (best.triangle != u32::MAX).then_some(best)
 }
 
-/// A closed sphere of radius 1 made of `8 * 4^levels` triangles, corners shared bit for bit.
+/// A closed sphere of `8 * 4^levels` triangles with bit-identical shared corners.
 pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     let mut faces = vec![];
     for (x, y, z) in
@@ -83,7 +84,7 @@ pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     }
     for _ in 0..levels {
         let halves = |[a, b, c]: [Vec3; 3]| {
-            // The sum of two corners does not depend on their order: neighbours get the same bits.
+            // Addition is commutative, so neighbouring triangles compute the same bits.
             let middle = |p: Vec3, q: Vec3| (p + q).normalize();
             let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
@@ -97,7 +98,7 @@ pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     triangles
 }
 
-/// Rays that can hit nothing: not finite, without a direction or a limit.
+/// Rays that cannot hit anything: not finite, or without a direction or limit.
 pub fn no_rays() -> Vec<Ray> {
     let mut out = vec![Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: f32::NAN }];
     for (origin, direction) in [

@@ -1,4 +1,4 @@
-//! H82: a ray that leaves a surface does not meet it again, and starts no further away than the stated bound.
+//! H82: a ray leaving a surface does not hit it again, and its origin is offset by no more than the stated bound.
 
 use super::scenes::{all, direction, point, sphere};
 use afterimage_lab::kernel::triangle::{ORIGIN_OFFSET, magnitude, offset_ray, point_at};
@@ -8,7 +8,7 @@ use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use glam::{Vec3, vec3};
 
-/// Rays that leave points of convex and flat surfaces to the outside and are stopped by them nevertheless.
+/// Number of rays that leave convex or flat surfaces to the outside and still hit them.
 fn stopped(triangles: &Triangles, outside: impl Fn(Vec3) -> Vec3, name: &str) -> (usize, usize) {
     let bvh = Bvh::build(triangles, None, &[]);
     let mut d = Draws::new(name);
@@ -23,10 +23,10 @@ fn stopped(triangles: &Triangles, outside: impl Fn(Vec3) -> Vec3, name: &str) ->
         let normal = if flat.dot(outside(hit)) < 0.0 { -flat } else { flat };
         let largest = magnitude(a, b, c);
         let origin = offset_ray(hit, normal, largest);
-        // The offset and three roundings to floats of the size of the largest coordinate.
+        // The offset, plus three roundings at the size of the largest coordinate.
         assert!((origin - hit).length() <= largest * (ORIGIN_OFFSET + 3.0 * f32::EPSILON), "{origin} from {hit}");
         let mut direction = direction(&mut d);
-        // Grazing ones as well: down to 1e-3 above the surface.
+        // Includes grazing directions, down to a cosine of 1e-3.
         let above = direction.dot(normal);
         let wanted = if i % 2 == 0 { 1e-3 } else { above.abs().max(1e-3) };
         direction = (direction + normal * (wanted - above)).normalize();
@@ -71,7 +71,7 @@ fn h82_flat_ground_does_not_stop_what_leaves_it() {
 
 #[test]
 fn h82_tilted_ground_does_not_stop_what_leaves_it() {
-    // Corners on a slope of simple numbers are exact: the ground is flat in floats, too.
+    // Corners on a slope of simple numbers are exact, so the ground is flat in f32, too.
     let (x, y) = (vec3(1.0, 0.5, 0.0), vec3(0.0, 0.25, 1.0));
     for (center, step) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1.0 / 1024.0), (Vec3::splat(1_048_576.0), 4.0)] {
         let (count, rays) = stopped(&grid(center, step, x, y), |_| Vec3::Y, &format!("slope {center} {step}"));

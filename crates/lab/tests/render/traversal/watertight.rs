@@ -6,7 +6,7 @@ use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use glam::{Vec3, vec3};
 
-/// Directions that meet corners and edges exactly, axes and planes of axes with zeros of both signs among them.
+/// Directions exactly through corners and edges, including axes and axis planes with zeros of both signs.
 fn directions(bvh: &Bvh, center: Vec3, name: &str) -> Vec<Vec3> {
     let mut d = Draws::new(name);
     let mut out: Vec<Vec3> = (0..200_000).map(|_| direction(&mut d)).collect();
@@ -18,7 +18,7 @@ fn directions(bvh: &Bvh, center: Vec3, name: &str) -> Vec<Vec3> {
         for _ in 0..5000 {
             let [x, y] = direction(&mut d).truncate().normalize().to_array();
             out.extend([vec3(x, y, zero), vec3(zero, x, y), vec3(y, zero, x)]);
-            // Nearly parallel to a plane of axes.
+            // Nearly parallel to an axis plane.
             let least = 10_f32.powf(d.range(-40.0, -4.0));
             out.extend([vec3(x, y, least), vec3(-least, x, y), vec3(y, least, -x)]);
         }
@@ -77,7 +77,7 @@ fn h80_h82_spheres_of_all_sizes_and_places_have_no_holes() {
 
 #[test]
 fn h80_rays_from_afar_through_corners_of_a_closed_fan_hit() {
-    // Corners of a regular fan, met from 1 to 10,000 m: every spoke and the hub.
+    // Corners of a regular fan, hit from 1 to 10,000 m: every spoke and the hub.
     let mut triangles = afterimage_lab::scene::Triangles::default();
     let rim = |i: u32| {
         let a = i as f32 / 64.0 * std::f32::consts::TAU;

@@ -15,7 +15,7 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::GpuTracer;
-use afterimage_lab::trace::gpu::device_heap::Storage;
+use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use removed::REMOVALS;
 use serde::Serialize;
@@ -181,7 +181,7 @@ fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<V
     let needs = subject.world.needs;
     let lane = |what: &str, edit: &dyn Fn(String) -> String| {
         let storage = Storage::of(gpu.info.device_type);
-        let tracer = GpuTracer::with_text(gpu.clone(), &subject.world, with(needs), storage, edit)
+        let tracer = GpuTracer::with_shader_edit(gpu.clone(), &subject.world, with(needs), storage, edit)
             .map_err(|e| Failure::Input(format!("{}: {e}", subject.name)))?;
         let tracer = Tracer::Gpu(Box::new(tracer));
         Ok::<_, Failure>(Lane { what: what.into(), effects: needs, tracer, ms: vec![], compile_ms: vec![] })

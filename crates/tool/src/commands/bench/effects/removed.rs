@@ -32,7 +32,7 @@ pub const REMOVALS: &[Removal] = &[
                 "",
             ),
             ("    let below_coat = 1.0 - coat_albedo;\n", "    let below_coat = 1.0;\n"),
-            (" + coat_albedo) + glass_chance", ") + glass_chance"),
+            (" + coat_albedo) + glass_probability", ") + glass_probability"),
             ("coat_albedo / total", "0.0"),
         ],
         added: "",
@@ -46,16 +46,16 @@ pub const REMOVALS: &[Removal] = &[
             ("    sheen: vec3<f32>,\n    sheen_width: f32,\n    sheen_lambda: f32,\n", ""),
             ("        sheen,\n        sheen_width,\n        sheen_lambda,\n", ""),
             ("    s.sheen_color = vec3<f32>(0.0);\n    s.sheen_roughness = 0.0;\n", ""),
-            ("    var sheen = vec3<f32>(0.0);\n    var sheen_chance = 0.0;\n", ""),
+            ("    var sheen = vec3<f32>(0.0);\n    var sheen_probability = 0.0;\n", ""),
             ("    var sheen_width = 1.0;\n    var sheen_lambda = 0.0;\n", ""),
-            (" + sheen_chance", ""),
+            (" + sheen_probability", ""),
         ],
         added: "",
     },
     Removal {
         effect: Effect::Transmission,
         names: &["EFFECT_TRANSMISSION", "LOBE_TRANSMISSION"],
-        functions: &["eval_transmission", "glass_fresnel", "mirror_chance", "glass_albedo"],
+        functions: &["eval_transmission", "glass_fresnel", "mirror_probability", "glass_albedo"],
         rest: &[
             ("    transmission: f32,\n    thin: bool,\n    entering: bool,\n", ""),
             (
@@ -66,11 +66,11 @@ pub const REMOVALS: &[Removal] = &[
             ("    let transmission = select(0.0, clamp(surface.transmission, 0.0, 1.0), LOBE_TRANSMISSION);\n", ""),
             (" * (1.0 - transmission)", ""),
             ("    var glass = vec3<f32>(0.0);\n    var glass_reflect = vec3<f32>(0.0);\n    var eta = 1.0;\n", ""),
-            ("    var glass_chance = 0.0;\n", ""),
+            ("    var glass_probability = 0.0;\n", ""),
             ("    let ior = clamp(surface.ior, 1.0, MAX_REFRACTING_IOR);\n", ""),
             ("    let thin = surface.thin || ior < MIN_REFRACTING_IOR;\n", ""),
-            (") + glass_chance", ")"),
-            ("glass_chance / total", "0.0"),
+            (") + glass_probability", ")"),
+            ("glass_probability / total", "0.0"),
             ("    s.transmission = 0.0;\n    s.thin = (words.x & FLAG_VOLUME) == 0u;\n    s.entering = front;\n", ""),
             ("        s.transmission = row.w;\n", ""),
         ],
@@ -106,7 +106,7 @@ pub const REMOVALS: &[Removal] = &[
             return frame.sky;
         }
         fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
-            return frame.sky_chosen * cosine_hemisphere_pdf(cosine);
+            return frame.sky_probability * cosine_hemisphere_pdf(cosine);
         }",
     },
 ];
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn nothing_of_an_effect_that_was_cut_out_is_left() {
-        let text = SHADERS.compose_with(&["heap_texture", "shade_pass"], "").source;
+        let text = SHADERS.compose_with(&["scene_texture", "shade_pass"], "").source;
         for removal in REMOVALS {
             for (from, _) in removal.rest {
                 assert!(text.contains(from), "{}: the kernel has no '{from}'", removal.effect.name());

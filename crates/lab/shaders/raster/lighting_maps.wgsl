@@ -1,6 +1,6 @@
 //#use light
 //#use raster_frame
-// What is around and between surfaces: the sky, the sun's shadow map, the tables of albedos.
+// Group 2: sun's shadow map, sky, and tables of directional albedos.
 
 @group(2) @binding(0) var shadow_map: texture_depth_2d;
 @group(2) @binding(1) var shadow_sampler: sampler_comparison;
@@ -8,22 +8,22 @@
 @group(2) @binding(3) var sky_sampler: sampler;
 @group(2) @binding(4) var albedo_tables: texture_2d<u32>;
 
-// Largest number of the color's format.
-const BRIGHTEST: f32 = 65504.0;
+// Largest f16 value, the color format's.
+const MAX_COLOR: f32 = 65504.0;
 
-// Cell of the tables of albedos.
+// Cell of the albedo tables.
 fn load(i: u32) -> vec4<u32> {
     return textureLoad(albedo_tables, vec2<u32>(i % 256u, i / 256u), 0);
 }
 
-// Radiance from a direction of length 1, blurred by as much as a highlight of a roughness is wide.
+// Sky radiance in a unit direction, blurred to the width of a highlight of `roughness`.
 fn sky_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     return textureSampleLevel(sky_map, sky_sampler, map_coordinates(direction), roughness * lights.last_level).xyz;
 }
 
-// Share of the sun that reaches a point: 3x3 comparisons, each between four texels.
+// Share of the sun that reaches a point: 3x3 bilinear shadow map comparisons.
 fn sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
-    // Beside the surface, so that it does not shade itself where texels are coarse.
+    // Offset along the normal by 1.5 texels, against self-shadowing.
     let at = vec4<f32>(position + normal * (1.5 * lights.texel), 1.0);
     let place = vec3<f32>(dot(lights.sun[0], at), dot(lights.sun[1], at), dot(lights.sun[2], at));
     let uv = vec2<f32>(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
@@ -35,7 +35,7 @@ fn sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
             sum += textureSampleCompareLevel(shadow_map, shadow_sampler, tap, place.z);
         }
     }
-    // Beyond the map nothing casts a shadow.
+    // Outside the map nothing casts a shadow.
     let inside = max(abs(place.x), abs(place.y)) < 1.0;
     return select(1.0, sum / 9.0, inside);
 }

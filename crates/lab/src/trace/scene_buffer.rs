@@ -1,5 +1,5 @@
-//! Everything that a tracer on the GPU reads, as one flat array of `vec4<u32>`: a texture or a buffer, whichever the device reads
-//! faster, behind one `load(i)` (`shaders/trace/heap_texture.wgsl`, `heap_buffer.wgsl`).
+//! The scene as the GPU tracer reads it: one flat array of `vec4<u32>` behind a function `load(i)`. It is a texture or
+//! a storage buffer, whichever the device reads faster (`shaders/trace/scene_texture.wgsl`, `scene_storage.wgsl`).
 
 use super::Geometry;
 use bytemuck::NoUninit;
@@ -7,13 +7,14 @@ use bytemuck::NoUninit;
 /// Bytes of an element.
 pub const ELEMENT_BYTES: usize = 16;
 
-/// Smallest row, in elements: what is lost at most before a section that is rewritten each frame.
+/// Smallest row width in elements. Each section that is rewritten per frame wastes at most this much, as it starts on a
+/// row.
 const MIN_WIDTH: u32 = 1024;
 
-/// What a part of the heap holds. At rest until `MovingNodes`, rewritten each frame from there on.
+/// A section of the scene buffer. Sections before `MovingNodes` are static, the others are rewritten each frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Section {
-    /// Hierarchy of the triangles at rest: five elements a node, `obvhs`' bytes.
+    /// Hierarchy of the static triangles: five elements per node, in `obvhs`' layout.
     Nodes,
     /// [`TriangleRecord`](super::TriangleRecord)s, three elements each.
     Triangles,
@@ -23,66 +24,69 @@ pub enum Section {
     Materials,
     /// [`TextureRecord`](super::shading_records::TextureRecord)s.
     Textures,
-    /// Texels of all textures, four an element.
+    /// Texels of all textures, four per element.
     Texels,
-    /// [`MapRecord`](super::shading_records::MapRecord)s of the environment.
+    /// [`MapRecord`](super::shading_records::MapRecord)s: texels of the environment map.
     Map,
-    /// Directional albedos of lobes.
+    /// Tables of the lobes' directional albedos.
     Albedos,
-    /// As `Nodes`, of the moving triangles.
+    /// Hierarchy of the moving triangles, as `Nodes`.
     MovingNodes,
-    /// As `Triangles`.
+    /// Moving triangles, as `Triangles`.
     MovingTriangles,
-    /// As `Attributes`.
+    /// Attributes of the moving triangles, as `Attributes`.
     MovingAttributes,
     /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
     MovingPrevious,
-    /// [`PickRecord`](super::shading_records::PickRecord)s: the lights, which may move.
+    /// [`PickRecord`](super::shading_records::PickRecord)s: the alias table over all lights, which may move.
     Picks,
     /// [`PunctualRecord`](super::shading_records::PunctualRecord)s.
     Punctual,
 }
 
 impl Section {
-    /// Whether it is rewritten each frame.
+    /// Whether the section is rewritten each frame.
     pub fn is_moving(self) -> bool {
         self >= Self::MovingNodes
     }
 }
 
-/// Why there is no heap.
+/// A scene that does not fit into the scene buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum HeapError {
-    /// The device has no texture or buffer of the size.
-    #[error("the scene takes {elements} elements of 16 bytes on the GPU, and the device has room for {available}")]
+pub enum SceneBufferError {
+    /// The device has no texture or buffer of this size.
+    #[error(
+        "scene buffer: needs {elements} elements of 16 bytes, the device allows {available}; use a smaller scene or the CPU"
+    )]
     TooLarge {
         /// Elements needed.
         elements: u64,
-        /// Elements that the device can hold.
+        /// Elements that the device allows.
         available: u64,
     },
-    /// A section's new contents are larger than what was reserved.
-    #[error("{elements} elements do not fit into the {capacity} that were reserved for {section:?}")]
+    /// New contents of a section exceed its reserved capacity.
+    #[error("scene buffer: {section:?} needs {elements} elements, {capacity} are reserved; create the tracer again")]
     Full {
-        /// Where they were to go.
+        /// The section.
         section: Section,
-        /// How many.
+        /// Elements of the new contents.
         elements: u64,
-        /// How many fit.
+        /// Elements reserved.
         capacity: u32,
     },
 }
 
-/// Largest heap that a device takes.
+/// Largest scene buffer that a device allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HeapLimits {
-    /// Rows, and elements in a row: a texture's largest side. 2^31 for buffers, whose rows are only for alignment.
+pub struct SceneBufferLimits {
+    /// Largest number of rows, and of elements in a row: a texture's largest side. 2^31 for storage buffers, whose rows
+    /// only align sections.
     pub rows: u32,
-    /// Elements.
+    /// Largest number of elements.
     pub elements: u64,
 }
 
-/// A section's place.
+/// Position of a section in the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
     section: Section,
@@ -90,21 +94,21 @@ struct Place {
     capacity: u32,
 }
 
-/// Contents and places.
+/// The scene buffer's contents and section layout.
 #[derive(Clone, Debug)]
-pub struct Heap {
+pub struct SceneBuffer {
     elements: Vec<[u32; 4]>,
     places: Vec<Place>,
     width_log2: u32,
 }
 
-/// Collects sections. Each section is given at most once.
+/// Collects sections for a [`SceneBuffer`]. Add each section at most once.
 #[derive(Clone, Debug, Default)]
-pub struct HeapBuilder<'a> {
+pub struct SceneBufferBuilder<'a> {
     parts: Vec<Part<'a>>,
 }
 
-/// Contents of a section, and its size.
+/// Contents of a section, and its size in elements.
 #[derive(Clone, Copy, Debug)]
 struct Part<'a> {
     section: Section,
@@ -112,13 +116,13 @@ struct Part<'a> {
     elements: u64,
 }
 
-impl<'a> HeapBuilder<'a> {
-    /// A section with these contents.
+impl<'a> SceneBufferBuilder<'a> {
+    /// Adds a section with `records` as its contents.
     pub fn fill<T: NoUninit>(&mut self, section: Section, records: &'a [T]) -> &mut Self {
         self.reserve(section, records, 0)
     }
 
-    /// A section with these contents and room for `capacity` elements.
+    /// Adds a section with `records` as its contents and room for at least `capacity` elements.
     pub fn reserve<T: NoUninit>(&mut self, section: Section, records: &'a [T], capacity: usize) -> &mut Self {
         let bytes: &[u8] = bytemuck::cast_slice(records);
         let elements = bytes.len().div_ceil(ELEMENT_BYTES).max(capacity) as u64;
@@ -126,27 +130,28 @@ impl<'a> HeapBuilder<'a> {
         self
     }
 
-    /// Nodes, triangles and attributes. `most_moving` is the largest number of moving triangles at any time.
-    pub fn geometry(&mut self, geometry: &'a Geometry, most_moving: usize) -> &mut Self {
+    /// Adds nodes, triangles and attributes. `max_moving` is the largest number of moving triangles at any time.
+    pub fn geometry(&mut self, geometry: &'a Geometry, max_moving: usize) -> &mut Self {
         let (still, moving) = (&geometry.still, &geometry.moving);
         self.reserve(Section::Nodes, &still.nodes, NODE_ELEMENTS)
             .fill(Section::Triangles, still.triangles())
             .fill(Section::Attributes, still.attributes());
-        if most_moving > 0 {
-            // Every node but the root of a lone triangle has two children or more.
-            self.reserve(Section::MovingNodes, &moving.nodes, most_moving * NODE_ELEMENTS)
-                .reserve(Section::MovingTriangles, moving.triangles(), most_moving * 3)
-                .reserve(Section::MovingAttributes, moving.attributes(), most_moving * 4)
-                .reserve(Section::MovingPrevious, moving.previous(), most_moving * 3);
+        if max_moving > 0 {
+            // Every node has at least two children, except the root of a single triangle; so there are at most as many
+            // nodes as triangles.
+            self.reserve(Section::MovingNodes, &moving.nodes, max_moving * NODE_ELEMENTS)
+                .reserve(Section::MovingTriangles, moving.triangles(), max_moving * 3)
+                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4)
+                .reserve(Section::MovingPrevious, moving.previous(), max_moving * 3);
         }
         self
     }
 
-    /// Sections one after the other, the moving ones at starts of rows.
+    /// Lays out the sections one after another; those rewritten per frame start on a row.
     ///
     /// # Errors
-    /// If the device has no room for them.
-    pub fn finish(&mut self, limits: HeapLimits) -> Result<Heap, HeapError> {
+    /// If they exceed the device's limits.
+    pub fn finish(&mut self, limits: SceneBufferLimits) -> Result<SceneBuffer, SceneBufferError> {
         self.parts.sort_by_key(|part| part.section);
         let mut width_log2 = MIN_WIDTH.ilog2();
         loop {
@@ -167,78 +172,82 @@ impl<'a> HeapBuilder<'a> {
                 continue;
             }
             if rows > u64::from(limits.rows) || end > limits.elements || end > u64::from(u32::MAX) {
-                return Err(HeapError::TooLarge { elements: end, available: limits.elements });
+                return Err(SceneBufferError::TooLarge { elements: end, available: limits.elements });
             }
-            let mut heap = Heap { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
+            let mut scene_buffer = SceneBuffer { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
             for (part, base) in self.parts.drain(..).zip(starts) {
-                let to = bytemuck::cast_slice_mut(&mut heap.elements[base as usize..]);
+                let to = bytemuck::cast_slice_mut(&mut scene_buffer.elements[base as usize..]);
                 to[..part.bytes.len()].copy_from_slice(part.bytes);
-                heap.places.push(Place { section: part.section, base: base as u32, capacity: part.elements as u32 });
+                scene_buffer.places.push(Place {
+                    section: part.section,
+                    base: base as u32,
+                    capacity: part.elements as u32,
+                });
             }
-            return Ok(heap);
+            return Ok(scene_buffer);
         }
     }
 }
 
-/// Elements of a node.
+/// Elements of a hierarchy node.
 pub const NODE_ELEMENTS: usize = 5;
 
-impl Heap {
-    /// Index of the section's first element; 0 if there is no such section.
+impl SceneBuffer {
+    /// Index of the section's first element; 0 if the section does not exist.
     pub fn base(&self, section: Section) -> u32 {
         self.place(section).map_or(0, |p| p.base)
     }
 
-    /// Elements that the section has room for; 0 if there is no such section.
+    /// Elements reserved for the section; 0 if it does not exist.
     pub fn capacity(&self, section: Section) -> u32 {
         self.place(section).map_or(0, |p| p.capacity)
     }
 
-    /// All of it, whole rows.
+    /// All elements, in whole rows.
     pub fn elements(&self) -> &[[u32; 4]] {
         &self.elements
     }
 
-    /// Elements in a row are 2 to this power.
+    /// Base-2 logarithm of the row width in elements.
     pub fn width_log2(&self) -> u32 {
         self.width_log2
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn rows(&self) -> u32 {
         (self.elements.len() >> self.width_log2) as u32
     }
 
-    /// Bytes of all.
+    /// Size in bytes.
     pub fn bytes(&self) -> u64 {
         self.elements.len() as u64 * ELEMENT_BYTES as u64
     }
 
-    /// New contents of a moving section. What is left of it stays.
+    /// Overwrites the start of a moving section; elements after `records` keep their old contents.
     ///
     /// # Errors
-    /// If they are more than was reserved.
-    pub fn rewrite<T: NoUninit>(&mut self, section: Section, records: &[T]) -> Result<(), HeapError> {
+    /// If `records` exceed the section's capacity.
+    pub fn rewrite<T: NoUninit>(&mut self, section: Section, records: &[T]) -> Result<(), SceneBufferError> {
         let bytes: &[u8] = bytemuck::cast_slice(records);
         let count = bytes.len().div_ceil(ELEMENT_BYTES) as u64;
         let (base, capacity) = (self.base(section), self.capacity(section));
         if count > u64::from(capacity) {
-            return Err(HeapError::Full { section, elements: count, capacity });
+            return Err(SceneBufferError::Full { section, elements: count, capacity });
         }
         bytemuck::cast_slice_mut(&mut self.elements[base as usize..])[..bytes.len()].copy_from_slice(bytes);
         Ok(())
     }
 
-    /// The moving triangles as they are now.
+    /// Overwrites the moving triangles' sections with their current state.
     ///
     /// # Errors
-    /// If they are more than was reserved.
-    pub fn rewrite_moving(&mut self, geometry: &Geometry) -> Result<(), HeapError> {
+    /// If a section's capacity is exceeded.
+    pub fn rewrite_moving(&mut self, geometry: &Geometry) -> Result<(), SceneBufferError> {
         let moving = &geometry.moving;
         if self.place(Section::MovingNodes).is_none() && moving.nodes.is_empty() {
             return Ok(());
         }
-        // An empty hierarchy is a node without children.
+        // An empty hierarchy is a root without children.
         let none = [obvhs::cwbvh::node::CwBvhNode::default()];
         let nodes = if moving.nodes.is_empty() { &none[..] } else { &moving.nodes };
         self.rewrite(Section::MovingNodes, nodes)?;
@@ -247,7 +256,7 @@ impl Heap {
         self.rewrite(Section::MovingPrevious, moving.previous())
     }
 
-    /// Rows of the moving sections, up to the end of the heap. Empty if there are none.
+    /// Rows from the first moving section to the end; empty if there is none.
     pub fn moving_rows(&self) -> std::ops::Range<u32> {
         let first = self.places.iter().find(|p| p.section.is_moving());
         first.map_or(self.rows(), |p| p.base >> self.width_log2)..self.rows()

@@ -1,49 +1,49 @@
-//! The heap on a device.
+//! The scene buffer on a device.
 
 use crate::trace::Geometry;
-use crate::trace::heap::{ELEMENT_BYTES, Heap, HeapLimits, Section};
+use crate::trace::scene_buffer::{ELEMENT_BYTES, SceneBuffer, SceneBufferLimits, Section};
 
-/// Where a device keeps the heap.
+/// Kind of GPU resource that holds the scene buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
-    /// An rgba32uint texture. Software Vulkan reads it five times as fast as a buffer.
+    /// An rgba32uint texture. On software Vulkan, reads are five times as fast as from a buffer.
     Texture,
     /// A storage buffer.
     Buffer,
 }
 
 impl Storage {
-    /// What a kind of device reads faster.
+    /// Faster storage for a kind of device.
     pub fn of(device: wgpu::DeviceType) -> Self {
         if device == wgpu::DeviceType::Cpu { Self::Texture } else { Self::Buffer }
     }
 
-    /// The shader module that has `load`.
+    /// Shader module that defines `load` for this storage.
     pub fn module(self) -> &'static str {
         match self {
-            Self::Texture => "heap_texture",
-            Self::Buffer => "heap_buffer",
+            Self::Texture => "scene_texture",
+            Self::Buffer => "scene_storage",
         }
     }
 
-    /// The largest heap on a device of these limits.
-    pub fn limits(self, device: &wgpu::Limits) -> HeapLimits {
+    /// Largest scene buffer on a device with these limits.
+    pub fn limits(self, device: &wgpu::Limits) -> SceneBufferLimits {
         match self {
             Self::Texture => {
                 let rows = device.max_texture_dimension_2d;
-                HeapLimits { rows, elements: u64::from(rows) * u64::from(rows) }
+                SceneBufferLimits { rows, elements: u64::from(rows) * u64::from(rows) }
             }
             Self::Buffer => {
                 let bytes = device.max_storage_buffer_binding_size.min(device.max_buffer_size);
-                HeapLimits { rows: 1 << 31, elements: bytes / ELEMENT_BYTES as u64 }
+                SceneBufferLimits { rows: 1 << 31, elements: bytes / ELEMENT_BYTES as u64 }
             }
         }
     }
 }
 
-/// A texture or a buffer with the heap's contents.
+/// Texture or buffer with the scene buffer's contents.
 #[derive(Debug)]
-pub struct GpuHeap {
+pub struct GpuSceneBuffer {
     resource: Resource,
 }
 
@@ -53,16 +53,16 @@ enum Resource {
     Buffer(wgpu::Buffer),
 }
 
-impl GpuHeap {
-    /// Uploads all of `heap`, which was finished within the limits of `storage` on this device.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heap: &Heap, storage: Storage) -> Self {
+impl GpuSceneBuffer {
+    /// Uploads all of `scene_buffer`, which must have been built within the limits of `storage` on this device.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene_buffer: &SceneBuffer, storage: Storage) -> Self {
         let resource = match storage {
             Storage::Texture => {
                 let texture = device.create_texture(&wgpu::TextureDescriptor {
-                    label: Some("heap"),
+                    label: Some("scene_buffer"),
                     size: wgpu::Extent3d {
-                        width: 1 << heap.width_log2(),
-                        height: heap.rows(),
+                        width: 1 << scene_buffer.width_log2(),
+                        height: scene_buffer.rows(),
                         depth_or_array_layers: 1,
                     },
                     mip_level_count: 1,
@@ -76,26 +76,26 @@ impl GpuHeap {
                 Resource::Texture(texture, view)
             }
             Storage::Buffer => Resource::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("heap"),
-                size: heap.bytes(),
+                label: Some("scene_buffer"),
+                size: scene_buffer.bytes(),
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             })),
         };
         let this = Self { resource };
-        this.write_rows(queue, heap, 0..heap.rows());
+        this.write_rows(queue, scene_buffer, 0..scene_buffer.rows());
         this
     }
 
-    /// Uploads the sections that are rewritten each frame. Takes effect with the queue's next submission.
-    pub fn write_moving(&self, queue: &wgpu::Queue, heap: &Heap) {
-        let rows = heap.moving_rows();
+    /// Uploads the sections that are rewritten each frame. Takes effect with the next submission to the queue.
+    pub fn write_moving(&self, queue: &wgpu::Queue, scene_buffer: &SceneBuffer) {
+        let rows = scene_buffer.moving_rows();
         if !rows.is_empty() {
-            self.write_rows(queue, heap, rows);
+            self.write_rows(queue, scene_buffer, rows);
         }
     }
 
-    /// For `binding` of a layout of compute passes.
+    /// Bind group layout entry for compute passes.
     pub fn layout_entry(&self, binding: u32) -> wgpu::BindGroupLayoutEntry {
         let ty = match &self.resource {
             Resource::Texture(..) => wgpu::BindingType::Texture {
@@ -112,7 +112,7 @@ impl GpuHeap {
         wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
     }
 
-    /// What to bind there.
+    /// Resource to bind.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         match &self.resource {
             Resource::Texture(_, view) => wgpu::BindingResource::TextureView(view),
@@ -120,21 +120,21 @@ impl GpuHeap {
         }
     }
 
-    fn write_rows(&self, queue: &wgpu::Queue, heap: &Heap, rows: std::ops::Range<u32>) {
-        let first = (rows.start as usize) << heap.width_log2();
-        let last = (rows.end as usize) << heap.width_log2();
-        let bytes: &[u8] = bytemuck::cast_slice(&heap.elements()[first..last]);
+    fn write_rows(&self, queue: &wgpu::Queue, scene_buffer: &SceneBuffer, rows: std::ops::Range<u32>) {
+        let first = (rows.start as usize) << scene_buffer.width_log2();
+        let last = (rows.end as usize) << scene_buffer.width_log2();
+        let bytes: &[u8] = bytemuck::cast_slice(&scene_buffer.elements()[first..last]);
         match &self.resource {
             Resource::Texture(texture, _) => {
                 let mut to = texture.as_image_copy();
                 to.origin.y = rows.start;
                 let layout = wgpu::TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some((ELEMENT_BYTES as u32) << heap.width_log2()),
+                    bytes_per_row: Some((ELEMENT_BYTES as u32) << scene_buffer.width_log2()),
                     rows_per_image: None,
                 };
                 let height = rows.end - rows.start;
-                let size = wgpu::Extent3d { width: 1 << heap.width_log2(), height, depth_or_array_layers: 1 };
+                let size = wgpu::Extent3d { width: 1 << scene_buffer.width_log2(), height, depth_or_array_layers: 1 };
                 queue.write_texture(to, bytes, layout, size);
             }
             Resource::Buffer(buffer) => queue.write_buffer(buffer, (first * ELEMENT_BYTES) as u64, bytes),
@@ -142,33 +142,33 @@ impl GpuHeap {
     }
 }
 
-/// Values of the overrides of `geometry`: where its records are.
-pub fn geometry_constants(heap: &Heap) -> [(&'static str, f64); 3] {
+/// Override values of `geometry.wgsl`: offsets of its records.
+pub fn geometry_constants(scene_buffer: &SceneBuffer) -> [(&'static str, f64); 3] {
     [
-        ("ATTRIBUTES", f64::from(heap.base(Section::Attributes))),
-        ("MOVING_ATTRIBUTES", f64::from(heap.base(Section::MovingAttributes))),
-        ("MOVING_PREVIOUS", f64::from(heap.base(Section::MovingPrevious))),
+        ("ATTRIBUTES", f64::from(scene_buffer.base(Section::Attributes))),
+        ("MOVING_ATTRIBUTES", f64::from(scene_buffer.base(Section::MovingAttributes))),
+        ("MOVING_PREVIOUS", f64::from(scene_buffer.base(Section::MovingPrevious))),
     ]
 }
 
-/// Values of the overrides of `traverse` and of the heap's accessor.
+/// Override values of `traverse.wgsl` and of the module that defines `load`.
 pub fn traversal_constants(
-    heap: &Heap,
+    scene_buffer: &SceneBuffer,
     geometry: &Geometry,
     alpha: bool,
     storage: Storage,
 ) -> Vec<(&'static str, f64)> {
     let mut constants = vec![
-        ("NODES", f64::from(heap.base(Section::Nodes))),
-        ("TRIANGLES", f64::from(heap.base(Section::Triangles))),
-        ("MOVING_NODES", f64::from(heap.base(Section::MovingNodes))),
-        ("MOVING_TRIANGLES", f64::from(heap.base(Section::MovingTriangles))),
+        ("NODES", f64::from(scene_buffer.base(Section::Nodes))),
+        ("TRIANGLES", f64::from(scene_buffer.base(Section::Triangles))),
+        ("MOVING_NODES", f64::from(scene_buffer.base(Section::MovingNodes))),
+        ("MOVING_TRIANGLES", f64::from(scene_buffer.base(Section::MovingTriangles))),
         ("FIRST_MOVING", f64::from(geometry.first_moving())),
-        ("MOVES", f64::from(u8::from(heap.capacity(Section::MovingNodes) > 0))),
+        ("MOVES", f64::from(u8::from(scene_buffer.capacity(Section::MovingNodes) > 0))),
         ("ALPHA", f64::from(u8::from(alpha))),
     ];
     if storage == Storage::Texture {
-        constants.push(("HEAP_WIDTH_LOG2", f64::from(heap.width_log2())));
+        constants.push(("SCENE_WIDTH_LOG2", f64::from(scene_buffer.width_log2())));
     }
     constants
 }

@@ -1,4 +1,4 @@
-//! Vertices: triangles grouped by material, as vertex buffers have them.
+//! Vertex buffers, with triangles grouped by material.
 
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
@@ -6,22 +6,22 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A corner of a triangle.
+/// A vertex of a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct Corner {
+pub(super) struct Vertex {
     pub position: [f32; 3],
     normal: [f32; 3],
     tangent: [f32; 4],
     uv: [f32; 2],
-    /// Normalised.
+    /// Unsigned normalized.
     color: [u16; 4],
 }
 
-/// Bytes of a [`Corner`].
-pub(super) const STRIDE: u64 = size_of::<Corner>() as u64;
+/// Bytes of a [`Vertex`].
+pub(super) const STRIDE: u64 = size_of::<Vertex>() as u64;
 
-/// What a corner is read from: its own buffer, and its position in the buffer of a frame ago.
+/// Vertex buffer layouts: the current vertices, and the positions of the previous frame.
 pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
     wgpu::VertexBufferLayout {
         array_stride: STRIDE,
@@ -37,18 +37,18 @@ pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
     },
 ];
 
-/// How a material is drawn, in this order.
+/// Alpha mode of a draw, in drawing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
-    /// Everywhere.
+pub(super) enum AlphaKind {
+    /// Opaque.
     Opaque,
-    /// With holes.
+    /// Alpha-tested.
     Mask,
-    /// Over what is behind: blended by opacity, or lets light pass.
+    /// Blended by opacity, or transmissive.
     Blend,
 }
 
-impl Kind {
+impl AlphaKind {
     pub fn of(material: &Material) -> Self {
         match material.alpha {
             Alpha::Blend => Self::Blend,
@@ -59,26 +59,26 @@ impl Kind {
     }
 }
 
-/// Vertices that are drawn with one material.
+/// Range of vertices drawn with one material.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Part {
-    pub kind: Kind,
+pub(super) struct DrawRange {
+    pub kind: AlphaKind,
     pub material: u32,
     pub vertices: Range<u32>,
 }
 
-/// Order in which triangles are in their buffer: by kind, then material, else as they were.
+/// Triangle order of a vertex buffer: by alpha mode, then material, then the original order.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Grouped {
+pub(super) struct GroupedTriangles {
     order: Vec<u32>,
-    pub parts: Vec<Part>,
+    pub parts: Vec<DrawRange>,
 }
 
-impl Grouped {
+impl GroupedTriangles {
     pub fn new(triangles: &Triangles, materials: &[Material]) -> Self {
         let key = |i: u32| {
             let material = triangles.materials[i as usize];
-            (materials.get(material as usize).map_or(Kind::Opaque, Kind::of), material)
+            (materials.get(material as usize).map_or(AlphaKind::Opaque, AlphaKind::of), material)
         };
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         order.sort_by_key(|&i| key(i));
@@ -87,19 +87,19 @@ impl Grouped {
         for run in order.chunk_by(|&a, &b| key(a) == key(b)) {
             let (kind, material) = key(run[0]);
             let end = first + 3 * run.len() as u32;
-            parts.push(Part { kind, material, vertices: first..end });
+            parts.push(DrawRange { kind, material, vertices: first..end });
             first = end;
         }
         Self { order, parts }
     }
 
-    /// The corners of `triangles`, which have the materials that the groups were made of.
-    pub fn corners(&self, triangles: &Triangles) -> Vec<Corner> {
-        let mut corners = vec![Corner::default(); 3 * self.order.len()];
-        corners.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(corners, &i)| {
+    /// Vertices of `triangles`, in the grouped order. Their materials must be those that the groups were built from.
+    pub fn vertices(&self, triangles: &Triangles) -> Vec<Vertex> {
+        let mut vertices = vec![Vertex::default(); 3 * self.order.len()];
+        vertices.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(vertices, &i)| {
             let i = i as usize;
-            for (k, corner) in corners.iter_mut().enumerate() {
-                *corner = Corner {
+            for (k, vertex) in vertices.iter_mut().enumerate() {
+                *vertex = Vertex {
                     position: triangles.positions[i][k].to_array(),
                     normal: triangles.normals[i][k].to_array(),
                     tangent: triangles.tangents[i][k].to_array(),
@@ -108,16 +108,16 @@ impl Grouped {
                 };
             }
         });
-        corners
+        vertices
     }
 
-    /// The middles of the triangles that are blended, with the first vertex and material of each.
-    pub fn blended(&self, corners: &[Corner]) -> Vec<Blended> {
-        let parts = self.parts.iter().filter(|p| p.kind == Kind::Blend);
+    /// Blended triangles with centroid, first vertex and material.
+    pub fn blended(&self, vertices: &[Vertex]) -> Vec<Blended> {
+        let parts = self.parts.iter().filter(|p| p.kind == AlphaKind::Blend);
         parts
             .flat_map(|part| {
                 part.vertices.clone().step_by(3).map(|first| {
-                    let of = |k: u32| Vec3::from(corners[(first + k) as usize].position);
+                    let of = |k: u32| Vec3::from(vertices[(first + k) as usize].position);
                     Blended { first, material: part.material, middle: (of(0) + of(1) + of(2)) / 3.0 }
                 })
             })
@@ -125,7 +125,7 @@ impl Grouped {
     }
 }
 
-/// A triangle that is blended.
+/// A blended triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blended {
     pub first: u32,
@@ -148,15 +148,20 @@ mod tests {
         for (i, m) in [3, 0, 1, 2, 1, 0].into_iter().enumerate() {
             triangles.push_flat([vec3(i as f32, 0.0, 0.0), vec3(i as f32, 1.0, 0.0), vec3(i as f32, 0.0, 1.0)], m);
         }
-        let grouped = Grouped::new(&triangles, &materials);
+        let grouped = GroupedTriangles::new(&triangles, &materials);
         let kinds: Vec<_> = grouped.parts.iter().map(|p| (p.kind, p.material, p.vertices.clone())).collect();
         assert_eq!(
             kinds,
-            [(Kind::Opaque, 1, 0..6), (Kind::Mask, 2, 6..9), (Kind::Blend, 0, 9..15), (Kind::Blend, 3, 15..18)]
+            [
+                (AlphaKind::Opaque, 1, 0..6),
+                (AlphaKind::Mask, 2, 6..9),
+                (AlphaKind::Blend, 0, 9..15),
+                (AlphaKind::Blend, 3, 15..18)
+            ]
         );
-        let corners = grouped.corners(&triangles);
-        let x: Vec<f32> = corners.iter().step_by(3).map(|c| c.position[0]).collect();
+        let vertices = grouped.vertices(&triangles);
+        let x: Vec<f32> = vertices.iter().step_by(3).map(|c| c.position[0]).collect();
         assert_eq!(x, [2.0, 4.0, 3.0, 1.0, 5.0, 0.0]);
-        assert_eq!(grouped.blended(&corners).iter().map(|b| b.first).collect::<Vec<_>>(), [9, 12, 15]);
+        assert_eq!(grouped.blended(&vertices).iter().map(|b| b.first).collect::<Vec<_>>(), [9, 12, 15]);
     }
 }

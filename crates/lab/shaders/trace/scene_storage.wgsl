@@ -1,0 +1,8 @@
+// The scene buffer as a storage buffer.
+
+@group(0) @binding(0) var<storage, read> scene_buffer: array<vec4<u32>>;
+
+// Element `i` of the scene buffer.
+fn load(i: u32) -> vec4<u32> {
+    return scene_buffer[i];
+}
