@@ -6,7 +6,7 @@ use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{Clip, ClipReport, title};
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::report::tally::MethodReport;
+use crate::report::method::MethodReport;
 use afterimage::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::LaneKind;
@@ -47,15 +47,15 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: track.map,
         start_s: 0.0,
     };
-    let lane = |method| LaneKind::PostProcess(Settings { method, ..Settings::default() });
+    let post_process = |method| LaneKind::PostProcess(Settings { method, ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation, facts.simulator),
         geometry,
         foveation,
-        lanes: vec![
-            ("none", lane(Method::None)),
-            ("wrs", lane(Method::Wrs)),
-            ("smr", lane(Method::Smr)),
+        methods: vec![
+            ("none", post_process(Method::None)),
+            ("wrs", post_process(Method::Wrs)),
+            ("smr", post_process(Method::Smr)),
             ("oracle", LaneKind::Oracle),
         ],
         gaze: track.px,
@@ -77,7 +77,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
 /// Runs and writes, without a word.
 fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let (mut source, clip, facts) = clip()?;
-    let folders = clip.lanes.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
+    let folders = clip.methods.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
     let out = Output::create(out, &folders, "report.json")?;
     let report = clip.run(&mut source, &out)?;
     write_report(&facts, &clip, &report, &out)?;

@@ -1,10 +1,10 @@
 //! `afterimage trace`: render a scene.
 
+mod eye_frame;
 mod eyes;
 mod frames;
 mod report;
 pub mod setup;
-mod shot;
 
 use crate::args::backend::BackendName;
 use crate::args::paths::PathArgs;
@@ -17,11 +17,11 @@ use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
 use clap::{Args, ValueEnum};
+use eye_frame::EyeFrame;
 use eyes::{Eyes, below, scanpath_csv};
 use frames::{folders, write};
 use report::Report;
 use setup::Setup;
-use shot::Shot;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -151,10 +151,10 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         for (eye, name) in eyes.names().iter().enumerate() {
             let clock = Stopwatch::start();
             // Eyes have draws of their own: noise that both share would seem to hang in the air.
-            let shot = Shot { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
+            let eye_frame = EyeFrame { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
             let (picture, counts) = match gaze.eyes.last() {
-                None => shot.uniform(args, &setup, &bar),
-                Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
+                None => eye_frame.uniform(args, &setup, &bar),
+                Some(gaze) => eye_frame.foveated(args, &setup, &sampling, gaze[eye], &bar),
             };
             setup.tracer.check()?;
             report.count(eye, &counts, &clock);

@@ -1,25 +1,25 @@
 //! `afterimage view`: look at it in a window, where the mouse is the gaze.
 
 mod app;
+mod auto_scale;
 mod device;
-mod feed;
-mod figures;
-mod fly;
+mod fly_camera;
+mod frame_loader;
 mod graph;
-mod lanes;
 mod layout;
-mod on_device;
 mod panel;
+mod panel_stats;
 mod pictures;
+mod pipeline;
 mod quality;
 mod record;
+mod resources;
 mod screen;
 mod setup;
 mod shader;
 mod state;
 mod surface;
 mod times;
-mod usable;
 mod viewer;
 
 use crate::args::backend::BackendName;
@@ -29,7 +29,7 @@ use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
 use crate::failure::Failure;
 use app::App;
 use clap::Args;
-use feed::Feed;
+use frame_loader::FrameLoader;
 use setup::Setup;
 use state::Shows;
 use std::path::PathBuf;
@@ -98,7 +98,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
     })?;
-    let mut app = App::new(setup, Feed::new(source));
+    let mut app = App::new(setup, FrameLoader::new(source));
     events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's events broke off ({e})")))?;
     app.outcome?;
     match device::messages() {

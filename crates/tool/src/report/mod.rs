@@ -4,9 +4,9 @@ pub mod backend;
 pub mod canvas;
 #[cfg(feature = "full")]
 pub mod jpeg;
+pub mod method;
 #[cfg(feature = "full")]
 pub mod page;
 #[cfg(feature = "full")]
 pub mod pareto;
 pub mod sheet;
-pub mod tally;

@@ -1,7 +1,7 @@
 //! What was measured of a point, as the files of a sweep have it.
 
 use super::grid::{Options, Point};
-use crate::report::tally::MethodReport;
+use crate::report::method::MethodReport;
 use afterimage_lab::clock::Quartiles;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! The grid, the frontier, the table and the store of a sweep.
 
-use afterimage_cli::report::tally::MethodReport;
+use afterimage_cli::report::method::MethodReport;
 use afterimage_cli::sweep::frontier::{Standing, frontier};
 use afterimage_cli::sweep::grid::parse_switch;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};

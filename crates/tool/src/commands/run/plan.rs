@@ -28,12 +28,12 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let foveation = foveation(args)?;
-    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
+    let mut methods: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
-        if lanes.iter().any(|l| l.0 == method.name()) {
+        if methods.iter().any(|l| l.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
-        lanes.push((method.name(), lane(args, method, info.still)?));
+        methods.push((method.name(), lane_kind(args, method, info.still)?));
     }
     let backend = args.backend.open()?;
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
@@ -44,7 +44,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             title: title(&info.name, info.size, track.px.len(), fps, &foveation, simulator(args)),
             geometry,
             foveation,
-            lanes,
+            methods,
             gaze: track.px,
             exposure_ev: args.exposure,
             format: args.format,
@@ -72,7 +72,7 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
 }
 
 /// What a method does in a run with these options, of an input that is still or not.
-pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
+pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
     let sampling = args.sampling()?;
     let method = match method {
         MethodName::None => Method::None,

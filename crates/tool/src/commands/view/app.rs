@@ -1,6 +1,6 @@
 //! From the window's events to the viewer.
 
-use super::feed::Feed;
+use super::frame_loader::FrameLoader;
 use super::layout::Layout;
 use super::setup::Setup;
 use super::state::{Action, action_of};
@@ -33,7 +33,7 @@ enum Drag {
 /// A viewer and its window.
 pub struct App {
     /// Until there is a window.
-    start: Option<(Setup, Feed)>,
+    start: Option<(Setup, FrameLoader)>,
     window: Option<Arc<Window>>,
     viewer: Option<Viewer>,
     modifiers: ModifiersState,
@@ -48,9 +48,9 @@ pub struct App {
 }
 
 impl App {
-    pub fn new(setup: Setup, feed: Feed) -> Self {
+    pub fn new(setup: Setup, loader: FrameLoader) -> Self {
         Self {
-            start: Some((setup, feed)),
+            start: Some((setup, loader)),
             window: None,
             viewer: None,
             modifiers: ModifiersState::empty(),
@@ -64,7 +64,7 @@ impl App {
     }
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
-        let Some((setup, feed)) = self.start.take() else { return Ok(()) };
+        let Some((setup, loader)) = self.start.take() else { return Ok(()) };
         let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
         let screen = monitor.map(|m| m.size()).filter(|s| s.width > 0 && s.height > 0);
         let [width, height] = Layout::window(setup.info.size, screen.map_or(SCREEN, |s| [s.width, s.height]));
@@ -73,7 +73,7 @@ impl App {
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|e| Failure::Work(format!("no window can be opened ({e})")))?);
-        self.viewer = Some(Viewer::new(setup, feed, window.clone())?);
+        self.viewer = Some(Viewer::new(setup, loader, window.clone())?);
         self.window = Some(window);
         Ok(())
     }
@@ -101,12 +101,12 @@ impl App {
             WindowEvent::Resized(size) => viewer.resize([size.width, size.height]),
             WindowEvent::Occluded(is_occluded) => self.is_occluded = is_occluded,
             WindowEvent::Focused(false) => {
-                viewer.flight.release();
+                viewer.fly_camera.release();
                 self.drag = Drag::Nothing;
             }
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.modifiers = modifiers.state();
-                viewer.flight.is_hasty = self.modifiers.shift_key();
+                viewer.fly_camera.is_fast = self.modifiers.shift_key();
             }
             WindowEvent::CursorMoved { position, .. } => self.moved([position.x as f32, position.y as f32]),
             WindowEvent::MouseInput { state, button, .. } => {
@@ -150,7 +150,7 @@ impl App {
                 viewer.state.divider = viewer.layout().share(at[0]);
                 viewer.is_stale = true;
             }
-            Drag::Camera => viewer.flight.drag(by),
+            Drag::Camera => viewer.fly_camera.drag(by),
             Drag::Nothing => {
                 let over_panel = viewer.panel_click(at);
                 let grips = viewer.state.is_split && viewer.layout().grips(at[0], viewer.state.divider);
@@ -193,7 +193,7 @@ impl App {
         let is_down = event.state == ElementState::Pressed;
         let (shift, control) = (self.modifiers.shift_key(), self.modifiers.control_key());
         let viewer = self.viewer.as_mut()?;
-        if viewer.state.is_flying == Some(true) && viewer.flight.key(code, is_down && !control) {
+        if viewer.state.is_flying == Some(true) && viewer.fly_camera.key(code, is_down && !control) {
             return None;
         }
         let action = action_of(code, shift, control)?;

@@ -33,7 +33,7 @@ struct Row {
 
 fn rows(state: &State) -> Vec<Row> {
     let row = |name, value: &str, key, action| Row { name, value: value.to_owned(), key, action };
-    let on = |is_on| if is_on { "on" } else { "off" };
+    let on_off = |is_on| if is_on { "on" } else { "off" };
     let mut rows = vec![row(
         if state.is_split { "left" } else { "method" },
         state.sides[0].name(),
@@ -44,13 +44,13 @@ fn rows(state: &State) -> Vec<Row> {
         rows.push(row("right", state.sides[1].name(), "Shift 1..5", Action::Next(Side::Right)));
     }
     rows.extend([
-        row("split", on(state.is_split), "Tab", Action::Split),
+        row("split", on_off(state.is_split), "Tab", Action::Split),
         row("foveation", state.filter.name(), "F", Action::Filter),
         row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
         row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
         row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
-        row("gaze mark", on(state.is_marked), "G", Action::Mark),
-        row("frozen", on(state.is_frozen), "Space", Action::Freeze),
+        row("gaze mark", on_off(state.is_marked), "G", Action::Mark),
+        row("frozen", on_off(state.is_frozen), "Space", Action::Freeze),
     ]);
     if let Some(flies) = state.is_flying {
         let value = if flies { "WASD, drag" } else { "on its path" };

@@ -37,7 +37,7 @@ struct Clock {
     period_ms: f64,
     /// Passes written in this frame; `None` while an earlier frame's are on their way back.
     written: Option<Vec<Pass>>,
-    on_their_way: Option<(Vec<Pass>, Arc<AtomicBool>)>,
+    in_flight: Option<(Vec<Pass>, Arc<AtomicBool>)>,
 }
 
 impl PassTimes {
@@ -57,7 +57,7 @@ impl PassTimes {
             readback: buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ),
             period_ms: f64::from(gpu.queue.get_timestamp_period()) * 1e-6,
             written: None,
-            on_their_way: None,
+            in_flight: None,
         });
         Self { ms: [None; 4], clock }
     }
@@ -75,8 +75,8 @@ impl PassTimes {
         };
         // A lost device is noticed elsewhere.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
-        if clock.on_their_way.as_ref().is_some_and(|(_, done)| done.load(Ordering::Acquire))
-            && let Some((passes, _)) = clock.on_their_way.take()
+        if clock.in_flight.as_ref().is_some_and(|(_, done)| done.load(Ordering::Acquire))
+            && let Some((passes, _)) = clock.in_flight.take()
         {
             if let Ok(mapped) = clock.readback.slice(..).get_mapped_range() {
                 let ticks: Vec<u64> = mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
@@ -88,7 +88,7 @@ impl PassTimes {
             }
             clock.readback.unmap();
         }
-        clock.written = clock.on_their_way.is_none().then(Vec::new);
+        clock.written = clock.in_flight.is_none().then(Vec::new);
     }
 
     /// Records, submits and times a pass.
@@ -128,6 +128,6 @@ impl PassTimes {
         let done = Arc::new(AtomicBool::new(false));
         let tell = done.clone();
         clock.readback.map_async(wgpu::MapMode::Read, .., move |result| tell.store(result.is_ok(), Ordering::Release));
-        clock.on_their_way = Some((written, done));
+        clock.in_flight = Some((written, done));
     }
 }

@@ -2,18 +2,18 @@
 
 mod output;
 
-use super::feed::Feed;
-use super::figures::Figures;
-use super::fly::Flight;
+use super::auto_scale::AutoScale;
+use super::fly_camera::FlyCamera;
+use super::frame_loader::FrameLoader;
 use super::layout::Layout;
-use super::on_device::OnDevice;
 use super::panel;
+use super::panel_stats::PanelStats;
 use super::record::{Record, rounded};
+use super::resources::DeviceResources;
 use super::setup::Setup;
 use super::state::{Action, Effect, State};
 use super::surface::Acquired;
 use super::times::Pass;
-use super::usable::Usable;
 use crate::failure::Failure;
 use afterimage_lab::source::Stance;
 use glam::DMat4;
@@ -36,14 +36,14 @@ pub enum Outcome {
 pub struct Viewer {
     setup: Setup,
     pub state: State,
-    pub flight: Flight,
+    pub fly_camera: FlyCamera,
     window: Arc<Window>,
-    feed: Feed,
-    on: OnDevice,
+    loader: FrameLoader,
+    resources: DeviceResources,
     /// Internal resolution as a share of the input's.
     scale: f32,
-    usable: Usable,
-    figures: Figures,
+    auto_scale: AutoScale,
+    stats: PanelStats,
     /// Where the mouse last was on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     gaze_px: [f32; 2],
@@ -62,21 +62,21 @@ pub struct Viewer {
 
 impl Viewer {
     /// Opens the device of a window and asks for the first frame.
-    pub fn new(setup: Setup, feed: Feed, window: Arc<Window>) -> Result<Self, Failure> {
+    pub fn new(setup: Setup, loader: FrameLoader, window: Arc<Window>) -> Result<Self, Failure> {
         let state = setup.state();
         let scale = setup.args.internal_scale.unwrap_or(1.0);
-        let on = OnDevice::open(&window, &setup, &state, scale)?;
+        let resources = DeviceResources::open(&window, &setup, &state, scale)?;
         let mut viewer = Self {
-            gaze_px: on.lanes.geometry().size_px().map(|s| 0.5 * s as f32 - 0.5),
+            gaze_px: resources.pipeline.geometry().size_px().map(|s| 0.5 * s as f32 - 0.5),
             setup,
             state,
-            flight: Flight::default(),
+            fly_camera: FlyCamera::default(),
             window,
-            feed,
-            on,
+            loader,
+            resources,
             scale,
-            usable: Usable::default(),
-            figures: Figures::new(),
+            auto_scale: AutoScale::default(),
+            stats: PanelStats::new(),
             pointer: None,
             position: 0,
             record: Record::default(),
@@ -85,7 +85,7 @@ impl Viewer {
             is_stale: true,
             wanted: vec![],
         };
-        viewer.ask();
+        viewer.request_frame();
         Ok(viewer)
     }
 
@@ -101,7 +101,7 @@ impl Viewer {
             Effect::Nothing => {}
             Effect::Anew => {
                 let (setup, state) = (&self.setup, &self.state);
-                self.on.lanes.adapt(state, &|shows| setup.settings(state, shows))?;
+                self.resources.pipeline.adapt(state, &|shows| setup.settings(state, shows))?;
                 self.begin_anew();
             }
             Effect::Restart => {
@@ -110,7 +110,7 @@ impl Viewer {
                 self.fetch_anew();
             }
             wanted @ (Effect::Picture | Effect::Window) => self.wanted.push(wanted),
-            Effect::LoseDevice => self.on.device.gpu.device.destroy(),
+            Effect::LoseDevice => self.resources.device.gpu.device.destroy(),
             Effect::Quit => return Ok(false),
         }
         if self.state.is_flying == Some(false) {
@@ -121,30 +121,30 @@ impl Viewer {
 
     /// The window has another size.
     pub fn resize(&mut self, size: [u32; 2]) {
-        if size != self.on.surface.size() && !size.contains(&0) {
-            self.on.surface.resize(&self.on.device, size);
+        if size != self.resources.surface.size() && !size.contains(&0) {
+            self.resources.surface.resize(&self.resources.device, size);
             self.begin_anew();
         }
     }
 
     /// History, record and figures start afresh: the next frame shows nothing of what was.
     pub fn begin_anew(&mut self) {
-        self.on.lanes.forget();
+        self.resources.pipeline.forget();
         self.record.clear();
-        self.usable = Usable::default();
-        self.figures.clear();
+        self.auto_scale = AutoScale::default();
+        self.stats.clear();
         self.is_stale = true;
     }
 
     /// Where the picture lies in the window.
     pub fn layout(&self) -> Layout {
-        self.on.layout()
+        self.resources.layout()
     }
 
     /// What a click at a position in the window asks of the panel; `None` beside it.
     pub fn panel_click(&self, at: [f32; 2]) -> Option<Option<Action>> {
         let at = at.map(|v| v / self.panel_scale() as f32);
-        let (panel, lines) = (&self.figures.panel, self.figures.lines.len());
+        let (panel, lines) = (&self.stats.panel, self.stats.lines.len());
         self.state.has_panel.then(|| panel::click(&self.state, lines, panel.dimensions().into(), at))?
     }
 
@@ -155,23 +155,23 @@ impl Viewer {
     /// One frame. A device that is lost in it is found lost at the next.
     pub fn frame(&mut self) -> Result<Outcome, Failure> {
         match self.try_frame() {
-            Err(_) if self.on.device.is_lost() => Ok(Outcome::Waiting),
+            Err(_) if self.resources.device.is_lost() => Ok(Outcome::Waiting),
             outcome => outcome,
         }
     }
 
     fn try_frame(&mut self) -> Result<Outcome, Failure> {
-        if self.on.device.is_lost() {
+        if self.resources.device.is_lost() {
             eprintln!("afterimage: the device is lost; another is opened");
             self.reopen()?;
         }
         self.fetch()?;
         // Playback and counted frames wait for the input; the mouse does not, and is shown the last frame again.
         let waits = self.state.is_playing || self.setup.args.frames.is_some();
-        if !self.on.has_frame || (waits && !self.on.is_new && !self.state.is_frozen) {
+        if !self.resources.has_frame || (waits && !self.resources.is_new && !self.state.is_frozen) {
             return Ok(Outcome::Waiting);
         }
-        let target = match self.on.surface.acquire(&mut self.on.device, &self.window)? {
+        let target = match self.resources.surface.acquire(&mut self.resources.device, &self.window)? {
             Acquired::Frame(target) => target,
             Acquired::Nothing => return Ok(Outcome::Waiting),
             Acquired::Renewed => {
@@ -179,40 +179,45 @@ impl Viewer {
                 return Ok(Outcome::Waiting);
             }
         };
-        self.on.times.begin(&self.on.device.gpu);
+        self.resources.times.begin(&self.resources.device.gpu);
         // What is frozen is computed once more where its history was given up.
-        if !self.state.is_frozen || self.on.lanes.index() == 0 {
+        if !self.state.is_frozen || self.resources.pipeline.index() == 0 {
             self.look();
-            self.on.lanes.show(self.gaze_px, !self.on.is_new, &self.state, &mut self.on.times)?;
+            self.resources.pipeline.show(
+                self.gaze_px,
+                !self.resources.is_new,
+                &self.state,
+                &mut self.resources.times,
+            )?;
             self.record.push(self.gaze_px);
             self.advance();
         }
         self.measure();
         self.draw(&target.texture.create_view(&Default::default()))?;
         self.window.pre_present_notify();
-        self.on.device.gpu.queue.present(target);
-        self.on.times.end(&self.on.device.gpu);
+        self.resources.device.gpu.queue.present(target);
+        self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;
-        self.figures.frame(&self.on.times);
+        self.stats.frame(&self.resources.times);
         for wanted in std::mem::take(&mut self.wanted) {
             if wanted == Effect::Picture { self.write_picture()? } else { self.write_window()? }
         }
         if self.setup.args.frames == Some(self.record.len() as u64) {
             return Ok(Outcome::Done);
         }
-        self.keep_usable()?;
+        self.lower_resolution_if_slow()?;
         Ok(Outcome::Shown)
     }
 
     /// Takes the frame that was asked for, if it has come.
     fn fetch(&mut self) -> Result<(), Failure> {
-        if self.state.is_frozen && self.on.has_frame {
+        if self.state.is_frozen && self.resources.has_frame {
             return Ok(());
         }
-        if let Some(given) = self.feed.take()? {
-            self.on.lanes.upload(&given.frame);
-            (self.on.has_frame, self.on.is_new) = (true, true);
-            self.stance = given.stance;
+        if let Some(loaded) = self.loader.take()? {
+            self.resources.pipeline.upload(&loaded.frame);
+            (self.resources.has_frame, self.resources.is_new) = (true, true);
+            self.stance = loaded.stance;
             if self.state.is_flying.is_none() && self.stance.is_some() {
                 self.state.is_flying = Some(false);
             }
@@ -231,7 +236,7 @@ impl Viewer {
 
     /// After a frame was shown: on to the next.
     fn advance(&mut self) {
-        if !self.on.is_new {
+        if !self.resources.is_new {
             return;
         }
         self.position += 1;
@@ -240,41 +245,41 @@ impl Viewer {
         }
         if let (Some(true), Some(stance)) = (self.state.is_flying, self.stance) {
             let from = self.pose.unwrap_or(stance.world_from_camera);
-            self.pose = Some(self.flight.step(from, self.figures.since_last_s(), stance.speed_m_s));
+            self.pose = Some(self.fly_camera.step(from, self.stats.since_last_s(), stance.speed_m_s));
         }
-        self.on.is_new = false;
-        self.ask();
+        self.resources.is_new = false;
+        self.request_frame();
     }
 
-    fn ask(&mut self) {
-        self.feed.ask(self.position, self.on.lanes.geometry().size_px(), self.pose);
+    fn request_frame(&mut self) {
+        self.loader.request(self.position, self.resources.pipeline.geometry().size_px(), self.pose);
     }
 
     /// The input again, from the playback position.
     fn fetch_anew(&mut self) {
-        self.feed.drop_pending();
-        (self.on.has_frame, self.on.is_new) = (false, false);
-        self.ask();
+        self.loader.cancel();
+        (self.resources.has_frame, self.resources.is_new) = (false, false);
+        self.request_frame();
     }
 
     /// Another device in place of one that has gone, or another resolution.
     fn reopen(&mut self) -> Result<(), Failure> {
-        self.on = OnDevice::open(&self.window, &self.setup, &self.state, self.scale)?;
+        self.resources = DeviceResources::open(&self.window, &self.setup, &self.state, self.scale)?;
         self.begin_anew();
         self.fetch_anew();
         Ok(())
     }
 
     /// On a software device: a lower resolution, if this one takes too long.
-    fn keep_usable(&mut self) -> Result<(), Failure> {
-        let gpu = &self.on.device.gpu;
+    fn lower_resolution_if_slow(&mut self) -> Result<(), Failure> {
+        let gpu = &self.resources.device.gpu;
         if !gpu.is_software() || self.setup.args.internal_scale.is_some() || self.state.is_frozen {
             return Ok(());
         }
-        let ms = Pass::ALL.iter().filter_map(|pass| self.on.times.ms(*pass)).sum();
-        let Some(scale) = self.usable.judge(ms, self.scale) else { return Ok(()) };
+        let ms = Pass::ALL.iter().filter_map(|pass| self.resources.times.ms(*pass)).sum();
+        let Some(scale) = self.auto_scale.judge(ms, self.scale) else { return Ok(()) };
         let [w, h] = self.setup.geometry(scale)?.size_px();
-        let taken = self.usable.usual_ms();
+        let taken = self.auto_scale.typical_ms();
         eprintln!("afterimage: {} takes {taken:.0} ms a frame; internal resolution lowered to {w}x{h}", gpu.info.name);
         let ratio = scale / self.scale;
         self.gaze_px = self.gaze_px.map(|v| (v + 0.5) * ratio - 0.5);

@@ -1,6 +1,6 @@
 //! A sweep that nobody ran, with the sizes and the gaps of a real one.
 
-use afterimage_cli::report::tally::MethodReport;
+use afterimage_cli::report::method::MethodReport;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};
 use afterimage_cli::sweep::{Measurement, Options, Point, Table};
 use afterimage_lab::clock::Quartiles;

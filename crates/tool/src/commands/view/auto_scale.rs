@@ -13,12 +13,12 @@ const JUDGED: usize = 12;
 
 /// Times of the last frames.
 #[derive(Clone, Debug, Default)]
-pub struct Usable {
+pub struct AutoScale {
     warm: usize,
     ms: VecDeque<f64>,
 }
 
-impl Usable {
+impl AutoScale {
     /// Takes a frame's milliseconds at `scale`. Gives the scale that is to be used instead, if this one is too slow.
     pub fn judge(&mut self, ms: f64, scale: f32) -> Option<f32> {
         if self.warm < WARM_UP {
@@ -29,20 +29,20 @@ impl Usable {
         if self.ms.len() < JUDGED {
             return None;
         }
-        let usual = self.usual_ms();
+        let typical = self.typical_ms();
         self.ms.pop_front();
         let budget = 1e3 / LEAST_FPS;
-        if usual <= budget {
+        if typical <= budget {
             return None;
         }
         // The time goes with the pixels; where that is not enough, the next judgement goes on.
-        let expected = |to: f32| usual * f64::from(to / scale).powi(2);
+        let expected = |to: f32| typical * f64::from(to / scale).powi(2);
         let mut lower = SCALES.into_iter().filter(|s| *s < scale);
         lower.clone().find(|s| expected(*s) <= budget).or(lower.next_back())
     }
 
     /// Milliseconds of the frames that are judged: their lower quartile, so that other work on the machine for a second lowers nothing.
-    pub fn usual_ms(&self) -> f64 {
+    pub fn typical_ms(&self) -> f64 {
         let mut sorted: Vec<f64> = self.ms.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 4).copied().unwrap_or(0.0)
@@ -55,10 +55,10 @@ mod tests {
 
     /// The scale that a device ends at that takes `ms` a frame at full scale.
     fn settled(ms: f64) -> f32 {
-        let (mut scale, mut usable) = (1.0, Usable::default());
+        let (mut scale, mut auto_scale) = (1.0, AutoScale::default());
         for _ in 0..200 {
-            if let Some(lower) = usable.judge(ms * f64::from(scale).powi(2) + 5.0, scale) {
-                (scale, usable) = (lower, Usable::default());
+            if let Some(lower) = auto_scale.judge(ms * f64::from(scale).powi(2) + 5.0, scale) {
+                (scale, auto_scale) = (lower, AutoScale::default());
             }
         }
         scale
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn slow_frames_now_and_then_change_nothing() {
-        let mut usable = Usable::default();
-        assert!((0..100).all(|i| usable.judge(if i < 4 || i % 16 < 8 { 900.0 } else { 20.0 }, 1.0).is_none()));
+        let mut auto_scale = AutoScale::default();
+        assert!((0..100).all(|i| auto_scale.judge(if i < 4 || i % 16 < 8 { 900.0 } else { 20.0 }, 1.0).is_none()));
     }
 }

@@ -16,14 +16,14 @@ use std::ops::Range;
 const STEP_ITEMS: u64 = 1 << 20;
 
 /// A frame as one eye sees it.
-pub struct Shot {
+pub struct EyeFrame {
     pub view: View,
     pub frame: u64,
     /// Which draws it is traced with.
     pub draws: u64,
 }
 
-impl Shot {
+impl EyeFrame {
     /// With the same number of samples everywhere.
     pub fn uniform(&self, args: &TraceArgs, setup: &Setup, bar: &ProgressBar) -> (Picture, Counts) {
         let mut film = Film::new(args.size);

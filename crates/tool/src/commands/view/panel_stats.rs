@@ -18,8 +18,8 @@ const LEFT: (&str, [u8; 3]) = ("left", [250, 190, 80]);
 const RIGHT: (&str, [u8; 3]) = ("right", [235, 120, 160]);
 const SCREEN: (&str, [u8; 3]) = ("screen", [140, 220, 130]);
 
-/// Figures and the panel that shows them.
-pub struct Figures {
+/// PanelStats and the panel that shows them.
+pub struct PanelStats {
     begun: Instant,
     last: Option<Instant>,
     seconds_a_frame: Option<f64>,
@@ -31,7 +31,7 @@ pub struct Figures {
     drawn: Option<Instant>,
 }
 
-impl Figures {
+impl PanelStats {
     pub fn new() -> Self {
         Self {
             begun: Instant::now(),

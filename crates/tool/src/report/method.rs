@@ -46,7 +46,7 @@ pub struct Share {
 
 /// Sums over the frames of a clip.
 #[derive(Default)]
-pub struct Tally {
+pub struct MethodAccumulator {
     scorer: Scorer,
     wall_ms: Vec<f64>,
     cpu_ms: Vec<Option<f64>>,
@@ -61,7 +61,7 @@ pub struct Tally {
     traffic: Option<u32>,
 }
 
-impl Tally {
+impl MethodAccumulator {
     /// Takes a frame of the method: what it showed, and the same sRGB-encoded.
     pub fn push(
         &mut self,
