@@ -1,25 +1,26 @@
-//! A camera that is steered: a walk by W, A, S, D, up and down by E and Q, a turn by dragging with the right button.
+//! Fly camera: W, A, S, D move, E and Q move up and down, dragging with the right button turns.
 
 use glam::{DMat4, DQuat, DVec3};
 use winit::keyboard::KeyCode;
 
-/// Degrees of a turn for each pixel of a drag.
+/// Rotation per pixel of a drag, degrees.
 const TURN_DEG_PER_PX: f64 = 0.2;
-/// Longest step in seconds: a window that stood still is no reason to jump.
-const LONGEST_STEP_S: f64 = 0.1;
+/// Longest time step in seconds, so that the camera does not jump after a pause.
+const MAX_STEP_S: f64 = 0.1;
 /// Factor on the speed while Shift is held.
 const FAST_FACTOR: f64 = 4.0;
 
-/// What is held down, and what was dragged since the last step.
+/// Keys held down, and the mouse drag since the last step.
 #[derive(Clone, Debug, Default)]
 pub struct FlyCamera {
     held: Vec<KeyCode>,
+    /// Whether Shift is held.
     pub is_fast: bool,
     dragged_px: [f64; 2],
 }
 
 impl FlyCamera {
-    /// Takes a key; whether it is one that steers.
+    /// Handles a key; returns whether it is one that moves the camera.
     pub fn key(&mut self, key: KeyCode, is_down: bool) -> bool {
         if direction(key).is_none() {
             return false;
@@ -31,25 +32,25 @@ impl FlyCamera {
         true
     }
 
-    /// Lets go of everything.
+    /// Releases all keys.
     pub fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes a drag.
+    /// Adds a mouse drag.
     pub fn drag(&mut self, by_px: [f64; 2]) {
         self.dragged_px = [self.dragged_px[0] + by_px[0], self.dragged_px[1] + by_px[1]];
     }
 
-    /// The camera (x right, y up, looking along -z) after `seconds`, at `speed_m_s`.
+    /// The camera pose (x right, y up, looking along -z) after `seconds` at `speed_m_s`.
     pub fn step(&mut self, world_from_camera: DMat4, seconds: f64, speed_m_s: f64) -> DMat4 {
         let [yaw, pitch] = std::mem::take(&mut self.dragged_px).map(|px| (-px * TURN_DEG_PER_PX).to_radians());
         let (eye, mut basis) = (world_from_camera.w_axis.truncate(), DQuat::from_mat4(&world_from_camera));
-        // To the side around the world's upright axis, so that the horizon stays level.
+        // Yaw around the world's vertical axis, so that the horizon stays level.
         basis = (DQuat::from_rotation_y(yaw) * basis * DQuat::from_rotation_x(pitch)).normalize();
         let along: DVec3 = self.held.iter().filter_map(|&key| direction(key)).sum();
         let factor = if self.is_fast { FAST_FACTOR } else { 1.0 };
-        let stride = speed_m_s * factor * seconds.clamp(0.0, LONGEST_STEP_S);
+        let stride = speed_m_s * factor * seconds.clamp(0.0, MAX_STEP_S);
         DMat4::from_rotation_translation(basis, eye + basis * (along.normalize_or_zero() * stride))
     }
 }

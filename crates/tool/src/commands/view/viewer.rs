@@ -1,4 +1,4 @@
-//! From gaze and input to the window, frame by frame.
+//! The viewer: takes gaze and input frames, runs the pipeline and draws the window, frame by frame.
 
 mod output;
 
@@ -21,18 +21,18 @@ use std::sync::Arc;
 use std::time::Duration;
 use winit::window::Window;
 
-/// What became of a frame.
+/// Result of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is on screen.
+    /// The frame is on screen.
     Shown,
     /// The input or the window is not ready.
     Waiting,
-    /// It was the last.
+    /// The frame is on screen and was the last one.
     Done,
 }
 
-/// The viewer behind a window.
+/// The viewer of a window.
 pub struct Viewer {
     setup: Setup,
     pub state: State,
@@ -40,28 +40,29 @@ pub struct Viewer {
     window: Arc<Window>,
     loader: FrameLoader,
     resources: DeviceResources,
-    /// Internal resolution as a share of the input's.
+    /// Rendering resolution as a factor on the input's.
     scale: f32,
     auto_scale: AutoScale,
     stats: PanelStats,
-    /// Where the mouse last was on the picture, in pixels of the window.
+    /// Last position of the mouse on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     gaze_px: [f32; 2],
     /// Playback position of the input and the scanpath.
     position: u64,
-    /// Frames since the last fresh start, and where the eye looked in them.
+    /// Gaze of the frames since the last history reset.
     record: Record,
-    /// Where the camera is, and where it is steered to.
+    /// Camera of the current frame.
     stance: Option<Stance>,
+    /// Pose (world from camera) to which the user steers the camera.
     pose: Option<DMat4>,
-    /// The window is not what the state says.
+    /// The window does not show the current state yet.
     pub is_stale: bool,
-    /// Pictures to write when the next frame is on screen.
-    wanted: Vec<Effect>,
+    /// Pictures to save after the next frame.
+    to_save: Vec<Effect>,
 }
 
 impl Viewer {
-    /// Opens the device of a window and asks for the first frame.
+    /// Opens a device for the window and requests the first frame.
     pub fn new(setup: Setup, loader: FrameLoader, window: Arc<Window>) -> Result<Self, Failure> {
         let state = setup.state();
         let scale = setup.args.internal_scale.unwrap_or(1.0);
@@ -83,7 +84,7 @@ impl Viewer {
             stance: None,
             pose: None,
             is_stale: true,
-            wanted: vec![],
+            to_save: vec![],
         };
         viewer.request_frame();
         Ok(viewer)
@@ -94,22 +95,22 @@ impl Viewer {
         Duration::from_secs_f64(1.0 / f64::from(self.setup.fps))
     }
 
-    /// Does what a key or click asks for; whether the viewer goes on.
+    /// Performs an action; returns whether the viewer continues.
     pub fn act(&mut self, action: Action) -> Result<bool, Failure> {
         self.is_stale = true;
         match self.state.apply(action) {
             Effect::Nothing => {}
-            Effect::Anew => {
+            Effect::Update => {
                 let (setup, state) = (&self.setup, &self.state);
                 self.resources.pipeline.adapt(state, &|shows| setup.settings(state, shows))?;
-                self.begin_anew();
+                self.reset_history();
             }
             Effect::Restart => {
                 (self.position, self.pose) = (0, None);
-                self.begin_anew();
-                self.fetch_anew();
+                self.reset_history();
+                self.refetch();
             }
-            wanted @ (Effect::Picture | Effect::Window) => self.wanted.push(wanted),
+            effect @ (Effect::Picture | Effect::Window) => self.to_save.push(effect),
             Effect::LoseDevice => self.resources.device.gpu.device.destroy(),
             Effect::Quit => return Ok(false),
         }
@@ -119,16 +120,16 @@ impl Viewer {
         Ok(true)
     }
 
-    /// The window has another size.
+    /// Handles a new size of the window.
     pub fn resize(&mut self, size: [u32; 2]) {
         if size != self.resources.surface.size() && !size.contains(&0) {
             self.resources.surface.resize(&self.resources.device, size);
-            self.begin_anew();
+            self.reset_history();
         }
     }
 
-    /// History, record and figures start afresh: the next frame shows nothing of what was.
-    pub fn begin_anew(&mut self) {
+    /// Resets history, record and statistics: the next frame shows nothing of earlier ones.
+    pub fn reset_history(&mut self) {
         self.resources.pipeline.forget();
         self.record.clear();
         self.auto_scale = AutoScale::default();
@@ -136,12 +137,12 @@ impl Viewer {
         self.is_stale = true;
     }
 
-    /// Where the picture lies in the window.
+    /// Position of the picture in the window.
     pub fn layout(&self) -> Layout {
         self.resources.layout()
     }
 
-    /// What a click at a position in the window asks of the panel; `None` beside it.
+    /// The panel's action for a click at a position in the window; `None` outside the panel.
     pub fn panel_click(&self, at: [f32; 2]) -> Option<Option<Action>> {
         let at = at.map(|v| v / self.panel_scale() as f32);
         let (panel, lines) = (&self.stats.panel, self.stats.lines.len());
@@ -152,7 +153,7 @@ impl Viewer {
         (self.window.scale_factor().round() as u32).max(1)
     }
 
-    /// One frame. A device that is lost in it is found lost at the next.
+    /// Shows one frame. If the device is lost, the next call opens another.
     pub fn frame(&mut self) -> Result<Outcome, Failure> {
         match self.try_frame() {
             Err(_) if self.resources.device.is_lost() => Ok(Outcome::Waiting),
@@ -162,11 +163,11 @@ impl Viewer {
 
     fn try_frame(&mut self) -> Result<Outcome, Failure> {
         if self.resources.device.is_lost() {
-            eprintln!("afterimage: the device is lost; another is opened");
+            eprintln!("afterimage: the device is lost; opening another");
             self.reopen()?;
         }
         self.fetch()?;
-        // Playback and counted frames wait for the input; the mouse does not, and is shown the last frame again.
+        // Playback and --frames wait for each input frame. Otherwise the last frame is shown again at the current gaze.
         let waits = self.state.is_playing || self.setup.args.frames.is_some();
         if !self.resources.has_frame || (waits && !self.resources.is_new && !self.state.is_frozen) {
             return Ok(Outcome::Waiting);
@@ -175,14 +176,14 @@ impl Viewer {
             Acquired::Frame(target) => target,
             Acquired::Nothing => return Ok(Outcome::Waiting),
             Acquired::Renewed => {
-                self.begin_anew();
+                self.reset_history();
                 return Ok(Outcome::Waiting);
             }
         };
         self.resources.times.begin(&self.resources.device.gpu);
-        // What is frozen is computed once more where its history was given up.
+        // A frozen picture is computed again only after a history reset.
         if !self.state.is_frozen || self.resources.pipeline.index() == 0 {
-            self.look();
+            self.update_gaze();
             self.resources.pipeline.show(
                 self.gaze_px,
                 !self.resources.is_new,
@@ -199,8 +200,8 @@ impl Viewer {
         self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;
         self.stats.frame(&self.resources.times);
-        for wanted in std::mem::take(&mut self.wanted) {
-            if wanted == Effect::Picture { self.write_picture()? } else { self.write_window()? }
+        for effect in std::mem::take(&mut self.to_save) {
+            if effect == Effect::Picture { self.write_picture()? } else { self.write_window()? }
         }
         if self.setup.args.frames == Some(self.record.len() as u64) {
             return Ok(Outcome::Done);
@@ -209,7 +210,7 @@ impl Viewer {
         Ok(Outcome::Shown)
     }
 
-    /// Takes the frame that was asked for, if it has come.
+    /// Uploads the requested frame, if it is ready.
     fn fetch(&mut self) -> Result<(), Failure> {
         if self.state.is_frozen && self.resources.has_frame {
             return Ok(());
@@ -225,8 +226,8 @@ impl Viewer {
         Ok(())
     }
 
-    /// Where the eye looks in this frame, as late as possible.
-    fn look(&mut self) {
+    /// Updates the gaze, as late as possible in the frame.
+    fn update_gaze(&mut self) {
         if self.state.is_playing {
             self.gaze_px = self.setup.played_px(self.position, self.scale).unwrap_or(self.gaze_px);
         } else if let Some(at) = self.pointer {
@@ -234,7 +235,7 @@ impl Viewer {
         }
     }
 
-    /// After a frame was shown: on to the next.
+    /// Moves on to the next input frame after a frame was shown.
     fn advance(&mut self) {
         if !self.resources.is_new {
             return;
@@ -255,32 +256,35 @@ impl Viewer {
         self.loader.request(self.position, self.resources.pipeline.geometry().size_px(), self.pose);
     }
 
-    /// The input again, from the playback position.
-    fn fetch_anew(&mut self) {
+    /// Discards input frames and requests the one at the playback position.
+    fn refetch(&mut self) {
         self.loader.cancel();
         (self.resources.has_frame, self.resources.is_new) = (false, false);
         self.request_frame();
     }
 
-    /// Another device in place of one that has gone, or another resolution.
+    /// Opens the device again, after a loss or with another resolution.
     fn reopen(&mut self) -> Result<(), Failure> {
         self.resources = DeviceResources::open(&self.window, &self.setup, &self.state, self.scale)?;
-        self.begin_anew();
-        self.fetch_anew();
+        self.reset_history();
+        self.refetch();
         Ok(())
     }
 
-    /// On a software device: a lower resolution, if this one takes too long.
+    /// Lowers the resolution on a software device if frames take too long.
     fn lower_resolution_if_slow(&mut self) -> Result<(), Failure> {
         let gpu = &self.resources.device.gpu;
         if !gpu.is_software() || self.setup.args.internal_scale.is_some() || self.state.is_frozen {
             return Ok(());
         }
         let ms = Pass::ALL.iter().filter_map(|pass| self.resources.times.ms(*pass)).sum();
-        let Some(scale) = self.auto_scale.judge(ms, self.scale) else { return Ok(()) };
+        let Some(scale) = self.auto_scale.push(ms, self.scale) else { return Ok(()) };
         let [w, h] = self.setup.geometry(scale)?.size_px();
-        let taken = self.auto_scale.typical_ms();
-        eprintln!("afterimage: {} takes {taken:.0} ms a frame; internal resolution lowered to {w}x{h}", gpu.info.name);
+        let typical = self.auto_scale.typical_ms();
+        eprintln!(
+            "afterimage: {} takes {typical:.0} ms a frame; internal resolution lowered to {w}x{h}",
+            gpu.info.name
+        );
         let ratio = scale / self.scale;
         self.gaze_px = self.gaze_px.map(|v| (v + 0.5) * ratio - 0.5);
         self.scale = scale;

@@ -1,4 +1,4 @@
-//! What a viewer puts out: the window, figures, files.
+//! Output of the viewer: window, statistics, files.
 
 use super::super::pictures;
 use super::super::quality::Viewing;
@@ -9,7 +9,7 @@ use super::Viewer;
 use crate::failure::Failure;
 
 impl Viewer {
-    /// Quality of what is shown, now and then.
+    /// Takes finished measurements of quality, and starts new ones at the panel's interval.
     pub(super) fn measure(&mut self) {
         let resources = &mut self.resources;
         for &side in self.state.shown_sides() {
@@ -52,7 +52,7 @@ impl Viewer {
         })
     }
 
-    /// The picture, and the record of how it came about.
+    /// Saves the picture, and the gaze record that led to it.
     pub(super) fn write_picture(&self) -> Result<(), Failure> {
         let (resources, state) = (&self.resources, &self.state);
         let sides = Side::BOTH.map(|side| resources.pipeline.picture(side));
@@ -70,7 +70,7 @@ impl Viewer {
         pictures::write(&picture, None)
     }
 
-    /// Where the eye looked since the last fresh start, if that is asked for and it looked anywhere.
+    /// Saves the gaze record, if --record is given and there are frames.
     fn write_record(&self) -> Result<(), Failure> {
         match &self.setup.args.record {
             Some(path) if self.record.len() > 0 => {
@@ -80,7 +80,7 @@ impl Viewer {
         }
     }
 
-    /// Writes what was asked for at the end.
+    /// Saves the files due at the end.
     pub fn finish(&self) -> Result<(), Failure> {
         match (self.setup.args.frames, &self.setup.args.screenshot) {
             (Some(frames), Some(_)) if frames == self.record.len() as u64 => self.write_picture(),
@@ -89,9 +89,9 @@ impl Viewer {
     }
 }
 
-/// The end of a text that is too long for the panel.
+/// The last characters of a text that is too long for the panel.
 fn shortened(text: &str) -> String {
-    const MOST: usize = 40;
+    const MAX_CHARS: usize = 40;
     let length = text.chars().count();
-    if length <= MOST { text.into() } else { text.chars().skip(length - MOST).collect() }
+    if length <= MAX_CHARS { text.into() } else { text.chars().skip(length - MAX_CHARS).collect() }
 }
