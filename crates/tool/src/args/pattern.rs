@@ -51,7 +51,7 @@ pub enum SamplingName {
     Regions,
     /// Nested lattices with blend masks
     Layers,
-    /// Density proportional to that of the eye's ganglion cells
+    /// Density proportional to that of retinal ganglion cells
     Acuity,
 }
 

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Example:\n  afterimage demo --out out/demo")]
 pub struct DemoArgs {
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, default_value = "out/demo", value_name = "DIR")]
     pub out: PathBuf,
 }

@@ -27,7 +27,7 @@ use std::path::PathBuf;
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -207,7 +207,7 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
         );
     }
-    say!("weighted: PSNR with errors weighted by the density of the eye's cells, docs/metrics.md");
+    say!("weighted: PSNR with errors weighted by the density of retinal ganglion cells, docs/metrics.md");
     say!(
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
     );

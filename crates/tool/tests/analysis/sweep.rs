@@ -271,7 +271,7 @@ fn the_store_gives_back_what_it_was_given_and_refuses_what_is_not_its_own() {
         std::fs::write(&path, text).unwrap();
         let error = store.load().unwrap_err().to_string();
         println!("{}", &error[error.len().saturating_sub(150)..]);
-        assert!(error.contains(name) && error.contains("measured anew"));
+        assert!(error.contains(name) && error.contains("measured again"));
         std::fs::remove_file(&path).unwrap();
     }
 }
@@ -291,7 +291,7 @@ fn a_measurement_that_leads_out_of_its_folder_is_refused() {
         assert_ne!(evil, text);
         std::fs::write(&file, evil).unwrap();
         let error = store.load().unwrap_err().to_string();
-        assert!(error.contains("is not named as its point is"), "{error}");
+        assert!(error.contains("does not have its point's name"), "{error}");
     }
     std::fs::write(&file, &text).unwrap();
     assert_eq!(store.load().unwrap().len(), 1);

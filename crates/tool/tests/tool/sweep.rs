@@ -200,7 +200,7 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
         ("seeds = 0", "expected 1 to 1000"),
         ("axis = 3", "is no plan of a sweep"),
         ("[axes]\nmethod = []", "has no values"),
-        ("[axes]\nout = [\"x\"]", "is the sweep's own"),
+        ("[axes]\nout = [\"x\"]", "is set by the sweep itself"),
         ("[axes]\nmethod = [\"tsr\"]", "possible values: none, taa"),
         ("[axes]\nfove = [5]", "unexpected argument '--fove'"),
         ("[axes]\nmethod = [\"none\"]\n[common]\nframes = 37", "too few; expected at least 38"),

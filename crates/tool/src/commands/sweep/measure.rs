@@ -1,4 +1,4 @@
-//! A batch of points on the same frames: every frame all methods in turn, so that what the machine does else meets all alike.
+//! Measures a batch: all methods take turns on every frame, so that other load on the machine affects all of them alike.
 
 use super::batch::{Batch, Subject};
 use crate::clip::{Clip, FrameResult};
@@ -8,7 +8,7 @@ use crate::report::backend::BackendReport;
 use crate::report::jpeg::write_jpeg;
 use crate::report::method::MethodAccumulator;
 use crate::sweep::measurement::{ClipFacts, Machine};
-use crate::sweep::paste::as_rust;
+use crate::sweep::rust_source::as_rust;
 use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
 use afterimage::kernel::debug_view::heat;
@@ -23,14 +23,14 @@ use afterimage_lab::source::FrameSource;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-/// Frames before times count: pipelines compile, caches fill, histories get what they keep.
+/// Untimed frames: pipelines compile, caches and histories fill.
 pub const WARM_UP: usize = 8;
-/// Fewest frames whose times make a median.
+/// Smallest number of timed frames.
 pub const MIN_TIMED: usize = 30;
-/// Width of the pictures that are kept of each point.
+/// Width of the pictures of a point, pixels.
 const PICTURE_WIDTH: u32 = 960;
 
-/// What the batch's frames come to.
+/// Sums over the frames of a batch.
 struct BatchAccumulator {
     subjects: Vec<MethodAccumulator>,
     control_ms: Vec<f64>,
@@ -40,13 +40,13 @@ struct BatchAccumulator {
     frames: usize,
 }
 
-/// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
+/// Checks a point. All points are checked before the first is measured, so that a sweep does not fail halfway.
 pub fn check(subject: &Subject) -> Result<(), Failure> {
     plan::foveation(&subject.args)?;
     if let Some(frames) = subject.args.frames {
         check_frames(&subject.args, frames)?;
     }
-    // Whether an oracle's input is still shows when it is opened.
+    // Assume a still input for the oracle: opening the input checks that later.
     plan::lane_kind(&subject.args, subject.method, true).map(|_| ())
 }
 
@@ -56,12 +56,12 @@ fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
+        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} to warm up and {MIN_TIMED} timed): --frames {least}",
         args.input.name
     )))
 }
 
-/// Measures the points and keeps what was measured.
+/// Measures the points of a batch and saves the measurements.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
     let mut source = args.input.open(&args.tracing()?)?;
@@ -89,8 +89,8 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
         let rust = match clip.methods[i + 1].1 {
             LaneKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
             #[cfg(feature = "ablation")]
-            LaneKind::Without(..) => "no settings: nobody should leave this out".into(),
-            LaneKind::Oracle => "no settings: the upper bound knows what was shown before".into(),
+            LaneKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
+            LaneKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
         };
         let measurement = Measurement {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -114,7 +114,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     Ok(())
 }
 
-/// The same in every batch, whatever its points: by it, batches tell what the machine did else.
+/// The control method, the same in every batch: its time shows the drift of the machine's speed between batches.
 fn control(subject: &Subject) -> LaneKind {
     let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
     LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
@@ -124,7 +124,7 @@ fn timed(times: &[f64]) -> Quartiles {
     Quartiles::of(times).expect("there are frames beyond the warm-up")
 }
 
-/// Plays the clip. Gives what it came to, and the bytes that each point keeps.
+/// Runs the clip. Returns the sums, and the bytes of persistent memory of each point.
 fn play(
     batch: &Batch,
     clip: &Clip,
@@ -162,7 +162,7 @@ fn play(
     Ok((sums, memory_bytes))
 }
 
-/// Samples of the foveated frame over those of a full-rate frame as good as the fovea.
+/// Samples of the foveated frame divided by those of a full-rate frame with the fovea's quality.
 fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f64 {
     let lods = result.step.lods.pixels();
     match result.samples {
@@ -172,7 +172,7 @@ fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f6
     }
 }
 
-/// What a reader of the report sees of a point: the last frame, where FLIP finds it wrong, what it should have been.
+/// Saves the pictures of a point for the report: its last frame, the FLIP error map, and the reference.
 fn pictures(
     store: &Store,
     subject: &Subject,
@@ -188,7 +188,7 @@ fn pictures(
     Ok(())
 }
 
-/// What measures on this backend.
+/// Description of the machine.
 pub fn machine(backend: &Backend) -> Machine {
     let report = BackendReport::of(backend);
     let clock = match backend {
@@ -198,7 +198,7 @@ pub fn machine(backend: &Backend) -> Machine {
     Machine { kind: report.kind.into(), name: report.name, driver: report.driver, clock: clock.into() }
 }
 
-/// The frames of a batch, times its points: what its progress counts.
+/// Steps of the progress bar for a batch: frames times points.
 pub fn work(batch: &Batch) -> u64 {
     batch.subjects.len() as u64 * batch.subjects[0].args.frames.unwrap_or(300)
 }
