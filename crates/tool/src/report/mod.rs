@@ -1,4 +1,4 @@
-//! What a run leaves behind: figures, pictures, and a contact sheet that shows them at a glance.
+//! Reports of runs and sweeps: scores, contact sheets, plots, pages.
 
 pub mod backend;
 pub mod canvas;

@@ -1,7 +1,7 @@
-//! `afterimage bench effects`: what each effect costs a scene that does not need it.
+//! `afterimage bench effects`: cost of each effect in a scene that does not need it.
 //!
-//! Kernels with the effect and without are timed in turn, frame by frame, on the same rays; what is compared are ratios of two
-//! frames that were traced within a second of each other.
+//! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the times of two
+//! frames that are traced within a second of each other.
 
 mod removals;
 mod table;
@@ -21,10 +21,10 @@ use removals::REMOVALS;
 use serde::Serialize;
 use std::io::IsTerminal;
 
-/// Frames before the watch starts.
+/// Untimed frames.
 const WARM_UP: u64 = 2;
 
-/// Times that kernels are compiled.
+/// Number of compilations per set of effects.
 const COMPILES: usize = 3;
 
 /// Built-in scenes, of which the first is diffuse only and the last needs most lobes.
@@ -38,7 +38,7 @@ struct Report {
     frames: u64,
     max_depth: u32,
     machine: String,
-    /// Whether the driver was told not to keep compiled kernels.
+    /// Whether the driver's shader cache was switched off.
     compiled_cold: bool,
     backends: Vec<BackendReport>,
     scenes: Vec<SceneReport>,
@@ -49,26 +49,26 @@ struct SceneReport {
     scene: String,
     triangles: u32,
     needs: Vec<&'static str>,
-    /// One a backend.
+    /// One list per backend.
     prices: Vec<Vec<Price>>,
-    /// Frames of kernels in which an effect is switched off over those from which it was cut out; on an adapter, on request.
+    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with `--removal`.
     removals: Vec<Price>,
 }
 
-/// What a set of effects costs.
+/// Cost of a set of effects.
 #[derive(Clone, Debug, Serialize)]
 struct Price {
-    /// `auto`, `again` (the same, compiled anew: what is noise), `all`, or the effect that was added.
+    /// `auto`, `again` (the same compiled again, which shows the noise), `all`, or the effect added to `auto`.
     what: String,
     ms: Option<Quartiles>,
-    /// Of each frame's time over the time of `auto`.
+    /// Time of each frame divided by that of `auto`.
     ratio: Option<Quartiles>,
     /// The median's 99.9 % confidence interval.
     interval: Option<[f64; 2]>,
     compile_ms: Option<Quartiles>,
 }
 
-/// A tracer that takes turns with others.
+/// A tracer with its kernels and measured times.
 struct Variant {
     what: String,
     effects: Effects,
@@ -77,12 +77,12 @@ struct Variant {
     compile_ms: Vec<f64>,
 }
 
-/// Prices effects for `size` and `frames`.
+/// Measures the cost of effects at `size` for `frames` frames.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let backends = backends(args)?;
     let default = SCENES.map(str::to_owned);
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
-    // What kernels compile to does not depend on the scene but for its effects.
+    // Compiled kernels depend only on the effects, not on the rest of the scene.
     let small = Subject::open("builtin:cornell", [8, 8], None, None)?;
     let mut scenes = vec![];
     for name in names {
@@ -132,7 +132,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     write_json(args, &report)
 }
 
-/// What the scene needs, twice; everything; what it needs with each other effect.
+/// The scene's effects, twice; all effects; the scene's effects with each other effect.
 fn variants(subject: &Subject, backend: &Backend) -> Result<Vec<Variant>, Failure> {
     let needs = subject.world.needs;
     let mut sets = vec![("auto".to_owned(), needs), ("again".into(), needs), ("all".into(), Effects::all())];
@@ -147,7 +147,7 @@ fn with(effects: Effects) -> TraceSettings {
     TraceSettings { effects: Some(effects), ..TraceSettings::default() }
 }
 
-/// Every frame by every variant, another first each time.
+/// Times every variant on every frame. Each frame starts with another variant.
 fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], frames: u64) {
     let count = variants.len();
     for index in 0..WARM_UP + frames {
@@ -161,7 +161,8 @@ fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], fr
     }
 }
 
-/// CPU time from WGSL to the end of a first frame of one workgroup, less a second such frame: drivers compile at the first.
+/// Measures compile times: CPU time of creating the tracer and tracing a first small frame, minus that of a second one. Drivers compile at
+/// the first dispatch.
 fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant]) -> Result<(), Failure> {
     for _ in 0..COMPILES {
         for variant in &mut *variants {
@@ -175,7 +176,7 @@ fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant])
     Ok(())
 }
 
-/// The kernels of `auto`, in which the effect is switched off, against the same with its text cut out.
+/// Compares the kernels of `auto`, with the effect switched off, with kernels whose source lacks the effect.
 fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<Vec<Price>, Failure> {
     let Backend::Gpu(gpu) = backend else { return Ok(vec![]) };
     let needs = subject.world.needs;
@@ -193,7 +194,7 @@ fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<V
     }
     variants.push(variant("all of them", &|text| unneeded.iter().fold(text, |text, removal| removal.cut(&text)))?);
     take_turns(subject, backend, &mut variants, frames);
-    // Over the removal, not over what is switched off.
+    // The ratio is relative to the kernels without the source, not to `auto`.
     let off = variants[0].ms.clone();
     Ok(variants.iter().skip(1).map(|variant| price(variant, &off, &variant.ms)).collect())
 }
@@ -202,13 +203,13 @@ fn priced(variants: &[Variant]) -> Vec<Price> {
     variants.iter().map(|variant| price(variant, &variant.ms, &variants[0].ms)).collect()
 }
 
-/// The price of a variant; frame by frame `above` over `below`.
+/// The cost of a variant, with the ratio of `above` to `below` frame by frame.
 fn price(variant: &Variant, above: &[f64], below: &[f64]) -> Price {
     let mut ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
     let ratio = Quartiles::of(&ratios);
     ratios.sort_by(f64::total_cmp);
-    // Order statistics: the number of frames below the median is binomial, here as a normal distribution; 3.29 standard deviations
-    // of half the root of n.
+    // Order statistics: the number of frames below the median is binomial, approximated by a normal distribution with standard deviation
+    // sqrt(n) / 2; 99.9 % are within 3.29 standard deviations.
     let n = ratios.len() as f64;
     let rank = (0.5 * n - 3.29 * 0.5 * n.sqrt()).floor().max(0.0) as usize;
     let interval = (!ratios.is_empty()).then(|| [ratios[rank], ratios[ratios.len() - 1 - rank]]);
@@ -216,7 +217,7 @@ fn price(variant: &Variant, above: &[f64], below: &[f64]) -> Price {
     Price { what: variant.what.clone(), ms, ratio, interval, compile_ms }
 }
 
-/// The processor, as far as the system tells.
+/// Name of the processor, if known.
 fn machine() -> String {
     let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = cpuinfo.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": "));
