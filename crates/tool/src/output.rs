@@ -78,7 +78,7 @@ impl Output {
     }
 
     /// Writes a PNG into the root of the folder.
-    pub fn sheet(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
+    pub fn root_picture(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
         let path = self.root.join(name);
         write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
     }

@@ -239,7 +239,7 @@ impl Clip {
             gaze_px,
             fovea_deg: self.foveation.fovea_deg,
         };
-        out.sheet("sheet.png", &sheet.draw())
+        out.root_picture("sheet.png", &sheet.draw())
     }
 }
 

@@ -44,7 +44,7 @@ fn info_says_what_a_scene_holds() {
     }
     assert!(text.contains("bounds, m: x ") && text.contains("materials that emit light: 1 ("), "{text}");
 
-    // A triangle that a light, a camera and two animations go with.
+    // A triangle with a light, a camera and two animations.
     let folder = Folder::new();
     let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     let corners = floats(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0, -1.0]);

@@ -1,6 +1,6 @@
 //! Time and sample reduction of foveated against uniform path tracing.
 
-use super::subject::{Subject, Took};
+use super::subject::{FrameTime, Subject};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
@@ -94,8 +94,8 @@ pub fn measure(
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
-    let mut uniform: Vec<Took> = vec![];
-    let mut took: Vec<Vec<Took>> = vec![vec![]; patterns.len()];
+    let mut uniform: Vec<FrameTime> = vec![];
+    let mut took: Vec<Vec<FrameTime>> = vec![vec![]; patterns.len()];
     let mut traced = vec![0; patterns.len()];
     // Drivers compile at the first dispatch.
     subject.few(tracer);
@@ -115,7 +115,7 @@ pub fn measure(
             _ => None,
         };
         let more = f64::from(p.samples) / f64::from(UNIFORM_SAMPLES);
-        let of = |took: &[Took], ms: fn(&Took) -> f64, factor: f64| {
+        let of = |took: &[FrameTime], ms: fn(&FrameTime) -> f64, factor: f64| {
             Quartiles::of(&took.iter().map(|t| ms(t) * factor).collect::<Vec<_>>())
         };
         let mut report = PatternReport {

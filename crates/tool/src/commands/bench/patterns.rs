@@ -142,7 +142,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
     let out = Output::create(&args.out, &[], "patterns.md")?;
     let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
-    out.sheet("reference.png", &to_rgb8(&stage.shown(&linear)))?;
+    out.root_picture("reference.png", &to_rgb8(&stage.shown(&linear)))?;
     let path = args.out.join("reference.exr");
     exr_file::write(&path, &FrameToWrite::color(&linear)).map_err(|e| Failure::writing(&path, e))?;
     let reports = stage.compare(&patterns, &stage.shown(&linear), args.frames, &out)?;
@@ -243,8 +243,8 @@ impl Stage {
                 scorer.push(&full, &shown, &tracked, &ecc_deg);
                 if frame == 0 {
                     let map = flip.map(reference, &shown).map(|v| heat(v).to_array());
-                    out.sheet(&format!("{}.png", pattern.name), &to_rgb8(&shown))?;
-                    out.sheet(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
+                    out.root_picture(&format!("{}.png", pattern.name), &to_rgb8(&shown))?;
+                    out.root_picture(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
                 }
             }
             let a_frame = |sum: u64| sum as f64 / frames as f64;

@@ -1,7 +1,7 @@
 //! `afterimage bench trace`: rays per second of the tracers.
 
 use super::foveated::{self, PatternReport};
-use super::subject::{Subject, Took, backends, is_real_gpu};
+use super::subject::{FrameTime, Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
 use crate::report::backend::BackendReport;
@@ -58,7 +58,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for name in names {
         let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
-        let mut took: Vec<Vec<Took>> = vec![vec![]; tracers.len()];
+        let mut took: Vec<Vec<FrameTime>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {
             for (tracer, took) in tracers.iter().zip(&mut took) {
                 let frame = subject.frame(tracer, index);
@@ -69,10 +69,10 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         }
         let triangles = subject.world.geometry.len();
         let reports = backends.iter().zip(&tracers).zip(&took).map(|((backend, tracer), took)| {
-            let of = |value: &dyn Fn(&Took) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
+            let of = |value: &dyn Fn(&FrameTime) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
             let device = is_real_gpu(backend) && took.iter().all(|t| t.device_ms.is_some());
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
-            let rate = |ms: &dyn Fn(&Took) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
+            let rate = |ms: &dyn Fn(&FrameTime) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
             TracerReport {
                 backend: BackendReport::of(backend),
                 rays_per_frame: took.first().map_or(0, |t| t.rays),

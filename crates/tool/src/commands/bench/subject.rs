@@ -31,7 +31,7 @@ pub struct Subject {
 
 /// Times and rays of one frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Took {
+pub struct FrameTime {
     /// CPU time of the process; wall time where it is not available.
     pub cpu_ms: f64,
     pub wall_ms: f64,
@@ -68,12 +68,12 @@ impl Subject {
     }
 
     /// Traces frame `index`.
-    pub fn frame(&self, tracer: &Tracer, index: u64) -> Took {
+    pub fn frame(&self, tracer: &Tracer, index: u64) -> FrameTime {
         self.trace(tracer, index, &self.items)
     }
 
     /// Traces a few samples, which is enough to run every kernel.
-    pub fn few(&self, tracer: &Tracer) -> Took {
+    pub fn few(&self, tracer: &Tracer) -> FrameTime {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
     }
 
@@ -90,18 +90,18 @@ impl Subject {
         gaze_px: [f32; 2],
         samples: u32,
         index: u64,
-    ) -> (FoveatedFrame, Took) {
+    ) -> (FoveatedFrame, FrameTime) {
         let view = self.view(index);
         let watch = Stopwatch::start();
         let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
         let frame = plan.trace(tracer, &self.world, &view, index);
-        let took = Took::by(&watch, None, frame.rays);
+        let took = FrameTime::by(&watch, None, frame.rays);
         (frame, took)
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the times to the whole
     /// frame.
-    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> Took {
+    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> FrameTime {
         const BAND: u32 = 4;
         let [width, height] = self.size;
         let band = if every > 1 { BAND } else { height };
@@ -115,12 +115,12 @@ impl Subject {
             tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
             rays += film.rays;
         }
-        let took = Took::by(&watch, None, rays);
+        let took = FrameTime::by(&watch, None, rays);
         let more = f64::from(height) / rows.max(1) as f64;
-        Took { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
+        FrameTime { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
     }
 
-    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> FrameTime {
         let view = self.view(index);
         let mut film = Film::new(self.size);
         let watch = Stopwatch::start();
@@ -131,11 +131,11 @@ impl Subject {
                 None
             }
         };
-        Took::by(&watch, device, film.rays)
+        FrameTime::by(&watch, device, film.rays)
     }
 }
 
-impl Took {
+impl FrameTime {
     fn by(watch: &Stopwatch, device: Option<Duration>, rays: u64) -> Self {
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
         Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }

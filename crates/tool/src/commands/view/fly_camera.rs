@@ -78,7 +78,7 @@ mod tests {
         let there = camera.step(DMat4::IDENTITY, 0.05, 2.0);
         assert!(
             (there.w_axis.truncate() - DVec3::new(0.0, 0.0, -0.1)).length() < 1e-12,
-            "held once, however often told"
+            "a repeated key press counts once"
         );
         assert!(camera.step(DMat4::IDENTITY, 60.0, 2.0).w_axis.z > -0.201, "a pause is no jump");
         camera.key(KeyCode::KeyW, false);
