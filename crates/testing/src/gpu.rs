@@ -1,18 +1,17 @@
-//! One adapter for all GPU tests of a file, a fresh device for each test, and probes: a WGSL entry point over a table of words.
+//! GPU tests: one adapter per test program, a fresh device per test, and probes that run a WGSL entry point over a table of inputs.
 
 use std::borrow::Cow;
 use std::io::Write;
 use std::sync::OnceLock;
 
-/// What every word of a probe's output holds before it runs. A word that stays so was not written, and differs from what is
-/// expected there.
+/// Initial value of every word of a probe's output. A word that keeps it was not written, and fails the comparison.
 pub const SENTINEL: u32 = 0xdead_beef;
 
 /// Threads in a workgroup of a probe.
 pub const WORKGROUP: u32 = 64;
 
 fn say(line: &str) {
-    // Not eprintln!, which the test harness captures: a skip must be seen in a green run.
+    // Not eprintln!, which the test harness captures: skips must be visible in a passing run.
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
@@ -35,10 +34,10 @@ fn find_adapter() -> Option<wgpu::Adapter> {
     }
 }
 
-/// The Vulkan adapter of this run, or `None`, after saying so, where there is none.
+/// The Vulkan adapter of this run. Prints a line and returns `None` if there is none.
 ///
 /// # Panics
-/// If there is none and `AFTERIMAGE_GPU=require` is set, as CI does: a missing adapter is a failure there.
+/// If there is none and `AFTERIMAGE_GPU=require` is set, as in CI.
 pub fn adapter() -> Option<&'static wgpu::Adapter> {
     static ADAPTER: OnceLock<Option<wgpu::Adapter>> = OnceLock::new();
     let adapter = ADAPTER.get_or_init(find_adapter).as_ref();
@@ -54,14 +53,14 @@ pub fn adapter() -> Option<&'static wgpu::Adapter> {
     adapter
 }
 
-/// A fresh device with default limits. Its uncaptured errors panic.
+/// A fresh device with default limits. Uncaptured errors panic.
 pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
     let adapter = adapter()?;
     let desc = wgpu::DeviceDescriptor { label: Some("test"), ..Default::default() };
     Some(pollster::block_on(adapter.request_device(&desc)).expect("a device with default limits"))
 }
 
-/// Runs `f` and panics with the message of the first validation error in it.
+/// Runs `f`; panics with the message of its first validation error.
 #[track_caller]
 pub fn validated<T>(device: &wgpu::Device, what: &str, f: impl FnOnce() -> T) -> T {
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -74,8 +73,8 @@ pub fn validated<T>(device: &wgpu::Device, what: &str, f: impl FnOnce() -> T) ->
 
 /// Runs the compute entry point `entry` of `source` and returns its output.
 ///
-/// Binding 0: `inputs`, read-only storage; binding 1: `out_words` words of storage, all [`SENTINEL`] before. At least
-/// `out_words` invocations run, in workgroups of [`WORKGROUP`] along x, so that a row needs no more than one.
+/// Binding 0: `inputs`, read-only storage; binding 1: `out_words` words of storage, filled with [`SENTINEL`]. At least `out_words`
+/// invocations run, in workgroups of [`WORKGROUP`] along x, so that each invocation can handle one row.
 #[track_caller]
 pub fn run_probe(
     device: &wgpu::Device,
@@ -140,7 +139,7 @@ pub fn run_probe(
     })
 }
 
-/// Fills one array layer of a texture.
+/// Writes one array layer of a texture.
 pub fn write_layer(queue: &wgpu::Queue, texture: &wgpu::Texture, layer: usize, bytes: &[u8]) {
     let size = wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 };
     let mut to = texture.as_image_copy();
@@ -153,7 +152,7 @@ pub fn write_layer(queue: &wgpu::Queue, texture: &wgpu::Texture, layer: usize, b
     queue.write_texture(to, bytes, layout, size);
 }
 
-/// Fills one level of a texture, all its layers, with one byte.
+/// Fills one mip level of a texture, all layers, with one byte value.
 pub fn fill_level(queue: &wgpu::Queue, texture: &wgpu::Texture, level: u32, byte: u8) {
     let size = wgpu::Extent3d {
         width: texture.width() >> level,
@@ -167,7 +166,7 @@ pub fn fill_level(queue: &wgpu::Queue, texture: &wgpu::Texture, level: u32, byte
     queue.write_texture(to, &bytes, layout, size);
 }
 
-/// All words of a texture whose texels are whole words, layer after layer.
+/// Reads a texture whose texels are whole words: all words, layer after layer.
 pub fn read_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u32> {
     let texel = texture.format().block_copy_size(None).unwrap();
     let row = texture.width() * texel;

@@ -1,17 +1,17 @@
-//! The register of hard cases: a test says which row of the contract it holds, on which side, and what it measured.
+//! Register of hard cases: a test records which row of the contract it proves, on which side, and what it measured.
 //!
-//! `tests/stability` collects what was said into docs/stability.md.
+//! `tests/stability` collects the records into docs/stability.md.
 
 use std::fmt::{self, Display};
 use std::fs;
 use std::path::Path;
 
-/// Where a row was held.
+/// Side on which a test proves a row.
 #[derive(Clone, Copy, Debug)]
 pub enum Side {
     Cpu,
     Gpu,
-    /// The program, its files and its text.
+    /// The command-line tool, its files and its output.
     Tool,
 }
 
@@ -25,8 +25,8 @@ impl Display for Side {
     }
 }
 
-/// `holds!("H08", Cpu, "s = {s:.2}")`: this test holds row H08 on the CPU, and this was measured. Said after the assertions, so that
-/// a test that fails says nothing.
+/// `holds!("H08", Cpu, "s = {s:.2}")` records that this test proves row H08 on the CPU, and what it measured. Goes after the assertions,
+/// so that a failing test records nothing.
 #[macro_export]
 macro_rules! holds {
     ($row:literal, $side:ident, $($figure:tt)+) => {
@@ -39,11 +39,12 @@ macro_rules! holds {
     };
 }
 
-/// Prints the figure and leaves it in the folder named by `AFTERIMAGE_STABILITY`, if any. `closure` is the name of a closure in the test.
+/// Prints the measured text and writes it to the folder named by `AFTERIMAGE_STABILITY`, if set. `closure`: type name of a closure in the
+/// test, from which the test's name follows.
 pub fn record(row: &str, side: Side, closure: &str, figure: &str) {
     let test = closure.split("::{{closure}}").next().unwrap_or(closure);
     println!("{row} holds ({side}): {figure}");
-    assert!(!figure.contains(['\n', '|']), "{row}: a figure is one cell of a table");
+    assert!(!figure.contains(['\n', '|']), "{row}: the text must fit into one cell of a table");
     let Some(folder) = std::env::var_os("AFTERIMAGE_STABILITY") else { return };
     let file = format!("{row} {side} {}", test.replace("::", "."));
     fs::create_dir_all(&folder).and_then(|()| fs::write(Path::new(&folder).join(file), figure)).unwrap();

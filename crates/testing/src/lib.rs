@@ -1,4 +1,4 @@
-//! What several test files share: p-values that are printed, and independent seeds.
+//! Helpers shared by tests: statistical tests with printed p-values, independent seeds, GPU access, the register of hard cases.
 
 pub mod gpu;
 pub mod hard_case;
@@ -50,15 +50,15 @@ pub fn reject(what: &str, p: f64) {
     assert!(p < ALPHA, "{what}: planted error not caught, p = {p:.3e}");
 }
 
-/// Draws for tests, from another family than the generator under test. Each named use has its own seed.
+/// Random numbers for tests, from another family of generators than the one under test. The name determines the seed.
 pub struct Draws(rand_stream::SplitMix64);
 
-/// FNV-1a of a name: seeds are independent by construction, not by choice.
+/// FNV-1a hash of a name, so that seeds are not chosen by hand.
 pub fn seed(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Property tests with a fixed seed of their own: the same cases on every machine.
+/// Configuration of a property test with a fixed seed: the same cases on every machine.
 pub fn property(name: &str, cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -73,12 +73,12 @@ impl Draws {
         Self(rand_stream::SplitMix64(seed(name)))
     }
 
-    /// In [0, 1), on the grid of 2^-24, exact in f32.
+    /// Uniform in [0, 1), a multiple of 2^-24, exact in f32.
     pub fn uniform(&mut self) -> f32 {
         (self.0.next() >> 40) as f32 / 16_777_216.0
     }
 
-    /// In [low, high).
+    /// Uniform in [low, high).
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.uniform()
     }
@@ -103,7 +103,7 @@ mod rand_stream {
     }
 }
 
-/// The folder of the workspace: where `fixtures` is, and where the tool is run.
+/// Root folder of the workspace, which holds `fixtures` and is the working directory for the tool.
 pub fn workspace() -> std::path::PathBuf {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     root.canonicalize().expect("the workspace is two folders up")

@@ -1,9 +1,9 @@
-//! Panics that are expected: of a decoder, caught where it is called.
+//! Expected panics of the EXR decoder, which its caller catches.
 
 use std::panic::{set_hook, take_hook};
 use std::sync::Once;
 
-/// Reports no more panics of the EXR decoder, which become errors: their backtraces would take the most time and memory of a test.
+/// Silences panics of the EXR decoder, which its caller turns into errors: printing backtraces would dominate a test's time and memory.
 pub fn silence_the_exr_decoder() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

@@ -1,4 +1,4 @@
-//! Licences of everything that is built: those that deny.toml accepts, and no other.
+//! Licences of all dependencies: only those that deny.toml accepts.
 
 use serde_json::Value;
 use spdx::{Expression, LicenseReq, ParseMode};
@@ -6,13 +6,13 @@ use std::process::Command;
 
 struct Accepted {
     all: Vec<String>,
-    /// Crates that may have other ones.
+    /// Additional licences by crate.
     exceptions: Vec<(String, Vec<String>)>,
 }
 
 impl Accepted {
     fn read() -> Self {
-        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/deny.toml")).unwrap();
+        let text = std::fs::read_to_string(afterimage_testing::workspace().join("deny.toml")).unwrap();
         let file: toml::Table = text.parse().unwrap();
         let list = |value: &toml::Value| -> Vec<String> {
             value.as_array().unwrap().iter().map(|v| v.as_str().unwrap().to_owned()).collect()
@@ -28,10 +28,10 @@ impl Accepted {
     fn admits(&self, name: &str, license: &str) -> bool {
         let own = self.exceptions.iter().filter(|(of, _)| of == name).flat_map(|(_, also)| also);
         let accepted: Vec<&String> = self.all.iter().chain(own).collect();
-        // Old crates separate alternatives by a slash.
+        // Old crates separate alternatives with a slash.
         let expression = Expression::parse_mode(license, ParseMode::LAX);
-        let is_accepted = |wanted: &LicenseReq| {
-            wanted.addition.is_none() && accepted.iter().any(|a| wanted.license.to_string() == **a)
+        let is_accepted = |required: &LicenseReq| {
+            required.addition.is_none() && accepted.iter().any(|a| required.license.to_string() == **a)
         };
         expression.is_ok_and(|e| e.evaluate(is_accepted))
     }

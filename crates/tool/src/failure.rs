@@ -1,4 +1,4 @@
-//! How the tool ends when it cannot go on: one line, and an exit code that tells whose turn it is.
+//! Errors of the tool: one line of text, and an exit code that separates bad input from failed work.
 
 use afterimage::{CreateError, FrameError, SettingsError};
 use afterimage_lab::error::InputError;
@@ -6,7 +6,7 @@ use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Why the tool stops.
+/// Error that ends the tool.
 #[derive(Debug)]
 pub enum Failure {
     /// Bad usage or input: exit code 2.
@@ -16,7 +16,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Prints the line and gives the exit code.
+    /// Prints the error to stderr and returns the exit code.
     pub fn report(&self) -> ExitCode {
         let (text, code) = match self {
             Self::Input(text) => (text, 2),
@@ -26,7 +26,7 @@ impl Failure {
         ExitCode::from(code)
     }
 
-    /// Options that are wrong, in one line.
+    /// A usage error of the command line, in one line.
     pub fn usage(error: &clap::Error) -> Self {
         let text = error.render().to_string();
         let lines: Vec<&str> = text
@@ -40,7 +40,7 @@ impl Failure {
         Self::Input(format!("{line}; see --help"))
     }
 
-    /// Something that could not be written while working.
+    /// A file that cannot be written during the work.
     pub fn writing(path: &Path, error: impl Display) -> Self {
         Self::Work(format!("{}: cannot be written ({error}); free space or choose another --out", path.display()))
     }

@@ -1,6 +1,6 @@
-//! The `afterimage` command-line tool: one file a subcommand.
+//! The `afterimage` command-line tool: one file per subcommand.
 
-/// Prints a line. A reader that has gone (a closed pipe) is no reason to stop working, let alone to panic.
+/// Prints a line to stdout. Ignores errors: a closed pipe must not stop the work or cause a panic.
 macro_rules! say {
     ($($arg:tt)*) => {{
         use std::io::Write;
@@ -27,7 +27,7 @@ use commands::{bench, info, run, scanpath, sweep as sweep_command, trace};
 use failure::Failure;
 use std::process::ExitCode;
 
-/// Temporal post-process for foveated rendering: keep the sharp samples that earlier gaze positions paid for.
+/// Temporal post-process for foveated rendering: reuse the sharp samples of earlier gaze positions.
 #[derive(Parser)]
 #[command(version, about, max_term_width = 110)]
 struct Cli {
@@ -39,13 +39,13 @@ struct Cli {
 enum Command {
     /// Show the method at work on a built-in scene; needs no file and no GPU
     Demo(demo::DemoArgs),
-    /// Foveate a frame stream, enhance it, score it
+    /// Foveate frames, run methods on them, score the results
     #[cfg(feature = "full")]
     Run(Box<run::RunArgs>),
     /// Render a scene by path tracing
     #[cfg(feature = "full")]
     Trace(Box<trace::TraceArgs>),
-    /// Time the passes against a copy of the same bytes
+    /// Time passes, tracers and effects
     #[cfg(feature = "full")]
     Bench(bench::BenchArgs),
     /// Measure a grid of methods and options: error against time, and what each switch costs
@@ -54,15 +54,15 @@ enum Command {
     /// Write a synthetic scanpath
     #[cfg(feature = "full")]
     Scanpath(scanpath::ScanpathArgs),
-    /// Say what an input holds, or which adapters there are
+    /// Describe an input, or list the adapters
     #[cfg(feature = "full")]
     Info(info::InfoArgs),
-    /// Look at it in a window: the mouse is the gaze
+    /// Show the methods live in a window; the mouse is the gaze
     #[cfg(feature = "view")]
     View(Box<view::ViewArgs>),
 }
 
-/// The program: reads its arguments, does what they ask for, and says how that ended.
+/// Entry point: parses the arguments, runs the subcommand, and returns the exit code.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
@@ -91,10 +91,10 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Help and version as they are; an error of usage as one line.
+/// Prints help and version; reports a usage error in one line.
 fn usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        // Nothing is lost if the reader has gone.
+        // A closed pipe is no error.
         let _ = error.print();
         return ExitCode::SUCCESS;
     }

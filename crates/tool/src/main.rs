@@ -1,4 +1,4 @@
-//! The program `afterimage`.
+//! The `afterimage` binary.
 
 use std::process::ExitCode;
 

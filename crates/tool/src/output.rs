@@ -1,4 +1,4 @@
-//! The output folder: everything is written whole or not at all, and never mixed with the frames of another run.
+//! The output folder. Each file is written completely or not at all, and frames of different runs never mix.
 
 use crate::failure::Failure;
 #[cfg(feature = "full")]
@@ -12,7 +12,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder that a clip is written to.
+/// Output folder of a run.
 pub struct Output {
     root: PathBuf,
 }
@@ -25,12 +25,12 @@ pub struct Table {
 }
 
 impl Output {
-    /// Makes the folder and a folder in it for each of `parts`. Frames that an earlier run left there are removed, if its
-    /// `report` (`report.json` or `trace.json`) says that they are this tool's.
+    /// Creates the folder and its subfolders `parts`. Removes frames of an earlier run, if its `report` (`report.json` or
+    /// `trace.json`) shows that this tool wrote them.
     pub fn create(root: &Path, parts: &[String], report: &str) -> Result<Self, Failure> {
         let refuse = |path: &Path, error: &dyn std::fmt::Display| {
             Failure::Input(format!(
-                "{}: cannot be written ({error}); give --out a folder that can be made or written",
+                "{}: cannot be written ({error}); give --out a folder that can be created or written",
                 path.display()
             ))
         };
@@ -42,11 +42,11 @@ impl Output {
         }
         if let (false, Some(first)) = (ours, stale.first()) {
             return Err(Failure::Input(format!(
-                "{}: holds frames of something else; give --out an empty folder",
+                "{}: holds frames of something else, not of afterimage; give --out an empty folder",
                 first.parent().unwrap_or(root).display()
             )));
         }
-        // A file that can be made is the proof that the folder can be written.
+        // Create a file to check that the folder can be written.
         let probe = root.join(".afterimage.partial");
         File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
         for path in stale.into_iter().chain(ours.then(|| root.join(report))) {
@@ -59,31 +59,31 @@ impl Output {
         Ok(Self { root: root.to_owned() })
     }
 
-    /// A linear half-float EXR as frame `index` of `folder`.
+    /// Writes frame `index` of `folder` as linear half-float EXR.
     #[cfg(feature = "full")]
     pub fn exr(&self, folder: &str, index: usize, linear: &Image<[f32; 3]>) -> Result<(), Failure> {
         let path = self.path(folder, index, "exr");
         exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
     }
 
-    /// Where frame `index` of `folder` goes.
+    /// Path of frame `index` of `folder`.
     pub fn path(&self, folder: &str, index: usize, ending: &str) -> PathBuf {
         self.root.join(folder).join(format!("{index:06}.{ending}"))
     }
 
-    /// A PNG as frame `index` of `folder`.
+    /// Writes frame `index` of `folder` as PNG.
     pub fn picture(&self, folder: &str, index: usize, picture: &RgbImage) -> Result<(), Failure> {
         let path = self.path(folder, index, "png");
         write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
     }
 
-    /// A PNG in the folder itself.
-    pub fn sheet(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
+    /// Writes a PNG into the root of the folder.
+    pub fn root_picture(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
         let path = self.root.join(name);
         write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
     }
 
-    /// Gaze positions, one a frame.
+    /// Writes gaze positions as CSV, one row per frame.
     pub fn gaze(&self, name: &str, gaze_px: &[[f32; 2]]) -> Result<(), Failure> {
         let mut table = self.table(name, "frame,x_px,y_px")?;
         for (i, [x, y]) in gaze_px.iter().enumerate() {
@@ -92,13 +92,13 @@ impl Output {
         table.finish()
     }
 
-    /// A text file.
+    /// Writes a text file.
     pub fn text(&self, name: &str, text: &str) -> Result<(), Failure> {
         let path = self.root.join(name);
         write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
     }
 
-    /// Starts a table.
+    /// Starts a CSV table under a temporary name.
     pub fn table(&self, name: &str, header: &str) -> Result<Table, Failure> {
         let path = self.root.join(name);
         let partial = self.root.join(format!("{name}.partial"));
@@ -115,7 +115,7 @@ impl Table {
         writeln!(self.file, "{row}").map_err(|e| Failure::writing(&self.partial, e))
     }
 
-    /// Gives the table its name.
+    /// Flushes the table and renames it to its final name.
     pub fn finish(mut self) -> Result<(), Failure> {
         self.file
             .flush()

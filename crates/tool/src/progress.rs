@@ -1,9 +1,9 @@
-//! Progress of long work.
+//! Progress bars.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
-/// A bar of `length` steps on a terminal, nothing elsewhere. `counted`: what stands behind it, as of indicatif's templates.
+/// A progress bar of `length` steps; hidden if stderr is no terminal. `counted`: indicatif template of the text behind the bar.
 pub fn bar(length: u64, counted: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! What the fuzzing targets (`tests/fuzz.sh`) do, on stable Rust: every file of the corpus, what fuzzing once found among them, and a few
+//! Runs the fuzzing targets (`tests/fuzz.sh`) on stable Rust: on every file of the corpus, which includes former findings, and on a few
 //! thousand damaged copies of each kind.
 
 #[path = "fuzz/entries.rs"]
@@ -10,9 +10,9 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
-/// Damaged copies of each kind.
+/// Number of damaged copies of each kind.
 const COPIES: usize = 1500;
-/// What formats are made of.
+/// Tokens of the formats, inserted into damaged copies.
 const TOKENS: &[u8] = b"0129-+.eE\0\xff,;\"[]{}= \n";
 
 fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
@@ -84,7 +84,7 @@ fn damage(bytes: &mut Vec<u8>, other: &[u8], draws: &mut Draws) {
     }
 }
 
-/// The oracle notices what is not sound.
+/// The oracle detects invalid results.
 #[test]
 fn a_panic_is_noticed() {
     assert!(catch_unwind(|| entries::scanpath(b"")).is_ok());

@@ -1,5 +1,5 @@
-//! The viewer as a person uses it: a window on a display without a screen, a pointer that moves, keys, a window that is resized,
-//! minimised and brought back, a device that is lost. What it shows is held against `run` of the same gaze path.
+//! The viewer on a virtual display: moving pointer, keys, resized, minimized and restored window, lost device. Its pictures are compared
+//! with those of `run` on the same gaze path.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
@@ -8,16 +8,16 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const TOOL: &str = env!("CARGO_BIN_EXE_afterimage");
-/// For whatever the display or the viewer owes an answer.
+/// Timeout for the display and the viewer.
 const PATIENCE: Duration = Duration::from_secs(60);
 const SIZE: [u32; 2] = [320, 180];
 
-/// Not eprintln!, which the test harness captures: a skip must be seen in a green run.
+/// Not eprintln!, which the test harness captures: skips must be visible in a passing run.
 fn say(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// A program that is ended with the test.
+/// A child process that is killed at the end of the test.
 struct Running(Child);
 
 impl Drop for Running {
@@ -27,7 +27,7 @@ impl Drop for Running {
     }
 }
 
-/// A display without a screen, with a window manager that minimises.
+/// A virtual display with a window manager that can minimize windows.
 struct Display {
     name: String,
     _server: Running,
@@ -35,7 +35,7 @@ struct Display {
 }
 
 impl Display {
-    /// `None`, after saying so, where the programs for it are missing.
+    /// Starts it. Prints a line and returns `None` if a program is missing.
     fn open() -> Option<Self> {
         let missing: Vec<_> = ["Xvfb", "xdotool", "openbox"].into_iter().filter(|program| !is_there(program)).collect();
         if !missing.is_empty() {
@@ -53,7 +53,7 @@ impl Display {
         let (name, server) = (format!(":{}", number.trim()), Running(server));
         let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
         let display = Self { name, _server: server, _manager: Running(manager) };
-        // A window that is opened while the manager starts may stay unseen.
+        // The window manager may ignore a window that opens while it starts.
         wait_for("the window manager", || display.xdotool(&["get_num_desktops"]).status.success().then_some(()));
         Some(display)
     }
@@ -68,7 +68,7 @@ fn is_there(program: &str) -> bool {
     std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
 }
 
-/// Until it gives something.
+/// Polls until the function returns a value.
 #[track_caller]
 fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
@@ -85,13 +85,13 @@ fn pause(ms: u64) {
     std::thread::sleep(Duration::from_millis(ms));
 }
 
-/// A viewer at work, its window, and what it says.
+/// A running viewer, its window, and its output.
 struct Viewer<'a> {
     display: &'a Display,
     folder: PathBuf,
     child: Running,
     window: String,
-    /// Pictures that it has said it wrote.
+    /// Number of pictures that it reported so far.
     pictures: usize,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Viewer<'a> {
             .current_dir(folder)
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
-            // A layer of Mesa's looks for Wayland, and says so.
+            // Silences a message of a Mesa layer about Wayland.
             .env("NODEVICE_SELECT", "1")
             .stdout(file("said.txt"))
             .stderr(file("complaints.txt"))
@@ -120,7 +120,7 @@ impl<'a> Viewer<'a> {
         });
         let mut viewer = Self { display, folder: folder.to_owned(), child: Running(child), window, pictures: 0 };
         viewer.activate();
-        // The first picture is proof that frames are shown.
+        // The first picture shows that frames are drawn.
         viewer.picture();
         viewer
     }
@@ -134,7 +134,7 @@ impl<'a> Viewer<'a> {
         });
     }
 
-    /// Hides it. Window managers may overlook the first wish.
+    /// Minimizes the window. Repeats the request, since window managers may ignore the first.
     fn minimise(&self) {
         wait_for("the window to be gone", || {
             self.display.xdotool(&["windowminimize", &self.window]);
@@ -150,7 +150,7 @@ impl<'a> Viewer<'a> {
         pause(80);
     }
 
-    /// Moves the pointer along points, shares of the window.
+    /// Moves the pointer along points, given as fractions of the window.
     fn look_along(&self, points: &[[f32; 2]]) {
         let [width, height] = self.numbers(&["getwindowgeometry", "--shell", &self.window], ["WIDTH=", "HEIGHT="]);
         for [x, y] in points {
@@ -160,8 +160,8 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    /// Moves the pointer from the middle of the window by some pixels and presses F12 at once: the next frame, whose picture is written, is
-    /// already that of the new gaze. (Relative moves go the way of keys, so that neither overtakes the other.)
+    /// Moves the pointer from the center of the window by some pixels and presses F12 at once. The next frame, whose picture is saved, must
+    /// use the new gaze. (Relative moves take the same path as keys, which preserves their order.)
     fn looks_in_the_next_frame(&mut self, by_px: [i32; 2]) {
         self.look_along(&[[0.5, 0.5]]);
         let middle = self.pointer();
@@ -173,23 +173,23 @@ impl<'a> Viewer<'a> {
         let last: Vec<f32> = record.last().unwrap().split(',').skip(1).take(2).map(|v| v.parse().unwrap()).collect();
         let now = self.pointer();
         assert_ne!(middle, now);
-        // The window is four times as large as the picture.
+        // Four window pixels per picture pixel.
         let expected = [0, 1].map(|i| (2 * SIZE[i] as i32 + now[i] - middle[i]) as f32 / 4.0);
         assert_eq!(last, expected, "the picture after a move is for an earlier gaze");
     }
 
-    /// Where the pointer is on the screen.
+    /// Position of the pointer on the screen.
     fn pointer(&self) -> [i32; 2] {
         self.numbers(&["getmouselocation", "--shell"], ["X=", "Y="])
     }
 
-    /// Two numbers that xdotool says.
+    /// Two numbers from the output of xdotool.
     fn numbers(&self, words: &[&str], names: [&str; 2]) -> [i32; 2] {
         let said = String::from_utf8(self.display.xdotool(words).stdout).unwrap();
         names.map(|name| said.lines().find_map(|line| line.strip_prefix(name)?.parse().ok()).unwrap())
     }
 
-    /// Lines of the gaze of every frame.
+    /// Rows of the gaze record.
     fn record(&self) -> Vec<String> {
         let record = fs::read_to_string(self.folder.join("gaze.csv")).unwrap();
         record.lines().filter(|l| !l.starts_with('#')).skip(1).map(str::to_owned).collect()
@@ -203,7 +203,7 @@ impl<'a> Viewer<'a> {
         fs::read_to_string(self.folder.join("complaints.txt")).unwrap()
     }
 
-    /// Has it write what it shows; the number of frames since its history started afresh.
+    /// Saves a picture; returns the number of frames since the last history reset.
     fn picture(&mut self) -> usize {
         wait_for("a picture", || {
             self.key("F12");
@@ -214,13 +214,13 @@ impl<'a> Viewer<'a> {
                 (self.said() > self.pictures).then_some(())
             })
         });
-        // Keys that were pressed once more than needed are done with before the next.
+        // Let repeated key presses finish before the next key.
         pause(500);
         self.pictures = self.said();
         self.record().len()
     }
 
-    /// The shown picture is that of `run` with the recorded gaze.
+    /// Checks that the picture equals that of `run` with the recorded gaze.
     fn is_as_of_run(&mut self, method: &str) {
         let frames = self.picture();
         let out = Command::new(TOOL)
@@ -241,7 +241,7 @@ impl<'a> Viewer<'a> {
         assert_eq!((shown.dimensions(), differ), (expected.dimensions(), 0), "{method}");
     }
 
-    /// Closes it by its key; it has nothing to complain about but `expected`.
+    /// Quits by key; checks that stderr contains the `expected` lines only.
     fn close(mut self, expected: &[&str]) {
         self.key("Escape");
         let status = wait_for("the end", || self.child.0.try_wait().unwrap());
@@ -251,7 +251,7 @@ impl<'a> Viewer<'a> {
     }
 }
 
-/// Stripes and blocks with detail at every level of detail.
+/// Stripes and blocks with structure at every level of detail.
 fn write_still(folder: &Path) {
     let picture = image::RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| {
         let hash = (x / 3 * 7 + y / 2 * 13 + (x / 20) * (y / 15) * 31) % 97;
@@ -273,7 +273,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
         viewer.looks_in_the_next_frame(by);
     }
 
-    // Methods, decisions, filters, split and panel, there and back.
+    // Toggle methods, debug views, filters, split and panel, and back.
     for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
         viewer.key(key);
     }
@@ -283,7 +283,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     viewer.look_along(&[[0.7, 0.7], [0.2, 0.5]]);
     viewer.is_as_of_run("smr");
 
-    // Whatever happens to the window, its history starts afresh: the record begins where the pointer was then, and not where it was before.
+    // Changes of the window reset the history: the record begins at the pointer's position at that time, not at an earlier one.
     let before = viewer.record()[0].clone();
     viewer.display.xdotool(&["windowsize", "--sync", &viewer.window, "900", "620"]);
     pause(300);

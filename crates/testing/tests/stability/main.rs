@@ -1,7 +1,8 @@
-//! The contract of hard cases: every row is held by a test, and docs/stability.md says which, with the figure that it measured.
+//! The contract of hard cases: a test proves every row, and docs/stability.md lists the test and what it measured.
 //!
-//! Tests say `holds!("H08", Cpu, "s = {s}")`; with `AFTERIMAGE_STABILITY` naming a folder, what they said is left there.
-//! `AFTERIMAGE_BLESS=1 cargo test --all-features --test stability -- --ignored` then writes the table anew; `tests/run.sh` compares.
+//! Tests call `holds!("H08", Cpu, "s = {s}")`, which writes a record to the folder named by `AFTERIMAGE_STABILITY`.
+//! `AFTERIMAGE_BLESS=1 cargo test --all-features --test stability -- --ignored` writes the table from the records; `tests/run.sh`
+//! compares.
 
 mod rows;
 mod table;
@@ -15,7 +16,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use table::{Held, missing, parse, print};
 
-/// The table, which lies in the workspace.
+/// Path of the table.
 fn table_path() -> PathBuf {
     workspace().join("docs/stability.md")
 }
@@ -29,14 +30,14 @@ fn the_rows_are_h01_to_h84_in_order() {
     }
 }
 
-/// The printed table has every row, no row more, and a test for every side.
+/// The table has every row, no other rows, and a test for every side.
 #[test]
 fn the_table_has_every_row() {
     let held = parse(&fs::read_to_string(table_path()).unwrap());
     assert_eq!(missing(&held), Vec::<String>::new());
 }
 
-/// Tests that the table names are there, and say that they hold the row.
+/// The tests in the table exist and record their row.
 #[test]
 fn the_tests_of_the_table_exist() {
     for held in parse(&fs::read_to_string(table_path()).unwrap()) {
@@ -56,14 +57,14 @@ fn the_tests_of_the_table_exist() {
     }
 }
 
-/// After a whole run of the tests: what they said is what the table says, but for figures, which may differ between machines.
+/// After a complete test run: the records agree with the table, except for measured values, which may differ between machines.
 #[test]
 #[ignore = "after all other tests: tests/run.sh"]
 fn the_table_is_what_the_tests_said() {
     let folder = PathBuf::from(std::env::var_os("AFTERIMAGE_STABILITY").expect("AFTERIMAGE_STABILITY names no folder"));
     let said = read(&folder);
     if std::env::var_os("AFTERIMAGE_BLESS").is_some() {
-        assert_eq!(missing(&said), Vec::<String>::new(), "what is said in {}", folder.display());
+        assert_eq!(missing(&said), Vec::<String>::new(), "records in {}", folder.display());
         fs::write(table_path(), print(&said)).unwrap();
     }
     let names = |held: &[Held]| -> BTreeSet<_> {
@@ -72,17 +73,17 @@ fn the_table_is_what_the_tests_said() {
     let (said, printed) = (names(&said), names(&parse(&fs::read_to_string(table_path()).unwrap())));
     let of = |a: &BTreeSet<_>, b: &BTreeSet<_>| a.difference(b).cloned().collect::<Vec<(String, String, String)>>();
     if workspace().join("../shared/data").is_dir() {
-        assert_eq!(of(&printed, &said), [], "in the table, and not said by any test");
+        assert_eq!(of(&printed, &said), [], "in the table, but recorded by no test");
     } else {
-        // Not eprintln: the harness would swallow it.
+        // Not eprintln!, which the test harness captures.
         let without = of(&printed, &said).len();
         let _ =
             writeln!(std::io::stderr(), "SKIPPED: no ../shared/data; {without} lines of the table were not compared");
     }
-    assert_eq!(of(&said, &printed), [], "said by tests, and not in the table");
+    assert_eq!(of(&said, &printed), [], "recorded by tests, but not in the table");
 }
 
-/// What tests have left in the folder, in order.
+/// The records of tests in the folder, sorted.
 fn read(folder: &Path) -> Vec<Held> {
     let mut held: Vec<Held> = fs::read_dir(folder)
         .unwrap()
@@ -99,7 +100,7 @@ fn read(folder: &Path) -> Vec<Held> {
     held
 }
 
-/// The checks notice a row without a test, a side without one, and a row of no list.
+/// The checks find a row without a test, a side without a test, and an unknown row.
 #[test]
 fn what_is_missing_is_noticed() {
     let whole: Vec<Held> = ROWS
@@ -107,7 +108,7 @@ fn what_is_missing_is_noticed() {
         .flat_map(|r| r.sides.iter().map(|side| Held::new(r.id, side, "reservoir::drift", "1412.7")))
         .collect();
     assert_eq!(missing(&whole), Vec::<String>::new());
-    assert_eq!(parse(&print(&whole)), whole, "what is printed is read again");
+    assert_eq!(parse(&print(&whole)), whole, "the printed table parses to the same records");
     let without = |row: &str, side: &str| {
         missing(&whole.iter().filter(|h| h.row != row || h.side != side).cloned().collect::<Vec<_>>())
     };
@@ -117,11 +118,11 @@ fn what_is_missing_is_noticed() {
     assert_eq!(missing(&more), ["H85 is no row"]);
 }
 
-/// What a test says is left where it is looked for.
+/// Sides are written as the table expects, and `record` works without a folder.
 #[test]
 fn a_record_has_a_name_that_is_read_again() {
     assert_eq!([Side::Cpu, Side::Gpu, Side::Tool].map(|s| s.to_string()), ["CPU", "GPU", "tool"]);
-    // Without the folder it is printed only.
+    // Without a folder, it only prints.
     if std::env::var_os("AFTERIMAGE_STABILITY").is_none() {
         record("H01", Side::Cpu, "a::b::{{closure}}", "1");
     }

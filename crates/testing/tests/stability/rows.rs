@@ -1,13 +1,13 @@
-//! The contract: which input must give what. The numbers are those of the list that the project was designed with.
+//! The contract: inputs, and what must hold for them. The numbering is that of the project's design document.
 
 /// A hard case.
 pub struct Row {
     pub id: &'static str,
     pub input: &'static str,
     pub must: &'static str,
-    /// Sides that a test has to hold it on, as `Side` prints them.
+    /// Sides that need a test, as `Side` prints them.
     pub sides: &'static [&'static str],
-    /// Where the row cannot hold as it stands: why, and the bound that does hold.
+    /// Limit of the row: why it does not hold as stated, and the bound that does.
     pub limit: Option<&'static str>,
 }
 
@@ -25,7 +25,7 @@ impl Row {
     }
 }
 
-/// All of them, in order.
+/// All rows, in order.
 pub const ROWS: [Row; 84] = [
     // Reservoir arithmetic
     row(
@@ -44,7 +44,7 @@ pub const ROWS: [Row; 84] = [
     ),
     row("H05", "w_sum = 65504 in half storage, w = 1", "no Inf; saturates; documented selection floor", BOTH).but(
         "weight sums are not stored as halves, but with 16 significant bits up to 2^100: a plain sum of \
-         ones goes on to 65536, where replacement is 1/65537 a frame.",
+         ones grows to 65536, where the replacement probability is 1/65537 per frame.",
     ),
     row(
         "H06",
@@ -60,17 +60,17 @@ pub const ROWS: [Row; 84] = [
         BOTH,
     )
     .but(
-        "there is no cap. Stored sums stall between 256 and 363 times the weight, which holds the stated \
+        "there is no cap. Stored sums stall between 256 and 363 times the weight, which keeps the stated \
          floor of 1/364.",
     ),
     row("H08", "same in f32, 1e6 frames", "s = 1412.7 +- 0.5 (sqrt(2n) = 1414.2); compare to f64", BOTH).but(
-        "in the arithmetic. Stored between frames, the sum stalls between 256 and 363 times the weight \
+        "holds for the arithmetic. As stored between frames, the sum stalls between 256 and 363 times the weight \
          (H07).",
     ),
     row("H09", "biased, w=0.05, f16", "stall at 2.83 after 1401 frames; scale invariance: s(w)/w equal for all w", CPU)
         .but(
-            "in the arithmetic: exactly for powers of two, to 3e-5 for other weights. Where the stored sum \
-         stalls depends on the mantissa: 256 to 363 times the weight.",
+            "holds for the arithmetic: exactly for powers of two, to 3e-5 for other weights. The stored sum stalls \
+         at 256 to 363 times the weight, depending on the mantissa.",
         ),
     row(
         "H10",
@@ -79,7 +79,7 @@ pub const ROWS: [Row; 84] = [
         CPU,
     )
     .but(
-        "in f64. In f32 the sum stays within 1e-3 for 1.2e6 frames and stalls at 4096 times the weight; \
+        "holds in f64. In f32 the sum stays within 1e-3 for 1.2e6 frames and stalls at 4096 times the weight; \
          stored, it stalls earlier (H07).",
     ),
     row(
@@ -103,13 +103,13 @@ pub const ROWS: [Row; 84] = [
     row("H14", "combine(A,combine(B,C)) vs combine(combine(A,B),C)", "same law in unbiased mode", CPU),
     row("H15", "m-count/age at u16 or u8 max", "saturates, never wraps to 0", BOTH),
     row("H16", "cap M: history cap = 8, 32, infinite", "step response half-life equals theory +- 5 %", CPU).but(
-        "no setting caps the history. The kernel answers a step as theory says if its caller caps the \
+        "no setting caps the history. The kernel's step response agrees with theory if its caller caps the \
          sum.",
     ),
     row("H17", "weight negative (bad caller)", "treated as 0, counted, debug warning; never negative w_sum", BOTH).but(
-        "no caller gives weights: they follow from the gaze, and a candidate that must not be used has \
-         weight 0. Such candidates are counted and warned of; in the kernel, a negative weight counts as \
-         0, silently.",
+        "callers cannot pass weights: they follow from the gaze, and an invalid candidate gets weight 0. \
+         Invalid candidates are counted and reported as a warning; the kernel treats a negative weight as 0 \
+         silently.",
     ),
     row("H18", "weight NaN / +-Inf", "treated as 0; sample dropped; previous reservoir survives", BOTH),
     row(
@@ -137,7 +137,7 @@ pub const ROWS: [Row; 84] = [
         BOTH,
     )
     .but(
-        "samples are remembered as halves: bit for bit for colors that halves hold, else the nearest \
+        "samples are stored as halves: bit-exact for colors that halves represent, else the nearest \
          half.",
     ),
     // Random numbers
@@ -153,7 +153,7 @@ pub const ROWS: [Row; 84] = [
         "forbidden: frame t+1 shows frame t shifted; cross-correlation at every shift abs rho < 4/sqrt N",
         CPU,
     )
-    .but("over 31 x 31 shifts of a 128 x 128 picture. Over many more, chance alone passes 4 / sqrt N."),
+    .but("over 31 x 31 shifts of a 128 x 128 picture. Over many more shifts, chance alone exceeds 4 / sqrt N."),
     row(
         "H25",
         "(x,y,frame,purpose) hash, 2^24 samples",
@@ -172,7 +172,7 @@ pub const ROWS: [Row; 84] = [
         "streams independent, or *identical* when the option for binocular agreement is on",
         CPU,
     )
-    .but("there is no option for binocular agreement: two views always draw independent numbers."),
+    .but("there is no option for binocular agreement: two views always use independent numbers."),
     row("H28", "CPU vs GPU", "bit-identical integer stream for 1e6 (x,y,f)", BOTH),
     row("H29", "same frame re-run", "bit-identical output (determinism), any workgroup size", BOTH),
     // Color difference
@@ -193,7 +193,7 @@ pub const ROWS: [Row; 84] = [
     row(
         "H34",
         "dark noise sigma=0.002 linear",
-        "Delta L* about 1.8: gate must not flush; noise floor parameter tested",
+        "Delta L* about 1.8: the gate must not reject history; noise floor parameter tested",
         CPU,
     ),
     row("H35", "8-bit linear step 1/255 near black", "Delta L* 3.54: quantised sources must not look like change", CPU)
@@ -220,32 +220,32 @@ pub const ROWS: [Row; 84] = [
     row(
         "H41",
         "reversed-Z infinite far, d=0 (sky)",
-        "linearise gives \"far\" flag, not Inf; sky-sky never flushes, sky-object always",
+        "linearise gives \"far\" flag, not Inf; sky-sky never rejects history, sky-object always does",
         BOTH,
     ),
     row("H42", "d=1 (near), d slightly >1 or <0 from precision", "clamped; finite", BOTH),
     row(
         "H43",
         "half-float depth, z 1 to 1e5",
-        "compared in stored encoding; step at 100 m is 6 cm, at 1 km 0.5 m; no permanent flush or permanent accept",
+        "compared in stored encoding; step at 100 m is 6 cm, at 1 km 0.5 m; no permanent rejection or acceptance",
         CPU,
     )
-    .but("Linear halves end at 65504 m: what is further is the sky. One step of a reversed half with near 0.1 m passes the tolerance beyond 16.4 km, where noise of the depth flushes for a frame at a time."),
+    .but("Linear halves end at 65504 m: farther surfaces count as sky. With near = 0.1 m, one step of a reversed half exceeds the tolerance beyond 16.4 km, where depth noise rejects history for single frames."),
     row(
         "H44",
         "grazing plane",
-        "slope-scaled threshold: static camera never flushes at any angle <= 89.9 degrees",
+        "slope-scaled threshold: a static camera never rejects history at any angle <= 89.9 degrees",
         BOTH,
     ),
-    row("H45", "camera dolly 1 m toward wall", "expected-depth prediction used; pure motion does not flush", BOTH),
-    row("H46", "1-px wire over far wall, jittered", "flush energy bounded, no alternate-frame blinking", BOTH)
-    .but("A wire that jitter moves between two columns is another surface in each of them in every frame: these show the candidate, so they alternate as the input does and no more. Beside them wrs is constant, and smr blinks by less than 1e-3 of the wire's energy."),
-    row("H47", "depth NaN in 1 px", "that px flushes; neighbours unchanged", BOTH),
+    row("H45", "camera dolly 1 m toward wall", "expected-depth prediction used; pure motion does not reject history", BOTH),
+    row("H46", "1-px wire over far wall, jittered", "energy of history rejections bounded, no alternate-frame blinking", BOTH)
+    .but("If jitter moves the wire between two columns, each of the two shows another surface in every frame. They show the candidate, so they alternate as much as the input. All other columns are constant with wrs, and blink by less than 1e-3 of the wire's energy with smr."),
+    row("H47", "depth NaN in 1 px", "history of that px rejected; neighbours unchanged", BOTH),
     row("H48", "near/far plane changes between frames", "linear compare unaffected", CPU)
-    .but("Planes belong to a context: engines that move them hand over distances, or make a new context. What is stored does not depend on planes: a history goes on under others without a flush."),
+    .but("Near and far planes are fixed per context: engines that change them pass distances, or create a new context. Stored depth does not depend on the planes, so history stays valid if they change."),
     row("H49", "orthographic projection", "linear depth path used", CPU),
     row("H50", "two coplanar z-fighting surfaces", "bounded age oscillation, no color outside inputs", BOTH)
-    .but("smr relights by a gain of 1/5 to 5: nothing beyond the inputs on frames that are low-passed as their level of detail says, up to the gain where single pixels claim to be coarse. Its bound is S5: between the candidate and the history at that gain."),
+    .but("smr relights history by a gain of 1/5 to 5. Frames that are low-passed according to their level of detail show no color outside the inputs; single pixels with a false coarse level of detail can exceed them up to the gain. Its bound is S5: between the candidate and the history at that gain."),
     // Motion and reprojection
     row("H51", "static camera, 1e3 frames, any scene", "reprojection is the identity bit-exactly (nearest)", BOTH),
     row("H52", "integer pixel shift (3,-2)", "history moves exactly; border ring flagged new", BOTH),
@@ -275,7 +275,7 @@ pub const ROWS: [Row; 84] = [
         "nearest-depth MV dilation optional; no bleed wider than 1 px",
         BOTH,
     ),
-    row("H59", "zoom (divergent field)", "holes filled by current frame; duplicates allowed, ages kept", BOTH),
+    row("H59", "zoom (divergent field)", "disoccluded pixels filled by the current frame; duplicates allowed, ages kept", BOTH),
     row("H60", "full 180 degrees turn in 1 frame", "full reset, cost no higher than normal frame x1.1", BOTH),
     // Gaze and foveation
     row(
@@ -301,7 +301,7 @@ pub const ROWS: [Row; 84] = [
     row(
         "H66",
         "gaze saccade 20 degrees between frames",
-        "old fovea keeps its samples (that is the point), decay per theory",
+        "old fovea keeps its samples, with decay per theory",
         BOTH,
     ),
     row(
@@ -311,7 +311,7 @@ pub const ROWS: [Row; 84] = [
         CPU,
     ),
     row("H68", "latency injected 0-150 ms", "JOD curve monotone; report per latency", CPU)
-    .but("JOD is FovVideoVDP's, which is no dependency of this project: the eccentricity-weighted PSNR and the error in the true fovea are monotone over latency."),
+    .but("JOD needs FovVideoVDP, which is not a dependency of this project. Instead, the eccentricity-weighted PSNR and the error in the true fovea are monotone over latency."),
     row(
         "H69",
         "mip simulator, constant image",
@@ -324,7 +324,7 @@ pub const ROWS: [Row; 84] = [
     row(
         "H72",
         "exposure x256 in one frame, ratio supplied",
-        "no flush, no flash: history scaled; ratio absent -> gate reacts, recovers <= N frames",
+        "no history rejection, no flash: history scaled; ratio absent -> gate reacts, recovers <= N frames",
         BOTH,
     ),
     row(
@@ -334,12 +334,12 @@ pub const ROWS: [Row; 84] = [
         BOTH,
     ),
     row("H74", "strobing light 1 frame on/off", "no permanent bias", BOTH)
-    .but("smr accumulates equally coarse history in 10-bit storage: what is left of a weak strobe stalls at up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default (measured 1.1 %). wrs and taa leave nothing."),
+    .but("smr accumulates history of the same level of detail in 10-bit storage: the residue of a weak strobe stalls at up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default (measured 1.1 %). wrs and taa leave no residue."),
     row("H75", "alternating black/white frames", "output is one of the two, mean over time unbiased", BOTH),
     row("H76", "resize, odd to even, DPI change, 0x0 minimise", "no panic; reset or resample; bounds valid", BOTH),
     row("H77", "pause 10 s then resume; device lost", "treated as cut; no stale image for even one frame", BOTH),
     row("H78", "reset flag two frames running; reset at frame 0", "identical to fresh context, bit for bit", BOTH),
-    row("H79", "poison-filled (NaN) freshly allocated history", "never visible", BOTH),
+    row("H79", "freshly allocated history filled with NaN", "never visible", BOTH),
     // Path tracer and platform
     row(
         "H80",
@@ -354,7 +354,7 @@ pub const ROWS: [Row; 84] = [
         "offset scaled by position magnitude; no acne/leak beyond bound",
         BOTH,
     )
-    .but("at 1e6 m floats are 0.06 m apart, so that nothing of 1e-3 m exists there: each of the two is held alone."),
+    .but("at 1e6 m, adjacent floats are 0.06 m apart, so geometry of 1e-3 m cannot exist there: the two are tested separately."),
     row(
         "H83",
         "sampling r=0, r->1, grazing cos theta=1e-7, roughness 0 and 1, pdf->0, albedo=1 (furnace test)",
@@ -368,5 +368,5 @@ pub const ROWS: [Row; 84] = [
         "difference <= published tolerance; start-up self-test prints NaN/denormal/twoSum behaviour",
         GPU,
     )
-    .but("measured on software Vulkan alone, where the tolerance is 0: `afterimage info adapters --self-test` says for any other adapter."),
+    .but("measured on software Vulkan only, where the tolerance is 0; `afterimage info adapters --self-test` tests any other adapter."),
 ];

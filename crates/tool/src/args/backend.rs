@@ -1,25 +1,25 @@
-//! `--backend`: what computes.
+//! `--backend`: CPU or GPU.
 
 use crate::failure::Failure;
 use afterimage_lab::device::{Backend, Headless};
 use clap::ValueEnum;
 
-/// What to do without an adapter.
+/// Message when there is no adapter.
 pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
 
-/// Names of backends.
+/// Values of `--backend`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BackendName {
     /// A GPU if there is one, else the CPU
     Auto,
     /// The CPU
     Cpu,
-    /// Any adapter, a software one too
+    /// Any adapter, including software ones
     Gpu,
 }
 
 impl BackendName {
-    /// Chooses what computes.
+    /// Opens the backend.
     pub fn open(self) -> Result<Backend, Failure> {
         let found = match self {
             Self::Cpu => None,
@@ -32,7 +32,7 @@ impl BackendName {
         Ok(found.map_or(Backend::Cpu, Backend::Gpu))
     }
 
-    /// The same with textures and buffers as large as the adapter offers: scenes take larger ones than frames.
+    /// Opens the backend with the adapter's own limits on textures and buffers, since scenes exceed wgpu's defaults.
     pub fn open_for_scenes(self) -> Result<Backend, Failure> {
         Ok(match self.open()? {
             Backend::Gpu(device) => Backend::Gpu(Headless::find_roomy(device.is_software()).unwrap_or(device)),

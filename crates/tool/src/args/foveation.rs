@@ -1,9 +1,9 @@
-//! How frames are foveated.
+//! Options of the foveation simulator.
 
 use afterimage::{Filter, Foveation};
 use clap::{Args, ValueEnum};
 
-/// Where a frame is how coarse.
+/// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
     /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, or none
@@ -21,13 +21,13 @@ pub struct FoveationArgs {
     /// Block edge in the middle region, pixels, a power of two
     #[arg(long, default_value_t = 8, value_name = "N")]
     pub rate_mid: u32,
-    /// Block edge beyond, pixels, a power of two
+    /// Block edge beyond the middle region, pixels, a power of two
     #[arg(long, default_value_t = 16, value_name = "N")]
     pub rate_far: u32,
 }
 
 impl FoveationArgs {
-    /// The library's form.
+    /// Converts the options to the library's settings.
     pub fn foveation(&self) -> Foveation {
         Foveation {
             filter: match self.filter {
@@ -45,21 +45,21 @@ impl FoveationArgs {
     }
 }
 
-/// Names of foveation simulators.
+/// Values of `--foveation`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilterName {
     /// Box mip levels, trilinear
     Mip,
-    /// Gaussian blur growing with eccentricity
+    /// Gaussian blur that grows with eccentricity
     Gauss,
-    /// One point sample a block
+    /// One point sample per block
     Block,
     /// Full rate everywhere
     Off,
 }
 
 impl FilterName {
-    /// As typed.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mip => "mip",

@@ -1,4 +1,4 @@
-//! `--gaze` and its companions: from what was typed to one position a frame.
+//! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
@@ -6,42 +6,42 @@ use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOp
 use clap::{Args, ValueEnum};
 use std::path::Path;
 
-/// Seconds of a gaze that has no end of its own.
+/// Duration of a fixed or synthetic gaze, seconds.
 const DEFAULT_SECONDS: f64 = 5.0;
 
-/// Where the eye looks.
+/// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
 pub struct GazeArgs {
     /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
     #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: String,
-    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's geometry
     #[arg(long, value_enum)]
     pub gaze_map: Option<GazeMapName>,
-    /// Start in the scanpath, seconds
+    /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
 }
 
-/// Names of gaze maps.
+/// Values of `--gaze-map`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum GazeMapName {
-    /// Keep visual angles, centre on centre
+    /// Keep visual angles, screen center to frame center
     Angle,
     /// Stretch screen to frame
     Fit,
 }
 
-/// One gaze position a frame.
+/// One gaze position per frame.
 pub struct Track {
-    /// Frame pixels; `None`: lost.
+    /// Frame pixels; `None`: tracking lost.
     pub px: Vec<Option<[f32; 2]>>,
-    /// What was done to screen positions.
+    /// Map from screen to frame: `angle`, `fit`, or `none` for positions that are frame pixels already.
     pub map: &'static str,
 }
 
 impl GazeArgs {
-    /// Resolves the options for `frames` frames, or for as many as the gaze has.
+    /// Resolves the options for `frames` frames, by default for the duration of the gaze.
     pub fn resolve(&self, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
         if !(self.start >= 0.0 && self.start.is_finite()) {
             return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
@@ -97,7 +97,7 @@ fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
     };
     match (x.trim().parse::<f32>(), y.trim().parse::<f32>()) {
         (Ok(x), Ok(y)) if x.is_finite() && y.is_finite() => Ok(Some([x, y])),
-        // A comma may be part of a file's name.
+        // A file name may contain a comma.
         _ if Path::new(text).exists() => Ok(None),
         _ => {
             Err(Failure::Input(format!("--gaze {text}: expected X,Y in frame pixels, a CSV file, or synthetic[:SEED]")))

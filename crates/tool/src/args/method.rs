@@ -1,9 +1,9 @@
-//! Methods and their tunables.
+//! Methods and their settings.
 
 use afterimage::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
 use clap::{Args, ValueEnum};
 
-/// Names of methods.
+/// Values of `--method`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
     /// The foveated frame alone
@@ -19,7 +19,7 @@ pub enum MethodName {
 }
 
 impl MethodName {
-    /// As typed, and as folders are named.
+    /// Name on the command line, and name of the output folder.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -31,49 +31,49 @@ impl MethodName {
     }
 }
 
-/// Ablations of the reservoir method.
+/// Settings and ablations of the methods.
 #[derive(Args, Clone, Debug)]
 pub struct WrsArgs {
-    /// How a reservoir picks its sample
+    /// Sampling algorithm of the reservoir
     #[arg(long, value_enum, default_value = "a-chao")]
     pub wrs_sampler: SamplerName,
-    /// How history is forgotten: bernoulli, exponential:LAMBDA (per frame), or none
+    /// Decay of the history's weight: bernoulli, exponential:LAMBDA (per frame), or none
     #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS")]
     pub wrs_bias: Bias,
-    /// Color difference at which the gate is shut, Delta E 94 above the offset
+    /// Color difference above the offset at which the gate closes, Delta E 94
     #[arg(long, default_value_t = 100.0, value_name = "X")]
     pub gate_divisor: f32,
-    /// Color difference that costs nothing, Delta E 94
+    /// Color difference that the gate ignores, Delta E 94
     #[arg(long, default_value_t = 0.0, value_name = "X")]
     pub gate_offset: f32,
-    /// What the gate compares: the whole color, or its lightness alone
+    /// Color difference of the gate: of the whole color, or of lightness alone
     #[arg(long, value_enum, default_value = "delta-e94")]
     pub gate_metric: GateMetricName,
-    /// Never look at color
+    /// Turn the color gate off
     #[arg(long)]
     pub no_gate: bool,
-    /// smr: largest share of equally coarse history in what is shown, 0 to 0.98; default: 0.9, of frames traced with --sampling 0.95
+    /// smr: largest weight of history at the same level of detail, 0 to 0.98; default: 0.9, for frames traced with --sampling 0.95
     #[arg(long, value_name = "X")]
     pub smr_accumulate: Option<f32>,
-    /// smr: factor on the differences from history that are tolerated, 0.1 to 10
+    /// smr: factor on the tolerated difference from history, 0.1 to 10
     #[arg(long, default_value_t = Smr::default().tolerance, value_name = "X")]
     pub smr_tolerance: f32,
-    /// smr: do not follow changes of light
+    /// smr: do not adapt history to changes of light
     #[arg(long)]
     pub no_relight: bool,
-    /// Relative difference of distance that is still the same surface, above 0 and below 1
+    /// Depth test: relative depth difference within one surface, above 0 and below 1
     #[arg(long, default_value_t = DepthTest::default().relative, value_name = "X")]
     pub depth_relative: f32,
-    /// Pixels of a surface's own slope that its distance may be off, 0 to 64; 0: the test knows no slope
+    /// Depth test: tolerated depth change along the surface's slope, in pixels of offset, 0 to 64; 0: ignore the slope
     #[arg(long, default_value_t = DepthTest::default().slope_px, value_name = "PX")]
     pub depth_slope: f32,
-    /// Never look at depth
+    /// Turn the depth test off: history is never rejected as disoccluded
     #[arg(long)]
     pub no_flush: bool,
 }
 
 impl WrsArgs {
-    /// The library's form of a method.
+    /// The library's settings for a method. `noisy`: the input is path traced.
     pub fn settings(&self, method: Method, seed: u64, noisy: bool) -> Settings {
         let preset = if noisy { Settings::traced() } else { Settings::default() };
         Settings {
@@ -104,22 +104,22 @@ impl WrsArgs {
     }
 }
 
-/// Names of samplers.
+/// Values of `--wrs-sampler`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SamplerName {
-    /// By the ratio of weight sums
+    /// A-Chao: replace with the ratio of weight to weight sum
     AChao,
-    /// By the larger key
+    /// A-ES: keep the sample with the larger key
     AEs,
 }
 
-/// Names of what the gate compares.
+/// Values of `--gate-metric`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum GateMetricName {
     /// The whole color
     #[value(name = "delta-e94")]
     DeltaE94,
-    /// Lightness alone: blind to changes of hue
+    /// Lightness alone, which ignores changes of hue
     Lightness,
 }
 

@@ -1,4 +1,4 @@
-//! Options that several subcommands share, and how their values are read.
+//! Options that several subcommands share, and parsers of their values.
 
 #[cfg(feature = "full")]
 pub mod backend;

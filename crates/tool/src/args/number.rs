@@ -1,4 +1,4 @@
-//! Numbers with ranges.
+//! Parsers of numbers with ranges.
 
 use std::str::FromStr;
 
@@ -12,7 +12,7 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Samples a pixel.
+/// Samples per pixel.
 pub fn parse_samples(text: &str) -> Result<u32, String> {
     within(text, "1 to 1048576 samples", |v| (1..=1 << 20).contains(v))
 }

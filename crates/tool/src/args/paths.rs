@@ -1,39 +1,39 @@
-//! What paths are traced: `--max-depth`, `--integrator`, `--bsdf`, `--effects`.
+//! Settings of the path tracer: `--max-depth`, `--integrator`, `--bsdf`, `--effects`.
 
 use crate::failure::Failure;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};
 use clap::{Args, ValueEnum};
 
-/// What paths are traced.
+/// Settings of the path tracer.
 #[derive(Args, Clone, Debug)]
 pub struct PathArgs {
-    /// Most scattering events after the camera ray, 0 to 64
+    /// Largest number of scattering events after the camera ray, 0 to 64
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub max_depth: u32,
-    /// How paths find light: both ways, by looking for lights, or by chance (the thesis' way)
+    /// Integrator: multiple importance sampling, next-event estimation, or BSDF sampling alone (as in the thesis)
     #[arg(long, value_enum, default_value = "mis")]
     pub integrator: IntegratorName,
-    /// How surfaces scatter: the principled model, or the thesis' Lambert and Phong
+    /// Scattering model of surfaces: principled, or Lambert and Phong as in the thesis
     #[arg(long, value_enum, default_value = "auto")]
     pub bsdf: BsdfName,
-    /// What the kernels are specialised to: what the scene needs, all, or a list of names (trace -v prints them)
+    /// Effects compiled into the kernels: those that the scene needs, all, or a list of names (trace -v prints them)
     #[arg(long, default_value = "auto", value_name = "auto|all|LIST")]
     effects: String,
 }
 
-/// Names of integrators.
+/// Values of `--integrator`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum IntegratorName {
-    /// Both ways, weighted by the power heuristic
+    /// Multiple importance sampling of lights and BSDF, power heuristic
     Mis,
-    /// By looking for lights
+    /// Next-event estimation
     Nee,
-    /// By chance
+    /// BSDF sampling alone
     Naive,
 }
 
-/// Names of scattering models.
+/// Values of `--bsdf`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BsdfName {
     /// The principled model
@@ -43,7 +43,7 @@ pub enum BsdfName {
 }
 
 impl PathArgs {
-    /// The library's form.
+    /// Converts the options to the library's settings.
     pub fn settings(&self, seed: u64) -> Result<TraceSettings, Failure> {
         if self.max_depth > MAX_DEPTH {
             return Err(Failure::Input(format!("--max-depth {}: expected 0 to {MAX_DEPTH}", self.max_depth)));
@@ -75,7 +75,7 @@ fn parse_effects(text: &str) -> Result<Option<Effects>, Failure> {
                 Effect::ALL.iter().copied().find(|e| e.name() == name).ok_or_else(|| {
                     let names: Vec<_> = Effect::ALL.iter().map(|e| e.name()).collect();
                     Failure::Input(format!(
-                        "--effects: '{name}' is none; expected auto, all, none, or a list of {}",
+                        "--effects: '{name}' is no effect; expected auto, all, none, or a list of {}",
                         names.join(", ")
                     ))
                 })

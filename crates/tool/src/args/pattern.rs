@@ -1,4 +1,4 @@
-//! `--sampling` and its companions.
+//! `--sampling` and its options.
 
 use crate::args::gaze::GazeArgs;
 use crate::failure::Failure;
@@ -6,7 +6,7 @@ use afterimage::ViewGeometry;
 use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 use clap::{Args, ValueEnum};
 
-/// How samples are spread over the frame, and where the eye looks.
+/// Sampling pattern and gaze.
 #[derive(Args, Clone, Debug)]
 pub struct PatternArgs {
     #[command(flatten)]
@@ -15,48 +15,48 @@ pub struct PatternArgs {
     gaze: GazeArgs,
 }
 
-/// How samples are spread over the frame.
+/// Sampling pattern of traced frames.
 #[derive(Args, Clone, Debug)]
 pub struct SamplingArgs {
-    /// How samples are spread over the frame; of run: uniform leaves foveation to a simulator, or with --foveation off to nobody
+    /// Sampling pattern. With run, uniform frames are foveated by a simulator, or not at all with --foveation off
     #[arg(long, value_enum, default_value = "uniform")]
     pub sampling: SamplingName,
-    /// Samples of regions: of a pixel in the fovea, of a block in the middle, of a block outside
+    /// regions: samples per pixel in the fovea, per block in the middle region, per block outside
     #[arg(long, value_delimiter = ',', default_value = "32,16,8", value_name = "A,B,C")]
     pub region_spp: Vec<u32>,
-    /// Edges of the blocks of regions in the middle and outside, pixels
+    /// regions: block edges in the middle region and outside, pixels
     #[arg(long, value_delimiter = ',', default_value = "2,4", value_name = "N,M")]
     pub region_block: Vec<u32>,
-    /// Diameters of the two inner regions, degrees
+    /// regions: diameters of the two inner regions, degrees
     #[arg(long, value_delimiter = ',', default_value = "5.2,17", value_name = "E1,E2")]
     pub region_deg: Vec<f32>,
-    /// Radii of the three inner layers, degrees
+    /// layers: radii of the three inner layers, degrees
     #[arg(long, value_delimiter = ',', default_value = "6,10,20", value_name = "A,B,C")]
     pub layer_deg: Vec<f32>,
-    /// Distances of target pixels in the four layers, pixels
+    /// layers: spacing of traced pixels in the four layers, pixels
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4", value_name = "A,B,C,D")]
     pub layer_step: Vec<u32>,
-    /// Radius of what a headset's lens shows around the view's axis, degrees: layers trace nothing outside; default: all of the screen
-    /// is seen
+    /// layers: radius of the area that a headset's lens shows, degrees from the view's axis; nothing is traced outside; default: the whole
+    /// frame
     #[arg(long, value_name = "DEG")]
     pub lens_deg: Option<f32>,
 }
 
-/// Names of sampling patterns.
+/// Values of `--sampling`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SamplingName {
-    /// As many everywhere
+    /// The same number of samples in every pixel
     Uniform,
     /// Three regions with blocks
     Regions,
     /// Nested lattices with blend masks
     Layers,
-    /// As dense as the eye's cells
+    /// Density proportional to that of retinal ganglion cells
     Acuity,
 }
 
 impl SamplingName {
-    /// As typed.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
@@ -68,7 +68,7 @@ impl SamplingName {
 }
 
 impl PatternArgs {
-    /// Gaze of every frame in pixels; what is lost holds the last one.
+    /// Gaze of every frame in pixels; the last known position where tracking is lost.
     pub fn gaze(&self, view: &ViewGeometry, fps: f32, frames: u64) -> Result<Vec<[f32; 2]>, Failure> {
         let track = self.gaze.resolve(view, fps, Some(frames))?;
         let mut last = view.size_px().map(|s| 0.5 * (s as f32 - 1.0));
@@ -84,7 +84,7 @@ impl PatternArgs {
 }
 
 impl SamplingArgs {
-    /// The library's form.
+    /// Converts the options to the library's pattern.
     pub fn sampling(&self) -> Result<Sampling, Failure> {
         Ok(match self.sampling {
             SamplingName::Uniform => Sampling::Uniform,
@@ -106,7 +106,7 @@ impl SamplingArgs {
         })
     }
 
-    /// Samples of a pixel where it is sampled most.
+    /// Samples per pixel where the pattern is densest.
     pub fn most_samples(&self, samples: u32) -> u32 {
         match self.sampling {
             SamplingName::Regions => self.region_spp[0],
@@ -114,7 +114,7 @@ impl SamplingArgs {
         }
     }
 
-    /// Samples that the pattern would take without blends and borders.
+    /// Samples of the pattern without overlaps for blending and partial blocks at borders, if known.
     pub fn ideal_samples(
         &self,
         sampling: &Sampling,
@@ -130,7 +130,7 @@ impl SamplingArgs {
     }
 }
 
-/// As many values as the option has, all of them allowed.
+/// Checks that an option has exactly `N` values, all within range.
 fn exactly<T: Copy + std::fmt::Display, const N: usize>(
     option: &str,
     values: &[T],

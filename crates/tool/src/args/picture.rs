@@ -1,18 +1,18 @@
-//! What is written as pictures.
+//! Debug views and file formats.
 
 use afterimage::DebugView;
 use clap::ValueEnum;
 
-/// Names of debug views.
+/// Values of `--debug`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DebugName {
-    /// Weight sum of the reservoir; of smr the sharpness stored
+    /// Weight sum of the reservoir; with smr the level of detail of the history
     Weight,
-    /// Frames since the shown sample was shaded; wrs only
+    /// Frames since the shown sample was rendered; wrs only
     Age,
-    /// Share of the history's weight that survived
+    /// Fraction of the history's weight that was kept
     Survival,
-    /// What became of the history
+    /// Validity of the history: reused, or why it was rejected
     Flush,
     /// Gate value
     Gate,
@@ -21,7 +21,7 @@ pub enum DebugName {
 }
 
 impl DebugName {
-    /// As typed, and as folders are named.
+    /// Name on the command line, and name of the output folder.
     pub fn name(self) -> &'static str {
         match self {
             Self::Weight => "weight",
@@ -33,7 +33,7 @@ impl DebugName {
         }
     }
 
-    /// The library's form.
+    /// The library's debug view.
     pub fn view(self) -> DebugView {
         match self {
             Self::Weight => DebugView::Quality,

@@ -1,4 +1,4 @@
-//! A clip through the pipeline, frame by frame, onto disk: what `run` and `demo` share.
+//! Runs the pipeline over a clip, frame by frame, and writes frames and scores to disk. Shared by `run`, `demo` and `sweep`.
 
 pub mod run_report;
 
@@ -6,8 +6,8 @@ use crate::args::{DebugName, FormatName};
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
+use crate::report::method::{MethodAccumulator, MethodReport, Share};
 use crate::report::sheet::{Column, Sheet};
-use crate::report::tally::{MethodReport, Share, Tally};
 use afterimage::{DebugView, Foveation, Image, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
@@ -19,60 +19,61 @@ use afterimage_lab::pipeline::{LaneKind, Pipeline, Step};
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
-/// What is to be done with a clip.
+/// Settings of a clip: foveation, methods, gaze, and files to write.
 pub struct Clip {
-    /// Shown in the sheet's first line.
+    /// First line of the contact sheet.
     pub title: String,
     pub geometry: ViewGeometry,
     pub foveation: Foveation,
-    /// Name of each lane, which is also its folder, and what it does.
-    pub lanes: Vec<(&'static str, LaneKind)>,
-    /// One position a frame, in frame pixels; `None`: lost.
+    /// Name of each method, which is also the name of its folder, and its pipeline stage.
+    pub methods: Vec<(&'static str, LaneKind)>,
+    /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
     pub exposure_ev: f32,
     pub format: FormatName,
     pub write_reference: bool,
     pub debug: Vec<DebugName>,
-    /// Whether the methods get the source's trust mask.
+    /// Whether the methods get the source's trust mask (history confidence).
     pub trust: bool,
-    /// Whether the source is told what the history knows, to sample what it does not.
+    /// Whether the source gets the confidence of the history, to trace more samples where it is low.
     pub guided: bool,
     /// Whether FLIP is measured.
     pub flip: bool,
-    /// Share of the pixels that come in broken.
+    /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
     #[cfg(feature = "ablation")]
     pub poison: f32,
     pub backend: Backend,
-    /// Why the CPU, if that was not asked for.
+    /// Reason for the fallback to the CPU, as a suffix for messages; empty without a fallback.
     pub backend_note: &'static str,
 }
 
-/// A frame of a clip, and what became of it.
-pub struct Moment<'a> {
+/// One frame of a clip, and the outputs of all methods for it.
+pub struct FrameResult<'a> {
     pub index: usize,
     pub frame: &'a SourceFrame,
     pub reference: &'a Reference<'a>,
     pub step: &'a Step,
-    /// Camera samples, and CPU time of tracing them, of a frame that its source foveated.
+    /// Camera samples of the frame; `None` unless the source renders foveated frames.
     pub samples: Option<u64>,
+    /// CPU time of tracing those samples, milliseconds.
     #[cfg_attr(not(feature = "full"), expect(dead_code, reason = "sweeps read it"))]
     pub render_ms: Option<f64>,
 }
 
-/// What a clip came to.
+/// Results of a clip.
 #[derive(Default)]
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
     pub foveation_ms: Option<Quartiles>,
-    /// Camera samples of all frames that their source foveated.
+    /// Camera samples of all frames; 0 unless the source renders foveated frames.
     pub samples: u64,
-    /// What computed the methods, in words.
+    /// Device that ran the methods, for messages.
     pub backend: String,
-    /// Where the eye was taken to look.
+    /// Gaze position used for each frame, in frame pixels.
     pub gaze_px: Vec<[f32; 2]>,
 }
 
-/// The first line of a sheet: what is looked at, and how it is foveated.
+/// Title of a contact sheet: input, size and foveation.
 pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &Foveation, simulator: &str) -> String {
     format!(
         "{name}   {}x{}, {frames} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {simulator}",
@@ -83,24 +84,25 @@ pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &Fo
 impl Clip {
     /// Runs the clip and writes everything but `report.json`.
     pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
-        let mut tallies: Vec<Tally> = self.lanes.iter().map(|_| Tally::default()).collect();
-        let mut report = ClipReport { backend: self.backend_in_words(), ..ClipReport::default() };
+        let mut accumulators: Vec<MethodAccumulator> =
+            self.methods.iter().map(|_| MethodAccumulator::default()).collect();
+        let mut report = ClipReport { backend: self.backend_name(), ..ClipReport::default() };
         let mut foveation_ms = vec![];
         let bar = progress::bar(self.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
         )?;
-        let pipeline = self.play(source, &mut |moment| {
-            let encoded = self.score_and_write(moment, &mut tallies, out)?;
-            for ((name, _), tally) in self.lanes.iter().zip(&tallies) {
-                table.row(&tally.row(moment.index, name))?;
+        let pipeline = self.play(source, &mut |result| {
+            let encoded = self.score_and_write(result, &mut accumulators, out)?;
+            for ((name, _), accumulator) in self.methods.iter().zip(&accumulators) {
+                table.row(&accumulator.row(result.index, name))?;
             }
-            report.samples += moment.samples.unwrap_or(0);
-            foveation_ms.push(moment.step.foveation_ms);
-            report.gaze_px.push(moment.step.gaze_px);
-            if moment.index + 1 == self.gaze.len() {
-                self.write_sheet(moment.reference.encoded(), &encoded, &tallies, &report.gaze_px, out)?;
+            report.samples += result.samples.unwrap_or(0);
+            foveation_ms.push(result.step.foveation_ms);
+            report.gaze_px.push(result.step.gaze_px);
+            if result.index + 1 == self.gaze.len() {
+                self.write_sheet(result.reference.encoded(), &encoded, &accumulators, &report.gaze_px, out)?;
             }
             bar.inc(1);
             Ok(())
@@ -109,21 +111,22 @@ impl Clip {
         table.finish()?;
         out.gaze("gaze.csv", &report.gaze_px)?;
         let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
-        let of =
-            |(i, tally): (usize, &Tally)| (self.lanes[i].0, tally.report(pipeline.memory_bytes(i) as f64 / pixels));
-        report.methods = tallies.iter().enumerate().map(of).collect();
+        let of = |(i, accumulator): (usize, &MethodAccumulator)| {
+            (self.methods[i].0, accumulator.report(pipeline.memory_bytes(i) as f64 / pixels))
+        };
+        report.methods = accumulators.iter().enumerate().map(of).collect();
         compare_with_oracle(&mut report.methods);
         report.foveation_ms = Quartiles::of(&foveation_ms);
         Ok(report)
     }
 
-    /// Plays the clip, and hands out each frame with what all methods made of it. Gives the pipeline as the last frame left it.
+    /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the last frame.
     pub fn play(
         &self,
         source: &mut dyn FrameSource,
-        each: &mut dyn FnMut(&Moment<'_>) -> Result<(), Failure>,
+        each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>,
     ) -> Result<Pipeline, Failure> {
-        let kinds: Vec<LaneKind> = self.lanes.iter().map(|l| l.1).collect();
+        let kinds: Vec<LaneKind> = self.methods.iter().map(|l| l.1).collect();
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
@@ -150,13 +153,13 @@ impl Clip {
                 None => pipeline.step(index as u64, &frame, gaze)?,
             };
             let reference = references.next(&full, &step.tracked);
-            each(&Moment { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
+            each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
         }
         Ok(pipeline)
     }
 
-    /// What computes the methods, in words.
-    fn backend_in_words(&self) -> String {
+    /// Device that runs the methods, for messages.
+    fn backend_name(&self) -> String {
         match &self.backend {
             Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
             #[cfg(feature = "full")]
@@ -164,29 +167,29 @@ impl Clip {
         }
     }
 
-    /// The metric for an eye that sees the view's angles.
+    /// FLIP at the pixels per degree of the view, if it is measured.
     pub fn flip(&self) -> Option<Flip> {
         self.flip.then(|| Flip::for_view(&self.geometry))
     }
 
-    /// Scores and writes all lanes of a frame side by side; gives their encoded images.
+    /// Scores and writes the outputs of all methods for a frame, in parallel; returns their encoded images.
     fn score_and_write(
         &self,
-        moment: &Moment<'_>,
-        tallies: &mut [Tally],
+        result: &FrameResult<'_>,
+        accumulators: &mut [MethodAccumulator],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
-        let &Moment { index, frame, reference, step, .. } = moment;
+        let &FrameResult { index, frame, reference, step, .. } = result;
         if self.write_reference {
             self.write_frame(out, "reference", index, &frame.color, reference.encoded())?;
         }
-        tallies
+        accumulators
             .par_iter_mut()
-            .zip(&self.lanes)
+            .zip(&self.methods)
             .zip(&step.shown)
-            .map(|((tally, (name, _)), shown)| {
+            .map(|((accumulator, (name, _)), shown)| {
                 let encoded = metric::encode(&shown.image, self.exposure_ev);
-                tally.push(frame, reference, &encoded, shown, step);
+                accumulator.push(frame, reference, &encoded, shown, step);
                 self.write_frame(out, name, index, &shown.image, &encoded)?;
                 for (debug, picture) in self.debug.iter().zip(&shown.debug) {
                     let folder = format!("debug/{name}/{}", debug.name());
@@ -202,7 +205,10 @@ impl Clip {
         out: &Output,
         folder: &str,
         index: usize,
-        #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "PNGs are made of encoded frames"))]
+        #[cfg_attr(
+            not(feature = "full"),
+            expect(unused_variables, reason = "PNGs are written from the encoded frame")
+        )]
         linear: &Image<[f32; 3]>,
         encoded: &Image<[f32; 3]>,
     ) -> Result<(), Failure> {
@@ -217,14 +223,14 @@ impl Clip {
         &self,
         reference: &Image<[f32; 3]>,
         encoded: &[Image<[f32; 3]>],
-        tallies: &[Tally],
+        accumulators: &[MethodAccumulator],
         gaze_px: &[[f32; 2]],
         out: &Output,
     ) -> Result<(), Failure> {
         let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
-        for (((name, _), shown), tally) in self.lanes.iter().zip(encoded).zip(tallies) {
+        for (((name, _), shown), accumulator) in self.methods.iter().zip(encoded).zip(accumulators) {
             let name = if *name == "none" { "none (foveated only)" } else { name };
-            columns.push(Column { name, shown, scores: Some(tally.scores()) });
+            columns.push(Column { name, shown, scores: Some(accumulator.scores()) });
         }
         let sheet = Sheet {
             title: self.title.clone(),
@@ -233,11 +239,11 @@ impl Clip {
             gaze_px,
             fovea_deg: self.foveation.fovea_deg,
         };
-        out.sheet("sheet.png", &sheet.draw())
+        out.root_picture("sheet.png", &sheet.draw())
     }
 }
 
-/// Fills in the shares, where `none` and `oracle` were run.
+/// Fills in `share_of_oracle` if both `none` and `oracle` were run.
 fn compare_with_oracle(methods: &mut [(&'static str, MethodReport)]) {
     let find = |name: &str| methods.iter().find(|m| m.0 == name).map(|m| m.1.scores.whole);
     let (Some(none), Some(oracle)) = (find("none"), find("oracle")) else {

@@ -4,16 +4,16 @@ use super::{Clip, ClipReport};
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::report::backend::BackendReport;
-use crate::report::tally::MethodReport;
+use crate::report::method::MethodReport;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 
-/// What was asked for, as far as the clip does not know it.
+/// Facts about the run that [`Clip`] does not hold.
 pub struct RunFacts<'a> {
     pub input: &'a str,
     pub fps: f32,
     pub seed: u64,
-    /// What foveates the frames.
+    /// Simulator filter or sampling pattern that foveates the frames.
     pub simulator: &'static str,
     pub gaze: &'a str,
     pub gaze_map: &'a str,
@@ -33,12 +33,12 @@ struct RunReport<'a> {
     exposure_ev: f32,
     backend: BackendReport,
     foveation: FoveationReport,
-    /// Camera samples of all foveated frames; null where a simulator foveates.
+    /// Camera samples of all foveated frames; null if a simulator foveates full-rate frames.
     samples: Option<u64>,
     gaze: &'a str,
     gaze_map: &'a str,
     start_s: f64,
-    /// What FLIP takes the eye's distance from; null without FLIP.
+    /// FLIP's viewing distance, in pixels per degree of visual angle; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
     methods: Methods<'a>,
 }
@@ -54,7 +54,7 @@ struct FoveationReport {
     ms: Option<Quartiles>,
 }
 
-/// Methods in the order they were asked for.
+/// Methods in the order of the command line, as a JSON map.
 struct Methods<'a>(&'a [(&'static str, MethodReport)]);
 
 impl Serialize for Methods<'_> {

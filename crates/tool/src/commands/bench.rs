@@ -1,4 +1,4 @@
-//! `afterimage bench`: what things cost.
+//! `afterimage bench`: times of passes, tracers and effects.
 
 mod effects;
 mod foveated;
@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Time the passes, the path tracer, foveated sampling as the papers did, or what effects cost
+/// Time the passes, the path tracer, foveated sampling as in two papers, or effects
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json\n  \
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
@@ -27,66 +27,65 @@ use std::path::{Path, PathBuf};
 pub struct BenchArgs {
     #[command(subcommand)]
     pub compare: Option<Compare>,
-    /// What is timed
+    /// Subject of the benchmark
     #[arg(value_enum, default_value = "post")]
     pub what: What,
-    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second has an
-    /// eye as wide as that is high), 192x108 for
-    /// effects
+    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second paper's frames are as wide
+    /// as this height), 192x108 for effects
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
-    /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; papers: of each pattern, at least 1,
-    /// default: 3
+    /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; for papers per pattern, at
+    /// least 1, default: 3
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, papers (the first), effects: scenes, separated by commas; default: builtin:courtyard; of effects four built-in ones
+    /// trace, papers (first paper), effects: scenes, separated by commas; default: builtin:courtyard, for effects four built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, papers (the first): where scenes are seen from, as of `afterimage trace`: a camera by name, still, framing, lateral, orbit, or a file;
-    /// default: still
+    /// trace, papers (first paper): camera of the scenes, as for `afterimage trace`: a camera by name, still, framing, lateral, orbit, or a
+    /// file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
-    /// trace, papers, effects: what traces; papers take the adapter, if there is one
+    /// trace, papers, effects: device that traces; papers use the adapter if there is one
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Traces,
     /// effects: write the tables between the markers of this Markdown file, or to a new file
     #[arg(long, value_name = "FILE.md")]
     pub out: Option<PathBuf>,
-    /// effects: also compare with kernels from which an effect's text was cut out
+    /// effects: also compare with kernels whose source lacks the effect
     #[arg(long)]
     pub removal: bool,
-    /// trace: also time foveated frames against uniform ones
+    /// trace: also compare foveated with uniform frames
     #[arg(long)]
     pub foveated: bool,
-    /// Also write the figures as JSON
+    /// Also write the results as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 }
 
-/// What is compared by its errors and not by its time.
+/// Comparisons of errors instead of times.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Compare {
     Patterns(Box<patterns::PatternsArgs>),
     Wrs(Box<wrs_table::WrsTableArgs>),
 }
 
-/// What can be timed.
+/// Subjects of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy of the same bytes as wrs
+    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy pass that moves as many bytes as wrs
     Post,
-    /// The path tracer: rays a second, depth 3, both ways of finding light
+    /// The path tracer: rays per second, depth 3, multiple importance sampling
     Trace,
-    /// Foveated against uniform path tracing, as two papers measured it: Markdown tables with their figures beside ours
+    /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results and ours
     Papers,
     /// The path tracer with and without each effect that a scene does not need
     Effects,
 }
 
-/// What traces.
+/// Values of `--backend`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Traces {
     /// The CPU, and an adapter if there is one: a GPU, else software

@@ -1,4 +1,4 @@
-//! `afterimage demo`: the method at work on a built-in scene, and in words what to look at.
+//! `afterimage demo`: runs the methods on a built-in scene and explains the result.
 
 use crate::args::FormatName;
 use crate::args::gaze::GazeArgs;
@@ -6,7 +6,7 @@ use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{Clip, ClipReport, title};
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::report::tally::MethodReport;
+use crate::report::method::MethodReport;
 use afterimage::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::LaneKind;
@@ -18,12 +18,13 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Example:\n  afterimage demo --out out/demo")]
 pub struct DemoArgs {
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, default_value = "out/demo", value_name = "DIR")]
     pub out: PathBuf,
 }
 
-/// The same by hand. The clip ends a tenth of a second after a wide saccade: when it is seen best what was kept, and what was not.
+/// Arguments of `afterimage run` that give the same result. The clip ends 0.1 s after a wide saccade, when the effect of reuse is
+/// easiest to see.
 pub const BY_HAND: &str = "analytic:still --size 960x540 --gaze synthetic:46 --frames 98 --rate-mid 4 --rate-far 8 \
     --method none,wrs,smr,oracle --reference --no-flip --backend cpu";
 const SIZE: [u32; 2] = [960, 540];
@@ -31,7 +32,7 @@ const FRAMES: u64 = 98;
 const FPS: f32 = 60.0;
 const GAZE: &str = "synthetic:46";
 
-/// What `afterimage run` would plan for [`BY_HAND`].
+/// The clip that `afterimage run` plans for [`BY_HAND`].
 fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
     let source = AnalyticSource::new("still", SIZE, 70.0, FPS)?;
     let geometry = *source.view();
@@ -47,15 +48,15 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: track.map,
         start_s: 0.0,
     };
-    let lane = |method| LaneKind::PostProcess(Settings { method, ..Settings::default() });
+    let post_process = |method| LaneKind::PostProcess(Settings { method, ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation, facts.simulator),
         geometry,
         foveation,
-        lanes: vec![
-            ("none", lane(Method::None)),
-            ("wrs", lane(Method::Wrs)),
-            ("smr", lane(Method::Smr)),
+        methods: vec![
+            ("none", post_process(Method::None)),
+            ("wrs", post_process(Method::Wrs)),
+            ("smr", post_process(Method::Smr)),
             ("oracle", LaneKind::Oracle),
         ],
         gaze: track.px,
@@ -74,10 +75,10 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
     Ok((source, clip, facts))
 }
 
-/// Runs and writes, without a word.
+/// Runs the clip and writes its files; prints nothing.
 fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let (mut source, clip, facts) = clip()?;
-    let folders = clip.lanes.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
+    let folders = clip.methods.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
     let out = Output::create(out, &folders, "report.json")?;
     let report = clip.run(&mut source, &out)?;
     write_report(&facts, &clip, &report, &out)?;
@@ -86,11 +87,11 @@ fn execute(out: &Path) -> Result<ClipReport, Failure> {
 
 /// The subcommand.
 pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
-    say!("afterimage demo: a built-in scene, looked at for 1.6 s by a synthetic eye.");
+    say!("afterimage demo: a built-in scene with 1.6 s of synthetic gaze.");
     say!(
-        "It is shown at full rate only within 2.5 degrees of the gaze (the fovea), in 4-pixel blocks to 7.5 degrees and"
+        "Frames are sharp only within 2.5 degrees of the gaze (the fovea), and reduced to 4-pixel blocks up to 7.5 degrees and"
     );
-    say!("in 8-pixel blocks beyond, as a foveating renderer would. Each method gets the same foveated frames.\n");
+    say!("8-pixel blocks beyond, as a foveating renderer would do. All methods get the same foveated frames.\n");
     let report = execute(&args.out)?;
     say!("{} frames, methods on the {}\n", report.gaze_px.len(), report.backend);
     let find = |name: &str| report.methods.iter().find(|m| m.0 == name).map(|m| &m.1);
@@ -99,11 +100,13 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
     }
     let sheet = args.out.join("sheet.png");
     say!("Look at {}:", sheet.display());
-    say!("  top row      the last frame; the yellow circle is where the eye looks, the blue line where it has been");
-    say!("  middle row   the error: black is none. Dark trails along the blue line are detail that was kept");
-    say!("  bottom row   a close look at the green square, which the eye has left: sharp is kept, blurred is lost");
-    say!("Frames: {0}/none, {0}/wrs, {0}/smr, {0}/oracle, {0}/reference; figures: {0}/report.json", args.out.display());
-    say!("The same by hand: afterimage run {} --out {}", BY_HAND, args.out.display());
+    say!("  top row      the last frame; the yellow circle marks the fovea, the blue line the path of the gaze");
+    say!("  middle row   the error, black: none. Dark trails along the blue line are detail kept from earlier frames");
+    say!(
+        "  bottom row   magnified green square, where the gaze was before: sharp detail was kept, blurred detail was lost"
+    );
+    say!("Frames: {0}/none, {0}/wrs, {0}/smr, {0}/oracle, {0}/reference; scores: {0}/report.json", args.out.display());
+    say!("Equivalent command: afterimage run {} --out {}", BY_HAND, args.out.display());
     Ok(())
 }
 
@@ -117,6 +120,6 @@ fn explain([none, wrs, smr, oracle]: [&MethodReport; 4]) {
     row("none: the foveated frame alone", none);
     row("wrs: weighted reservoirs, the paper's method", wrs);
     row("smr: scale-matched reservoirs, ours", smr);
-    row("oracle: the best that any reuse could show", oracle);
-    say!("\"seen before\" is the part outside the fovea that the eye has already seen sharp: what reuse is for.\n");
+    row("oracle: upper bound of any reuse", oracle);
+    say!("\"seen before\": pixels outside the fovea that were sharp in an earlier frame, where reuse can help.\n");
 }

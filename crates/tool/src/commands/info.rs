@@ -1,4 +1,4 @@
-//! `afterimage info`: what an input holds, or which adapters there are.
+//! `afterimage info`: describe an input, or list the adapters.
 
 mod adapters;
 mod scene;
@@ -13,7 +13,7 @@ use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions};
 use clap::Args;
 use std::path::Path;
 
-/// Say what an input holds, or which adapters there are
+/// Describe an input, or list the adapters
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Examples:\n  afterimage info frames/\n  afterimage info scene.glb\n  afterimage info viewing.csv\n  \
@@ -22,10 +22,10 @@ use std::path::Path;
 pub struct InfoArgs {
     /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a scanpath (.csv), or the word adapters
     pub input: String,
-    /// Largest image that is read, million pixels
+    /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
-    /// With adapters: ask each how it computes, and whether the passes give the CPU's bits there (seconds on software devices)
+    /// With adapters: test the arithmetic of each, and whether the passes give the same bits as on the CPU (seconds on software devices)
     #[arg(long)]
     pub self_test: bool,
 }
@@ -81,7 +81,7 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     say!("size: {}x{} px", info.size[0], info.size[1]);
     match info.frames {
         Some(n) => say!("frames: {n}"),
-        None => say!("frames: without end"),
+        None => say!("frames: endless"),
     }
     say!("still: {}", if info.still { "yes" } else { "no" });
     say!("frames per second: {}", known(info.fps));
@@ -110,10 +110,10 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     let largest = motion.pixels().iter().map(|m| m[0].hypot(m[1])).fold(0.0_f32, f32::max);
     say!("motion in frame 1: up to {largest:.2} px");
     let check = motion_check::detect(&first.color, &second.color, motion)?;
-    let explains = |db: f64| format!("frame 0 moved by it explains frame 1 to {db:.1} dB");
+    let explains = |db: f64| format!("frame 0 warped by it matches frame 1 at {db:.1} dB");
     let best = check.psnr_db.first().map_or(f64::NAN, |p| p.1);
     match check.verdict {
-        Verdict::Undecidable => say!("motion convention: cannot be told, too little moves"),
+        Verdict::Undecidable => say!("motion convention: not known, too little motion"),
         _ if check.best == Default::default() => {
             say!("motion convention: as read ({})", explains(best));
         }

@@ -1,4 +1,4 @@
-//! One file or folder a subcommand.
+//! Subcommands, one file or folder each.
 
 #[cfg(feature = "full")]
 pub mod bench;

@@ -1,4 +1,4 @@
-//! `afterimage run`: foveate a frame stream, enhance it, score it.
+//! `afterimage run`: foveate frames, run methods on them, score the results.
 
 pub mod plan;
 
@@ -20,30 +20,30 @@ use clap::{Args, Parser};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Foveate a frame stream, enhance it, score it
+/// Foveate frames, run methods on them, score the results
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     #[command(flatten)]
     pub gaze: GazeArgs,
-    /// Frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
+    /// Number of frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
     #[arg(long, value_parser = parse_frames, value_name = "N")]
     pub frames: Option<u64>,
     #[command(flatten)]
     pub input: InputArgs,
-    /// Samples a pixel of the full-rate frames that frames traced with --sampling are held against
+    /// With --sampling: samples per pixel of the full-rate frames that are the reference for scores
     #[arg(long, default_value_t = 64, value_parser = parse_samples, value_name = "N")]
     pub reference_spp: u32,
     #[command(flatten)]
     pub sampling: SamplingArgs,
-    /// With --sampling and the method smr: trace more samples where its history knows little or nothing and fewer where it is sure, as
-    /// many in all
+    /// With --sampling and the method smr: trace more samples where the history's confidence is low and fewer where it is high, with the
+    /// same total
     #[arg(long)]
     pub guided: bool,
     #[command(flatten)]
@@ -53,10 +53,10 @@ pub struct RunArgs {
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
-    /// Tell the methods which pixels move without vectors, where the scene knows it (analytic:scroll)
+    /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
     pub trust: bool,
-    /// What computes the methods: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    /// Device that runs the methods
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: BackendName,
     /// Seed of the random numbers: same seed, same bytes
@@ -71,19 +71,19 @@ pub struct RunArgs {
     /// Also write the full-rate frames
     #[arg(long)]
     pub reference: bool,
-    /// Leave FLIP out, which takes a third of a second a megapixel of one core
+    /// Skip FLIP, which takes a third of a second per megapixel on one core
     #[arg(long)]
     pub no_flip: bool,
     #[cfg(feature = "ablation")]
     #[command(flatten)]
     pub ablation: AblationArgs,
-    /// Pixel decisions to write as images, separated by commas
+    /// Debug views to write as images, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugName>,
 }
 
 impl RunArgs {
-    /// From what could have been typed after `run`.
+    /// Parses the words of a command line after `run`.
     pub fn from_words(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Self, Failure> {
         #[derive(Parser)]
         #[command(name = "run", no_binary_name = true)]
@@ -94,22 +94,22 @@ impl RunArgs {
         Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args)
     }
 
-    /// How a scene is traced.
+    /// Settings for path tracing a scene.
     pub fn tracing(&self) -> Result<Tracing, Failure> {
         let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
         Ok(Tracing { backend: self.backend, seed: self.seed, foveated })
     }
 
-    /// The pattern that frames are traced with, if they are not to be foveated by a simulator.
+    /// Sampling pattern of traced frames; `None` if a simulator foveates full-rate frames.
     pub fn sampling(&self) -> Result<Option<Sampling>, Failure> {
         let is_traced = self.input.source == Some(SourceName::Trace);
         if self.sampling.sampling == SamplingName::Uniform {
-            // Nothing foveates these frames: what is wrong about them is their noise.
+            // Frames without foveation: their error is noise alone.
             return Ok((is_traced && self.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
         }
         if !is_traced {
             return Err(Failure::Input(format!(
-                "--sampling {}: only traced frames are sampled; add --source trace, or use --foveation",
+                "--sampling {}: applies to traced frames only; add --source trace, or use --foveation",
                 self.sampling.sampling.name()
             )));
         }
@@ -117,14 +117,14 @@ impl RunArgs {
     }
 }
 
-/// Measurements of parts of the passes; in builds with the feature `ablation` alone.
+/// Ablation of parts of the passes; only in builds with the feature `ablation`.
 #[cfg(feature = "ablation")]
 #[derive(Args, Clone, Debug)]
 pub struct AblationArgs {
-    /// Part of the passes that is left out; with --backend gpu
+    /// Part of the passes to leave out; with --backend gpu
     #[arg(long, value_parser = parse_part, value_name = "PART")]
     pub without: Option<&'static Part>,
-    /// Share of the pixels that come in as NaN, infinite, huge or negative in every frame, 0 to 1
+    /// Fraction of the input pixels that are replaced by NaN, infinite, huge or negative values in every frame, 0 to 1
     #[arg(long, default_value_t = 0.0, value_name = "SHARE")]
     pub poison: f32,
 }
@@ -144,11 +144,11 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs and writes, without a word.
+/// Runs the clip and writes its files; prints nothing.
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let mut source = args.input.open(&args.tracing()?)?;
     let plan = plan::plan(args, source.info())?;
-    // Proof that the input can be read, before anything is written.
+    // Check that the input can be read before writing anything.
     source.frame(0)?;
     let out = Output::create(&args.out, &folders(args), "report.json")?;
     let report = plan.clip.run(source.as_mut(), &out)?;
@@ -165,7 +165,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     Ok(report)
 }
 
-/// What foveates the frames: a simulator, or the pattern that they are traced with.
+/// Name of the simulator's filter or of the sampling pattern that foveates the frames.
 fn simulator(args: &RunArgs) -> &'static str {
     match args.sampling.sampling {
         SamplingName::Uniform => args.foveation.filter.name(),
@@ -173,7 +173,7 @@ fn simulator(args: &RunArgs) -> &'static str {
     }
 }
 
-/// Folders that the run writes frames to.
+/// Folders of the run's frames.
 fn folders(args: &RunArgs) -> Vec<String> {
     let mut folders: Vec<String> = args.method.iter().map(|m| m.name().to_owned()).collect();
     for method in args.method.iter().filter(|&&m| m != MethodName::Oracle) {
@@ -207,7 +207,9 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
         );
     }
-    say!("weighted: PSNR with errors weighted by the density of the eye's cells, docs/metrics.md");
-    say!("retained: PSNR where the eye has already seen sharp; of oracle: share of the PSNR that reuse could gain");
-    say!("sheet: {}", args.out.join("sheet.png").display());
+    say!("weighted: PSNR with errors weighted by the density of retinal ganglion cells, docs/metrics.md");
+    say!(
+        "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
+    );
+    say!("contact sheet: {}", args.out.join("sheet.png").display());
 }

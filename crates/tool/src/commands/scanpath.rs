@@ -11,19 +11,19 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Example:\n  afterimage scanpath --seconds 10 --seed 3 --out viewing.csv")]
 pub struct ScanpathArgs {
-    /// Length, seconds
+    /// Duration, seconds
     #[arg(long, default_value_t = 5.0, value_name = "S")]
     pub seconds: f64,
     /// Samples per second
     #[arg(long, default_value_t = 500.0, value_name = "HZ")]
     pub rate: f64,
-    /// Screen, pixels
+    /// Screen size, pixels
     #[arg(long, value_parser = parse_size, default_value = "1920x1080", value_name = "WxH")]
     pub screen: [u32; 2],
     /// Horizontal field of view of the screen, degrees
     #[arg(long, default_value_t = 70.0, value_name = "DEG")]
     pub hfov: f32,
-    /// Seed: same seed, same scanpath
+    /// Seed of the random numbers: same seed, same scanpath
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
     /// File to write

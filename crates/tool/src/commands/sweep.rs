@@ -1,4 +1,4 @@
-//! `afterimage sweep`: what accuracy costs in time.
+//! `afterimage sweep`: error against time over a grid of methods and options.
 
 mod batch;
 mod measure;
@@ -27,60 +27,60 @@ use std::path::PathBuf;
     afterimage sweep frames/ --preset quick --gaze viewing.csv --out out/sweep\n  \
     afterimage sweep frames/ --axis method=none,wrs,smr --axis fovea=5,10 --switch no-gate --frames 96 --out out/sweep\n  \
     afterimage sweep --out out/sweep --budget-ms 20\n\n\
-    Writes OUT/report.html (open it), sweep.csv, sweep.json, pareto.svg and pareto.png. What is finished is in OUT/points: the same command\n\
-    again goes on where it was stopped. A plan (--file) in TOML:\n\n  \
+    Writes OUT/report.html (open it), sweep.csv, sweep.json, pareto.svg and pareto.png. Finished points are in OUT/points: run the same command\n\
+    again to resume a sweep. Example of a plan (--file) in TOML:\n\n  \
     seeds = 3\n  [common]\n  frames = 96\n  [axes]\n  method = [\"none\", \"smr\"]\n  \"rate-mid+rate-far\" = [\"4+8\", \"8+16\"]\n  \
     [switches]\n  of = [\"no-flush\", \"smr-tolerance=2\"]")]
 pub struct SweepArgs {
-    /// Stills, folders of .exr frames, scenes, analytic:NAME, as for run; none: only report what is in OUT
+    /// Stills, folders of .exr frames, scenes, analytic:NAME, as for run; without inputs, only report the points in OUT
     pub input: Vec<String>,
-    /// Folder for everything that is written, and where a stopped sweep goes on
+    /// Output folder, and the folder of a sweep to resume
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// A sweep that is ready; default: quick, unless --file or --axis say what to measure
+    /// Predefined plan; default: quick, unless --file or --axis is given
     #[arg(long, value_enum)]
     pub preset: Option<PresetName>,
-    /// A plan of a sweep in TOML, see below
+    /// Plan in TOML, see below
     #[arg(long, value_name = "FILE.toml")]
     pub file: Option<PathBuf>,
     /// An option of run and its values; every combination of the axes is measured. NAME=V,V; options that vary together: N+N=V+V,V+V; values
-    /// with commas: NAME=V;V; flags: NAME=-,on, and - for any option that is left out
+    /// that contain commas: NAME=V;V; flags: NAME=-,on; the value - leaves any option out
     #[arg(long, value_name = "NAME=VALUES")]
     pub axis: Vec<String>,
-    /// An option of run that is changed by itself, all else as in the first value of each axis: NAME or NAME=VALUE
+    /// An option of run to change alone, with the first value of each axis but the method: NAME or NAME=VALUE
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub switch: Vec<String>,
-    /// Any other option of run for all points: NAME or NAME=VALUE
+    /// Another option of run, the same for all points: NAME or NAME=VALUE
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub set: Vec<String>,
-    /// Frames of each point, at least 38: 8 that are not timed, and 30 that are
+    /// Frames of each point, at least 38: 8 to warm up and 30 timed
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
     /// Scanpath, fixed pixel, or synthetic[:SEED], as for run
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: Option<String>,
-    /// Start in the scanpath, seconds
+    /// Start time in the scanpath, seconds
     #[arg(long, value_name = "S")]
     pub start: Option<f64>,
     /// Size of scenes, pixels
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
-    /// What renders scenes: raster or trace
+    /// Renderer of scenes: raster or trace
     #[arg(long, value_name = "NAME")]
     pub source: Option<String>,
-    /// Where a scene is seen from, as for run
+    /// Camera of scenes, as for run
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
-    /// What computes the methods: auto, cpu or gpu, as for run
+    /// Device that runs the methods: auto, cpu or gpu
     #[arg(long, value_name = "NAME")]
     pub backend: Option<String>,
-    /// Repetitions with seeds of their own, of what is random; default: the plan's, else 1
+    /// Repetitions of randomized methods, each with another seed; default: the plan's, else 1
     #[arg(long, value_name = "N")]
     pub seeds: Option<u64>,
-    /// Part I of N of the sweep, 1/N to N/N: as many machines can share it; merge their folders then
+    /// Measure part I of N, 1/N to N/N, to share a sweep between machines; see --merge
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     pub shard: Option<(u64, u64)>,
-    /// Folders of parts of a sweep, to be put together in OUT
+    /// Folders of a sweep's parts to merge into OUT
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with = "input")]
     pub merge: Vec<PathBuf>,
     #[command(flatten)]
@@ -88,7 +88,7 @@ pub struct SweepArgs {
 }
 
 impl SweepArgs {
-    /// Options of `run` that were given for all points.
+    /// Options of `run` for all points, from the command line.
     fn common(&self) -> Result<Options, Failure> {
         let mut common = Options::new();
         let given = [
@@ -131,7 +131,7 @@ pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     }
 }
 
-/// Measures what there is to measure, and writes what is known then; `None` if that is nothing.
+/// Measures missing points and writes the report; `None` if there are no points.
 pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     let store = if !args.merge.is_empty() {
         merge(args)?
@@ -142,7 +142,7 @@ pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     };
     let measurements = store.load()?;
     if measurements.is_empty() {
-        say!("nothing is measured yet in {}", args.out.display());
+        say!("no points in {} yet", args.out.display());
         return Ok(None);
     }
     let table = report::write(args, &store, &measurements)?;
@@ -150,14 +150,14 @@ pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     Ok(Some(table))
 }
 
-/// Measures what is not measured yet.
+/// Measures the points that are missing.
 fn run(args: &SweepArgs) -> Result<Store, Failure> {
     let plan = plan::plan(args)?;
     let common = plan.common.clone();
     let points = plan
         .grid
         .points(&args.input, plan.seeds, concerns, |method, options| is_random(method, options.iter().chain(&common)));
-    // An input is opened once for all points that take it in the same size.
+    // Open an input once for all points with the same size.
     let mut known: BTreeMap<(String, Option<[u32; 2]>), u64> = BTreeMap::new();
     let batches = batches(points, &common, |args| match known.entry((args.name.clone(), args.size)) {
         Entry::Occupied(known) => Ok(*known.get()),
@@ -185,7 +185,7 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
     Ok(store)
 }
 
-/// Measurements of other frames, another version or another machine are not to be compared with these.
+/// Refuses a folder whose points come from other common options, another version or another machine: they are not comparable.
 fn refuse_another_sweep(
     args: &SweepArgs,
     done: &[Measurement],
@@ -209,7 +209,7 @@ fn refuse_another_sweep(
     Err(Failure::Input(format!("{}: holds a sweep that {differs}; give --out another folder", args.out.display())))
 }
 
-/// Copies the parts' measurements and pictures into one folder.
+/// Copies measurements and pictures of the parts into one folder.
 fn merge(args: &SweepArgs) -> Result<Store, Failure> {
     let parts = args.merge.iter().map(|dir| Store::open(dir)).collect::<Result<Vec<_>, _>>()?;
     let store = Store::create(&args.out)?;
@@ -233,7 +233,7 @@ fn merge(args: &SweepArgs) -> Result<Store, Failure> {
     Ok(store)
 }
 
-/// Pixels of a frame. What cannot be opened is refused here, before anything is measured; scenes are read when their turn comes.
+/// Pixels per frame. Fails for files that cannot be opened, before anything is measured; scenes are opened later.
 fn pixels(args: &InputArgs) -> Result<u64, Failure> {
     let of = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     if is_scene(&args.name) {

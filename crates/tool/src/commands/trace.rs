@@ -1,10 +1,10 @@
-//! `afterimage trace`: render a scene.
+//! `afterimage trace`: render a scene by path tracing.
 
+mod eye_frame;
 mod eyes;
 mod frames;
 mod report;
 pub mod setup;
-mod shot;
 
 use crate::args::backend::BackendName;
 use crate::args::paths::PathArgs;
@@ -17,11 +17,11 @@ use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
 use clap::{Args, ValueEnum};
+use eye_frame::EyeFrame;
 use eyes::{Eyes, below, scanpath_csv};
 use frames::{folders, write};
 use report::Report;
 use setup::Setup;
-use shot::Shot;
 use std::path::PathBuf;
 
 /// Render a scene by path tracing
@@ -30,23 +30,23 @@ use std::path::PathBuf;
     afterimage trace scene.glb --frames 60 --aov depth,motion --out out/scene\n  \
     afterimage trace scene.glb --sampling regions --region-spp 32,8,4 --gaze viewing.csv --frames 60 --out out/foveated\n  \
     afterimage trace scene.glb --sampling layers --lens-deg 45 --hfov 90 --stereo 0.063 --out out/stereo\n\n\
-    Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... on request, OUT/gaze.csv of foveated frames, OUT/cameras.json\n\
+    Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... (--aov), OUT/gaze.csv (foveated frames), OUT/cameras.json\n\
     and OUT/trace.json.\n\
     With --aov depth,motion the folder OUT/color is an input for `afterimage run`.\n\n\
-    With --stereo the frames of each eye, its cameras.json, gaze.csv and scanpath.csv (the same for `run --gaze`) are below OUT/left and\n\
-    OUT/right; OUT/cameras.json and OUT/gaze.csv are those of the head between them, which --camera and --gaze speak of. What is looked at\n\
-    is a point in space: the first surface behind the head's pixel, or what is far away where there is none.")]
+    With --stereo, OUT/left and OUT/right hold the frames of each eye, its cameras.json, gaze.csv and scanpath.csv (the same gaze as input\n\
+    for `run --gaze`). OUT/cameras.json and OUT/gaze.csv are those of the head, which --camera and --gaze control. Both eyes look at the\n\
+    same point in space: the first surface behind the head's gaze pixel, or infinity if there is none.")]
 pub struct TraceArgs {
     /// A scene: .gltf, .glb, or builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes,
     /// mirror-room, courtyard
     pub scene: String,
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Size of the frames, pixels
     #[arg(long, value_parser = parse_size, default_value = "640x360", value_name = "WxH")]
     pub size: [u32; 2],
-    /// Frames
+    /// Number of frames
     #[arg(long, default_value_t = 1, value_parser = parse_frames, value_name = "N")]
     pub frames: u64,
     /// Frames per second, for animated scenes and camera paths; default: the camera file's, else 60
@@ -59,34 +59,34 @@ pub struct TraceArgs {
     /// cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
-    /// Which of the scene's animations plays, by name or number; default: the first
+    /// Animation of the scene to play, by name or number; default: the first
     #[arg(long, value_name = "NAME")]
     pub clip: Option<String>,
-    /// Samples per pixel (of the fovea, where foveated; regions have --region-spp)
+    /// Samples per pixel; in the fovea with --sampling layers or acuity (for regions see --region-spp)
     #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N")]
     pub spp: u32,
     #[command(flatten)]
     pub pattern: PatternArgs,
-    /// Two eyes whose pupils are so many metres apart (people: 0.063; up to 0.2), with parallel axes, half of that to either side of
-    /// the camera; default: one eye, the camera
+    /// Render two eyes with this distance between the pupils, meters (typical 0.063; at most 0.2); parallel axes, centered on the camera;
+    /// default: one eye at the camera
     #[arg(long, value_name = "IPD_M", allow_negative_numbers = true)]
     pub stereo: Option<f64>,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with light of its
-    /// own, else a soft white
+    /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with its own
+    /// lights, else uniform white
     #[arg(long, value_name = "none|R,G,B|FILE.exr")]
     pub sky: Option<String>,
-    /// More images, separated by commas; also written into the color's .exr
+    /// Additional images to write, separated by commas; depth and motion also as channels of the color .exr
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub aov: Vec<AovName>,
-    /// What traces: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    /// Device that traces
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: BackendName,
     /// Seed of the random numbers: same seed, same bytes
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
-    /// File format of the color: linear half-float EXR, 8-bit sRGB PNG; default: both
+    /// File format of color: linear half-float EXR or 8-bit sRGB PNG; default: both
     #[arg(long, value_enum)]
     pub format: Option<crate::args::FormatName>,
     /// Exposure before tone mapping, stops
@@ -95,30 +95,30 @@ pub struct TraceArgs {
     /// Tone mapping; default: reinhard for png, none for exr
     #[arg(long, value_enum)]
     pub tonemap: Option<TonemapName>,
-    /// Say what is compiled in and why
+    /// Print which effects are compiled into the kernels, and why
     #[arg(short, long)]
     pub verbose: bool,
 }
 
-/// Names of further images.
+/// Values of `--aov`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum AovName {
-    /// Distance along the view axis, metres; 1e10 where there is nothing
+    /// Distance along the view axis, meters; 1e10 for the background
     Depth,
-    /// Pixels, y down, previous minus current
+    /// Motion vectors in pixels, y down, previous minus current position
     Motion,
-    /// Variance of each pixel's mean; of uniform sampling
+    /// Variance of each pixel's mean; uniform sampling only
     Variance,
-    /// Level of detail, log2 of the distance of samples in pixels
+    /// Level of detail: log2 of the sample spacing in pixels
     Lod,
 }
 
-/// Names of tone mappings.
+/// Values of `--tonemap`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum TonemapName {
     /// x / (1 + x)
     Reinhard,
-    /// Cut off at 1
+    /// Clamp at 1
     None,
 }
 
@@ -135,7 +135,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let sampling = args.pattern.of.sampling()?;
     let bar = progress::bar(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]), "{percent} %");
     let mut previous: Option<View> = None;
-    let mut gaze = GazeOfFrames::default();
+    let mut gaze = GazeTracks::default();
     for frame in 0..args.frames {
         let time_s = frame as f64 / f64::from(setup.fps);
         let head = setup.pose(frame, time_s)?;
@@ -150,11 +150,11 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         }
         for (eye, name) in eyes.names().iter().enumerate() {
             let clock = Stopwatch::start();
-            // Eyes have draws of their own: noise that both share would seem to hang in the air.
-            let shot = Shot { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
+            // The eyes draw independent random numbers: noise shared by both would appear as a pattern floating in space.
+            let eye_frame = EyeFrame { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
             let (picture, counts) = match gaze.eyes.last() {
-                None => shot.uniform(args, &setup, &bar),
-                Some(gaze) => shot.foveated(args, &setup, &sampling, gaze[eye], &bar),
+                None => eye_frame.uniform(args, &setup, &bar),
+                Some(gaze) => eye_frame.foveated(args, &setup, &sampling, gaze[eye], &bar),
             };
             setup.tracer.check()?;
             report.count(eye, &counts, &clock);
@@ -167,21 +167,21 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     finish(args, &out, &setup, &report, &eyes, &gaze)
 }
 
-/// Where the head looks in each frame, and where its eyes do; empty if that makes no difference.
+/// Gaze of the head and of each eye, per frame, in pixels; empty with uniform sampling.
 #[derive(Default)]
-struct GazeOfFrames {
+struct GazeTracks {
     head: Vec<[f32; 2]>,
     eyes: Vec<Vec<[f32; 2]>>,
 }
 
-/// Writes what is known when all frames are done.
+/// Writes the files that need all frames, and prints the summary.
 fn finish(
     args: &TraceArgs,
     out: &Output,
     setup: &Setup,
     report: &Report,
     eyes: &Eyes,
-    gaze: &GazeOfFrames,
+    gaze: &GazeTracks,
 ) -> Result<(), Failure> {
     if !gaze.head.is_empty() {
         out.gaze("gaze.csv", &gaze.head)?;

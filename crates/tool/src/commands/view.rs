@@ -1,25 +1,25 @@
-//! `afterimage view`: look at it in a window, where the mouse is the gaze.
+//! `afterimage view`: show the methods live in a window; the mouse is the gaze.
 
 mod app;
+mod auto_scale;
 mod device;
-mod feed;
-mod figures;
-mod fly;
+mod fly_camera;
+mod frame_loader;
 mod graph;
-mod lanes;
 mod layout;
-mod on_device;
 mod panel;
+mod panel_stats;
 mod pictures;
+mod pipeline;
 mod quality;
 mod record;
+mod resources;
 mod screen;
 mod setup;
 mod shader;
 mod state;
 mod surface;
 mod times;
-mod usable;
 mod viewer;
 
 use crate::args::backend::BackendName;
@@ -29,41 +29,41 @@ use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
 use crate::failure::Failure;
 use app::App;
 use clap::Args;
-use feed::Feed;
+use frame_loader::FrameLoader;
 use setup::Setup;
 use state::Shows;
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
-/// Look at it in a window: the mouse is the gaze
+/// Show the methods live in a window; the mouse is the gaze
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Keys: 1 to 5 choose what is shown (none, taa, wrs, smr, reference), with Shift on the right side; Tab splits; the divider is \
-    dragged with the left button. F foveation, - and = fovea, V decisions, P scanpath or mouse, G gaze mark, Space freezes, C steers the camera of \
-    a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 writes the picture, Shift F12 the window, H hides the panel, \
-    Ctrl Shift L loses the device (to see it come back), Esc quits.\n\n\
+    after_help = "Keys: 1 to 5 choose the method (none, taa, wrs, smr, reference), with Shift that of the right side; Tab splits the picture; drag the \
+    divider with the left button. F foveation filter, - and = fovea diameter, V debug views, P scanpath or mouse, G gaze mark, Space freezes, C steers \
+    the camera of a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 saves the picture, Shift F12 the window, \
+    H hides the panel, Ctrl Shift L destroys the device (to test recovery), Esc quits.\n\n\
     Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
 )]
 pub struct ViewArgs {
     #[command(flatten)]
     pub input: InputArgs,
-    /// What is shown
+    /// Method to show
     #[arg(long, value_enum, default_value = "smr", value_name = "NAME")]
     pub method: Shows,
-    /// Two of none, taa, wrs, smr, reference, side by side
+    /// Two methods to show side by side
     #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "method", value_name = "A,B")]
     pub split: Vec<Shows>,
     /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]. One
-    /// sample a frame, at most --fps a second, so that the pictures are those of run; key P
+    /// position per frame, at most --fps frames a second, so that pictures are the same as with run; key P
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: Option<String>,
-    /// Keep visual angles, or stretch screen to frame; default: angle where the file states the screen's geometry
+    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's geometry
     #[arg(long, value_enum)]
     pub gaze_map: Option<GazeMapName>,
-    /// Start in the scanpath, seconds
+    /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
-    /// Quit after so many frames; default: never
+    /// Quit after N frames; default: never
     #[arg(long, value_parser = parse_frames, value_name = "N")]
     pub frames: Option<u64>,
     #[command(flatten)]
@@ -76,16 +76,16 @@ pub struct ViewArgs {
     /// Exposure before sRGB encoding, stops
     #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
-    /// Resolution of everything as a share of the input's, above 0 and at most 1; default: 1, on a software device as much as is usable
+    /// Rendering resolution as a factor on the input's, above 0 and at most 1; default: 1, lowered on a software device that is too slow
     #[arg(long, value_name = "X")]
     pub internal_scale: Option<f32>,
-    /// Where F12 writes the picture, as run writes it; with --frames the last one is written
+    /// File that F12 saves the picture to, as run writes it; with --frames the last picture is saved too
     #[arg(long, value_name = "FILE.png")]
     pub screenshot: Option<PathBuf>,
-    /// Where the gaze of every frame since the last fresh start is written, as a scanpath for --gaze: with each picture, and at the end
+    /// File for the gaze of every frame since the last history reset, as a scanpath for --gaze; written with each picture and at the end
     #[arg(long, value_name = "FILE.csv")]
     pub record: Option<PathBuf>,
-    /// Begin without the panel
+    /// Start with the panel hidden
     #[arg(long)]
     pub no_panel: bool,
 }
@@ -98,11 +98,13 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
     })?;
-    let mut app = App::new(setup, Feed::new(source));
-    events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's events broke off ({e})")))?;
+    let mut app = App::new(setup, FrameLoader::new(source));
+    events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's event loop failed ({e})")))?;
     app.outcome?;
-    match device::messages() {
+    match device::validation_errors() {
         0 => Ok(()),
-        n => Err(Failure::Work(format!("the device found fault {n} times, first as said above; please report it"))),
+        n => Err(Failure::Work(format!(
+            "the device reported {n} validation errors, the first is shown above; please report it"
+        ))),
     }
 }

@@ -1,21 +1,21 @@
-//! What computed.
+//! Backend in reports.
 
 use afterimage_lab::device::Backend;
 use serde::Serialize;
 
-/// What computed, as reports say it.
+/// The device that ran the methods.
 #[derive(Serialize)]
 pub struct BackendReport {
     /// `cpu` or `gpu`.
     pub kind: &'static str,
-    /// The adapter, or how many threads.
+    /// Name of the adapter, or number of threads.
     pub name: String,
-    /// Its driver and version, or `none`.
+    /// Driver and version; `none` on the CPU.
     pub driver: String,
 }
 
 impl BackendReport {
-    /// Of this backend.
+    /// Describes a backend.
     pub fn of(backend: &Backend) -> Self {
         match backend {
             Backend::Cpu => {

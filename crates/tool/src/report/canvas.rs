@@ -1,4 +1,4 @@
-//! Drawing on an 8-bit picture: panels, captions, marks.
+//! Drawing of text and shapes on an 8-bit picture.
 
 use embedded_graphics::mono_font::iso_8859_1::{FONT_7X13, FONT_9X18_BOLD, FONT_10X20};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
@@ -40,8 +40,8 @@ impl DrawTarget for Canvas {
     }
 }
 
-/// A drawing that cannot fail.
-fn sure<T>(result: Result<T, Infallible>) -> T {
+/// Unwraps a result that cannot be an error.
+fn infallible<T>(result: Result<T, Infallible>) -> T {
     match result {
         Ok(value) => value,
         Err(never) => match never {},
@@ -59,17 +59,17 @@ impl Canvas {
         imageops::replace(&mut self.0, picture, i64::from(x), i64::from(y));
     }
 
-    /// A line of text, its top left corner at (x, y).
+    /// Draws a line of text in 10 by 20 pixels per character, its top left corner at (x, y).
     pub fn text(&mut self, text: &str, x: u32, y: u32, color: [u8; 3]) {
         self.write(text, x, y, color, &FONT_10X20);
     }
 
-    /// The same in bold.
+    /// Draws a line of bold text in 9 by 18 pixels per character.
     pub fn heading(&mut self, text: &str, x: u32, y: u32, color: [u8; 3]) {
         self.write(text, x, y, color, &FONT_9X18_BOLD);
     }
 
-    /// The same in small letters, 7 by 13 pixels.
+    /// Draws a line of small text in 7 by 13 pixels per character.
     pub fn small(&mut self, text: &str, x: u32, y: u32, color: [u8; 3]) {
         self.write(text, x, y, color, &FONT_7X13);
     }
@@ -77,34 +77,34 @@ impl Canvas {
     fn write(&mut self, text: &str, x: u32, y: u32, color: [u8; 3], font: &MonoFont<'_>) {
         let style = MonoTextStyle::new(font, rgb(color));
         let at = Point::new(x as i32, y as i32);
-        sure(Text::with_baseline(text, at, style, Baseline::Top).draw(self));
+        infallible(Text::with_baseline(text, at, style, Baseline::Top).draw(self));
     }
 
-    /// A circle's outline around a centre.
+    /// Draws the outline of a circle; skips centers far outside the picture.
     pub fn circle(&mut self, center: [f32; 2], radius: f32, width: u32, color: [u8; 3]) {
         if !(center[0].abs() < 1e5 && center[1].abs() < 1e5) {
             return;
         }
         let at = Point::new(center[0].round() as i32, center[1].round() as i32);
         let circle = Circle::with_center(at, (2.0 * radius).round().max(1.0) as u32);
-        sure(circle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
+        infallible(circle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 
-    /// A straight line.
+    /// Draws a straight line; skips positions that are not finite or far outside the picture.
     pub fn line(&mut self, from: [f32; 2], to: [f32; 2], width: u32, color: [u8; 3]) {
         if [from, to].as_flattened().iter().any(|v| !v.is_finite() || v.abs() > 1e5) {
             return;
         }
         let point = |p: [f32; 2]| Point::new(p[0].round() as i32, p[1].round() as i32);
         let line = Line::new(point(from), point(to));
-        sure(line.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
+        infallible(line.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 
-    /// A rectangle's outline.
+    /// Draws the outline of a rectangle.
     pub fn frame(&mut self, corner: [u32; 2], size: [u32; 2], width: u32, color: [u8; 3]) {
         let corner = Point::new(corner[0] as i32, corner[1] as i32);
         let rectangle = Rectangle::new(corner, Size::new(size[0], size[1]));
-        sure(rectangle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
+        infallible(rectangle.into_styled(PrimitiveStyle::with_stroke(rgb(color), width)).draw(self));
     }
 }
 

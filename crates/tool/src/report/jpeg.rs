@@ -1,4 +1,4 @@
-//! Pictures small enough for many of them in one page.
+//! JPEGs that are small enough to embed many of them in a page.
 
 use afterimage_lab::whole_file::write_whole;
 use image::RgbImage;
@@ -7,7 +7,7 @@ use image::imageops::FilterType;
 use std::io;
 use std::path::Path;
 
-/// Writes a JPEG no wider than `max_width` pixels, whole or not at all: small enough for many of them in one page.
+/// Writes a JPEG at most `max_width` pixels wide, atomically.
 ///
 /// # Errors
 /// Those of the file system.

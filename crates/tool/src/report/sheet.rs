@@ -1,4 +1,4 @@
-//! The contact sheet: reference and methods side by side, their errors, and a close look at a place the eye has left.
+//! Contact sheet: reference and methods side by side, their errors, and a magnified area where the gaze was before.
 
 use super::canvas::{CHAR_PX, Canvas, LINE_PX};
 use afterimage::kernel::debug_view::heat;
@@ -18,16 +18,16 @@ const ZOOM: [u8; 3] = [120, 255, 140];
 /// Width of a panel of a large frame in pixels.
 const PANEL_PX: u32 = 640;
 
-/// Panels of small frames are enlarged by whole factors to at least this width, which a caption needs.
+/// Small frames are enlarged by a whole factor to at least this width, the room for a caption.
 const MIN_PANEL_PX: u32 = 480;
 const GAP_PX: u32 = 12;
 
-/// How many times the close look magnifies.
+/// Magnification of the bottom row.
 const ZOOM_FACTOR: u32 = 4;
 
-/// One column of the sheet.
+/// One column of the contact sheet.
 pub struct Column<'a> {
-    /// Its heading.
+    /// Heading.
     pub name: &'a str,
     /// sRGB-encoded image.
     pub shown: &'a Image<[f32; 3]>,
@@ -35,11 +35,11 @@ pub struct Column<'a> {
     pub scores: Option<Scores>,
 }
 
-/// What the sheet shows.
+/// Contents of a contact sheet.
 pub struct Sheet<'a> {
     /// First line.
     pub title: String,
-    /// The reference first.
+    /// Columns, the reference first.
     pub columns: &'a [Column<'a>],
     /// View geometry of the frames.
     pub geometry: ViewGeometry,
@@ -50,7 +50,7 @@ pub struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Draws the sheet.
+    /// Draws the contact sheet.
     ///
     /// # Panics
     /// If there is no column.
@@ -78,9 +78,9 @@ impl Sheet<'_> {
             }
         }
         let notes = [
-            "the last frame; yellow: the eye and its fovea; blue: where it went; green: the close look below",
-            "error against the reference: black none, white a quarter of full scale or more",
-            "close look at a place where the eye rested before",
+            "the last frame; yellow: gaze and fovea; blue: path of the gaze; green: area magnified below",
+            "error against the reference: black is zero, white is 25 % of full scale or more",
+            "magnified area where the gaze rested before",
         ];
         for (row, note) in notes.iter().take(rows as usize).enumerate() {
             canvas.text(note, GAP_PX, row_y(row as u32) + panel[1] + 2, FAINT);
@@ -127,7 +127,7 @@ impl Sheet<'_> {
         canvas.put(&fit(&to_rgb8(&errors), panel), at[0], at[1]);
     }
 
-    /// Radius in pixels of the fovea around a gaze position, measured towards the middle of the view.
+    /// Radius of the fovea around a gaze position in pixels, measured towards the center of the view.
     fn radius_px(&self, gaze: [f32; 2]) -> f32 {
         let side = if gaze[0] > 0.5 * self.geometry.size_px()[0] as f32 { -1.0 } else { 1.0 };
         let (mut low, mut high) = (0.0_f32, 2.0 * self.geometry.size_px()[0] as f32);
@@ -143,7 +143,7 @@ impl Sheet<'_> {
         low
     }
 
-    /// The latest place on screen, at least 8 degrees from the last gaze, where the eye rested.
+    /// The latest position in the frame where the gaze rested, at least 8 degrees from the last gaze.
     fn place_left(&self) -> Option<[f32; 2]> {
         let last = *self.gaze_px.last()?;
         let [w, h] = self.geometry.size_px().map(|s| s as f32);
@@ -159,7 +159,7 @@ impl Sheet<'_> {
 
 fn caption(column: &Column<'_>) -> String {
     let Some(scores) = column.scores else {
-        return "every pixel at full rate".into();
+        return "all pixels at full rate".into();
     };
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2} dB"));
     let ssim = scores.whole.ssim.map_or("-".into(), |v| format!("{v:.4}"));
@@ -175,7 +175,7 @@ fn panel_size(frame: [u32; 2]) -> [u32; 2] {
     [w * factor, h * factor]
 }
 
-/// The whole picture in a panel.
+/// Scales a picture to a panel.
 fn fit(picture: &RgbImage, panel: [u32; 2]) -> RgbImage {
     if picture.dimensions() == (panel[0], panel[1]) {
         return picture.clone();
@@ -184,7 +184,7 @@ fn fit(picture: &RgbImage, panel: [u32; 2]) -> RgbImage {
     imageops::resize(picture, panel[0], panel[1], filter)
 }
 
-/// Corner and size, in frame pixels, of what the close look shows.
+/// Corner and size of the magnified area, in frame pixels.
 fn zoom_window(frame: [u32; 2], center: [f32; 2], panel: [u32; 2]) -> ([u32; 2], [u32; 2]) {
     let size = [0, 1].map(|i| (panel[i] / ZOOM_FACTOR).clamp(1, frame[i]));
     let corner = [0, 1].map(|i| {

@@ -1,49 +1,49 @@
-//! How fast traced points get better with samples and with time.
+//! Convergence of traced points: squared error against samples and against time.
 
 use super::table::Row;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Options that say how many samples there are, and not where.
+/// Options that set the number of samples, not their pattern.
 const SAMPLES: [&str; 2] = ["spp", "region-spp"];
-/// Points that a line is laid through, at least.
-const LEAST_POINTS: usize = 3;
+/// Smallest number of points for a slope.
+const MIN_POINTS: usize = 3;
 
-/// One pattern and method with several numbers of samples.
+/// One pattern and method at several sample counts.
 #[derive(Clone, Debug, Serialize)]
 pub struct Convergence {
-    /// What was traced.
+    /// The traced scene.
     pub input: String,
     /// Name of the method.
     pub method: String,
-    /// What its points have in common, for a reader.
+    /// Method and options that the points share.
     pub label: String,
-    /// From few samples to many.
+    /// In ascending order of samples.
     pub points: Vec<ConvergencePoint>,
-    /// Slope of lg(squared error) against lg(samples), least squares, whole and by band from the gaze outwards: -1 is what independent
-    /// samples without bias do.
+    /// Least-squares slope of lg(squared error) against lg(samples): whole image, then fovea, middle, periphery. Independent samples
+    /// without bias have -1.
     pub slope_by_samples: [Option<f64>; 4],
-    /// The same against lg(milliseconds).
+    /// Least-squares slope of lg(squared error) against lg(milliseconds), in the same order.
     pub slope_by_time: [Option<f64>; 4],
 }
 
-/// A number of samples.
+/// Errors at one sample count.
 #[derive(Clone, Debug, Serialize)]
 pub struct ConvergencePoint {
     /// [`Row::id`].
     pub id: String,
-    /// Samples a pixel of the frame, on average.
+    /// Mean samples per pixel of the frame.
     pub samples_per_pixel: f64,
-    /// Milliseconds a frame: traced, and through the method.
+    /// Milliseconds per frame of tracing and the method.
     pub cost_ms: f64,
-    /// Mean squared error, whole and by band from the gaze outwards.
+    /// Mean squared error: whole image, then fovea, middle, periphery.
     pub mse: [Option<f64>; 4],
-    /// 1 / (squared error x seconds), whole and by band. Of squared error and not of variance, because what is filled in between
-    /// samples is biased, and bias is wrong, too.
+    /// 1 / (squared error x seconds), in the same order. Squared error instead of variance includes the bias of pixels that are
+    /// interpolated between samples.
     pub efficiency: [Option<f64>; 4],
 }
 
-/// Of every pattern and method that was traced with at least three numbers of samples.
+/// Convergence of every pattern and method with at least three sample counts.
 pub(super) fn convergences(rows: &[Row]) -> Vec<Convergence> {
     let mut groups: BTreeMap<_, Vec<&Row>> = BTreeMap::new();
     for row in rows.iter().filter(|r| r.samples_per_pixel.is_some()) {
@@ -62,7 +62,7 @@ pub(super) fn convergences(rows: &[Row]) -> Vec<Convergence> {
         let (slope_by_samples, slope_by_time) = (slopes(&|p| p.samples_per_pixel), slopes(&|p| p.cost_ms));
         Convergence { input, method, label, slope_by_samples, slope_by_time, points }
     };
-    groups.into_iter().filter(|(_, rows)| rows.len() >= LEAST_POINTS).map(of).collect()
+    groups.into_iter().filter(|(_, rows)| rows.len() >= MIN_POINTS).map(of).collect()
 }
 
 fn point(row: &Row) -> Option<ConvergencePoint> {
@@ -86,7 +86,7 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let [mx, my] = [mean(0), mean(1)];
     let along: f64 = points.iter().map(|p| (p[0] - mx).powi(2)).sum();
     let slope = points.iter().map(|p| (p[0] - mx) * (p[1] - my)).sum::<f64>() / along;
-    (points.len() >= LEAST_POINTS && along > 1e-9).then_some(slope)
+    (points.len() >= MIN_POINTS && along > 1e-9).then_some(slope)
 }
 
 #[cfg(test)]
@@ -99,7 +99,7 @@ mod tests {
             let found = slope([1.0, 2.0, 4.0, 16.0].map(|x: f64| (x, 3.0 * x.powf(exponent))).into_iter()).unwrap();
             assert!((found - exponent).abs() < 1e-12, "{found}");
         }
-        assert_eq!(slope([(1.0, 1.0), (1.0, 2.0), (1.0, 3.0)].into_iter()), None, "no two numbers of samples");
+        assert_eq!(slope([(1.0, 1.0), (1.0, 2.0), (1.0, 3.0)].into_iter()), None, "one sample count only");
         assert_eq!(slope([(1.0, 1.0), (2.0, 0.0), (3.0, 3.0)].into_iter()), None, "two points are no line");
     }
 }

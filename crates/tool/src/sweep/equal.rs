@@ -1,4 +1,4 @@
-//! What each method gets for the same time, and what it takes for the same quality.
+//! Comparison of methods at equal time and at equal quality.
 
 use super::frontier::{Standing, frontier};
 use super::metrics::Metric;
@@ -6,45 +6,45 @@ use super::table::{Row, Table};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Budgets and levels that a table has at most; of more, some in the middle are left out.
+/// Limit on the lines of a table; further steps of the frontier are thinned out evenly.
 const MAX_LINES: usize = 7;
 
-/// Rows whose costs can be compared: what their renderer takes is known, or they shade the same share of the samples.
+/// Rows with comparable costs: the renderer's time is known, or all trace the same share of the samples.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Section {
-    /// Share of the samples, to a thousandth, where it is not known what they cost.
+    /// Share of the samples, rounded to a thousandth; `None` if the renderer's time is known.
     pub samples_share: Option<f64>,
-    /// How many rows it is made of.
+    /// Number of rows.
     pub points: usize,
     /// Methods, in the order of the columns.
     pub methods: Vec<String>,
-    /// A line for each budget in milliseconds.
+    /// One line per budget in milliseconds.
     pub equal_time: Vec<Line>,
-    /// A line for each level of the figure, the easiest first.
+    /// One line per level of the metric, lowest quality first.
     pub equal_quality: Vec<Line>,
 }
 
-/// What the methods do within a bound.
+/// The best point of each method within a bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// Most milliseconds, or the least that is good enough.
+    /// Largest time in milliseconds, or lowest acceptable quality in the metric.
     pub bound: f64,
-    /// The best of each method; `None` where nothing of it is within the bound.
+    /// The best point per method; `None` if no point is within the bound.
     pub cells: Vec<Option<Cell>>,
 }
 
-/// The point that is best within a bound.
+/// The best point of a method within a bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cell {
     /// [`Row::id`].
     pub row: String,
-    /// What it costs in milliseconds.
+    /// Cost in milliseconds.
     pub cost_ms: f64,
-    /// Its figure; `None` for the PSNR of equal pictures.
+    /// Value of the metric; `None` for the PSNR of equal pictures.
     pub value: Option<f64>,
 }
 
-/// A row as it is compared here.
+/// A row with its value and error in the metric.
 #[derive(Clone, Copy)]
 struct Candidate<'a> {
     row: &'a Row,
@@ -58,13 +58,13 @@ impl Candidate<'_> {
     }
 }
 
-/// Class of the rows whose cost can be compared with this one's: thousandths of the samples, or nothing where their cost is known.
+/// Class of rows with comparable costs: share of the samples in thousandths, or `None` if the renderer's time is known.
 pub fn class(row: &Row) -> Option<u32> {
     row.render_ms.is_none().then(|| (row.samples_share * 1000.0).round() as u32)
 }
 
-/// The tables of an input for a figure, those of the largest share of the samples first; none where no row has the figure.
-/// The oracle, which no renderer can run, is in none.
+/// The tables of an input for a metric, largest share of the samples first; empty if no row has the metric. Without the oracle, which no
+/// renderer can run.
 pub fn equal(table: &Table, input: &str, metric: &Metric) -> Vec<Section> {
     let value = |row: &Row| row.values.get(metric.key).copied().flatten();
     let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
@@ -119,7 +119,7 @@ fn of<'a>(rows: &'a [Candidate<'a>], method: &str) -> impl Iterator<Item = &'a C
     rows.iter().filter(move |c| c.row.point.method == method)
 }
 
-/// Names of methods, each once, in the order in which they are explained: what does nothing first, strangers last.
+/// Names of methods without duplicates: none, taa, wrs, smr, oracle, then unknown ones.
 pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
     let rank =
         |m: &str| ["none", "taa", "wrs", "smr", "oracle"].iter().position(|&known| known == m).unwrap_or(usize::MAX);
@@ -129,7 +129,7 @@ pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
     methods
 }
 
-/// All of the `needed`, then of the `steps` as many as there is room for, evenly; rounded, in ascending order.
+/// Bounds of a table in ascending order, rounded: all `needed` values, and an even selection of `steps` up to [`MAX_LINES`].
 fn bounds(
     needed: impl Iterator<Item = f64>,
     steps: impl Iterator<Item = f64>,
@@ -144,13 +144,13 @@ fn bounds(
     let mut more: Vec<f64> = steps.map(&rounded).filter(|s| !bounds.contains(s)).collect();
     sorted(&mut more);
     let room = MAX_LINES.saturating_sub(bounds.len()).min(more.len());
-    // From the last step backwards: the end of the frontier is where the most is to be had.
+    // Select from the last step backwards, so that the best end of the frontier is included.
     bounds.extend((0..room).map(|i| more[more.len() - 1 - i * more.len() / room]));
     sorted(&mut bounds);
     bounds
 }
 
-/// Up to three digits, so that what is printed is what was compared with.
+/// Rounds up to three significant digits, so that the printed bound is the one that was compared with.
 fn round_up_ms(ms: f64) -> f64 {
     if ms <= 0.0 {
         return 0.0;
@@ -161,7 +161,7 @@ fn round_up_ms(ms: f64) -> f64 {
 fn round_to(value: f64, digits: usize, up: bool) -> f64 {
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
     let unit = 0.1_f64.powi(digits as i32);
-    // A decimal is printed and read back, so that the next one up or down is a decimal too.
+    // Format and parse again, so that the next value up or down is an exact decimal too.
     let next = |by: f64| format!("{:.digits$}", rounded + by).parse().unwrap_or(value);
     match up {
         true if rounded < value => next(unit),

@@ -1,4 +1,4 @@
-//! Which points a sweep has: every combination of its axes, and switches thrown one at a time.
+//! Points of a sweep: every combination of its axes, and switches changed one at a time.
 
 use afterimage_lab::error::InputError;
 use serde::{Deserialize, Serialize};
@@ -10,11 +10,11 @@ pub type Options = BTreeMap<String, String>;
 /// A method on an input.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Point {
-    /// A still, a folder, a scene: as `run` takes it.
+    /// Input of `run`: a still, a folder of frames or a scene.
     pub input: String,
     /// Name of the method.
     pub method: String,
-    /// What it is run with, besides what all points of the sweep share.
+    /// Options of this point, without those that all points of the sweep share.
     pub options: Options,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -25,27 +25,27 @@ pub struct Point {
 pub struct Axis {
     /// Names of the options.
     pub options: Vec<String>,
-    /// Rows of one value for each of them. `None`: not given.
+    /// Rows with one value per option. `None`: the option is left out.
     pub values: Vec<Vec<Option<String>>>,
 }
 
 /// The axes of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Grid {
-    /// Every combination of these is a point.
+    /// Every combination of these values is a point.
     pub axes: Vec<Axis>,
-    /// Each of these is thrown alone, with the first value of every axis but the method.
+    /// Each of these is changed alone, with the first value of every axis but the method.
     pub switches: Vec<(String, Option<String>)>,
 }
 
 const EXPECTED_AXIS: &str = "expected NAME=VALUE,VALUE,... with the name of an option of run, or NAME+NAME=VALUE+VALUE,... for options that vary together";
 
 impl Axis {
-    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=-,on`, or `region-spp=32,16,8;2,2,2`: values that have commas of their
-    /// own are separated by semicolons.
+    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=-,on`, or `region-spp=32,16,8;2,2,2`: values that contain commas are
+    /// separated by semicolons.
     ///
     /// # Errors
-    /// If it is none of these.
+    /// If the text has another form.
     pub fn parse(text: &str) -> Result<Self, InputError> {
         let wrong = |problem: String| InputError::new(format!("--axis {text}"), problem, EXPECTED_AXIS);
         let (names, values) = text.split_once('=').ok_or_else(|| wrong("has no =".into()))?;
@@ -54,14 +54,14 @@ impl Axis {
         Self::new(names, values).map_err(wrong)
     }
 
-    /// The same from a list of values.
+    /// Creates an axis from option names joined by `+` and a list of values.
     ///
     /// # Errors
     /// If a name or the number of values is wrong.
     pub fn new<'a>(names: &str, values: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         let options: Vec<String> = names.split('+').map(|n| n.trim().trim_start_matches('-').to_owned()).collect();
         if options.iter().any(|o| !o.bytes().all(|b| b.is_ascii_lowercase() || b == b'-') || o.is_empty()) {
-            return Err(format!("'{names}' is no name of an option"));
+            return Err(format!("'{names}' is not the name of an option"));
         }
         let rows = values.into_iter().map(|value| {
             let parts: Vec<_> = value.split('+').map(|v| setting(v.trim())).collect();
@@ -78,7 +78,7 @@ impl Axis {
     }
 }
 
-/// What is typed for an option: `-` leaves it out, `on` is a flag. (`off` is a value: of `foveation`.)
+/// Parses the value of an option: `-` leaves it out, `on` sets a flag. (`off` is a value of `foveation`.)
 fn setting(value: &str) -> Option<String> {
     match value {
         "-" => None,
@@ -87,15 +87,15 @@ fn setting(value: &str) -> Option<String> {
     }
 }
 
-/// Reads `no-gate`, or `wrs-bias=none`.
+/// Parses a switch such as `no-gate` or `wrs-bias=none`.
 pub fn parse_switch(text: &str) -> (String, Option<String>) {
     let (name, value) = text.split_once('=').unwrap_or((text, "on"));
     (name.trim().trim_start_matches('-').to_owned(), setting(value.trim()))
 }
 
 impl Grid {
-    /// The points for inputs and seeds, each once. `concerns` tells whether an option with a value changes anything for a method, `is_random`
-    /// whether a seed does with the point's options; what changes nothing is left out.
+    /// The points for inputs and seeds, without duplicates. Options are dropped unless `concerns(option, value, method)`, and further seeds
+    /// unless `is_random(method, options)`, since they would not change the result.
     pub fn points(
         &self,
         inputs: &[String],
@@ -136,7 +136,7 @@ impl Grid {
         points
     }
 
-    /// Every combination of the values of the axes that vary; of the others the first.
+    /// Every combination of the values of the axes that vary, with the first value of the others.
     fn combinations(&self, varies: impl Fn(&Axis) -> bool) -> Vec<Options> {
         self.axes.iter().fold(vec![Options::new()], |so_far, axis| {
             let rows = if varies(axis) { &axis.values[..] } else { &axis.values[..1] };
@@ -160,7 +160,7 @@ fn put(options: &mut Options, name: &str, value: Option<&String>) {
 }
 
 impl Point {
-    /// The command line of `run` for it, without `--out`.
+    /// The command line of `run` for the point, without `--out`.
     pub fn command(&self, common: &Options) -> String {
         let mut words = vec!["afterimage run".to_owned(), quoted(&self.input), format!("--method {}", self.method)];
         let seed = (self.seed > 0).then(|| ("seed".to_owned(), self.seed.to_string()));
@@ -171,7 +171,7 @@ impl Point {
     }
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 pub fn quoted(word: &str) -> String {
     let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_./:,+=@%".contains(&b);
     if !word.is_empty() && word.bytes().all(plain) {

@@ -4,10 +4,10 @@ use super::metrics::Metric;
 use super::table::{Row, Table};
 use std::fmt::Write;
 
-/// Figures that fit beside each other on a page.
+/// Metrics of the tables: as many as fit on a page.
 const KEYS: [&str; 6] = ["flip", "psnr_db", "ssim", "weighted_psnr_db", "retained_psnr_db", "flicker"];
 
-/// All tables: points by cost, the price of each switch, convergence of traced points.
+/// All tables: points by cost, cost of each switch, convergence of traced points.
 pub fn markdown(table: &Table) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -53,7 +53,7 @@ fn points(table: &Table, input: &str, text: &mut String) -> std::fmt::Result {
     writeln!(text)
 }
 
-/// Bold where no other point costs less and is better.
+/// The value of a metric; bold if the point is on its frontier.
 fn figure(row: &Row, key: &str) -> String {
     let digits = Metric::find(key).map_or(4, |m| m.digits);
     let Some(value) = row.values.get(key).copied().flatten() else { return "-".into() };
@@ -128,7 +128,7 @@ fn convergences(table: &Table, input: &str, text: &mut String) -> std::fmt::Resu
     writeln!(text)
 }
 
-/// A text that is no end of its cell.
+/// A text escaped for a cell.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace(['\n', '\r'], " ")
 }

@@ -1,11 +1,11 @@
-//! What was measured of a point, as the files of a sweep have it.
+//! Measurement of a point, as stored in the files of a sweep.
 
 use super::grid::{Options, Point};
-use crate::report::tally::MethodReport;
+use crate::report::method::MethodReport;
 use afterimage_lab::clock::Quartiles;
 use serde::{Deserialize, Serialize};
 
-/// One point with one seed.
+/// Measurement of one point with one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// Version of the tool.
@@ -15,25 +15,25 @@ pub struct Measurement {
     pub point: Point,
     /// Options that all points of the sweep share.
     pub common: Options,
-    /// What was measured on.
+    /// Properties of the clip.
     pub clip: ClipFacts,
-    /// What measured.
+    /// The machine.
     pub machine: Machine,
-    /// Cost of the pass a frame in milliseconds, without the first frames.
+    /// Time of the pass per frame in milliseconds, without the warm-up frames.
     pub pass_ms: Quartiles,
-    /// The same of each frame: of points of one round, frame by frame comparable.
+    /// Time of the pass in each timed frame, milliseconds. Comparable frame by frame with points of the same round.
     pub frame_ms: Vec<f64>,
-    /// Name of the round that it was measured in.
+    /// Name of the round (batch).
     pub round: String,
-    /// Cost of the control, the method `taa` with its defaults, in the same frames: what the machine's drift is told by.
+    /// Time of the control method (`taa` with its defaults) in the same frames: shows the drift of the machine's speed.
     pub control_ms: Quartiles,
-    /// Cost of tracing the foveated frame; `None` where a simulator foveates, which costs what no renderer would pay.
+    /// Time of tracing the foveated frame; `None` if a simulator foveates, whose time is not a renderer's.
     pub render_ms: Option<Quartiles>,
-    /// Samples of the foveated frame over those of the full-rate one.
+    /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,
-    /// Camera samples a pixel of the frame, on average; `None` where a simulator foveates.
+    /// Mean camera samples per pixel; `None` if a simulator foveates.
     pub samples_per_pixel: Option<f64>,
-    /// Time of a copy that reads and writes as many bytes as the pass.
+    /// Time of a copy that moves as many bytes as the pass.
     pub copy_ms: f64,
     /// Scores and counts.
     pub figures: MethodReport,
@@ -41,7 +41,7 @@ pub struct Measurement {
     pub rust: String,
 }
 
-/// What was measured on.
+/// Properties of a clip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClipFacts {
     /// Width and height in pixels.
@@ -56,15 +56,15 @@ pub struct ClipFacts {
     pub hfov_deg: f32,
 }
 
-/// What measured.
+/// Machine, and clock of the times.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     /// `cpu` or `gpu`.
     pub kind: String,
-    /// Adapter, or threads.
+    /// Name of the adapter, or number of threads.
     pub name: String,
     /// Driver; `none` on the CPU.
     pub driver: String,
-    /// What the times are, in words.
+    /// Description of the clock.
     pub clock: String,
 }

@@ -1,31 +1,31 @@
-//! The figures that a sweep compares.
+//! Metrics of quality that a sweep compares.
 
 use afterimage_lab::metric::Scores;
 
-/// A figure of quality.
+/// A metric of quality.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric {
-    /// Its name in tables and on the command line.
+    /// Name in tables and on the command line.
     pub key: &'static str,
-    /// Its name for a reader.
+    /// Name in reports.
     pub title: &'static str,
     /// Unit, empty for none.
     pub unit: &'static str,
     /// Whether more is better.
     pub more_is_better: bool,
-    /// Digits after the point that mean something.
+    /// Significant digits after the decimal point.
     pub digits: usize,
-    /// Of scores.
+    /// Reads the metric from scores.
     pub of: fn(&Scores) -> Option<f64>,
 }
 
 impl Metric {
-    /// By its key.
+    /// Finds a metric by its key.
     pub fn find(key: &str) -> Option<&'static Self> {
         METRICS.iter().find(|m| m.key == key)
     }
 
-    /// As an error: less is better. Without an error, as the PSNR of equal pictures, it is the least there is.
+    /// The value as an error, less is better. `None`, the PSNR of equal pictures, is the smallest error.
     pub fn error(&self, value: Option<f64>) -> f64 {
         match value {
             None => f64::NEG_INFINITY,
@@ -41,7 +41,7 @@ macro_rules! metric {
     };
 }
 
-/// All figures, in the order of the tables. `docs/metrics.md` has their formulas.
+/// All metrics, in the order of the tables. `docs/metrics.md` has their formulas.
 pub const METRICS: &[Metric] = &[
     metric!("flip", "FLIP", "", false, 4, |s| s.whole.flip),
     metric!("psnr_db", "PSNR", "dB", true, 2, |s| s.whole.psnr_db),

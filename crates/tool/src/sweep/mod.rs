@@ -1,7 +1,7 @@
-//! What accuracy costs in time: points of a grid of options, measured one by one, and what a reader wants to know of them.
+//! Sweeps: error against time of the points of a grid of methods and options.
 //!
-//! A point is a method with options of `afterimage run`. [`grid`] says which points there are, [`store`] keeps what was measured of each,
-//! so that a sweep can be stopped, resumed and spread over machines, [`table`] puts it side by side.
+//! A point is a method with options of `afterimage run`. [`grid`] enumerates the points. [`store`] keeps the measurements of each point
+//! in a file, so that a sweep can be stopped, resumed and split between machines. [`table`] compares the measurements.
 
 pub mod convergence;
 pub mod equal;
@@ -10,9 +10,9 @@ pub mod grid;
 pub mod markdown;
 pub mod measurement;
 pub mod metrics;
-pub mod paste;
 pub mod plan;
 pub mod prices;
+pub mod rust_source;
 pub mod store;
 pub mod table;
 

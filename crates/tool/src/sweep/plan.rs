@@ -1,4 +1,4 @@
-//! What a sweep measures, as a file says it.
+//! Plan of a sweep, read from a file.
 
 use super::grid::{Axis, Grid, Options, parse_switch};
 use afterimage_lab::error::InputError;
@@ -6,23 +6,23 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Largest file that is read.
+/// Size limit of the file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
-/// Most measurements of a sweep.
+/// Limit on the measurements of a sweep.
 pub const MAX_POINTS: usize = 100_000;
-/// Most repetitions with seeds of their own.
+/// Limit on the number of seeds.
 const MAX_SEEDS: u64 = 1000;
 const EXPECTED: &str =
     "expected seeds = N, [common] option = value, [axes] option = [values], [switches] of = [options]";
 
-/// What a sweep measures.
+/// Plan of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// What differs between points.
+    /// Options that differ between points.
     pub grid: Grid,
-    /// What is the same for all.
+    /// Options that all points share.
     pub common: Options,
-    /// Repetitions of what is random.
+    /// Number of seeds for randomized methods.
     pub seeds: u64,
 }
 
@@ -32,7 +32,7 @@ impl Default for Plan {
     }
 }
 
-/// The file, in TOML.
+/// The plan in TOML.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PlanFile {
@@ -52,7 +52,7 @@ struct Switches {
     of: Vec<String>,
 }
 
-/// A value as people write it.
+/// A value of an option.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Value {
@@ -63,8 +63,8 @@ enum Value {
 }
 
 impl Value {
-    /// As it is typed for an axis.
-    fn typed(&self) -> String {
+    /// The value in the syntax of `--axis`.
+    fn axis_text(&self) -> String {
         match self {
             Self::Flag(true) => "on".into(),
             Self::Flag(false) => "-".into(),
@@ -76,10 +76,10 @@ impl Value {
 }
 
 impl Plan {
-    /// Reads a file and adds what it says.
+    /// Reads a plan from a file and adds it to this one.
     ///
     /// # Errors
-    /// If it cannot be read, is larger than 1 MiB, or as [`Plan::add`].
+    /// If the file cannot be read or is larger than 1 MiB, and those of [`Plan::add`].
     pub fn add_file(&mut self, path: &Path) -> Result<(), InputError> {
         let name = path.display().to_string();
         let wrong = |problem: String| InputError::new(&name, problem, "expected a plan of at most 1 MiB");
@@ -91,10 +91,10 @@ impl Plan {
         self.add(&name, &std::fs::read_to_string(path).map_err(unreadable)?)
     }
 
-    /// Adds what a file's text says; it goes before what was said of the same options. `name` is how errors name it.
+    /// Adds a plan in TOML, which overrides earlier axes of the same options. `name`: its name in errors.
     ///
     /// # Errors
-    /// If it is no TOML of the form in docs/sweep.md.
+    /// If the text is not TOML of the form in docs/sweep.md.
     pub fn add(&mut self, name: &str, text: &str) -> Result<(), InputError> {
         let wrong = |problem: String| InputError::new(name, problem, EXPECTED);
         let file: PlanFile = toml::from_str(text).map_err(|e| {
@@ -103,12 +103,12 @@ impl Plan {
         })?;
         self.seeds = file.seeds.unwrap_or(self.seeds);
         for (names, values) in &file.axes {
-            let typed: Vec<String> = values.iter().map(Value::typed).collect();
-            let axis = Axis::new(names, typed.iter().map(String::as_str));
+            let texts: Vec<String> = values.iter().map(Value::axis_text).collect();
+            let axis = Axis::new(names, texts.iter().map(String::as_str));
             self.put(axis.map_err(|e| wrong(format!("axis {names}: {e}")))?);
         }
         for (option, value) in &file.common {
-            if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.typed())) {
+            if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.axis_text())) {
                 self.common.insert(name, value);
             }
         }
@@ -116,17 +116,17 @@ impl Plan {
         Ok(())
     }
 
-    /// An axis takes the place of what was said of its options before.
+    /// Adds an axis, which replaces earlier axes and common values of its options.
     pub fn put(&mut self, axis: Axis) {
         self.grid.axes.retain(|a| !a.options.iter().any(|o| axis.options.contains(o)));
         self.common.retain(|name, _| !axis.options.contains(name));
         self.grid.axes.push(axis);
     }
 
-    /// Whether it can be measured.
+    /// Checks whether the plan can be measured.
     ///
     /// # Errors
-    /// Names what is the sweep's own, said twice, or too much: more than 1000 seeds or 100,000 points.
+    /// If an option is reserved for the sweep or is both common and an axis, or for more than 1000 seeds or 100,000 points.
     pub fn check(&self) -> Result<(), InputError> {
         if !(1..=MAX_SEEDS).contains(&self.seeds) {
             let text = format!("is not in 1 to {MAX_SEEDS}");
@@ -138,7 +138,11 @@ impl Plan {
                 || axes.iter().any(|a| a.options.iter().any(|o| o == reserved))
                 || self.grid.switches.iter().any(|s| s.0 == reserved);
             if is_taken {
-                return Err(InputError::new(reserved, "is the sweep's own", "expected an option of run, or --seeds N"));
+                return Err(InputError::new(
+                    reserved,
+                    "is set by the sweep itself",
+                    "expected an option of run, or --seeds N",
+                ));
             }
         }
         if let Some(name) = self.common.keys().find(|name| axes.iter().any(|a| a.options.contains(name))) {

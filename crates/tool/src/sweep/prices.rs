@@ -1,4 +1,4 @@
-//! What a switch costs and buys.
+//! Cost and effect of each switch.
 
 use super::metrics::METRICS;
 use super::table::Row;
@@ -6,14 +6,14 @@ use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A point with a switch thrown, and the same without.
+/// A point with a switch, compared with the same point without it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Price {
-    /// The switch, as it is typed.
+    /// The switch and its value, as on the command line.
     pub switch: String,
-    /// What is sampled.
+    /// The input.
     pub input: String,
-    /// Which method.
+    /// The method.
     pub method: String,
     /// [`Row::id`] of the point without it.
     pub base: String,
@@ -21,18 +21,18 @@ pub struct Price {
     pub switched: String,
     /// Milliseconds of the pass, without it and with it.
     pub pass_ms: [f64; 2],
-    /// Time of the pass with it over that without it: median and quartiles over the frames, frame by frame where both were measured in one
-    /// round, so that what makes a frame dear for both is not in it; else of the times' own quartiles.
+    /// Time of the pass with the switch divided by that without it. Median and quartiles of the per-frame ratios if both points were measured
+    /// in the same round, which cancels differences between frames; else from the quartiles of both times.
     pub time_ratio: Quartiles,
-    /// Bytes that the pass reads and writes a pixel, without it and with it.
+    /// Bytes per pixel that the pass reads and writes, without it and with it.
     pub bytes_per_pixel: [Option<u32>; 2],
-    /// Bytes kept a pixel, without it and with it.
+    /// Persistent bytes per pixel, without it and with it.
     pub memory_bytes_per_pixel: [f64; 2],
-    /// Figures by [`METRICS`]' keys, without it and with it.
+    /// Values by [`METRICS`]' keys, without it and with it.
     pub values: BTreeMap<&'static str, [Option<f64>; 2]>,
 }
 
-/// Of every pair of points of which one has an option more than the other, and all else alike.
+/// Compares every pair of points that differ in one additional option.
 pub(super) fn prices(rows: &[Row]) -> Vec<Price> {
     let mut prices = vec![];
     for switched in rows {

@@ -1,4 +1,4 @@
-//! The folder of a sweep: a file for every point that is done, written whole, so that nothing finished is ever lost.
+//! The folder of a sweep: one file per finished point, written atomically, so that finished work is never lost.
 
 use super::grid::Point;
 use super::measurement::Measurement;
@@ -8,29 +8,29 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Largest file of a measurement that is read, bytes: a hundred times what one takes.
+/// Size limit of a measurement's file, bytes: a hundred times the usual size.
 const MAX_BYTES: u64 = 1 << 20;
-/// Largest picture that is taken from another folder, bytes: one of 4K takes two million.
+/// Size limit of a picture from another folder, bytes: a 4K picture takes two million.
 const MAX_PICTURE_BYTES: u64 = 32 << 20;
 
-/// Pictures of a point: what was shown, where it is wrong, what it should have been.
+/// Pictures of a point: output of the method, error map, reference.
 pub const PICTURES: [&str; 3] = ["shown", "error", "reference"];
 
-/// A folder with measurements and pictures.
+/// Folder of measurements and pictures.
 #[derive(Clone, Debug)]
 pub struct Store {
     root: PathBuf,
 }
 
 impl Store {
-    /// The folder, made if need be.
+    /// Opens a folder, creating it if necessary.
     ///
     /// # Errors
-    /// If it cannot be made or written.
+    /// If the folder cannot be created or written.
     pub fn create(root: &Path) -> Result<Self, InputError> {
         let refuse = |path: &Path, error: io::Error| {
             let problem = format!("cannot be written ({error})");
-            InputError::new(path.display().to_string(), problem, "give --out a folder that can be made or written")
+            InputError::new(path.display().to_string(), problem, "give --out a folder that can be created or written")
         };
         for folder in ["points", "pictures"] {
             let path = root.join(folder);
@@ -41,13 +41,13 @@ impl Store {
         Ok(Self { root: root.to_owned() })
     }
 
-    /// A folder that is there.
+    /// Opens an existing folder.
     ///
     /// # Errors
-    /// If it has no measurements.
+    /// If the folder is not that of a sweep.
     pub fn open(root: &Path) -> Result<Self, InputError> {
         if !root.join("points").is_dir() {
-            let remedy = "expected a folder that afterimage sweep has written";
+            let remedy = "expected the --out folder of an earlier afterimage sweep";
             return Err(InputError::new(root.display().to_string(), "holds no sweep", remedy));
         }
         Ok(Self { root: root.to_owned() })
@@ -58,7 +58,7 @@ impl Store {
         &self.root
     }
 
-    /// Keeps a measurement.
+    /// Saves a measurement.
     ///
     /// # Errors
     /// Those of the file system.
@@ -67,12 +67,12 @@ impl Store {
         write_whole(&self.file(&measurement.point), |file| file.write_all(text.as_bytes()))
     }
 
-    /// Takes a point with its pictures from another folder, byte by byte.
+    /// Copies a point and its pictures from another folder.
     ///
     /// # Errors
     /// Those of the file system.
     pub fn adopt(&self, from: &Self, point: &Point) -> io::Result<()> {
-        // The measurement last: what has one is finished.
+        // The measurement last, since it marks the point as finished.
         for what in PICTURES {
             match read_own(&from.picture(point, what), MAX_PICTURE_BYTES) {
                 Ok(bytes) => write_whole(&self.picture(point, what), |file| file.write_all(&bytes))?,
@@ -91,11 +91,11 @@ impl Store {
     /// All measurements, in the order of their points.
     ///
     /// # Errors
-    /// If a file cannot be read or is not one of ours.
+    /// If a file cannot be read or is no measurement.
     pub fn load(&self) -> Result<Vec<Measurement>, InputError> {
         let folder = self.root.join("points");
         let wrong = |path: &Path, problem: String| {
-            InputError::new(path.display().to_string(), problem, "remove it, and the point is measured anew")
+            InputError::new(path.display().to_string(), problem, "remove it, and the point is measured again")
         };
         let entries = fs::read_dir(&folder).map_err(|e| wrong(&folder, format!("cannot be read ({e})")))?;
         let mut measurements = vec![];
@@ -106,9 +106,9 @@ impl Store {
             let text = read_own(&path, MAX_BYTES).map_err(|e| wrong(&path, format!("cannot be read ({e})")))?;
             let measurement: Measurement =
                 serde_json::from_slice(&text).map_err(|e| wrong(&path, format!("is no measurement ({e})")))?;
-            // A name that its content does not give would be written elsewhere when it is merged: outside the folder, even.
+            // A merge names files by their content. Reject a mismatch, which could lead outside the folder.
             if path.file_stem().is_none_or(|name| *name != *id(&measurement.point)) {
-                return Err(wrong(&path, "is not named as its point is".into()));
+                return Err(wrong(&path, "does not have its point's name".into()));
             }
             measurements.push(measurement);
         }
@@ -116,13 +116,13 @@ impl Store {
         Ok(measurements)
     }
 
-    /// Where a picture of a point goes: one of [`PICTURES`].
+    /// Path of a picture of a point; `what`: one of [`PICTURES`].
     pub fn picture(&self, point: &Point, what: &str) -> PathBuf {
         self.root.join("pictures").join(format!("{}-{what}.jpg", id(point)))
     }
 }
 
-/// The bytes of a file in the folder itself: no link out of it, and no more than `max`.
+/// Reads a file of at most `max` bytes. Rejects links, which could lead outside the folder.
 fn read_own(path: &Path, max: u64) -> io::Result<Vec<u8>> {
     let facts = fs::symlink_metadata(path)?;
     if !facts.is_file() {
@@ -134,11 +134,11 @@ fn read_own(path: &Path, max: u64) -> io::Result<Vec<u8>> {
     fs::read(path)
 }
 
-/// A name for files: the method, and 64 bits of all that makes the point (FNV-1a).
+/// File name of a point: the method, and a 64-bit FNV-1a hash of input, options and seed.
 pub fn id(point: &Point) -> String {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |word: &str| {
-        // A zero after each word keeps "a" "bc" from being "ab" "c".
+        // Hash a zero after each word, so that "a", "bc" and "ab", "c" differ.
         for byte in word.bytes().chain([0]) {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }

@@ -1,4 +1,4 @@
-//! Measurements side by side: seeds together, times made comparable, the frontier marked.
+//! Table of a sweep: merges seeds, corrects times for drift, marks the frontier.
 
 use super::convergence::{Convergence, convergences};
 use super::frontier::{Standing, frontier};
@@ -11,82 +11,82 @@ use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A point with all its seeds.
+/// A point, merged over its seeds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// Name of its files in `pictures/`.
     pub id: String,
-    /// Method, and the options that not all points share.
+    /// Method, and the options that differ between points.
     pub label: String,
     /// The point, with its first seed.
     #[serde(flatten)]
     pub point: Point,
-    /// Measurements with seeds of their own.
+    /// Number of seeds.
     pub seeds: usize,
-    /// Cost of the pass a frame, milliseconds, the machine's drift taken out.
+    /// Time of the pass per frame, milliseconds, corrected for the machine's drift.
     pub pass_ms: Quartiles,
-    /// Round and cost of each frame of the first seed.
+    /// Name of the round, and time of each frame, of the first seed.
     #[serde(skip)]
     pub frames: (String, Vec<f64>),
-    /// What its times were multiplied with for that, on average.
+    /// Mean factor of the drift correction.
     pub drift: f64,
-    /// Cost of rendering the foveated frame, milliseconds: traced, or the share of the samples of what the renderer was said to take.
+    /// Time of rendering the foveated frame, milliseconds: measured if traced, else `renderer_ms` times the share of the samples.
     pub render_ms: Option<f64>,
-    /// Both.
+    /// Time of the pass and of rendering, milliseconds.
     pub cost_ms: f64,
-    /// Samples of the foveated frame over those of the full-rate one.
+    /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,
-    /// Camera samples a pixel of the frame, on average, where they were traced for it.
+    /// Mean camera samples per pixel, of traced frames.
     pub samples_per_pixel: Option<f64>,
-    /// Time of a copy that moves as many bytes: the roofline.
+    /// Time of a copy that moves as many bytes: a lower bound of the pass's time.
     pub copy_ms: f64,
-    /// Bytes that the pass reads and writes a pixel.
+    /// Bytes per pixel that the pass reads and writes.
     pub bytes_per_pixel: Option<u32>,
-    /// Bytes kept between frames a pixel.
+    /// Bytes per pixel that are kept between frames.
     pub memory_bytes_per_pixel: f64,
-    /// Figures by [`METRICS`]' keys, means over the seeds.
+    /// Values by [`METRICS`]' keys, means over the seeds.
     pub values: BTreeMap<&'static str, Option<f64>>,
-    /// Mean squared error, whole and by band from the gaze outwards, means over the seeds.
+    /// Mean squared error, mean over the seeds: whole image, then fovea, middle, periphery.
     pub mse: [Option<f64>; 4],
-    /// Least and most over the seeds, where there are several.
+    /// Smallest and largest value over the seeds, if there are several.
     pub spread: BTreeMap<&'static str, [f64; 2]>,
-    /// Figures for which no other point of the input costs less and is better.
+    /// Metrics for which the point is on the frontier of its input.
     pub frontier: Vec<&'static str>,
-    /// Pixels shown NaN or infinite.
+    /// Output pixels that are NaN or infinite.
     pub nonfinite_out: u64,
-    /// The command that remakes it.
+    /// The command that runs the point.
     pub command: String,
     /// The settings, ready to paste into a program.
     pub rust: String,
 }
 
-/// All that a sweep came to.
+/// Results of a sweep.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
     /// `afterimage`.
     pub tool: &'static str,
-    /// Of the tool.
+    /// Version of the tool.
     pub version: String,
-    /// The command that made it.
+    /// The command that wrote the table.
     pub command: String,
     /// Options that all points share.
     pub common: Options,
-    /// What was measured on, by input.
+    /// Properties of the clips, by input.
     pub clips: BTreeMap<String, ClipFacts>,
-    /// What measured; several after a merge.
+    /// Machines; several after a merge.
     pub machines: Vec<Machine>,
-    /// What the renderer was said to take for a full-rate frame.
+    /// Time of the renderer for a full-rate frame, milliseconds, from the command line.
     pub renderer_ms: Option<f64>,
-    /// Points, by input and cost.
+    /// Points, sorted by input and cost.
     pub rows: Vec<Row>,
-    /// What each switch changes.
+    /// Cost and effect of each switch.
     pub prices: Vec<Price>,
-    /// How fast traced points get better.
+    /// Convergence of traced points.
     pub convergences: Vec<Convergence>,
 }
 
 impl Table {
-    /// Of the measurements of one sweep, for a renderer that takes so long for a full-rate frame, if that is known.
+    /// The table of a sweep's measurements. `renderer_ms`: time of the renderer for a full-rate frame, if known.
     pub fn new(measurements: &[Measurement], renderer_ms: Option<f64>, command: String) -> Self {
         let mut groups: BTreeMap<Point, Vec<&Measurement>> = BTreeMap::new();
         for m in measurements {
@@ -121,7 +121,7 @@ impl Table {
         }
     }
 
-    /// The table as CSV, one line a point.
+    /// The table as CSV, one line per point.
     pub fn csv(&self) -> String {
         let metrics = METRICS.iter().map(|m| m.key).collect::<Vec<_>>().join(",");
         let mut text = format!(
@@ -148,7 +148,7 @@ fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }
 
-/// Median cost of the control by input.
+/// Median time of the control method, by input.
 fn controls(measurements: &[Measurement]) -> BTreeMap<&str, f64> {
     let mut by_input: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for m in measurements {
@@ -157,7 +157,7 @@ fn controls(measurements: &[Measurement]) -> BTreeMap<&str, f64> {
     by_input.into_iter().filter_map(|(input, times)| Some((input, Quartiles::of(&times)?.median))).collect()
 }
 
-/// Options that all points have with the same value, whatever their method; they need no mention.
+/// Options with the same value in all points, which labels leave out.
 fn shared_options<'a>(points: impl Iterator<Item = &'a Point>) -> Options {
     let mut points = points.map(|p| &p.options);
     let Some(first) = points.next() else { return Options::new() };
@@ -220,7 +220,7 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
     }
 }
 
-/// Inputs have frontiers of their own. The oracle, which no renderer can run, is on none.
+/// Marks the frontier of each input and metric. Without the oracle, which no renderer can run.
 fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
     let inputs: std::collections::BTreeSet<String> = rows.iter().map(|r| r.point.input.clone()).collect();
     for input in inputs {
@@ -238,16 +238,16 @@ fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
 }
 
 impl Row {
-    /// Whether a program could choose it: the oracle is a bound and no method.
+    /// Whether a program can use the method: the oracle is only an upper bound.
     pub fn is_choice(&self) -> bool {
         self.point.method != "oracle"
     }
 
-    /// Its place by a figure. Samples count where it is not known what they cost.
+    /// Cost and error in a metric. The share of the samples counts as a cost if the renderer's time is not known.
     pub fn standing(&self, metric: &super::Metric, renderer_ms: Option<f64>) -> Standing {
         let priced = renderer_ms.is_some() || self.render_ms.is_some();
         let error = match self.values.get(metric.key).copied().flatten() {
-            // A figure that no point of the clip has is none to compare.
+            // The metric was not measured. (A missing PSNR means zero error.)
             None if !metric.key.ends_with("psnr_db") => f64::NAN,
             value => metric.error(value),
         };

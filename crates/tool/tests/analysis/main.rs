@@ -1,4 +1,4 @@
-//! Sweeps: which points there are, what is kept of them, what the page and the plots say.
+//! Sweeps: points, storage, page and plots.
 
 mod report;
 mod sweep;

@@ -1,6 +1,6 @@
-//! The grid, the frontier, the table and the store of a sweep.
+//! Grid, frontier, table and store of a sweep.
 
-use afterimage_cli::report::tally::MethodReport;
+use afterimage_cli::report::method::MethodReport;
 use afterimage_cli::sweep::frontier::{Standing, frontier};
 use afterimage_cli::sweep::grid::parse_switch;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};
@@ -105,7 +105,7 @@ fn a_command_can_be_pasted_into_a_shell() {
     );
 }
 
-/// By definition: nothing is at least as good in everything and better in something.
+/// The frontier by definition: no other point is at least as good in every part and better in one.
 fn by_brute_force(points: &[Standing], is_beaten: impl Fn([f64; 3], [f64; 3]) -> bool) -> Vec<bool> {
     let parts = |s: &Standing| [s.cost_ms, s.samples_share, s.error];
     let sound = |s: &Standing| parts(s).iter().all(|v| !v.is_nan());
@@ -120,7 +120,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(7), cases: 500, failure_persistence: None, ..Default::default() })]
     #[test]
     fn the_frontier_is_that_of_brute_force(parts in prop::collection::vec((0..6_u8, 0..3_u8, 0..6_u8), 0..40)) {
-        // Small numbers tie often; the last value of the error stands for none.
+        // Small numbers make ties frequent; the last value of the error represents NaN.
         let error = |e: u8| if e == 5 { f64::NAN } else { f64::from(e) };
         let points: Vec<Standing> = parts
             .iter()
@@ -144,7 +144,7 @@ fn a_frontier_that_forgets_ties_or_shares_is_caught() {
 #[test]
 fn times_of_a_machine_that_slowed_down_are_made_comparable() {
     let fovea = |deg| [("fovea", deg)];
-    // The second round ran while the machine was twice as slow: its control tells.
+    // The machine was twice as slow in the second round, as its control shows.
     let measurements = [
         measurement(point("smr", &fovea("5"), 0), 10.0, 4.0, 0.2),
         measurement(point("wrs", &fovea("5"), 0), 5.0, 4.0, 0.3),
@@ -185,7 +185,7 @@ fn what_the_renderer_costs_moves_the_frontier() {
     assert!(frontier(Some(10.0)).iter().all(|r| r.2));
     let costs: Vec<f64> = frontier(Some(10.0)).iter().map(|r| r.1).collect();
     assert_eq!(costs, [2.0, 5.0]);
-    // Free samples leave no reason for fewer.
+    // If samples are free, fewer samples are no advantage.
     let free: Vec<bool> = frontier(Some(0.0)).iter().map(|r| r.2).collect();
     assert_eq!(free.iter().filter(|b| **b).count(), 1);
 }
@@ -224,7 +224,7 @@ fn a_switch_is_priced_against_the_point_without_it() {
     let [price] = &table.prices[..] else { panic!("one price: {:?}", table.prices) };
     assert_eq!((price.switch.as_str(), price.method.as_str(), price.pass_ms), ("no-gate", "wrs", [10.0, 6.0]));
     assert_eq!(price.values["flip"], [Some(0.2), Some(0.25)]);
-    // Frames that are dear for both are not what the switch costs: their ratio is the same in all.
+    // Frames that are slow for both points do not count as cost of the switch: the ratio is the same in all frames.
     assert_eq!(price.time_ratio, Quartiles { median: 0.6, p25: 0.6, p75: 0.6 });
     let mut apart = measurements;
     apart[1].round = "b".into();
@@ -239,7 +239,7 @@ fn the_csv_has_a_cell_for_every_column_of_every_row() {
     let hostile = Point { input: "a,\"b\"\nc".into(), ..point("wrs", &[("no-gate", "")], 0) };
     let measurements = [measurement(hostile, 10.0, 4.0, 0.2), measurement(point("smr", &[], 0), 10.0, 4.0, 0.2)];
     let csv = Table::new(&measurements, None, String::new()).csv();
-    // The cells of a line, quotes understood; a quoted line break joins two lines.
+    // Splits a line into cells, with quotes; a quoted line break joins two lines.
     let cells = |text: &str| {
         let mut in_quotes = false;
         text.chars()
@@ -271,12 +271,12 @@ fn the_store_gives_back_what_it_was_given_and_refuses_what_is_not_its_own() {
         std::fs::write(&path, text).unwrap();
         let error = store.load().unwrap_err().to_string();
         println!("{}", &error[error.len().saturating_sub(150)..]);
-        assert!(error.contains(name) && error.contains("measured anew"));
+        assert!(error.contains(name) && error.contains("measured again"));
         std::fs::remove_file(&path).unwrap();
     }
 }
 
-/// A folder from a stranger makes nobody read or write elsewhere.
+/// Untrusted folders cannot cause reads or writes outside the folder.
 #[test]
 fn a_measurement_that_leads_out_of_its_folder_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -291,7 +291,7 @@ fn a_measurement_that_leads_out_of_its_folder_is_refused() {
         assert_ne!(evil, text);
         std::fs::write(&file, evil).unwrap();
         let error = store.load().unwrap_err().to_string();
-        assert!(error.contains("is not named as its point is"), "{error}");
+        assert!(error.contains("does not have its point's name"), "{error}");
     }
     std::fs::write(&file, &text).unwrap();
     assert_eq!(store.load().unwrap().len(), 1);

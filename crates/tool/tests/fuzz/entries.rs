@@ -1,5 +1,5 @@
-//! What is done with the bytes of a stranger, and what must come of it: a refusal in one line, or something sound. Shared by the fuzzing
-//! targets and by `tests/fuzz_replay.rs`.
+//! Entry points for untrusted bytes, and the oracle: each must give an error in one line, or a valid result. Shared by the fuzzing targets
+//! and `tests/fuzz_replay.rs`.
 
 #[path = "../../../lab/tests/common/sound_scene.rs"]
 mod sound_scene;
@@ -24,10 +24,10 @@ use afterimage_lab::trace::world::World;
 use std::fs;
 use std::path::PathBuf;
 
-/// A kind of input, and what reads it.
+/// A kind of input, and its reader.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// All of them, as their folders in `fixtures/fuzz` are called.
+/// All kinds, named like their folders in `fixtures/fuzz`.
 #[allow(dead_code, reason = "a fuzzing target uses one of them")]
 pub const TARGETS: [Target; 7] = [
     ("scanpath", scanpath),
@@ -39,12 +39,12 @@ pub const TARGETS: [Target; 7] = [
     ("settings", settings),
 ];
 
-/// Small enough that what gets through at its claimed size takes little time.
+/// Small limits, so that inputs of a large claimed size take little time.
 const IMAGES: ReadLimits = ReadLimits { max_pixels: 1 << 16 };
 const SCENES: SceneLimits =
     SceneLimits { max_triangles: 2000, max_texels: 1 << 16, max_file_bytes: 1 << 20, max_json_bytes: 1 << 20 };
 
-/// A recorded scanpath.
+/// A scanpath (CSV).
 pub fn scanpath(bytes: &[u8]) {
     let Some(path) = sound(parse_csv("fuzz.csv", bytes)) else { return };
     let samples = path.samples();
@@ -84,7 +84,7 @@ fn image(extension: &str, bytes: &[u8]) {
     assert!(frame.color.pixels().iter().flatten().all(|v| v.is_finite()));
 }
 
-/// A scene, in one file with its data.
+/// A scene in a single file.
 pub fn gltf(bytes: &[u8]) {
     let path = file(if bytes.starts_with(b"glTF") { "glb" } else { "gltf" }, bytes);
     let Some(scene) = sound(Scene::open(path.to_str().unwrap(), &SCENES)) else { return };
@@ -122,7 +122,7 @@ pub fn plan(bytes: &[u8]) {
     }
 }
 
-/// Settings, frames and history of any bits through every method: refused, or shown without a pixel that is no number.
+/// Arbitrary settings, frames and history through every method: an error, or output without NaN or infinity.
 pub fn settings(bytes: &[u8]) {
     let mut bits = Bits(bytes);
     let Ok(mut post) = CpuAfterimage::new(&ContextDesc { settings: bits.settings(), ..ContextDesc::new(SIZE) }) else {
@@ -167,7 +167,7 @@ pub fn settings(bytes: &[u8]) {
 
 const SIZE: [u32; 2] = [5, 3];
 
-/// Bytes read as words; after their end, zeros.
+/// Reads bytes as words; zeros after the end.
 struct Bits<'a>(&'a [u8]);
 
 impl Bits<'_> {
@@ -183,7 +183,7 @@ impl Bits<'_> {
         f32::from_bits(self.word())
     }
 
-    /// A number in the range, or anything at all.
+    /// A number in the range, or arbitrary bits.
     fn around(&mut self, low: f32, high: f32) -> f32 {
         let word = self.word();
         if word & 7 == 0 { self.float() } else { low + (high - low) * ((word >> 8) as f32 / 16_777_215.0) }
@@ -230,7 +230,7 @@ impl Bits<'_> {
     }
 }
 
-/// What was read; a refusal is one line that says what to do.
+/// The result of a reader. Checks that an error is one line with a remedy.
 fn sound<T>(read: Result<T, InputError>) -> Option<T> {
     match read {
         Ok(read) => Some(read),
@@ -242,7 +242,7 @@ fn sound<T>(read: Result<T, InputError>) -> Option<T> {
     }
 }
 
-/// A file of this process with the bytes; always the same one for a kind, in memory where the system has such a folder.
+/// Writes the bytes to a file of this process, one per kind, in memory where the system supports it.
 fn file(extension: &str, bytes: &[u8]) -> PathBuf {
     let memory = PathBuf::from("/dev/shm");
     let folder = if memory.is_dir() { memory } else { std::env::temp_dir() };

@@ -40,7 +40,7 @@ fn bench_counts_the_rays_of_the_tracer() {
     succeeds(&[&["bench", "trace"], &small[..]].concat());
     let report = read_json(Path::new(&json));
     let tracer = &report["scenes"][0]["tracers"][0];
-    // A camera ray a pixel at least, and no more than two a bounce and the last.
+    // At least one camera ray per pixel, and at most two rays per bounce plus the last.
     assert!((576..=576 * 7).contains(&tracer["rays_per_frame"].as_u64().unwrap()));
     assert!(tracer["mrays_per_core_second"].as_f64().unwrap() > 0.0);
     refuses(&["bench", "trace", "--scene", "builtin:none"], &["builtin:none"]);
@@ -59,7 +59,7 @@ fn bench_puts_the_papers_figures_beside_ours() {
     assert_eq!(regions.len(), 4);
     assert!((report["regions"]["hfov_deg"].as_f64().unwrap() - 61.1).abs() < 0.1);
     assert_eq!(regions[0]["paper_time_reduction"], 23.93);
-    // Of a few pixels: what is measured is anything.
+    // A few pixels only: measured values are arbitrary.
     assert!(regions.iter().all(|p| p["time_reduction"].as_f64().unwrap() > 0.0 && p["clock"] == "CPU"));
     let layers = report["layers"].as_array().unwrap();
     assert_eq!(layers.len(), 5);
@@ -119,7 +119,7 @@ fn bench_compares_patterns_at_equal_numbers_of_samples() {
     for file in ["reference.exr", "reference.png", "acuity.png", "acuity_flip.png", "layers_flip.png"] {
         assert!(Path::new(&out).join(file).exists(), "{file}");
     }
-    // The reference that was written is one; of another size it is none.
+    // The written reference is accepted, but not at another size.
     let exr = folder.text("out/reference.exr");
     let again = [&base[..], &["--frames", "2", "--reference", &exr, "--size"]].concat();
     succeeds(&[&again[..], &["320x180"]].concat());

@@ -32,19 +32,19 @@ fn info_says_what_a_scene_holds() {
     let text = succeeds(&["info", "builtin:cornell"]);
     for line in [
         "builtin:cornell",
-        "triangles: 36 (0 of them move)",
+        "triangles: 36 (0 animated)",
         "textures: 0, 0 bytes",
         "lights: none",
         "environment: none",
         "cameras: 1 ('main')",
         "animations: 0",
-        "effects that it calls for: emissive-triangles",
+        "effects used: emissive-triangles",
     ] {
         assert!(text.lines().any(|l| l == line), "'{line}' in\n{text}");
     }
     assert!(text.contains("bounds, m: x ") && text.contains("materials that emit light: 1 ("), "{text}");
 
-    // A triangle that a light, a camera and two animations go with.
+    // A triangle with a light, a camera and two animations.
     let folder = Folder::new();
     let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     let corners = floats(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0, -1.0]);
@@ -73,15 +73,15 @@ fn info_says_what_a_scene_holds() {
     let text = succeeds(&["info", &scene]);
     for line in [
         scene.as_str(),
-        "triangles: 1 (1 of them move)",
+        "triangles: 1 (1 animated)",
         "bounds, m: x 0 to 2, y 0 to 3, z -1 to 0",
         "materials: 1 ('red\\npaint')",
         "lights: 1 point",
         "materials that emit light: 0",
         "cameras: 1 ('door')",
         "animations: 2 ('walk')",
-        "length of the first animation, s: 1.500",
-        "effects that it calls for: metal, punctual-lights, moving-objects",
+        "duration of the first animation, s: 1.500",
+        "effects used: metal, punctual-lights, moving-objects",
     ] {
         assert!(text.lines().any(|l| l == line), "'{line}' in\n{text}");
     }

@@ -1,4 +1,4 @@
-//! The command-line tool as other programs use it: what it writes, and how it refuses.
+//! The command-line tool as a process: files and errors.
 
 mod bench;
 mod info;

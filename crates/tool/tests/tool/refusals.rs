@@ -62,7 +62,7 @@ fn bad_files_are_one_line_and_exit_code_2() {
     let file = folder.write("huge.png", &png);
     refuses(&run(&file, &out, &[]), &["huge.png"]);
     assert!(!folder.path("out").exists(), "nothing was written");
-    // A file where the folder should be.
+    // A file in place of the folder.
     let file = folder.write("file", b"");
     refuses(&run("analytic:still", &format!("{file}/out"), SMALL), &["cannot be written", "--out"]);
 }

@@ -1,4 +1,4 @@
-//! The tool as a process, and a folder for what it writes.
+//! Runs the tool as a process in a temporary folder.
 
 use serde_json::Value;
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 pub fn tool(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_afterimage"))
         .args(args)
-        // Silences a line of Mesa's about windows.
+        // Silences a message of Mesa about windows.
         .env("NODEVICE_SELECT", "1")
         .current_dir(afterimage_testing::workspace())
         .output()
@@ -24,7 +24,7 @@ pub fn succeeds(args: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// One clear line that holds `words`, exit code 2, no panic.
+/// Checks for an error in one line that contains `words`, exit code 2, and no panic.
 #[track_caller]
 pub fn refuses(args: &[&str], words: &[&str]) -> String {
     let output = tool(args);

@@ -1,4 +1,4 @@
-//! `afterimage run`: what it writes, and that it does so again.
+//! `afterimage run`: files, and their reproducibility.
 
 use super::rig::{DEBUG, Folder, SMALL, files, read_json, refuses, run, succeeds, tool};
 use serde_json::Value;
@@ -130,7 +130,7 @@ fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
     succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2"]));
     assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
-    // Frames of something else are not touched.
+    // Frames from other tools are not touched.
     fs::create_dir_all(folder.path("foreign/wrs")).unwrap();
     fs::write(folder.path("foreign/wrs/000007.png"), "photo").unwrap();
     refuses(&run("analytic:still", &folder.text("foreign"), SMALL), &["frames of something else", "--out"]);

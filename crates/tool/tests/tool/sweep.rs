@@ -1,4 +1,4 @@
-//! `afterimage sweep` as other programs use it: what it writes, how it goes on, how it refuses.
+//! `afterimage sweep` as a process: files, resuming, errors.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Three rounds (foveae) of two methods on small frames; the first fovea has a third point.
+/// Three rounds (sizes of the fovea) of two methods on small frames; the first size has a third point.
 const SMALL: &[&str] = &[
     "sweep",
     "analytic:lateral",
@@ -39,7 +39,7 @@ fn succeeds(args: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// One clear line that holds `words`, and no panic.
+/// Checks for an error in one line that contains `words`, and no panic.
 #[track_caller]
 fn refuses(output: &Output, code: i32, words: &[&str]) {
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -66,7 +66,7 @@ fn table(out: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(out.join("sweep.json")).unwrap()).unwrap()
 }
 
-/// Every point and its figures, without times, which no two runs share.
+/// Every point and its scores, without times, which differ between runs.
 fn figures(out: &Path) -> BTreeMap<String, String> {
     let table = table(out);
     let rows = table["rows"].as_array().unwrap().iter();
@@ -97,7 +97,7 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
         .unwrap();
     let points =
         || fs::read_dir(killed.join("points")).map_or(0, |d| d.filter(|e| is_point(e.as_ref().unwrap())).count());
-    // No round has more points than three, so that one is whole then, however slow the machine is.
+    // Rounds have at most three points, so at least one is complete then, on any machine.
     let patience = Instant::now();
     while points() < 3 && child.try_wait().unwrap().is_none() {
         assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
@@ -112,9 +112,9 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     let said = run(&killed, &[]);
     assert!(!said.contains("7 to measure"), "what was finished is not measured again: {said}");
     assert_eq!(figures(&killed), figures(&whole));
-    // Once more there is nothing to do.
+    // Another run has nothing to do.
     assert!(run(&killed, &[]).contains("0 to measure"));
-    // A round that was killed between the files of its points is measured again as a whole: their times are of one run.
+    // A round that was killed between writing its points is measured again completely, so that its times are from one run.
     let point = fs::read_dir(killed.join("points")).unwrap().map(Result::unwrap).find(is_point).unwrap();
     fs::remove_file(point.path()).unwrap();
     let said = run(&killed, &[]);
@@ -169,7 +169,7 @@ fn it_recommends_what_fits() {
     let said = succeeds(&["sweep", "--out", text, "--target-flip", "0", "--renderer-ms", "0"]);
     assert!(said.contains("nothing is as good; the best is"), "{said}");
 
-    // The command that it prints gives the figures that it promises.
+    // The printed command gives the printed scores.
     let table = table(&out);
     let row = table["rows"].as_array().unwrap().iter().find(|r| r["method"] == "smr").unwrap();
     let again = folder.path().join("again");
@@ -200,7 +200,7 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
         ("seeds = 0", "expected 1 to 1000"),
         ("axis = 3", "is no plan of a sweep"),
         ("[axes]\nmethod = []", "has no values"),
-        ("[axes]\nout = [\"x\"]", "is the sweep's own"),
+        ("[axes]\nout = [\"x\"]", "is set by the sweep itself"),
         ("[axes]\nmethod = [\"tsr\"]", "possible values: none, taa"),
         ("[axes]\nfove = [5]", "unexpected argument '--fove'"),
         ("[axes]\nmethod = [\"none\"]\n[common]\nframes = 37", "too few; expected at least 38"),
@@ -221,9 +221,9 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     refuses(&tool(&args).output().unwrap(), 2, &["missing.toml", "cannot be read"]);
 }
 
-/// Traced samples are independent and, where every pixel has them, without bias: the squared error of a frame alone falls with
-/// their number in the fovea of every pattern, and all over a frame of uniform samples. What is filled in between samples is biased,
-/// most of all beside the lamp, whose radiance no picture can show: there more samples help least.
+/// Traced samples are independent and, where every pixel has samples, unbiased. So the squared error of single frames falls with their
+/// number in the fovea of every pattern, and in the whole frame with uniform samples. Interpolation between samples is biased, most of
+/// all beside the lamp, which is brighter than the output range: there, more samples help least.
 #[test]
 fn traced_patterns_converge_with_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -266,7 +266,7 @@ fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
         &["holds a sweep that was made with"],
     );
     assert_eq!(figures(&out), before);
-    // More points of the same frames may be added.
+    // Points with the same frames may be added.
     run(&out, &["--axis", "fovea=5,10", "--axis", "method=none"]);
     assert_eq!(figures(&out).len(), 2);
     let empty = folder.path().to_str().unwrap();
@@ -289,14 +289,14 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     let output = tool(&args.iter().map(String::as_str).collect::<Vec<_>>()).output().unwrap();
     refuses(&output, 2, &["cannot be written", "give --out a folder"]);
 
-    // No file may grow beyond 1 KiB, as if the disk were full; the signal for it is ignored, so that writing fails instead.
+    // Limit files to 1 KiB to simulate a full disk. The signal is ignored, so that writing fails.
     let out = folder.path().join("out");
     let command = sweep(&out, &["--axis", "method=none", "--axis", "fovea=5"]).join(" ");
     let script = format!("trap '' XFSZ; ulimit -f 2; exec {} {command}", env!("CARGO_BIN_EXE_afterimage"));
     let output =
         Command::new("sh").args(["-c", &script]).current_dir(afterimage_testing::workspace()).output().unwrap();
     refuses(&output, 1, &["cannot be written", "free space or choose another --out"]);
-    // Nothing half-written stays, and the sweep goes on when there is space again.
+    // No partial file remains, and the sweep resumes when there is space.
     let names = |part: &str| -> Vec<_> {
         fs::read_dir(out.join(part)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
     };
@@ -310,7 +310,7 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     assert_eq!(figures(&out).len(), 1);
 }
 
-/// The rows of the paper's table 1: what stands in them is what the sweep found, beside what the paper says.
+/// `bench wrs`: the rows contain the sweep's results and the paper's.
 #[test]
 fn the_papers_table_is_written_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
@@ -341,7 +341,7 @@ fn the_papers_table_is_written_beside_ours() {
         rows += 1;
     }
     assert_eq!(rows, 2 * 3 * 4, "two clips, three foveae, four methods");
-    // Table 1 of Cantory et al.: stills against nothing, moving cameras against taa.
+    // Table 1 of Cantory et al.: stills are compared with none, moving cameras with taa.
     assert!(of_still.contains("| paper, Sponza: wrs | 5 | 26.52 | 0.720 |"), "{of_still}");
     assert!(of_moving.contains("| paper, Corridor: taa | 5 | 22.27 | 0.736 |"), "{of_moving}");
     assert!(text.contains("\nOver none, 5 degrees: wrs ") && text.contains("\nOver taa, 5 degrees: wrs "), "{text}");

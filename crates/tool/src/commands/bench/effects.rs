@@ -1,9 +1,9 @@
-//! `afterimage bench effects`: what each effect costs a scene that does not need it.
+//! `afterimage bench effects`: cost of each effect in a scene that does not need it.
 //!
-//! Kernels with the effect and without are timed in turn, frame by frame, on the same rays; what is compared are ratios of two
-//! frames that were traced within a second of each other.
+//! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the times of two
+//! frames that are traced within a second of each other.
 
-mod removed;
+mod removals;
 mod table;
 
 use super::subject::{Subject, backends, is_real_gpu};
@@ -17,14 +17,14 @@ use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
-use removed::REMOVALS;
+use removals::REMOVALS;
 use serde::Serialize;
 use std::io::IsTerminal;
 
-/// Frames before the watch starts.
+/// Untimed frames.
 const WARM_UP: u64 = 2;
 
-/// Times that kernels are compiled.
+/// Number of compilations per set of effects.
 const COMPILES: usize = 3;
 
 /// Built-in scenes, of which the first is diffuse only and the last needs most lobes.
@@ -38,7 +38,7 @@ struct Report {
     frames: u64,
     max_depth: u32,
     machine: String,
-    /// Whether the driver was told not to keep compiled kernels.
+    /// Whether the driver's shader cache was switched off.
     compiled_cold: bool,
     backends: Vec<BackendReport>,
     scenes: Vec<SceneReport>,
@@ -49,27 +49,27 @@ struct SceneReport {
     scene: String,
     triangles: u32,
     needs: Vec<&'static str>,
-    /// One a backend.
+    /// One list per backend.
     prices: Vec<Vec<Price>>,
-    /// Frames of kernels in which an effect is switched off over those from which it was cut out; on an adapter, on request.
+    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with `--removal`.
     removals: Vec<Price>,
 }
 
-/// What a set of effects costs.
+/// Cost of a set of effects.
 #[derive(Clone, Debug, Serialize)]
 struct Price {
-    /// `auto`, `again` (the same, compiled anew: what is noise), `all`, or the effect that was added.
+    /// `auto`, `again` (the same compiled again, which shows the noise), `all`, or the effect added to `auto`.
     what: String,
     ms: Option<Quartiles>,
-    /// Of each frame's time over the time of `auto`.
+    /// Time of each frame divided by that of `auto`.
     ratio: Option<Quartiles>,
     /// The median's 99.9 % confidence interval.
     interval: Option<[f64; 2]>,
     compile_ms: Option<Quartiles>,
 }
 
-/// A tracer that takes turns with others.
-struct Lane {
+/// A tracer with its kernels and measured times.
+struct Variant {
     what: String,
     effects: Effects,
     tracer: Tracer,
@@ -77,12 +77,12 @@ struct Lane {
     compile_ms: Vec<f64>,
 }
 
-/// Prices effects for `size` and `frames`.
+/// Measures the cost of effects at `size` for `frames` frames.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let backends = backends(args)?;
     let default = SCENES.map(str::to_owned);
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
-    // What kernels compile to does not depend on the scene but for its effects.
+    // Compiled kernels depend only on the effects, not on the rest of the scene.
     let small = Subject::open("builtin:cornell", [8, 8], None, None)?;
     let mut scenes = vec![];
     for name in names {
@@ -91,16 +91,16 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         let mut prices = vec![];
         let mut removals = vec![];
         for backend in &backends {
-            let mut lanes = lanes(&subject, backend)?;
-            take_turns(&subject, backend, &mut lanes, frames);
+            let mut variants = variants(&subject, backend)?;
+            take_turns(&subject, backend, &mut variants, frames);
             if let Backend::Gpu(_) = backend {
-                compile_in_turn(&small, backend, &mut lanes)?;
+                compile_in_turn(&small, backend, &mut variants)?;
             }
-            prices.push(priced(&lanes));
+            prices.push(priced(&variants));
             if std::io::stderr().is_terminal() {
                 eprintln!("{name}: {} done", BackendReport::of(backend).kind);
             }
-            drop(lanes);
+            drop(variants);
             if args.removal && matches!(backend, Backend::Gpu(_)) {
                 removals.extend(price_removals(&subject, backend, frames)?);
             }
@@ -132,91 +132,92 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     write_json(args, &report)
 }
 
-/// What the scene needs, twice; everything; what it needs with each other effect.
-fn lanes(subject: &Subject, backend: &Backend) -> Result<Vec<Lane>, Failure> {
+/// The scene's effects, twice; all effects; the scene's effects with each other effect.
+fn variants(subject: &Subject, backend: &Backend) -> Result<Vec<Variant>, Failure> {
     let needs = subject.world.needs;
     let mut sets = vec![("auto".to_owned(), needs), ("again".into(), needs), ("all".into(), Effects::all())];
     sets.extend(Effects::all().without(needs).iter().map(|e| (e.name().to_owned(), needs.set(e, true))));
-    let lane = |(what, effects): (String, Effects)| {
-        Ok(Lane { what, effects, tracer: subject.tracer(backend, with(effects))?, ms: vec![], compile_ms: vec![] })
+    let variant = |(what, effects): (String, Effects)| {
+        Ok(Variant { what, effects, tracer: subject.tracer(backend, with(effects))?, ms: vec![], compile_ms: vec![] })
     };
-    sets.into_iter().map(lane).collect()
+    sets.into_iter().map(variant).collect()
 }
 
 fn with(effects: Effects) -> TraceSettings {
     TraceSettings { effects: Some(effects), ..TraceSettings::default() }
 }
 
-/// Every frame by every lane, another first each time.
-fn take_turns(subject: &Subject, backend: &Backend, lanes: &mut [Lane], frames: u64) {
-    let count = lanes.len();
+/// Times every variant on every frame. Each frame starts with another variant.
+fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], frames: u64) {
+    let count = variants.len();
     for index in 0..WARM_UP + frames {
         for i in 0..count {
-            let lane = &mut lanes[(i + index as usize) % count];
-            let took = subject.frame(&lane.tracer, index);
+            let variant = &mut variants[(i + index as usize) % count];
+            let took = subject.frame(&variant.tracer, index);
             if index >= WARM_UP {
-                lane.ms.push(took.device_ms.filter(|_| is_real_gpu(backend)).unwrap_or(took.cpu_ms));
+                variant.ms.push(took.device_ms.filter(|_| is_real_gpu(backend)).unwrap_or(took.cpu_ms));
             }
         }
     }
 }
 
-/// CPU time from WGSL to the end of a first frame of one workgroup, less a second such frame: drivers compile at the first.
-fn compile_in_turn(small: &Subject, backend: &Backend, lanes: &mut [Lane]) -> Result<(), Failure> {
+/// Measures compile times: CPU time of creating the tracer and tracing a first small frame, minus that of a second one. Drivers compile at
+/// the first dispatch.
+fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant]) -> Result<(), Failure> {
     for _ in 0..COMPILES {
-        for lane in &mut *lanes {
+        for variant in &mut *variants {
             let watch = Stopwatch::start();
-            let tracer = small.tracer(backend, with(lane.effects))?;
+            let tracer = small.tracer(backend, with(variant.effects))?;
             small.few(&tracer);
             let ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
-            lane.compile_ms.push(ms - small.few(&tracer).cpu_ms);
+            variant.compile_ms.push(ms - small.few(&tracer).cpu_ms);
         }
     }
     Ok(())
 }
 
-/// The kernels of `auto`, in which the effect is switched off, against the same with its text cut out.
+/// Compares the kernels of `auto`, with the effect switched off, with kernels whose source lacks the effect.
 fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<Vec<Price>, Failure> {
     let Backend::Gpu(gpu) = backend else { return Ok(vec![]) };
     let needs = subject.world.needs;
-    let lane = |what: &str, edit: &dyn Fn(String) -> String| {
+    let variant = |what: &str, edit: &dyn Fn(String) -> String| {
         let storage = Storage::of(gpu.info.device_type);
         let tracer = GpuTracer::with_shader_edit(gpu.clone(), &subject.world, with(needs), storage, edit)
             .map_err(|e| Failure::Input(format!("{}: {e}", subject.name)))?;
         let tracer = Tracer::Gpu(Box::new(tracer));
-        Ok::<_, Failure>(Lane { what: what.into(), effects: needs, tracer, ms: vec![], compile_ms: vec![] })
+        Ok::<_, Failure>(Variant { what: what.into(), effects: needs, tracer, ms: vec![], compile_ms: vec![] })
     };
     let unneeded: Vec<_> = REMOVALS.iter().filter(|r| !needs.has(r.effect)).collect();
-    let mut lanes = vec![lane("off", &|text| text)?, lane("again", &|text| text)?];
+    let mut variants = vec![variant("off", &|text| text)?, variant("again", &|text| text)?];
     for removal in &unneeded {
-        lanes.push(lane(removal.effect.name(), &|text| removal.cut(&text))?);
+        variants.push(variant(removal.effect.name(), &|text| removal.cut(&text))?);
     }
-    lanes.push(lane("all of them", &|text| unneeded.iter().fold(text, |text, removal| removal.cut(&text)))?);
-    take_turns(subject, backend, &mut lanes, frames);
-    // Over the removal, not over what is switched off.
-    let off = lanes[0].ms.clone();
-    Ok(lanes.iter().skip(1).map(|lane| price(lane, &off, &lane.ms)).collect())
+    variants.push(variant("all of them", &|text| unneeded.iter().fold(text, |text, removal| removal.cut(&text)))?);
+    take_turns(subject, backend, &mut variants, frames);
+    // The ratio is relative to the kernels without the source, not to `auto`.
+    let off = variants[0].ms.clone();
+    Ok(variants.iter().skip(1).map(|variant| price(variant, &off, &variant.ms)).collect())
 }
 
-fn priced(lanes: &[Lane]) -> Vec<Price> {
-    lanes.iter().map(|lane| price(lane, &lane.ms, &lanes[0].ms)).collect()
+fn priced(variants: &[Variant]) -> Vec<Price> {
+    variants.iter().map(|variant| price(variant, &variant.ms, &variants[0].ms)).collect()
 }
 
-/// The price of a lane; frame by frame `above` over `below`.
-fn price(lane: &Lane, above: &[f64], below: &[f64]) -> Price {
+/// The cost of a variant, with the ratio of `above` to `below` frame by frame.
+fn price(variant: &Variant, above: &[f64], below: &[f64]) -> Price {
     let mut ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
     let ratio = Quartiles::of(&ratios);
     ratios.sort_by(f64::total_cmp);
-    // Order statistics: the number of frames below the median is binomial, here as a normal distribution; 3.29 standard deviations
-    // of half the root of n.
+    // Order statistics: the number of frames below the median is binomial, approximated by a normal distribution with standard deviation
+    // sqrt(n) / 2; 99.9 % are within 3.29 standard deviations.
     let n = ratios.len() as f64;
     let rank = (0.5 * n - 3.29 * 0.5 * n.sqrt()).floor().max(0.0) as usize;
     let interval = (!ratios.is_empty()).then(|| [ratios[rank], ratios[ratios.len() - 1 - rank]]);
-    let (ms, compile_ms) = (Quartiles::of(&lane.ms), Quartiles::of(&lane.compile_ms));
-    Price { what: lane.what.clone(), ms, ratio, interval, compile_ms }
+    let (ms, compile_ms) = (Quartiles::of(&variant.ms), Quartiles::of(&variant.compile_ms));
+    Price { what: variant.what.clone(), ms, ratio, interval, compile_ms }
 }
 
-/// The processor, as far as the system tells.
+/// Name of the processor, if known.
 fn machine() -> String {
     let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = cpuinfo.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": "));

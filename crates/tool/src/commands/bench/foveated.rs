@@ -1,43 +1,43 @@
-//! What foveated sampling saves of the time of uniform sampling, against what it saves of the samples.
+//! Time and sample reduction of foveated against uniform path tracing.
 
-use super::subject::{Subject, Took};
+use super::subject::{FrameTime, Subject};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use serde::Serialize;
 
-/// Rounds over all patterns; each is timed once a round, so that drift meets all alike.
+/// Rounds. Each round times every pattern once, so that drift affects all patterns alike.
 pub const ROUNDS: u64 = 3;
 
-/// Samples of a pixel of the uniform frame, whose time is taken to grow in proportion.
+/// Samples per pixel of the uniform frame. Its time is scaled in proportion to the pattern's samples.
 pub const UNIFORM_SAMPLES: u32 = 4;
 
-/// Without a GPU the uniform frame is traced in every eighth band of rows only.
+/// Without a GPU, the uniform frame is traced in every eighth band of rows only, and its time is scaled.
 pub const UNIFORM_EVERY: u32 = 8;
 
-/// Where a frame is to be sampled.
+/// A sampling pattern and gaze.
 #[derive(Clone, Debug)]
 pub struct Pattern {
     pub name: String,
     pub sampling: Sampling,
-    /// Samples of a pixel where it is sampled most.
+    /// Samples per pixel where the pattern is densest.
     pub samples: u32,
     pub gaze_px: [f32; 2],
 }
 
-/// A pattern of a scene.
+/// Results of a pattern in a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct PatternReport {
     pub pattern: String,
-    /// What counts: `CPU` time, of a real GPU `wall` time.
+    /// Clock of the reductions: `CPU` time, or `wall` time on a hardware GPU.
     pub clock: &'static str,
-    /// Samples of a pixel where it is sampled most; the uniform frame has as many everywhere.
+    /// Samples per pixel where the pattern is densest, and everywhere in the uniform frame.
     pub samples_per_pixel: u32,
-    /// Samples of the uniform frame over those that the pattern's regions have, without blends and borders.
+    /// Samples of the uniform frame divided by those of the pattern without overlaps for blending and partial blocks at borders.
     pub ideal_reduction: Option<f64>,
-    /// Samples of the uniform frame over those traced.
+    /// Samples of the uniform frame divided by those traced.
     pub sample_reduction: f64,
-    /// Time of tracing the uniform frame over that of the foveated one, plan and filling in included.
+    /// Time of the uniform frame divided by that of the foveated one, including planning and interpolation.
     pub time_reduction: Option<f64>,
     /// Time reduction over ideal reduction.
     pub share_of_ideal: Option<f64>,
@@ -48,13 +48,13 @@ pub struct PatternReport {
 }
 
 impl PatternReport {
-    /// Times of a uniform and of a foveated frame by the clock that counts.
+    /// Times of a uniform and of a foveated frame by [`PatternReport::clock`].
     pub fn times(&self) -> Option<(Quartiles, Quartiles)> {
         if self.clock == "wall" { self.uniform_wall_ms.zip(self.wall_ms) } else { self.uniform_cpu_ms.zip(self.cpu_ms) }
     }
 }
 
-/// Regions as the paper names them, or with a quarter of their samples.
+/// The paper's regions, optionally with a quarter of their samples.
 pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f32; 2]) -> Pattern {
     let [a, b, c] = of;
     let (samples, share) = if is_quartered { (of.map(|s| s / 4), ", a quarter of the samples") } else { (of, "") };
@@ -67,7 +67,7 @@ pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f3
     }
 }
 
-/// The papers' patterns, with a quarter of their samples where all are divisible: the ratio is what counts.
+/// The papers' patterns, with a quarter of their samples where those are divisible by 4, which keeps the ratio.
 pub fn patterns(subject: &Subject) -> Vec<Pattern> {
     let middle = subject.middle_px();
     vec![
@@ -83,7 +83,7 @@ pub fn patterns(subject: &Subject) -> Vec<Pattern> {
     ]
 }
 
-/// Times every pattern `rounds` times with `tracer`, and uniform frames.
+/// Times every pattern and a uniform frame, `rounds` times each.
 pub fn measure(
     subject: &Subject,
     tracer: &Tracer,
@@ -94,8 +94,8 @@ pub fn measure(
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
-    let mut uniform: Vec<Took> = vec![];
-    let mut took: Vec<Vec<Took>> = vec![vec![]; patterns.len()];
+    let mut uniform: Vec<FrameTime> = vec![];
+    let mut took: Vec<Vec<FrameTime>> = vec![vec![]; patterns.len()];
     let mut traced = vec![0; patterns.len()];
     // Drivers compile at the first dispatch.
     subject.few(tracer);
@@ -115,7 +115,7 @@ pub fn measure(
             _ => None,
         };
         let more = f64::from(p.samples) / f64::from(UNIFORM_SAMPLES);
-        let of = |took: &[Took], ms: fn(&Took) -> f64, factor: f64| {
+        let of = |took: &[FrameTime], ms: fn(&FrameTime) -> f64, factor: f64| {
             Quartiles::of(&took.iter().map(|t| ms(t) * factor).collect::<Vec<_>>())
         };
         let mut report = PatternReport {
@@ -138,7 +138,7 @@ pub fn measure(
     patterns.iter().enumerate().map(report).collect()
 }
 
-/// A table.
+/// Prints a table.
 pub fn print(patterns: &[PatternReport]) {
     say!("    foveated ms  uniform ms  ideal  samples  time  share of ideal  pattern");
     for p in patterns {

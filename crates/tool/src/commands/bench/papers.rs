@@ -1,4 +1,4 @@
-//! `afterimage bench papers`: what foveated path tracing saves, beside what two papers say that it does.
+//! `afterimage bench papers`: savings of foveated path tracing, compared with the results of two papers.
 
 use super::foveated::{Pattern, PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use super::subject::{Subject, backends, is_real_gpu};
@@ -12,27 +12,27 @@ use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use serde::Serialize;
 
-/// The display of Mohanto et al. 2023: its size in pixels and in centimetres, and how far away it stands.
+/// The display of Mohanto et al. 2023: size in pixels and in centimeters, and viewing distance.
 const DISPLAY_PX: [u32; 2] = [3840, 2160];
 const DISPLAY_CM: [f32; 2] = [70.848, 39.852];
 const DISPLAY_AWAY_CM: f32 = 60.0;
-/// Its radii in pixels.
+/// The paper's radii of the regions, pixels.
 const RADII_PX: [f32; 2] = [147.0, 482.0];
 
-/// What it reports: samples of a block, million samples of a frame, time reduction in Sponza. Without a GPU a quarter of the samples is
-/// traced where all are divisible.
+/// The paper's results: samples per block, million samples per frame, time reduction in Sponza. Without a GPU, we trace a quarter of the
+/// samples where they are divisible by 4.
 const TRIPLES: [Triple; 3] = [
     Triple { samples: [32, 16, 8], is_divisible: true, millions: 8.60, time: 23.93 },
     Triple { samples: [32, 8, 4], is_divisible: true, millions: 5.39, time: 35.33 },
     Triple { samples: [32, 2, 1], is_divisible: false, millions: 2.98, time: 56.13 },
 ];
 const UNIFORM_MILLIONS: f64 = 265.4;
-/// The first triple with halved radii.
+/// Time reduction of the first triple with halved radii.
 const HALVED_TIME: f64 = 44.67;
 
-/// An eye of a headset, for the thesis, whose display we do not know: 100 degrees wide, and so is its lens.
+/// Field of view of one eye, and of its lens, for the thesis, which does not specify its headset.
 const EYE_HFOV_DEG: f32 = 100.0;
-/// The thesis' scenes, with its speed-ups looking forward and into the corner; its empty scene ran at the display's rate.
+/// The thesis' scenes, with its speed-ups for gaze forward and into the corner. Its empty scene was limited by the display's frame rate.
 const SCENES: [(&str, Option<[f64; 2]>); 5] = [
     ("control", None),
     ("bunny-low", Some([1.99, 3.99])),
@@ -61,7 +61,7 @@ struct Report {
     layers: Vec<SceneReport>,
 }
 
-/// Samples of a frame on the paper's display.
+/// Samples per frame on the paper's display.
 #[derive(Serialize)]
 struct Arithmetic {
     pattern: String,
@@ -84,13 +84,13 @@ struct SceneReport {
 struct Compared {
     #[serde(flatten)]
     ours: PatternReport,
-    /// As the paper reports it.
+    /// Time reduction reported by the paper.
     paper_time_reduction: Option<f64>,
-    /// The same over the ideal reduction on its display.
+    /// The paper's time reduction divided by the ideal reduction on its display.
     paper_share_of_ideal: Option<f64>,
 }
 
-/// Measures both tables, the first with frames of `size`, the second with an eye as wide as they are high: 1080x1200 for 1920x1080.
+/// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200 for 1920x1080).
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let backend = backends(args)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
     let eye = [size[1], (size[1] * 10).div_ceil(9)];
@@ -113,7 +113,7 @@ fn display() -> Result<ViewGeometry, Failure> {
     Ok(ViewGeometry::off_axis(DISPLAY_PX, [-x, x], [-y, y])?)
 }
 
-/// The pattern with the paper's radii in place of its angles.
+/// The pattern with the paper's radii in pixels instead of its angles.
 fn with_its_radii(samples: [u32; 3], radius_scale: f32) -> Regions {
     let cm = DISPLAY_CM[0] / DISPLAY_PX[0] as f32;
     let diameters_deg = RADII_PX.map(|px| 2.0 * (px * cm / DISPLAY_AWAY_CM).atan().to_degrees());
@@ -138,7 +138,7 @@ fn arithmetic() -> Result<Vec<Arithmetic>, Failure> {
     Ok(std::iter::once(all).chain(TRIPLES.iter().map(row)).collect())
 }
 
-/// The first table: on the paper's display, whatever its size in pixels.
+/// The first table: the field of view of the paper's display, at any size in pixels.
 fn regions_of_a_scene(
     args: &BenchArgs,
     backend: &Backend,
@@ -167,7 +167,7 @@ fn regions_of_a_scene(
     Ok(scene_report(&subject, settings, measured.into_iter().zip(papers).map(compare).collect()))
 }
 
-/// A row pair of the second table.
+/// Two rows of the second table.
 fn layers_of(
     name: &str,
     paper: Option<[f64; 2]>,
@@ -185,7 +185,7 @@ fn layers_of(
     let tracer = subject.tracer(backend, settings)?;
     let lens_deg = 0.5 * EYE_HFOV_DEG;
     let middle = subject.middle_px();
-    // Where the lens ends towards the top left: further out nothing is seen.
+    // Distance of the lens' rim towards the top left: nothing is visible beyond.
     let rim = 0.5 * eye_px[0] as f32 * std::f32::consts::FRAC_1_SQRT_2;
     let pattern = |name: &str, gaze_px| Pattern {
         name: name.into(),

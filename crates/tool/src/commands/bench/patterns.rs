@@ -1,4 +1,4 @@
-//! `afterimage bench patterns`: what sampling patterns make of the same number of samples.
+//! `afterimage bench patterns`: errors of sampling patterns at equal numbers of samples.
 
 mod equal;
 
@@ -27,7 +27,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Compare sampling patterns of the path tracer at equal numbers of camera samples
+/// Compare errors of sampling patterns of the path tracer at equal numbers of camera samples
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  afterimage bench patterns builtin:courtyard --region-spp 8,4,2 --out out/patterns\n\n\
@@ -36,10 +36,10 @@ use std::path::{Path, PathBuf};
 pub struct PatternsArgs {
     /// A scene: .gltf, .glb, or builtin:NAME
     scene: String,
-    /// Folder for everything that is written
+    /// Output folder
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Where the scene is seen from: one of its cameras, still, framing, or a .json file; default: its first camera
+    /// Camera of the scene: one of its cameras by name, still, framing, or a .json file; default: its first camera
     #[arg(long, value_name = "NAME|FILE.json")]
     camera: Option<String>,
     /// Size of a frame, pixels
@@ -48,36 +48,36 @@ pub struct PatternsArgs {
     /// Horizontal field of view, degrees; default: the camera's
     #[arg(long, value_name = "DEG")]
     hfov: Option<f32>,
-    /// Where the eye looks, pixels; default: the middle
+    /// Gaze, pixels; default: the center
     #[arg(long, value_delimiter = ',', num_args = 1, value_name = "X,Y")]
     gaze: Option<Vec<f32>>,
-    /// Samples of regions: of a pixel in the fovea, of a block of 2x2 in the middle, of a block of 4x4 outside. The other patterns
-    /// are made to take as many, within 2 %
+    /// Samples of the pattern regions: per pixel in the fovea, per 2x2 block in the middle, per 4x4 block outside. The other patterns are
+    /// fitted to the same total, within 2 %
     #[arg(long, value_delimiter = ',', default_value = "8,4,2", value_name = "A,B,C")]
     region_spp: Vec<u32>,
-    /// Frames of each pattern that are scored
+    /// Number of scored frames of each pattern
     #[arg(long, default_value_t = 8, value_name = "N")]
     frames: u64,
-    /// Samples a pixel of the reference
+    /// Samples per pixel of the reference
     #[arg(long, default_value_t = 256, value_parser = parse_samples, value_name = "N")]
     reference_spp: u32,
-    /// A reference that this command wrote for the same view, in place of tracing one
+    /// Reference that this command wrote earlier for the same view; default: trace one
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
     /// Exposure before tone mapping (x / (1 + x)), stops
     #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     exposure: f32,
-    /// What traces: a GPU if there is one, else the CPU; the CPU; or any adapter, software too
+    /// Device that traces
     #[arg(long, value_enum, default_value = "auto")]
     backend: BackendName,
-    /// Also write the figures as JSON
+    /// Also write the results as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-/// Number of the reference's frame: its random draws are no test frame's.
+/// Frame number of the reference, so that its random numbers differ from those of all test frames.
 const REFERENCE_FRAME: u64 = 1 << 30;
-/// Samples a pixel that are traced at a time.
+/// Samples per pixel that are traced at a time.
 const REFERENCE_STEP: u32 = 8;
 
 #[derive(Serialize)]
@@ -89,7 +89,7 @@ struct Report<'a> {
     hfov_deg: f32,
     gaze_px: [f32; 2],
     frames: u64,
-    /// `null` where the reference was read from a file.
+    /// `null` if the reference was read from a file.
     reference_spp: Option<u32>,
     flip_pixels_per_degree: f32,
     backend: BackendReport,
@@ -100,17 +100,17 @@ struct Report<'a> {
 struct PatternReport {
     pattern: &'static str,
     settings: String,
-    /// Camera samples a frame, mean over the frames.
+    /// Mean camera samples per frame.
     samples: f64,
-    /// Rays of all kinds a frame, mean over the frames.
+    /// Mean rays of all kinds per frame.
     rays: f64,
-    /// Samples over those of regions.
+    /// Samples divided by those of regions.
     samples_of_regions: f64,
     #[serde(flatten)]
     scores: Scores,
 }
 
-/// A scene, where it is seen from, and what traces it.
+/// A scene with view and tracer.
 struct Stage {
     world: World,
     view: View,
@@ -142,7 +142,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
     let out = Output::create(&args.out, &[], "patterns.md")?;
     let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
-    out.sheet("reference.png", &to_rgb8(&stage.shown(&linear)))?;
+    out.root_picture("reference.png", &to_rgb8(&stage.shown(&linear)))?;
     let path = args.out.join("reference.exr");
     exr_file::write(&path, &FrameToWrite::color(&linear)).map_err(|e| Failure::writing(&path, e))?;
     let reports = stage.compare(&patterns, &stage.shown(&linear), args.frames, &out)?;
@@ -167,7 +167,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The samples of regions, if everything is as it can be.
+/// Checks the arguments; returns the samples of regions.
 fn check(args: &PatternsArgs) -> Result<[u32; 3], Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.size.iter().any(|s| !(16..=4096).contains(s)) {
@@ -211,12 +211,12 @@ impl Stage {
         film.color()
     }
 
-    /// sRGB-encoded, as `trace` writes it: tone mapped by x / (1 + x).
+    /// Tone maps by x / (1 + x) and encodes as sRGB, like `trace`.
     fn shown(&self, linear: &Image<[f32; 3]>) -> Image<[f32; 3]> {
         encode(&linear.map(|c| c.map(|v| v * self.exposure / (1.0 + v * self.exposure))), 0.0)
     }
 
-    /// Traces and scores all patterns, and writes what they look like.
+    /// Traces and scores all patterns, and writes the first frame and FLIP map of each.
     fn compare(
         &self,
         patterns: &[Candidate],
@@ -243,8 +243,8 @@ impl Stage {
                 scorer.push(&full, &shown, &tracked, &ecc_deg);
                 if frame == 0 {
                     let map = flip.map(reference, &shown).map(|v| heat(v).to_array());
-                    out.sheet(&format!("{}.png", pattern.name), &to_rgb8(&shown))?;
-                    out.sheet(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
+                    out.root_picture(&format!("{}.png", pattern.name), &to_rgb8(&shown))?;
+                    out.root_picture(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
                 }
             }
             let a_frame = |sum: u64| sum as f64 / frames as f64;

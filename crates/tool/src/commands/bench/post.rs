@@ -1,4 +1,4 @@
-//! `afterimage bench post`: what the passes cost, off-screen, against a copy pass that moves the same bytes.
+//! `afterimage bench post`: off-screen cost of the passes, compared with a copy pass that moves as many bytes.
 
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
@@ -13,7 +13,7 @@ use afterimage_lab::device::{Headless, PassClock};
 use serde::Serialize;
 use wgpu::{Texture, TextureFormat, TextureUsages};
 
-/// Frames before the watch starts: pipelines compile, caches fill.
+/// Untimed frames: pipelines compile, caches fill.
 const WARM_UP: u64 = 8;
 
 #[derive(Serialize)]
@@ -25,10 +25,10 @@ struct Report {
     backend: String,
     size: [u32; 2],
     frames: u64,
-    /// What the times are: of the device, by timestamp queries, or of the process's CPU time on a software device.
+    /// Clock: timestamp queries of the device, or the process's CPU time on a software device.
     clock: &'static str,
-    /// Of the post-process and the copy, from the first call to the first frame done: shader, pipeline, and what the driver compiles
-    /// at the first dispatch.
+    /// Time of the post-process and the copy from their creation until their first frame is done: shader and pipeline creation, and
+    /// the driver's compilation at the first dispatch.
     cold_start_ms: f64,
     passes: Vec<PassReport>,
 }
@@ -39,14 +39,14 @@ struct PassReport {
     ms: Option<Quartiles>,
     ms_per_megapixel: Option<f64>,
     bytes_per_pixel: u32,
-    /// Time of a copy of as many bytes over the pass's time.
+    /// Time of a copy that moves as many bytes, divided by the pass's time.
     share_of_copy_bandwidth: Option<f64>,
 }
 
-/// Textures of a frame as engines store them.
+/// Textures of a frame in the formats that engines use.
 struct Inputs {
     full: Texture,
-    /// The full-rate frame as the foveation simulator leaves it for the frame's gaze.
+    /// The full-rate frame after the foveation simulator, at the frame's gaze.
     color: Texture,
     foveation: GpuSimulator,
     depth: Texture,
@@ -54,52 +54,52 @@ struct Inputs {
     output: Texture,
 }
 
-/// A pass to time.
-struct PassKind {
+/// A pass that can be timed.
+struct PassSpec {
     name: &'static str,
-    /// Read and written, as the pass's documentation counts them.
+    /// Bytes read and written, as counted in the pass's documentation.
     bytes_per_pixel: u32,
-    does: Does,
+    kind: PassKind,
 }
 
-/// What a pass does.
+/// Kind of a pass.
 #[derive(Clone, Copy)]
-enum Does {
+enum PassKind {
     Copy,
     Post(Method),
     Foveate(Filter),
 }
 
-/// The passes, in the order in which each frame times them. The first is what the others are held against.
-const PASSES: [PassKind; 8] = [
-    PassKind { name: "copy", bytes_per_pixel: 48, does: Does::Copy },
-    PassKind { name: "none", bytes_per_pixel: 16, does: Does::Post(Method::None) },
-    PassKind { name: "wrs", bytes_per_pixel: 48, does: Does::Post(Method::Wrs) },
-    PassKind { name: "taa", bytes_per_pixel: 40, does: Does::Post(Method::Taa) },
-    PassKind { name: "smr", bytes_per_pixel: 48, does: Does::Post(Method::Smr) },
-    PassKind { name: "mip", bytes_per_pixel: 27, does: Does::Foveate(Filter::Mip) },
-    PassKind { name: "gauss", bytes_per_pixel: 48, does: Does::Foveate(Filter::Gauss) },
-    PassKind { name: "block", bytes_per_pixel: 25, does: Does::Foveate(Filter::Block) },
+/// The passes, in the order in which each frame times them. The others are compared with the first.
+const PASSES: [PassSpec; 8] = [
+    PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy },
+    PassSpec { name: "none", bytes_per_pixel: 16, kind: PassKind::Post(Method::None) },
+    PassSpec { name: "wrs", bytes_per_pixel: 48, kind: PassKind::Post(Method::Wrs) },
+    PassSpec { name: "taa", bytes_per_pixel: 40, kind: PassKind::Post(Method::Taa) },
+    PassSpec { name: "smr", bytes_per_pixel: 48, kind: PassKind::Post(Method::Smr) },
+    PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
+    PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
+    PassSpec { name: "block", bytes_per_pixel: 25, kind: PassKind::Foveate(Filter::Block) },
 ];
 
-/// A pass at work.
-enum Lane {
+/// A pass, created on the device.
+enum CreatedPass {
     Copy(Afterimage),
     Post(Afterimage),
     Foveate(GpuSimulator),
 }
 
-impl Lane {
-    fn new(gpu: &Headless, size: [u32; 2], does: Does) -> Result<Self, CreateError> {
+impl CreatedPass {
+    fn new(gpu: &Headless, size: [u32; 2], kind: PassKind) -> Result<Self, CreateError> {
         let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
         desc.settings = Settings::paper();
-        Ok(match does {
-            Does::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
-            Does::Post(method) => {
+        Ok(match kind {
+            PassKind::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
+            PassKind::Post(method) => {
                 desc.settings.method = method;
                 Self::Post(Afterimage::new(&gpu.device, &desc)?)
             }
-            Does::Foveate(filter) => {
+            PassKind::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
                 Self::Foveate(GpuSimulator::new(&gpu.device, &desc)?)
             }
@@ -107,38 +107,38 @@ impl Lane {
     }
 }
 
-/// Times the passes for `size` and `frames`.
+/// Times the passes at `size` for `frames` frames.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let known = |name: &&String| PASSES.iter().any(|p| p.name == **name);
-    if let Some(name) = args.only.iter().find(|name| !known(name)) {
+    let is_known = |name: &&String| PASSES.iter().any(|p| p.name == **name);
+    if let Some(name) = args.only.iter().find(|name| !is_known(name)) {
         let names: Vec<_> = PASSES.iter().map(|p| p.name).collect();
-        return Err(Failure::Input(format!("--only {name}: expected some of {}", names.join(","))));
+        return Err(Failure::Input(format!("--only {name}: expected one or more of {}", names.join(","))));
     }
     let chosen =
-        |pass: &&PassKind| pass.name == "copy" || args.only.is_empty() || args.only.iter().any(|o| o == pass.name);
-    let passes: Vec<&PassKind> = PASSES.iter().filter(chosen).collect();
+        |pass: &&PassSpec| pass.name == "copy" || args.only.is_empty() || args.only.iter().any(|o| o == pass.name);
+    let passes: Vec<&PassSpec> = PASSES.iter().filter(chosen).collect();
     let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
     let clock = PassClock::new(&gpu);
     let mut inputs = Inputs::new(&gpu, size)?;
     let first = views(size, 0)?;
     inputs.foveate(&gpu, &first)?;
-    let mut lanes = vec![];
+    let mut created = vec![];
     let mut cold_start_ms = 0.0;
-    for pass in &passes {
+    for spec in &passes {
         let watch = Stopwatch::start();
-        let mut lane = Lane::new(&gpu, size, pass.does)?;
-        time(&gpu, &clock, &inputs, &mut lane, &first, 0)?;
-        if !matches!(pass.does, Does::Foveate(_)) {
+        let mut pass = CreatedPass::new(&gpu, size, spec.kind)?;
+        time(&gpu, &clock, &inputs, &mut pass, &first, 0)?;
+        if !matches!(spec.kind, PassKind::Foveate(_)) {
             cold_start_ms += watch.wall_ms();
         }
-        lanes.push(lane);
+        created.push(pass);
     }
     let mut times: Vec<Vec<f64>> = vec![vec![]; passes.len()];
     for index in 1..WARM_UP + frames {
         let views = views(size, index)?;
         inputs.foveate(&gpu, &views)?;
-        for (lane, times) in lanes.iter_mut().zip(&mut times) {
-            let ms = time(&gpu, &clock, &inputs, lane, &views, index)?;
+        for (pass, times) in created.iter_mut().zip(&mut times) {
+            let ms = time(&gpu, &clock, &inputs, pass, &views, index)?;
             if index >= WARM_UP {
                 times.push(ms);
             }
@@ -155,7 +155,7 @@ fn summarise(
     gpu: &Headless,
     clock: &PassClock,
     cold_start_ms: f64,
-    passes: &[&PassKind],
+    passes: &[&PassSpec],
     times: &[Vec<f64>],
 ) -> Report {
     let megapixels = f64::from(size[0]) * f64::from(size[1]) / 1e6;
@@ -166,8 +166,8 @@ fn summarise(
         ms_per_megapixel: median(i).map(|ms| ms / megapixels),
         bytes_per_pixel: pass.bytes_per_pixel,
         share_of_copy_bandwidth: (|| {
-            let copy_of_as_many = median(0)? * f64::from(pass.bytes_per_pixel) / f64::from(passes[0].bytes_per_pixel);
-            Some(copy_of_as_many / median(i)?)
+            let copy_ms = median(0)? * f64::from(pass.bytes_per_pixel) / f64::from(passes[0].bytes_per_pixel);
+            Some(copy_ms / median(i)?)
         })(),
     });
     Report {
@@ -207,16 +207,16 @@ fn print(report: &Report) {
     say!("cold start of the post-process: {:.0} ms", report.cold_start_ms);
 }
 
-/// Milliseconds of one pass of one frame.
+/// Runs one pass on one frame; returns its time in milliseconds.
 fn time(
     gpu: &Headless,
     clock: &PassClock,
     inputs: &Inputs,
-    lane: &mut Lane,
+    pass: &mut CreatedPass,
     views: &[ViewFrame],
     index: u64,
 ) -> Result<f64, Failure> {
-    let color = if matches!(lane, Lane::Foveate(_)) { &inputs.full } else { &inputs.color };
+    let color = if matches!(pass, CreatedPass::Foveate(_)) { &inputs.full } else { &inputs.color };
     let frame = Frame {
         depth: Some(&inputs.depth),
         motion: Some(&inputs.motion),
@@ -225,7 +225,7 @@ fn time(
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
-    record(gpu, &mut encoder, lane, &frame)?;
+    record(gpu, &mut encoder, pass, &frame)?;
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
@@ -235,13 +235,13 @@ fn time(
 fn record(
     gpu: &Headless,
     encoder: &mut wgpu::CommandEncoder,
-    lane: &mut Lane,
+    pass: &mut CreatedPass,
     frame: &Frame<'_>,
 ) -> Result<(), FrameError> {
-    match lane {
-        Lane::Copy(post) => post.record_copy(&gpu.device, encoder, frame).map(|_| ()),
-        Lane::Post(post) => post.record(&gpu.device, encoder, frame).map(|_| ()),
-        Lane::Foveate(foveation) => {
+    match pass {
+        CreatedPass::Copy(post) => post.record_copy(&gpu.device, encoder, frame).map(|_| ()),
+        CreatedPass::Post(post) => post.record(&gpu.device, encoder, frame).map(|_| ()),
+        CreatedPass::Foveate(foveation) => {
             let foveated = SimulatorFrame {
                 timestamps: frame.timestamps,
                 ..SimulatorFrame::new(frame.color, frame.output, frame.views)
@@ -251,7 +251,7 @@ fn record(
     }
 }
 
-/// An eye that circles.
+/// A view whose gaze moves on a circle.
 fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
     let turn = index as f32 * 0.1;
     let px = [(0.5 + 0.3 * turn.cos()) * size[0] as f32, (0.5 + 0.3 * turn.sin()) * size[1] as f32];
@@ -260,8 +260,8 @@ fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
 }
 
 impl Inputs {
-    /// Noise to look at, two depths in stripes, and vectors of a few pixels in every other stripe, which the picture does not follow:
-    /// half of the history fits, half does not.
+    /// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not follow, so
+    /// that half of the history is valid and half is rejected.
     fn new(gpu: &Headless, size: [u32; 2]) -> Result<Self, Failure> {
         let texture = |format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {

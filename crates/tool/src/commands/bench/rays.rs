@@ -1,7 +1,7 @@
-//! `afterimage bench trace`: how many rays a second the tracers follow.
+//! `afterimage bench trace`: rays per second of the tracers.
 
 use super::foveated::{self, PatternReport};
-use super::subject::{Subject, Took, backends, is_real_gpu};
+use super::subject::{FrameTime, Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
 use crate::report::backend::BackendReport;
@@ -9,7 +9,7 @@ use afterimage_lab::clock::Quartiles;
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
 
-/// Frames before the watch starts.
+/// Untimed frames.
 const WARM_UP: u64 = 2;
 
 #[derive(Serialize)]
@@ -34,17 +34,17 @@ struct SceneReport {
 struct TracerReport {
     backend: BackendReport,
     rays_per_frame: u64,
-    /// CPU time of the process a frame: work list and film to the device and back included.
+    /// CPU time of the process per frame, including the transfer of work list and film.
     cpu_ms: Option<Quartiles>,
     wall_ms: Option<Quartiles>,
-    /// Of the kernels alone, by timestamp queries; `null` on the CPU and on software devices.
+    /// Time of the kernels alone, by timestamp queries; `null` on the CPU and on software devices.
     device_ms: Option<Quartiles>,
-    /// Million rays a second of CPU time, which is a second of one core at work.
+    /// Million rays per second of CPU time (one core).
     mrays_per_core_second: Option<f64>,
-    /// Million rays a second: of the device's time if it has a clock, else of wall time.
+    /// Million rays per second of device time if it is known, else of wall time.
     mrays_per_second: Option<f64>,
     scene_bytes_per_triangle: Option<f64>,
-    /// With `--foveated`.
+    /// Results of `--foveated`.
     foveated: Vec<PatternReport>,
 }
 
@@ -58,7 +58,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for name in names {
         let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
-        let mut took: Vec<Vec<Took>> = vec![vec![]; tracers.len()];
+        let mut took: Vec<Vec<FrameTime>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {
             for (tracer, took) in tracers.iter().zip(&mut took) {
                 let frame = subject.frame(tracer, index);
@@ -69,10 +69,10 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         }
         let triangles = subject.world.geometry.len();
         let reports = backends.iter().zip(&tracers).zip(&took).map(|((backend, tracer), took)| {
-            let of = |value: &dyn Fn(&Took) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
+            let of = |value: &dyn Fn(&FrameTime) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
             let device = is_real_gpu(backend) && took.iter().all(|t| t.device_ms.is_some());
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
-            let rate = |ms: &dyn Fn(&Took) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
+            let rate = |ms: &dyn Fn(&FrameTime) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
             TracerReport {
                 backend: BackendReport::of(backend),
                 rays_per_frame: took.first().map_or(0, |t| t.rays),
@@ -108,8 +108,8 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
 fn print(report: &Report) {
     let [w, h] = report.size;
     say!("{w}x{h}, 1 sample a pixel, depth {}, {} frames; medians and quartiles", report.max_depth, report.frames);
-    say!("ms are CPU time of the process, work list and film to the device and back included");
-    say!("Mrays/s are of wall time, of a GPU with a clock of its own time");
+    say!("ms are CPU time of the process, including the transfer of work list and film");
+    say!("Mrays/s are per second of wall time, or of device time on a GPU with timestamps");
     for scene in &report.scenes {
         say!("{}, {} triangles", scene.scene, scene.triangles);
         say!("    median      p25      p75 ms  rays/frame  Mrays/core-second  Mrays/s  bytes/triangle  tracer");
@@ -132,7 +132,7 @@ fn print(report: &Report) {
         }
         for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
             let clock = t.foveated.first().map_or("", |p| p.clock);
-            say!("  foveated against uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
+            say!("  foveated and uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
             foveated::print(&t.foveated);
         }
     }

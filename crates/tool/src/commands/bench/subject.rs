@@ -1,4 +1,4 @@
-//! A scene to be timed, and what traces it.
+//! A scene to benchmark, and the backends that trace it.
 
 use super::{BenchArgs, Traces};
 use crate::args::backend::NO_ADAPTER;
@@ -19,7 +19,7 @@ use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
 use afterimage_lab::trace::world::{World, light_if_dark};
 use std::time::Duration;
 
-/// A scene at rest and where it is seen from. One sample a pixel.
+/// A still scene and its camera, traced at one sample per pixel.
 pub struct Subject {
     pub name: String,
     pub world: World,
@@ -29,19 +29,19 @@ pub struct Subject {
     size: [u32; 2],
 }
 
-/// What one frame took.
+/// Times and rays of one frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Took {
-    /// CPU time of the process; wall time where the system does not tell.
+pub struct FrameTime {
+    /// CPU time of the process; wall time where it is not available.
     pub cpu_ms: f64,
     pub wall_ms: f64,
-    /// Of the kernels, by the clock of a real GPU.
+    /// Time of the kernels by timestamp queries, on a hardware GPU.
     pub device_ms: Option<f64>,
     pub rays: u64,
 }
 
 impl Subject {
-    /// The scene `name`, seen by the camera that `trace --camera` finds by that name: without one by its first, else as a whole.
+    /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the scene.
     pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
         let mut scene = Scene::open(name, &SceneLimits::default())?;
         for warning in &scene.warnings {
@@ -53,7 +53,7 @@ impl Subject {
         Ok(Self { name: name.to_owned(), world: World::new(&scene), scene, camera, items, size })
     }
 
-    /// Pixels and angles.
+    /// View geometry.
     pub fn geometry(&self) -> &ViewGeometry {
         self.camera.geometry()
     }
@@ -62,27 +62,27 @@ impl Subject {
         self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
     }
 
-    /// A tracer of it.
+    /// A tracer of the scene.
     pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, Failure> {
         Tracer::new(backend, &self.world, settings).map_err(|e| Failure::Input(format!("{}: {e}", self.name)))
     }
 
     /// Traces frame `index`.
-    pub fn frame(&self, tracer: &Tracer, index: u64) -> Took {
+    pub fn frame(&self, tracer: &Tracer, index: u64) -> FrameTime {
         self.trace(tracer, index, &self.items)
     }
 
-    /// Traces a few samples only: every kernel runs.
-    pub fn few(&self, tracer: &Tracer) -> Took {
+    /// Traces a few samples, which is enough to run every kernel.
+    pub fn few(&self, tracer: &Tracer) -> FrameTime {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
     }
 
-    /// The middle of the picture.
+    /// Center of the frame, pixels.
     pub fn middle_px(&self) -> [f32; 2] {
         self.size.map(|s| 0.5 * (s as f32 - 1.0))
     }
 
-    /// Traces a foveated frame; what it took includes planning and filling in.
+    /// Traces a foveated frame. Its time includes planning and interpolation.
     pub fn foveated(
         &self,
         tracer: &Tracer,
@@ -90,18 +90,18 @@ impl Subject {
         gaze_px: [f32; 2],
         samples: u32,
         index: u64,
-    ) -> (FoveatedFrame, Took) {
+    ) -> (FoveatedFrame, FrameTime) {
         let view = self.view(index);
         let watch = Stopwatch::start();
         let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
         let frame = plan.trace(tracer, &self.world, &view, index);
-        let took = Took::by(&watch, None, frame.rays);
+        let took = FrameTime::by(&watch, None, frame.rays);
         (frame, took)
     }
 
-    /// Traces `samples` of every pixel, without anything around it; with `every` above 1 only of each so manieth band of rows, for
-    /// which the whole frame's time is taken to be so much longer.
-    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> Took {
+    /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the times to the whole
+    /// frame.
+    pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> FrameTime {
         const BAND: u32 = 4;
         let [width, height] = self.size;
         let band = if every > 1 { BAND } else { height };
@@ -115,12 +115,12 @@ impl Subject {
             tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
             rays += film.rays;
         }
-        let took = Took::by(&watch, None, rays);
+        let took = FrameTime::by(&watch, None, rays);
         let more = f64::from(height) / rows.max(1) as f64;
-        Took { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
+        FrameTime { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
     }
 
-    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> Took {
+    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> FrameTime {
         let view = self.view(index);
         let mut film = Film::new(self.size);
         let watch = Stopwatch::start();
@@ -131,18 +131,18 @@ impl Subject {
                 None
             }
         };
-        Took::by(&watch, device, film.rays)
+        FrameTime::by(&watch, device, film.rays)
     }
 }
 
-impl Took {
+impl FrameTime {
     fn by(watch: &Stopwatch, device: Option<Duration>, rays: u64) -> Self {
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
         Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }
     }
 }
 
-/// What is to be timed: the CPU, an adapter, or both.
+/// Backends to time: the CPU, an adapter, or both.
 pub fn backends(args: &BenchArgs) -> Result<Vec<Backend>, Failure> {
     let mut backends = vec![];
     if args.backend != Traces::Gpu {
@@ -160,7 +160,7 @@ pub fn backends(args: &BenchArgs) -> Result<Vec<Backend>, Failure> {
     Ok(backends)
 }
 
-/// Whether its own clock tells more than the process's CPU time.
+/// Whether the backend is a hardware GPU, whose work does not show in CPU time.
 pub fn is_real_gpu(backend: &Backend) -> bool {
     matches!(backend, Backend::Gpu(gpu) if !gpu.is_software())
 }

@@ -1,4 +1,4 @@
-//! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our figures beside theirs.
+//! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our results and theirs.
 
 use crate::commands::sweep::{SweepArgs, execute};
 use crate::failure::Failure;
@@ -8,41 +8,41 @@ use clap::{Args, Parser};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Table 1 and the run times of weighted reservoir sampling (Cantory et al. 2025) in Markdown, our figures beside theirs
+/// Table 1 and the run times of weighted reservoir sampling (Cantory et al. 2025) in Markdown, with our results and theirs
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  afterimage bench wrs sponza_still/ sponza_lateral/ --gaze viewing.csv --start 1 --out out/wrs --markdown docs/wrs-table.md\n\n\
-    Goes on where it was stopped; OUT/report.html has all of it."
+    Run the same command again to resume. OUT/report.html has all results."
 )]
 pub struct WrsTableArgs {
-    /// A still, as for run: the paper's scenes "-S"
+    /// A still, as for run; compared with the paper's scenes "-S"
     pub still: String,
-    /// Frames of a camera that moves sideways: the paper's "-M"
+    /// Frames of a camera that moves sideways; compared with the paper's scenes "-M"
     pub moving: String,
     /// Scanpath, as for run
     #[arg(long, value_name = "FILE.csv")]
     pub gaze: String,
-    /// Start in the scanpath, seconds
+    /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
-    /// Frames of each point
+    /// Number of frames of each point
     #[arg(long, default_value_t = 120, value_name = "N")]
     pub frames: u64,
-    /// Repetitions of what is random
+    /// Repetitions of randomized methods, each with another seed
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub seeds: u64,
-    /// What computes the methods: auto, cpu or gpu
+    /// Device that runs the methods: auto, cpu or gpu
     #[arg(long, default_value = "auto", value_name = "NAME")]
     pub backend: String,
     /// Folder of the sweep
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Where to write the tables; default: standard output
+    /// File for the tables; default: standard output
     #[arg(long, value_name = "FILE.md")]
     pub markdown: Option<PathBuf>,
 }
 
-/// Foveated alone (still) or with TAA (moving), and with weighted reservoirs: PSNR in dB and SSIM.
+/// Published results: PSNR in dB and SSIM, without (still) or with TAA (moving), and with weighted reservoirs.
 struct Published {
     scene: &'static str,
     still: Option<[[f64; 2]; 2]>,
@@ -51,7 +51,7 @@ struct Published {
     ms: [f64; 3],
 }
 
-/// The paper's table 1; it gives Sponza's moving figures as those of its still ones, so they are left out.
+/// The paper's table 1. Its values for Sponza in motion repeat those of the still, so they are left out.
 const PUBLISHED: [Published; 4] = [
     Published {
         scene: "Fantasy Forest",
@@ -76,7 +76,7 @@ const PUBLISHED: [Published; 4] = [
 
 const FOVEAE_DEG: [&str; 3] = ["5", "7.5", "10"];
 
-/// `sweep`, for its options.
+/// Parser of the options of `sweep`.
 #[derive(Parser)]
 #[command(name = "sweep")]
 struct Sweep {
@@ -84,7 +84,7 @@ struct Sweep {
     args: SweepArgs,
 }
 
-/// Measures and writes.
+/// Runs the sweep and writes the tables.
 pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
     let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
     let out = args.out.to_string_lossy();
@@ -176,7 +176,7 @@ fn line(row: &Row, fovea: &str) -> String {
     format!("| {} | {fovea} | {psnr} | {ssim} | {flip} | {retained} | {:.2} |", row.point.method, row.pass_ms.median)
 }
 
-/// What the paper's method gains over what the paper compares with, here and there.
+/// Gain in PSNR of wrs and smr over the paper's baseline, and the paper's gain.
 fn gain(table: &Table, input: &str, baseline: &str) -> String {
     let psnr = |method| find(table, input, method, "5").and_then(|r| r.values.get("psnr_db").copied().flatten());
     let (Some(before), Some(wrs), Some(smr)) = (psnr(baseline), psnr("wrs"), psnr("smr")) else {

@@ -1,14 +1,14 @@
-//! `afterimage info adapters`: what there is to compute on, and how it computes.
+//! `afterimage info adapters`: lists the adapters and tests their arithmetic.
 
 use crate::failure::Failure;
 use afterimage_lab::device::Headless;
 use afterimage_lab::self_test::self_test;
 
-/// Lists all adapters; with `test`, asks each how it computes.
+/// Lists all adapters; with `test`, runs the self-test on each.
 pub fn adapters_info(test: bool) -> Result<(), Failure> {
     let adapters = Headless::adapters();
     if adapters.is_empty() {
-        say!("no GPU adapters; software Vulkan (Debian: mesa-vulkan-drivers) gives one");
+        say!("no GPU adapters; install a software one (Debian: mesa-vulkan-drivers)");
     }
     let mut wrong = vec![];
     for adapter in &adapters {

@@ -1,17 +1,17 @@
-//! What a scene holds.
+//! `afterimage info` of a scene: contents.
 
 use afterimage_lab::error::InputError;
 use afterimage_lab::scene::{Environment, Material, PunctualKind, Scene, SceneLimits};
 use afterimage_lab::trace::effects::Effects;
 
-/// Names that are printed of a kind; a file may have thousands.
-const MOST_NAMES: usize = 20;
+/// Limit on printed names per kind; a file may have thousands.
+const MAX_NAMES: usize = 20;
 
 pub fn scene_info(input: &str) -> Result<(), InputError> {
     let scene = Scene::open(input, &SceneLimits::default())?;
     let pose = scene.pose(0.0);
     say!("{}", scene.name);
-    say!("triangles: {} ({} of them move)", scene.still().len() + pose.moving.len(), pose.moving.len());
+    say!("triangles: {} ({} animated)", scene.still().len() + pose.moving.len(), pose.moving.len());
     match scene.bounds() {
         Some(b) => {
             say!("bounds, m: x {} to {}, y {} to {}, z {} to {}", b.min.x, b.max.x, b.min.y, b.max.y, b.min.z, b.max.z)
@@ -41,17 +41,17 @@ pub fn scene_info(input: &str) -> Result<(), InputError> {
     say!("cameras: {}", named(pose.cameras.iter().map(|c| c.name.as_str())));
     say!("animations: {}", named(scene.animations.iter().map(String::as_str)));
     if scene.duration_s() > 0.0 {
-        say!("length of the first animation, s: {:.3}", scene.duration_s());
+        say!("duration of the first animation, s: {:.3}", scene.duration_s());
     }
     let effects: Vec<_> = Effects::needed(&scene).iter().map(|e| e.name()).collect();
-    say!("effects that it calls for: {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") });
+    say!("effects used: {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") });
     for warning in &scene.warnings {
         say!("warning: {warning}");
     }
     Ok(())
 }
 
-/// Materials that some triangle is made of.
+/// Materials that at least one triangle uses.
 fn used_materials(scene: &Scene) -> Vec<&Material> {
     let mut used = vec![false; scene.materials.len()];
     for &material in scene.still().materials.iter().chain(&scene.pose(0.0).moving.materials) {
@@ -60,13 +60,13 @@ fn used_materials(scene: &Scene) -> Vec<&Material> {
     scene.materials.iter().zip(used).filter(|(_, used)| *used).map(|(material, _)| material).collect()
 }
 
-/// How many there are, and the names of those that have one, each on one line whatever the file says.
+/// Number of items, and their names where they have one; escaped, so that names from files stay on one line.
 fn named<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<_> = names.collect();
     let quoted: Vec<_> = names.iter().filter(|n| !n.is_empty()).map(|n| format!("'{}'", n.escape_debug())).collect();
-    let more = if quoted.len() > MOST_NAMES { ", ..." } else { "" };
+    let more = if quoted.len() > MAX_NAMES { ", ..." } else { "" };
     match quoted.len() {
         0 => names.len().to_string(),
-        _ => format!("{} ({}{more})", names.len(), quoted[..quoted.len().min(MOST_NAMES)].join(", ")),
+        _ => format!("{} ({}{more})", names.len(), quoted[..quoted.len().min(MAX_NAMES)].join(", ")),
     }
 }

@@ -1,4 +1,4 @@
-//! Everything about a run that is known before its first frame.
+//! Plan of a run, checked before its first frame.
 
 use super::{RunArgs, simulator};
 use crate::args::MethodName;
@@ -12,14 +12,14 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::LaneKind;
 use afterimage_lab::source::SourceInfo;
 
-/// What is to be done, and facts of it that a report needs.
+/// The clip of a run, and facts that its report needs.
 pub struct Plan {
     pub fps: f32,
     pub clip: Clip,
     pub gaze_map: &'static str,
 }
 
-/// Plans a run of an input with these facts.
+/// Plans a run on an input.
 pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
@@ -28,12 +28,12 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let foveation = foveation(args)?;
-    let mut lanes: Vec<(&'static str, LaneKind)> = vec![];
+    let mut methods: Vec<(&'static str, LaneKind)> = vec![];
     for &method in &args.method {
-        if lanes.iter().any(|l| l.0 == method.name()) {
+        if methods.iter().any(|m| m.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
-        lanes.push((method.name(), lane(args, method, info.still)?));
+        methods.push((method.name(), lane_kind(args, method, info.still)?));
     }
     let backend = args.backend.open()?;
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
@@ -44,7 +44,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
             title: title(&info.name, info.size, track.px.len(), fps, &foveation, simulator(args)),
             geometry,
             foveation,
-            lanes,
+            methods,
             gaze: track.px,
             exposure_ev: args.exposure,
             format: args.format,
@@ -64,15 +64,15 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     })
 }
 
-/// Where frames are how coarse.
+/// Foveation of the frames: the simulator's, or the equivalent of the sampling pattern.
 pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
     let foveation = args.sampling()?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
     foveation.validate()?;
     Ok(foveation)
 }
 
-/// What a method does in a run with these options, of an input that is still or not.
-pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
+/// Pipeline stage of a method with these options. The oracle needs a still input.
+pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
     let sampling = args.sampling()?;
     let method = match method {
         MethodName::None => Method::None,
@@ -80,7 +80,7 @@ pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKi
         MethodName::Smr => Method::Smr,
         MethodName::Wrs => Method::Wrs,
         MethodName::Oracle if sampling.is_some() => {
-            let text = "--method oracle: is defined for simulated foveation only; leave out --sampling";
+            let text = "--method oracle: needs simulated foveation; leave out --sampling";
             return Err(Failure::Input(text.into()));
         }
         MethodName::Oracle if is_still => return Ok(LaneKind::Oracle),
@@ -96,7 +96,7 @@ pub fn lane(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKi
     #[cfg(feature = "ablation")]
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
         if args.backend != BackendName::Gpu {
-            return Err(Failure::Input("--without: parts are left out of shaders; add --backend gpu".into()));
+            return Err(Failure::Input("--without: works on the GPU only; add --backend gpu".into()));
         }
         return Ok(LaneKind::Without(settings, part));
     }

@@ -1,4 +1,4 @@
-//! Points that are measured together, on the same frames, one after the other in each.
+//! Batches: points that are measured on the same frames, one after the other in each frame.
 
 use crate::args::input::{InputArgs, SourceName};
 use crate::args::pattern::SamplingName;
@@ -8,12 +8,12 @@ use crate::failure::Failure;
 use crate::sweep::{Options, Point};
 use std::collections::BTreeMap;
 
-/// Most points of a batch: what a sweep loses when it is stopped.
+/// Limit on points per batch: an interrupted sweep loses at most one batch.
 const MAX_POINTS: usize = 24;
-/// Most pixels of a batch, all points together: their histories are in memory at the same time.
+/// Limit on pixels per batch, summed over its points, whose histories are in memory at the same time.
 const MAX_PIXELS: u64 = 24_000_000;
 
-/// Options that concern some methods alone, and are no part of the frames that methods get.
+/// Options that affect only some methods, and not the input frames.
 const OF_METHODS: &[(&str, &[MethodName])] = &[
     ("wrs-sampler", &[MethodName::Wrs]),
     ("wrs-bias", &[MethodName::Wrs]),
@@ -30,7 +30,7 @@ const OF_METHODS: &[(&str, &[MethodName])] = &[
     ("without", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
 ];
 
-/// Whether an option changes anything for a method; a part that is left out does for the methods that have it.
+/// Whether an option affects a method; `without` affects the methods that have the part.
 pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     #[cfg(feature = "ablation")]
     if let ("without", Some(part)) = (option, afterimage_lab::pipeline::ablation::Part::find(value)) {
@@ -40,19 +40,19 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     let _ = value;
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, methods)) => methods.iter().any(|m| m.name() == method),
-        // Samples are guided by the history of smr.
+        // Only the history of smr guides samples.
         None => option != "guided" || method == MethodName::Smr.name(),
     }
 }
 
-/// A point, and what `run` would be given for it.
+/// A point, and its arguments for `run`.
 pub struct Subject {
     pub point: Point,
     pub args: RunArgs,
     pub method: MethodName,
 }
 
-/// Points that get the same frames.
+/// Points with the same input frames.
 pub struct Batch {
     pub subjects: Vec<Subject>,
 }
@@ -67,12 +67,12 @@ impl Subject {
         words.extend(["--".into(), point.input.clone()]);
         let args = RunArgs::from_words(&words)?;
         let &[method] = &args.method[..] else {
-            return Err(Failure::Input(format!("method {}: expected one method a point", point.method)));
+            return Err(Failure::Input(format!("method {}: expected one method per point", point.method)));
         };
         Ok(Self { point, args, method })
     }
 
-    /// Points of the same key get the same frames.
+    /// Key of a batch: points with the same key have the same input frames.
     fn key(&self) -> (String, Options, Option<u64>) {
         let mut options = self.point.options.clone();
         options.retain(|name, _| OF_METHODS.iter().all(|(of_method, _)| of_method != name));
@@ -80,7 +80,7 @@ impl Subject {
         (self.point.input.clone(), options, traced.then_some(self.point.seed))
     }
 
-    /// Samples of a pixel of a full-rate frame as good as the fovea; 1 where a simulator foveates.
+    /// Samples per pixel of a full-rate frame with the fovea's quality; 1 if a simulator foveates.
     pub fn full_rate_samples(&self) -> u32 {
         match self.args.sampling.sampling {
             SamplingName::Uniform if self.args.foveation.filter != FilterName::Off => 1,
@@ -89,12 +89,12 @@ impl Subject {
     }
 }
 
-/// Whether seeds change anything for a method with these options.
+/// Whether the result depends on the seed.
 pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
     method == MethodName::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
 }
 
-/// The batches of points, in an order that does not depend on what is done already.
+/// Groups points into batches. The order does not depend on finished points.
 pub fn batches(
     points: Vec<Point>,
     common: &Options,
@@ -107,10 +107,10 @@ pub fn batches(
     }
     let mut batches = vec![];
     for subjects in groups.into_values() {
-        let most = (MAX_PIXELS / pixels(&subjects[0].args.input)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
+        let max = (MAX_PIXELS / pixels(&subjects[0].args.input)?.max(1)).clamp(2, MAX_POINTS as u64) as usize;
         let mut rest = subjects.into_iter().peekable();
         while rest.peek().is_some() {
-            batches.push(Batch { subjects: rest.by_ref().take(most).collect() });
+            batches.push(Batch { subjects: rest.by_ref().take(max).collect() });
         }
     }
     Ok(batches)

@@ -1,14 +1,14 @@
-//! A batch of points on the same frames: every frame all methods in turn, so that what the machine does else meets all alike.
+//! Measures a batch: all methods take turns on every frame, so that other load on the machine affects all of them alike.
 
 use super::batch::{Batch, Subject};
-use crate::clip::{Clip, Moment};
+use crate::clip::{Clip, FrameResult};
 use crate::commands::run::{RunArgs, plan};
 use crate::failure::Failure;
 use crate::report::backend::BackendReport;
 use crate::report::jpeg::write_jpeg;
-use crate::report::tally::Tally;
+use crate::report::method::MethodAccumulator;
 use crate::sweep::measurement::{ClipFacts, Machine};
-use crate::sweep::paste::as_rust;
+use crate::sweep::rust_source::as_rust;
 use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
 use afterimage::kernel::debug_view::heat;
@@ -23,16 +23,16 @@ use afterimage_lab::source::FrameSource;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-/// Frames before times count: pipelines compile, caches fill, histories get what they keep.
+/// Untimed frames: pipelines compile, caches and histories fill.
 pub const WARM_UP: usize = 8;
-/// Fewest frames whose times make a median.
+/// Smallest number of timed frames.
 pub const MIN_TIMED: usize = 30;
-/// Width of the pictures that are kept of each point.
+/// Width of the pictures of a point, pixels.
 const PICTURE_WIDTH: u32 = 960;
 
-/// What the batch's frames come to.
-struct Tallies {
-    of_subjects: Vec<Tally>,
+/// Sums over the frames of a batch.
+struct BatchAccumulator {
+    subjects: Vec<MethodAccumulator>,
     control_ms: Vec<f64>,
     render_ms: Vec<f64>,
     samples_share: f64,
@@ -40,14 +40,14 @@ struct Tallies {
     frames: usize,
 }
 
-/// What can be wrong with a point before anything is measured: all of a sweep is refused then, and not its last part.
+/// Checks a point. All points are checked before the first is measured, so that a sweep does not fail halfway.
 pub fn check(subject: &Subject) -> Result<(), Failure> {
     plan::foveation(&subject.args)?;
     if let Some(frames) = subject.args.frames {
         check_frames(&subject.args, frames)?;
     }
-    // Whether an oracle's input is still shows when it is opened.
-    plan::lane(&subject.args, subject.method, true).map(|_| ())
+    // Assume a still input for the oracle: opening the input checks that later.
+    plan::lane_kind(&subject.args, subject.method, true).map(|_| ())
 }
 
 fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
@@ -56,24 +56,24 @@ fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} that are not timed, and {MIN_TIMED} that are): --frames {least}",
+        "{}: {frames} frames are too few; expected at least {least} ({WARM_UP} to warm up and {MIN_TIMED} timed): --frames {least}",
         args.input.name
     )))
 }
 
-/// Measures the points and keeps what was measured.
+/// Measures the points of a batch and saves the measurements.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
     let mut source = args.input.open(&args.tracing()?)?;
     let plan = plan::plan(args, source.info())?;
-    let mut lanes = vec![("control", control(&batch.subjects[0]))];
+    let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
-        lanes.push((subject.method.name(), plan::lane(&subject.args, subject.method, source.info().still)?));
+        methods.push((subject.method.name(), plan::lane_kind(&subject.args, subject.method, source.info().still)?));
     }
-    let clip = Clip { lanes, debug: vec![], ..plan.clip };
+    let clip = Clip { methods, debug: vec![], ..plan.clip };
     check_frames(args, clip.gaze.len() as u64)?;
     let copy_ms_per_byte = copy_ms_per_byte(&clip.backend);
-    let (tallies, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
+    let (sums, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
     let machine = machine(&clip.backend);
     let facts = ClipFacts {
         size: clip.geometry.size_px(),
@@ -84,13 +84,13 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     };
     let round = format!("{} and {} more", id(&batch.subjects[0].point), batch.subjects.len() - 1);
     let pixels = facts.size.iter().map(|&s| f64::from(s)).product::<f64>();
-    for (i, (subject, tally)) in batch.subjects.iter().zip(&tallies.of_subjects).enumerate() {
-        let figures = tally.report(memory_bytes[i] as f64 / pixels);
-        let rust = match clip.lanes[i + 1].1 {
+    for (i, (subject, accumulator)) in batch.subjects.iter().zip(&sums.subjects).enumerate() {
+        let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
+        let rust = match clip.methods[i + 1].1 {
             LaneKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
             #[cfg(feature = "ablation")]
-            LaneKind::Without(..) => "no settings: nobody should leave this out".into(),
-            LaneKind::Oracle => "no settings: the upper bound knows what was shown before".into(),
+            LaneKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
+            LaneKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
         };
         let measurement = Measurement {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -98,13 +98,13 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             common: common.clone(),
             clip: facts.clone(),
             machine: machine.clone(),
-            pass_ms: timed(&tally.cost_ms()[WARM_UP..]),
-            frame_ms: tally.cost_ms()[WARM_UP..].iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
+            pass_ms: timed(&accumulator.cost_ms()[WARM_UP..]),
+            frame_ms: accumulator.cost_ms()[WARM_UP..].iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
             round: round.clone(),
-            control_ms: timed(&tallies.control_ms[WARM_UP..]),
-            render_ms: Quartiles::of(tallies.render_ms.get(WARM_UP..).unwrap_or_default()),
-            samples_share: tallies.samples_share / tallies.frames as f64,
-            samples_per_pixel: tallies.samples.map(|all| all as f64 / (tallies.frames as f64 * pixels)),
+            control_ms: timed(&sums.control_ms[WARM_UP..]),
+            render_ms: Quartiles::of(sums.render_ms.get(WARM_UP..).unwrap_or_default()),
+            samples_share: sums.samples_share / sums.frames as f64,
+            samples_per_pixel: sums.samples.map(|all| all as f64 / (sums.frames as f64 * pixels)),
             copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
             figures,
             rust,
@@ -114,7 +114,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     Ok(())
 }
 
-/// The same in every batch, whatever its points: by it, batches tell what the machine did else.
+/// The control method, the same in every batch: its time shows the drift of the machine's speed between batches.
 fn control(subject: &Subject) -> LaneKind {
     let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
     LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
@@ -124,16 +124,16 @@ fn timed(times: &[f64]) -> Quartiles {
     Quartiles::of(times).expect("there are frames beyond the warm-up")
 }
 
-/// Plays the clip. Gives what it came to, and the bytes that each point keeps.
+/// Runs the clip. Returns the sums, and the bytes of persistent memory of each point.
 fn play(
     batch: &Batch,
     clip: &Clip,
     source: &mut dyn FrameSource,
     store: &Store,
     bar: &ProgressBar,
-) -> Result<(Tallies, Vec<usize>), Failure> {
-    let mut tallies = Tallies {
-        of_subjects: batch.subjects.iter().map(|_| Tally::default()).collect(),
+) -> Result<(BatchAccumulator, Vec<usize>), Failure> {
+    let mut sums = BatchAccumulator {
+        subjects: batch.subjects.iter().map(|_| MethodAccumulator::default()).collect(),
         control_ms: vec![],
         render_ms: vec![],
         samples_share: 0.0,
@@ -141,38 +141,38 @@ fn play(
         frames: 0,
     };
     let flip = Flip::for_view(&clip.geometry);
-    let pipeline = clip.play(source, &mut |moment| {
-        let is_last = moment.index + 1 == clip.gaze.len();
-        tallies.control_ms.push(moment.step.shown[0].cost_ms());
-        tallies.render_ms.extend(moment.render_ms);
-        tallies.samples_share += samples_share(moment, clip, &batch.subjects[0]);
-        tallies.samples = moment.samples.map(|now| tallies.samples.unwrap_or(0) + now).or(tallies.samples);
-        tallies.frames += 1;
-        let of_subject = |(tally, (subject, shown)): (&mut Tally, (&Subject, &Shown))| {
+    let pipeline = clip.play(source, &mut |result| {
+        let is_last = result.index + 1 == clip.gaze.len();
+        sums.control_ms.push(result.step.shown[0].cost_ms());
+        sums.render_ms.extend(result.render_ms);
+        sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
+        sums.samples = result.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
+        sums.frames += 1;
+        let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &Shown))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
-            tally.push(moment.frame, moment.reference, &encoded, shown, moment.step);
-            if is_last { pictures(store, subject, moment.reference.encoded(), &encoded, &flip) } else { Ok(()) }
+            accumulator.push(result.frame, result.reference, &encoded, shown, result.step);
+            if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };
-        let subjects = batch.subjects.par_iter().zip(&moment.step.shown[1..]);
-        tallies.of_subjects.par_iter_mut().zip(subjects).try_for_each(of_subject)?;
+        let subjects = batch.subjects.par_iter().zip(&result.step.shown[1..]);
+        sums.subjects.par_iter_mut().zip(subjects).try_for_each(of_subject)?;
         bar.inc(batch.subjects.len() as u64);
         Ok(())
     })?;
     let memory_bytes = (0..batch.subjects.len()).map(|i| pipeline.memory_bytes(i + 1)).collect();
-    Ok((tallies, memory_bytes))
+    Ok((sums, memory_bytes))
 }
 
-/// Samples of the foveated frame over those of a full-rate frame as good as the fovea.
-fn samples_share(moment: &Moment<'_>, clip: &Clip, subject: &Subject) -> f64 {
-    let lods = moment.step.lods.pixels();
-    match moment.samples {
+/// Samples of the foveated frame divided by those of a full-rate frame with the fovea's quality.
+fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f64 {
+    let lods = result.step.lods.pixels();
+    match result.samples {
         Some(samples) => samples as f64 / (lods.len() as f64 * f64::from(subject.full_rate_samples())),
         None if clip.foveation.filter == Filter::Off => 1.0,
         None => lods.iter().map(|lod| f64::from((-2.0 * lod).exp2())).sum::<f64>() / lods.len() as f64,
     }
 }
 
-/// What a reader of the report sees of a point: the last frame, where FLIP finds it wrong, what it should have been.
+/// Saves the pictures of a point for the report: its last frame, the FLIP error map, and the reference.
 fn pictures(
     store: &Store,
     subject: &Subject,
@@ -188,7 +188,7 @@ fn pictures(
     Ok(())
 }
 
-/// What measures on this backend.
+/// Description of the machine.
 pub fn machine(backend: &Backend) -> Machine {
     let report = BackendReport::of(backend);
     let clock = match backend {
@@ -198,7 +198,7 @@ pub fn machine(backend: &Backend) -> Machine {
     Machine { kind: report.kind.into(), name: report.name, driver: report.driver, clock: clock.into() }
 }
 
-/// The frames of a batch, times its points: what its progress counts.
+/// Steps of the progress bar for a batch: frames times points.
 pub fn work(batch: &Batch) -> u64 {
     batch.subjects.len() as u64 * batch.subjects[0].args.frames.unwrap_or(300)
 }

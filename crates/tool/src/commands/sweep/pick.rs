@@ -1,27 +1,27 @@
-//! `--budget-ms`, `--target`: the settings that a sweep recommends.
+//! `--budget-ms`, `--target`: print recommended settings.
 
 use crate::failure::Failure;
 use crate::sweep::{METRICS, Metric, Row, Table};
 use clap::Args;
 use std::collections::BTreeSet;
 
-/// What is to be picked.
+/// Criteria for recommended settings.
 #[derive(Args, Clone, Debug)]
 pub struct PickArgs {
-    /// Figure that points are compared by: flip, psnr_db, ssim, weighted_psnr_db, retained_psnr_db, ... (columns of sweep.csv)
+    /// Metric for comparing points: flip, psnr_db, ssim, weighted_psnr_db, retained_psnr_db, ... (columns of sweep.csv)
     #[arg(long, default_value = "flip", value_name = "NAME", value_parser = parse_metric)]
     pub by: &'static Metric,
-    /// Time that your renderer takes for a frame at full rate, milliseconds; a foveated one is taken to cost its share of the samples.
-    /// Default: unknown, and points that shade more are not taken to cost more time
+    /// Time of your renderer for a frame at full rate, milliseconds; foveated frames are assumed to take their share of the samples.
+    /// Default: unknown, and costs are those of the pass alone
     #[arg(long, value_name = "MS")]
     pub renderer_ms: Option<f64>,
-    /// Print the best settings that cost no more, milliseconds a frame
+    /// Print the best settings within this time per frame, milliseconds
     #[arg(long, value_name = "MS")]
     pub budget_ms: Option<f64>,
-    /// Print the cheapest settings whose figure (--by) is at least as good
+    /// Print the cheapest settings with at least this quality, in the metric of --by
     #[arg(long, value_name = "VALUE", conflicts_with = "budget_ms")]
     pub target: Option<f64>,
-    /// The same as --by flip --target VALUE
+    /// Short for --by flip --target VALUE
     #[arg(long, value_name = "VALUE", conflicts_with_all = ["budget_ms", "target", "by"])]
     pub target_flip: Option<f64>,
 }
@@ -31,7 +31,7 @@ fn parse_metric(key: &str) -> Result<&'static Metric, String> {
         .ok_or_else(|| format!("expected one of {}", METRICS.iter().map(|m| m.key).collect::<Vec<_>>().join(", ")))
 }
 
-/// Prints what was asked for, if anything.
+/// Prints recommended settings, if requested.
 pub fn print(args: &PickArgs, table: &Table) -> Result<(), Failure> {
     let target = args.target.or(args.target_flip);
     if args.budget_ms.is_none() && target.is_none() {
@@ -50,7 +50,8 @@ pub fn print(args: &PickArgs, table: &Table) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Points that may be compared by their time alone: those that shade as much, where it is not known what shading costs.
+/// Groups of points that can be compared by time alone: all points if the renderer's time is known, else those with the same share of
+/// samples.
 fn classes<'a>(table: &'a Table, input: &str) -> Vec<(String, Vec<&'a Row>)> {
     let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
     if rows.iter().all(|r| r.render_ms.is_some()) {
@@ -62,7 +63,7 @@ fn classes<'a>(table: &'a Table, input: &str) -> Vec<(String, Vec<&'a Row>)> {
     shares.into_iter().map(of).collect()
 }
 
-/// The best within the budget, or the cheapest that reaches the target.
+/// The best point within the budget, or the cheapest one that reaches the target.
 fn pick<'a>(rows: &[&'a Row], by: &Metric, budget_ms: Option<f64>, target: Option<f64>) -> Option<&'a Row> {
     let error = |r: &Row| by.error(r.values.get(by.key).copied().flatten());
     let fits =

@@ -1,4 +1,4 @@
-//! What a sweep measures: a preset or a file, and what the command line adds to it.
+//! Plan of a sweep: a preset or a file, with additions of the command line.
 
 use super::SweepArgs;
 use crate::failure::Failure;
@@ -6,20 +6,20 @@ use crate::sweep::grid::parse_switch;
 use crate::sweep::{Axis, Plan};
 use clap::ValueEnum;
 
-/// Sweeps that are ready.
+/// Values of `--preset`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PresetName {
-    /// Methods, two foveae, the main switches; minutes
+    /// Methods, two sizes of the fovea, the main switches; minutes
     Quick,
-    /// Foveae, rates, simulators, all switches, three seeds; hours
+    /// Sizes of the fovea, rates, simulators, all switches, three seeds; hours
     Full,
-    /// Of scenes: sampling patterns, samples, depth of paths
+    /// Scenes: sampling patterns, samples, path depth
     Traced,
-    /// Foveae and methods of the paper, three seeds
+    /// Sizes of the fovea and methods of the paper, three seeds
     Paper,
-    /// Of scenes: error against samples and time
+    /// Scenes: error against samples and time
     Convergence,
-    /// Parts of the passes left out, on frames with broken pixels
+    /// Parts of the passes left out, on frames with invalid pixels
     #[cfg(feature = "ablation")]
     Safeguards,
 }
@@ -38,7 +38,7 @@ impl PresetName {
     }
 }
 
-/// What the arguments ask for; the command line goes before the file, and the file before the preset.
+/// The plan of the arguments. The command line overrides the file, and the file overrides the preset.
 pub fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
     let preset = args.preset.or((args.file.is_none() && args.axis.is_empty()).then_some(PresetName::Quick));
     let mut plan = Plan::default();

@@ -1,4 +1,4 @@
-//! What a sweep leaves behind: tables, plots, a page.
+//! Output files of a sweep: tables, plots, a page.
 
 use super::SweepArgs;
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use afterimage_lab::picture::write_png;
 use afterimage_lab::whole_file::write_whole;
 use std::io::Write;
 
-/// Writes everything, and gives the table.
+/// Writes all files; returns the table.
 pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, Failure> {
     let table = Table::new(measurements, args.pick.renderer_ms, command());
     let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
@@ -19,7 +19,7 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
     text(store, "sweep.csv", &table.csv())?;
     text(store, "sweep.md", &markdown(&table))?;
     for (i, input) in table.clips.keys().enumerate() {
-        // The first has the name that is promised.
+        // The help promises this name for the first input.
         let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
         text(store, &format!("{name}.svg"), &pareto::svg(&table, input, args.pick.by))?;
         let path = store.root().join(format!("{name}.png"));
@@ -36,13 +36,13 @@ fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
     write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
 }
 
-/// The command, as a shell takes it.
+/// The command line, quoted for a shell.
 fn command() -> String {
     let arguments = std::env::args().skip(1).map(|word| quoted(&word));
     ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// The frontier, and where to look.
+/// Prints the frontier and the path of the report.
 pub fn print_summary(args: &SweepArgs, table: &Table) {
     let by = args.pick.by;
     say!("{} points; best {} for its cost:", table.rows.len(), by.title);

@@ -1,4 +1,4 @@
-//! The files of a frame.
+//! Output files of a frame.
 
 use super::eyes::below;
 use super::setup::Setup;
@@ -14,17 +14,17 @@ use afterimage_lab::source::exr_file::FrameToWrite;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 
-/// Depth of what is nothing, in files.
-const NOTHING_M: f32 = 1e10;
+/// Depth of the background in files.
+const BACKGROUND_M: f32 = 1e10;
 
-/// A frame as it is written.
+/// A traced frame.
 pub struct Picture {
     pub color: Image<[f32; 3]>,
     pub variance: Option<Image<[f32; 3]>>,
     pub lod: Image<f32>,
 }
 
-/// Folders of the images, below that of an eye.
+/// Folders of the images of an eye.
 pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
     let mut folders = vec![below(eye, "color")];
     for (aov, name) in
@@ -37,7 +37,7 @@ pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
     folders
 }
 
-/// Writes frame `index` of an eye: what it sees now, and what it saw a frame ago.
+/// Writes the files of frame `index` of an eye, with its views in this frame and the previous one.
 pub fn write(
     args: &TraceArgs,
     out: &Output,
@@ -53,7 +53,7 @@ pub fn write(
     let mut motion = None;
     if wants(AovName::Depth) || wants(AovName::Motion) {
         let seen = Surfaces::trace(&setup.world, view, previous, setup.tracer.effects(&setup.world));
-        depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { NOTHING_M }));
+        depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { BACKGROUND_M }));
         motion = wants(AovName::Motion).then_some(seen.motion);
     }
     let scale = args.exposure.exp2();

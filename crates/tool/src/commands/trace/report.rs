@@ -1,4 +1,4 @@
-//! What a trace did: on the screen, in `trace.json` and in `cameras.json`.
+//! Report of a trace: on the screen, in `trace.json` and in `cameras.json`.
 
 use super::TraceArgs;
 use super::eyes::{Eyes, below};
@@ -10,21 +10,21 @@ use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::view::View;
 use serde::Serialize;
 
-/// Figures that add up over the frames.
+/// Sums over the frames.
 pub struct Report {
-    /// Where each frame is seen from.
+    /// View of the head in each frame.
     pub heads: Vec<View>,
     eyes: Vec<Counts>,
     seconds: f64,
     cpu_seconds: Option<f64>,
 }
 
-/// What was traced.
+/// Counts of samples and rays.
 #[derive(Clone, Default)]
 pub struct Counts {
     /// Samples of each region.
     pub samples: Vec<u64>,
-    /// Samples without blends and borders, if that is known.
+    /// Samples of the pattern without overlaps for blending and partial blocks at borders, if known.
     pub ideal_samples: Option<f64>,
     pub rays: u64,
     pub nonfinite: u64,
@@ -61,7 +61,7 @@ struct TraceJson<'a> {
     warnings: &'a [String],
 }
 
-/// Two eyes, each with the pattern around a gaze of its own.
+/// Two eyes, each with the pattern around its own gaze.
 #[derive(Serialize)]
 struct Stereo {
     ipd_m: f64,
@@ -72,7 +72,7 @@ struct Stereo {
 struct Eye {
     name: &'static str,
     sampling: &'static str,
-    /// File of where it looks; null where that makes no difference.
+    /// File of the gaze; null with uniform sampling.
     gaze: Option<String>,
     samples: Samples,
     rays: u64,
@@ -83,11 +83,11 @@ struct Samples {
     traced: u64,
     uniform: u64,
     regions: Vec<u64>,
-    /// Of samples.
+    /// Uniform samples divided by traced samples.
     reduction: f64,
-    /// Of samples, if regions had no blends and no borders.
+    /// The same ratio for the ideal number of samples.
     ideal_reduction: Option<f64>,
-    /// Of times: not known without a uniform run to compare with, which `bench trace` makes.
+    /// Ratio of times; null, since it needs a uniform run to compare with (see `bench trace`).
     achieved_reduction: Option<f64>,
 }
 
@@ -117,12 +117,12 @@ impl Counts {
         self.nonfinite += other.nonfinite;
     }
 
-    /// Of nothing.
+    /// Zero counts.
     fn none() -> Self {
         Self { ideal_samples: Some(0.0), ..Self::default() }
     }
 
-    /// Against `uniform` samples.
+    /// The counts, compared with `uniform` samples.
     fn samples(&self, uniform: u64) -> Samples {
         let traced = self.samples.iter().sum::<u64>();
         Samples {
@@ -137,19 +137,19 @@ impl Counts {
 }
 
 impl Report {
-    /// Of no frame.
+    /// An empty report.
     pub fn new(eyes: usize) -> Self {
         Self { heads: vec![], eyes: vec![Counts::none(); eyes], seconds: 0.0, cpu_seconds: Some(0.0) }
     }
 
-    /// Adds a frame of an eye.
+    /// Adds the counts and time of a frame of an eye.
     pub fn count(&mut self, eye: usize, counts: &Counts, clock: &Stopwatch) {
         self.eyes[eye].add(counts);
         self.seconds += clock.wall_ms() * 1e-3;
         self.cpu_seconds = self.cpu_seconds.zip(clock.cpu_ms()).map(|(s, ms)| s + ms * 1e-3);
     }
 
-    /// Of all eyes together.
+    /// Sum over the eyes.
     fn total(&self) -> Counts {
         self.eyes.iter().fold(Counts::none(), |mut sum, eye| {
             sum.add(eye);
@@ -157,16 +157,16 @@ impl Report {
         })
     }
 
-    /// What is compiled in, what of it the scene needs, and what it needs and does not get.
+    /// Prints the effects that are compiled in, why, and those that are left out.
     pub fn print_effects(&self, setup: &Setup) {
         let (compiled, needed) = (setup.tracer.effects(&setup.world), setup.world.needs);
         say!("compiled in:");
         for effect in compiled.iter() {
-            let why = if needed.has(effect) { effect.reason() } else { "asked for; nothing in the scene needs it" };
+            let why = if needed.has(effect) { effect.reason() } else { "requested; nothing in the scene needs it" };
             say!("  {:<24} {why}", effect.name());
         }
         if compiled == Effects::NONE {
-            say!("  nothing but Lambert's scattering");
+            say!("  none: Lambertian scattering only");
         }
         let left_out = Effects::all().without(compiled);
         let missing: Vec<_> = left_out.iter().filter(|&e| needed.has(e)).map(|e| e.name()).collect();
@@ -223,11 +223,12 @@ impl Report {
         serde_json::to_string_pretty(&report).expect("the report has no map with keys other than strings") + "\n"
     }
 
-    /// Poses of what `view_of` makes of each head, in the axes of such files (z up), so that the frames are an input of `run` and the file one of `--camera`.
+    /// Camera poses as a cameras.json (z up), which `run` reads with the frames and `--camera` accepts. `view_of` maps the head's view to
+    /// the camera.
     pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup, view_of: impl Fn(&View) -> View) -> String {
         let frames = self.heads.iter().enumerate().map(|(frame, head)| {
             let m = view_of(head).world_from_camera().transpose().to_cols_array_2d();
-            // (x, y, z) of the scene is (x, -z, y) there.
+            // The scene's (x, y, z) is the file's (x, -z, y).
             CameraJson { frame, camera_to_world: [m[0], m[2].map(|v| -v), m[1], m[3]] }
         });
         let cameras = CamerasJson {

@@ -1,4 +1,4 @@
-//! What a trace needs before its first ray: scene, light, camera, tracer.
+//! Setup of a trace: scene, light, camera, tracer.
 
 use super::TraceArgs;
 use crate::failure::Failure;
@@ -19,14 +19,15 @@ pub struct Setup {
     pub tracer: Tracer,
     pub backend: Backend,
     pub fps: f32,
-    /// Time that reading the scene, and that building its hierarchy took.
+    /// Time to read the scene.
     pub load_ms: f64,
+    /// Time to build its bounding volume hierarchy.
     pub build_ms: f64,
     camera: SceneCamera,
     moves: bool,
 }
 
-/// Largest image: pixel coordinates have 16 bits.
+/// Largest side of an image in pixels: coordinates have 16 bits.
 const MAX_SIDE: u32 = 65_536;
 
 impl Setup {
@@ -62,7 +63,7 @@ impl Setup {
         })
     }
 
-    /// Moves everything to its place at `time_s`; the view then.
+    /// Updates the animated scene to `time_s`; returns the view of the head.
     pub fn pose(&mut self, frame: u64, time_s: f64) -> Result<View, Failure> {
         if self.moves {
             let before = (time_s - 1.0 / f64::from(self.fps)).max(0.0);
@@ -82,12 +83,12 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     if args.aov.contains(&super::AovName::Variance)
         && args.pattern.of.sampling != crate::args::pattern::SamplingName::Uniform
     {
-        return refuse("--aov variance: filled pixels have none; expected --sampling uniform with it".into());
+        return refuse("--aov variance: interpolated pixels have none; use --sampling uniform".into());
     }
     Ok(())
 }
 
-/// Gives the scene the light that was asked for, or a sky if it has none.
+/// Applies `--sky`; by default adds a sky to a scene without light.
 fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
     let expected = "expected none, a radiance R,G,B of numbers from 0, or an .exr file";
     match args.sky.as_deref() {
@@ -100,9 +101,9 @@ fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
         }
         Some(text) => {
             let values: Vec<f32> = text.split(',').filter_map(|v| v.trim().parse().ok()).collect();
-            let sound =
+            let is_valid =
                 values.len() == 3 && text.split(',').count() == 3 && values.iter().all(|v| (0.0..1e9).contains(v));
-            if !sound {
+            if !is_valid {
                 return Err(Failure::Input(format!("--sky {text}: {expected}")));
             }
             scene.environment = Environment::Constant([values[0], values[1], values[2]]);

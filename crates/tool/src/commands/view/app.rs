@@ -1,6 +1,6 @@
-//! From the window's events to the viewer.
+//! Window events, passed on to the viewer.
 
-use super::feed::Feed;
+use super::frame_loader::FrameLoader;
 use super::layout::Layout;
 use super::setup::Setup;
 use super::state::{Action, action_of};
@@ -15,14 +15,14 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{ModifiersState, PhysicalKey};
 use winit::window::{CursorIcon, Window, WindowId};
 
-/// Until the input or the window is asked again whether it is ready.
-const PATIENCE: Duration = Duration::from_millis(4);
-/// Until a window that shows nothing new is looked at again.
+/// Time until the next attempt if the input or the window is not ready.
+const RETRY: Duration = Duration::from_millis(4);
+/// Polling interval while the window shows nothing new.
 const IDLE: Duration = Duration::from_millis(100);
-/// Window sizes where the screen's is not known.
+/// Assumed size of a screen that does not report its size, pixels.
 const SCREEN: [u32; 2] = [1920, 1080];
 
-/// What the left button holds.
+/// Object that the mouse drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Drag {
     Nothing,
@@ -32,25 +32,26 @@ enum Drag {
 
 /// A viewer and its window.
 pub struct App {
-    /// Until there is a window.
-    start: Option<(Setup, Feed)>,
+    /// Arguments of the viewer, until the window is open.
+    start: Option<(Setup, FrameLoader)>,
     window: Option<Arc<Window>>,
     viewer: Option<Viewer>,
     modifiers: ModifiersState,
     drag: Drag,
     cursor: [f32; 2],
     is_occluded: bool,
-    /// Occluded or minimised, when it was last looked at.
+    /// Whether the window was occluded or minimized at the last check.
     was_hidden: bool,
+    /// Time of the next redraw.
     next: Instant,
-    /// How it ended.
+    /// Result of the event loop.
     pub outcome: Result<(), Failure>,
 }
 
 impl App {
-    pub fn new(setup: Setup, feed: Feed) -> Self {
+    pub fn new(setup: Setup, loader: FrameLoader) -> Self {
         Self {
-            start: Some((setup, feed)),
+            start: Some((setup, loader)),
             window: None,
             viewer: None,
             modifiers: ModifiersState::empty(),
@@ -64,7 +65,7 @@ impl App {
     }
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
-        let Some((setup, feed)) = self.start.take() else { return Ok(()) };
+        let Some((setup, loader)) = self.start.take() else { return Ok(()) };
         let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
         let screen = monitor.map(|m| m.size()).filter(|s| s.width > 0 && s.height > 0);
         let [width, height] = Layout::window(setup.info.size, screen.map_or(SCREEN, |s| [s.width, s.height]));
@@ -73,12 +74,12 @@ impl App {
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|e| Failure::Work(format!("no window can be opened ({e})")))?);
-        self.viewer = Some(Viewer::new(setup, feed, window.clone())?);
+        self.viewer = Some(Viewer::new(setup, loader, window.clone())?);
         self.window = Some(window);
         Ok(())
     }
 
-    /// Ends, if the work failed.
+    /// Stores an error and exits.
     fn check(&mut self, events: &ActiveEventLoop, result: Result<(), Failure>) {
         if result.is_err() {
             if self.outcome.is_ok() {
@@ -88,7 +89,7 @@ impl App {
         }
     }
 
-    /// Ends as planned.
+    /// Exits normally.
     fn end(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
         events.exit();
         self.viewer.as_ref().map_or(Ok(()), Viewer::finish)
@@ -101,12 +102,12 @@ impl App {
             WindowEvent::Resized(size) => viewer.resize([size.width, size.height]),
             WindowEvent::Occluded(is_occluded) => self.is_occluded = is_occluded,
             WindowEvent::Focused(false) => {
-                viewer.flight.release();
+                viewer.fly_camera.release();
                 self.drag = Drag::Nothing;
             }
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.modifiers = modifiers.state();
-                viewer.flight.is_hasty = self.modifiers.shift_key();
+                viewer.fly_camera.is_fast = self.modifiers.shift_key();
             }
             WindowEvent::CursorMoved { position, .. } => self.moved([position.x as f32, position.y as f32]),
             WindowEvent::MouseInput { state, button, .. } => {
@@ -126,16 +127,16 @@ impl App {
     }
 
     fn act(&mut self, events: &ActiveEventLoop, action: Action) -> Result<(), Failure> {
-        let goes_on = self.viewer.as_mut().map_or(Ok(true), |viewer| viewer.act(action))?;
-        if goes_on { Ok(()) } else { self.end(events) }
+        let continues = self.viewer.as_mut().map_or(Ok(true), |viewer| viewer.act(action))?;
+        if continues { Ok(()) } else { self.end(events) }
     }
 
-    /// Whether nobody sees the window. One that comes back shows nothing of what it showed.
+    /// Whether the window is occluded or minimized. History is reset when it becomes visible again.
     fn is_hidden(&mut self) -> bool {
         let is_minimized = self.window.as_ref().is_some_and(|window| window.is_minimized() == Some(true));
         let is_hidden = self.is_occluded || is_minimized;
         if let (Some(viewer), true, false) = (&mut self.viewer, self.was_hidden, is_hidden) {
-            viewer.begin_anew();
+            viewer.reset_history();
         }
         self.was_hidden = is_hidden;
         is_hidden
@@ -150,7 +151,7 @@ impl App {
                 viewer.state.divider = viewer.layout().share(at[0]);
                 viewer.is_stale = true;
             }
-            Drag::Camera => viewer.flight.drag(by),
+            Drag::Camera => viewer.fly_camera.drag(by),
             Drag::Nothing => {
                 let over_panel = viewer.panel_click(at);
                 let grips = viewer.state.is_split && viewer.layout().grips(at[0], viewer.state.divider);
@@ -193,7 +194,7 @@ impl App {
         let is_down = event.state == ElementState::Pressed;
         let (shift, control) = (self.modifiers.shift_key(), self.modifiers.control_key());
         let viewer = self.viewer.as_mut()?;
-        if viewer.state.is_flying == Some(true) && viewer.flight.key(code, is_down && !control) {
+        if viewer.state.is_flying == Some(true) && viewer.fly_camera.key(code, is_down && !control) {
             return None;
         }
         let action = action_of(code, shift, control)?;
@@ -202,7 +203,7 @@ impl App {
     }
 
     fn redraw(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
-        // The system may want a window drawn before it says that it is back.
+        // The system may request a redraw before it reports that the window is visible again.
         if self.is_hidden() {
             return Ok(());
         }
@@ -210,7 +211,7 @@ impl App {
         let begun = Instant::now();
         match viewer.frame()? {
             Outcome::Shown => self.next = begun + viewer.period(),
-            Outcome::Waiting => self.next = Instant::now() + PATIENCE,
+            Outcome::Waiting => self.next = Instant::now() + RETRY,
             Outcome::Done => return self.end(events),
         }
         Ok(())
@@ -224,7 +225,7 @@ impl ApplicationHandler for App {
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        // After an end nothing is begun.
+        // No work after an exit.
         if self.outcome.is_ok() && !events.exiting() {
             let handled = self.handle(events, event);
             self.check(events, handled);

@@ -1,4 +1,4 @@
-//! The device that draws to a window: chosen, watched for messages and for its loss.
+//! The device that draws to a window: its selection, validation errors, and loss.
 
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
@@ -7,12 +7,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use winit::window::Window;
 
-/// Messages of validation in this process: any is a mistake in this package.
-static MESSAGES: AtomicU64 = AtomicU64::new(0);
+/// Number of validation errors in this process. Each one is a bug in this package.
+static VALIDATION_ERRORS: AtomicU64 = AtomicU64::new(0);
 
-/// Messages of validation so far.
-pub fn messages() -> u64 {
-    MESSAGES.load(Ordering::Relaxed)
+/// Number of validation errors so far.
+pub fn validation_errors() -> u64 {
+    VALIDATION_ERRORS.load(Ordering::Relaxed)
 }
 
 /// A device and the surface of a window.
@@ -24,7 +24,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// The best device that can draw to `window`, software ones last.
+    /// Opens the best device that can draw to `window`; software devices come last.
     pub fn open(window: &Arc<Window>) -> Result<Self, Failure> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let surface = create_surface(&instance, window)?;
@@ -42,12 +42,12 @@ impl Device {
         };
         let found = adapters.iter().find_map(|a| Some((Headless::on(a, limits(a.limits())).ok()?, a)));
         let (gpu, adapter) =
-            found.ok_or_else(|| Failure::Work(format!("a window cannot be drawn to: {NO_ADAPTER}")))?;
+            found.ok_or_else(|| Failure::Work(format!("no device can draw to the window: {NO_ADAPTER}")))?;
         let watched = Arc::downgrade(&gpu);
         gpu.device.on_uncaptured_error(Arc::new(move |error| {
-            // What a device says that is lost is no mistake, and of a mistake come many.
+            // Errors of a lost device are no bugs. Print only the first error, since others often follow from it.
             let is_lost = watched.upgrade().is_some_and(|gpu| gpu.check().is_err());
-            if is_lost || MESSAGES.fetch_add(1, Ordering::Relaxed) > 0 {
+            if is_lost || VALIDATION_ERRORS.fetch_add(1, Ordering::Relaxed) > 0 {
                 return;
             }
             eprintln!("afterimage: the device says: {}", error.to_string().replace('\n', " "));
@@ -56,25 +56,27 @@ impl Device {
         Ok(Self { gpu, surface, capabilities, instance })
     }
 
-    /// Makes the surface anew, on the same device.
+    /// Creates the surface again, on the same device.
     pub fn renew_surface(&mut self, window: &Arc<Window>) -> Result<(), Failure> {
         self.surface = create_surface(&self.instance, window)?;
         Ok(())
     }
 
-    /// Whether the device has gone.
+    /// Whether the device is lost.
     pub fn is_lost(&self) -> bool {
-        // The loss is told by a callback, and callbacks are run by polls.
+        // A callback reports the loss, and polling runs callbacks.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.gpu.check().is_err()
     }
 }
 
 fn create_surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>, Failure> {
-    instance.create_surface(window.clone()).map_err(|e| Failure::Work(format!("a window cannot be drawn to ({e})")))
+    instance
+        .create_surface(window.clone())
+        .map_err(|e| Failure::Work(format!("the window's surface cannot be created ({e})")))
 }
 
-/// Constants of a frame. Nothing that is mapped when it is made, which a lost device cannot do.
+/// Uniform buffer with the constants of a frame. Not mapped at creation, which would fail on a lost device.
 pub fn constants<T: bytemuck::NoUninit>(gpu: &Headless, label: &'static str, value: &T) -> wgpu::Buffer {
     let bytes = bytemuck::bytes_of(value);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -1,4 +1,4 @@
-//! Small graphs of the last seconds.
+//! Small graphs over the last seconds.
 
 use crate::report::canvas::Canvas;
 use std::collections::VecDeque;
@@ -9,6 +9,7 @@ const PLOT_PX: u32 = 44;
 const TITLE_PX: u32 = 15;
 const BACKGROUND: [u8; 3] = [34, 37, 44];
 const TITLE: [u8; 3] = [150, 155, 165];
+
 /// Values over time.
 pub struct Graph {
     title: &'static str,
@@ -18,18 +19,18 @@ pub struct Graph {
 struct Series {
     name: &'static str,
     color: [u8; 3],
-    /// Seconds and values.
+    /// (time in seconds, value)
     points: VecDeque<(f64, f64)>,
 }
 
 impl Graph {
-    /// Of series with these names and colors.
+    /// A graph of series with these names and colors.
     pub fn new(title: &'static str, series: &[(&'static str, [u8; 3])]) -> Self {
         let series = series.iter().map(|&(name, color)| Series { name, color, points: VecDeque::new() });
         Self { title, series: series.collect() }
     }
 
-    /// Adds a value of a series.
+    /// Adds a value to a series and drops values older than [`SECONDS`].
     pub fn push(&mut self, series: usize, at_s: f64, value: f64) {
         let points = &mut self.series[series].points;
         points.push_back((at_s, value));
@@ -38,12 +39,12 @@ impl Graph {
         }
     }
 
-    /// Forgets everything.
+    /// Removes all values.
     pub fn clear(&mut self) {
         self.series.iter_mut().for_each(|s| s.points.clear());
     }
 
-    /// Pixels.
+    /// Height in pixels.
     pub fn height(&self) -> u32 {
         TITLE_PX * (1 + self.shown().count() as u32) + PLOT_PX
     }
@@ -53,7 +54,7 @@ impl Graph {
         self.series.iter().filter(|s| !s.points.is_empty())
     }
 
-    /// Draws it with its top left corner at `corner`.
+    /// Draws the graph with its top left corner at (x, y).
     pub fn draw(&self, canvas: &mut Canvas, [x, y]: [u32; 2], width: u32) {
         canvas.small(self.title, x, y, TITLE);
         let top = y + TITLE_PX;
@@ -83,7 +84,7 @@ impl Graph {
         canvas.small(&format!("{low:.0} to {high:.0}"), x + width - 90, y, TITLE);
     }
 
-    /// What the vertical axis spans: whole steps of 10 around all values.
+    /// Range of the vertical axis: multiples of 10 around all values.
     fn range(&self) -> [f64; 2] {
         let values = || self.series.iter().flat_map(|s| &s.points).map(|p| p.1);
         let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));

@@ -1,57 +1,56 @@
-//! Where the picture lies in the window.
+//! Position and scale of the picture in the window.
 
-/// The picture, as large as fits, in the middle.
+/// Placement of the picture: as large as fits, centered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
-    /// Of its top left corner, pixels of the window.
+    /// Top left corner, pixels of the window.
     pub corner: [f32; 2],
-    /// Pixels of the window for a pixel of the picture.
+    /// Window pixels per picture pixel.
     pub scale: f32,
-    /// Of the picture, in its own pixels.
+    /// Size of the picture, in its own pixels.
     pub size: [u32; 2],
 }
 
-/// Distance in pixels of the window at which the divider can be taken hold of.
+/// Distance from the divider at which the mouse can drag it, pixels of the window.
 const GRIP_PX: f32 = 6.0;
 
 impl Layout {
-    /// Of a picture of `size` in a window.
+    /// Places a picture of `size` in a window.
     pub fn new(size: [u32; 2], window: [u32; 2]) -> Self {
         let scale = (window[0] as f32 / size[0] as f32).min(window[1] as f32 / size[1] as f32);
         let corner = [0, 1].map(|i| (0.5 * (window[i] as f32 - scale * size[i] as f32)).floor().max(0.0));
         Self { corner, scale, size }
     }
 
-    /// The pixel of the picture at a position in the window; the nearest one beside it.
+    /// Position in the picture, in its pixels, of a position in the window; clamped to the picture.
     pub fn picture_px(&self, at: [f32; 2]) -> [f32; 2] {
         [0, 1].map(|i| ((at[i] - self.corner[i]) / self.scale - 0.5).clamp(0.0, self.size[i] as f32 - 1.0))
     }
 
-    /// The share of the picture's width that lies left of a position in the window.
+    /// A position in the window as a fraction of the picture's width, clamped to 0.02..0.98.
     pub fn share(&self, x: f32) -> f32 {
         ((x - self.corner[0]) / (self.scale * self.size[0] as f32)).clamp(0.02, 0.98)
     }
 
-    /// The first column of the window right of a divider at this share of the width.
+    /// The first column of the window to the right of a divider at this fraction of the width.
     pub fn divider_x(&self, divider: f32) -> u32 {
         (self.corner[0] + self.scale * self.size[0] as f32 * divider).round() as u32
     }
 
-    /// Whether a position in the window takes hold of a divider at this share of the width.
+    /// Whether the mouse at `x` can drag a divider at this fraction of the width.
     pub fn grips(&self, x: f32, divider: f32) -> bool {
         let at = self.corner[0] + self.scale * self.size[0] as f32 * divider;
         (x - at).abs() <= GRIP_PX
     }
 
-    /// Width and height of a window for a picture of `size` on a screen: as large as the picture, smaller ones twice or more, larger ones
-    /// as fit.
+    /// Size of a window for a picture of `size`: small pictures are enlarged by a whole factor, large ones reduced to fit the screen.
     pub fn window(size: [u32; 2], screen: [u32; 2]) -> [u32; 2] {
         const COMFORTABLE: [u32; 2] = [1280, 720];
-        // Room for borders and bars.
-        let most = screen.map(|s| 0.9 * s as f32);
+        // Leave room for window borders and taskbars.
+        let max = screen.map(|s| 0.9 * s as f32);
         let fit = |to: [f32; 2]| (to[0] / size[0] as f32).min(to[1] / size[1] as f32);
         let enlarged = fit(COMFORTABLE.map(|s| s as f32)).floor().max(1.0);
-        let scale = if fit(most) < enlarged { fit(most).min(enlarged) } else { enlarged };
+        let scale = if fit(max) < enlarged { fit(max).min(enlarged) } else { enlarged };
         size.map(|s| ((s as f32 * scale).round() as u32).max(1))
     }
 }

@@ -1,4 +1,4 @@
-//! The panel: what is shown, the keys that change it, and the graphs. Its rows can be clicked.
+//! The panel: the state, the keys that change it, and the graphs. Its rows can be clicked.
 
 use super::graph::Graph;
 use super::state::{Action, Side, State};
@@ -13,13 +13,13 @@ const BACKGROUND: [u8; 3] = [18, 20, 24];
 const TEXT: [u8; 3] = [225, 225, 225];
 const KEY: [u8; 3] = [240, 200, 70];
 const QUIET: [u8; 3] = [150, 155, 165];
-/// Where the value and the key of a row begin.
+/// X positions of a row's value and key.
 const VALUE_X: u32 = 92;
 const KEY_X: u32 = 216;
 
-/// What is said besides the state.
+/// Contents of the panel besides the state.
 pub struct Facts<'a> {
-    /// Input, resolution, device.
+    /// Lines of text: input, resolution, device.
     pub lines: &'a [String],
     pub graphs: &'a [&'a Graph],
 }
@@ -33,7 +33,7 @@ struct Row {
 
 fn rows(state: &State) -> Vec<Row> {
     let row = |name, value: &str, key, action| Row { name, value: value.to_owned(), key, action };
-    let on = |is_on| if is_on { "on" } else { "off" };
+    let on_off = |is_on| if is_on { "on" } else { "off" };
     let mut rows = vec![row(
         if state.is_split { "left" } else { "method" },
         state.sides[0].name(),
@@ -44,16 +44,16 @@ fn rows(state: &State) -> Vec<Row> {
         rows.push(row("right", state.sides[1].name(), "Shift 1..5", Action::Next(Side::Right)));
     }
     rows.extend([
-        row("split", on(state.is_split), "Tab", Action::Split),
+        row("split", on_off(state.is_split), "Tab", Action::Split),
         row("foveation", state.filter.name(), "F", Action::Filter),
         row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
         row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
         row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
-        row("gaze mark", on(state.is_marked), "G", Action::Mark),
-        row("frozen", on(state.is_frozen), "Space", Action::Freeze),
+        row("gaze mark", on_off(state.is_marked), "G", Action::Mark),
+        row("frozen", on_off(state.is_frozen), "Space", Action::Freeze),
     ]);
-    if let Some(flies) = state.is_flying {
-        let value = if flies { "WASD, drag" } else { "on its path" };
+    if let Some(is_flying) = state.is_flying {
+        let value = if is_flying { "WASD, drag" } else { "on its path" };
         rows.push(row("camera", value, "C", Action::Fly));
     }
     rows.extend([
@@ -69,7 +69,7 @@ fn first_row_y(facts_lines: usize) -> u32 {
     MARGIN + ROW_PX * facts_lines as u32 + 4
 }
 
-/// Draws it.
+/// Draws the panel.
 pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
     let rows = rows(state);
     let y = first_row_y(facts.lines.len());
@@ -93,7 +93,7 @@ pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
     canvas.0
 }
 
-/// What a click at a position on the panel asks for; `None` beside the panel, `Some(None)` between its rows.
+/// The action of a click at a position on the panel; `None` outside the panel, `Some(None)` outside its rows.
 pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -> Option<Option<Action>> {
     let inside = (0..2).all(|i| at[i] >= 0.0 && at[i] < panel[i] as f32);
     let row = (at[1] - first_row_y(facts_lines) as f32) / ROW_PX as f32;
@@ -105,7 +105,7 @@ mod tests {
     use super::super::state::{Shows, tests::state};
     use super::*;
 
-    /// Where the row of that name is clicked.
+    /// The action of a click on the row of that name.
     fn click_on(state: &State, name: &str) -> Option<Action> {
         let row = rows(state).iter().position(|r| r.name == name).unwrap();
         let at = [40.0, first_row_y(3) as f32 + (row as f32 + 0.5) * ROW_PX as f32];

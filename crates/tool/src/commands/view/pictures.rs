@@ -1,4 +1,4 @@
-//! Pictures that are kept: what the sides show as `run` writes it, and the window as it is.
+//! Saved pictures: the output of both sides as `run` writes it, and the contents of the window.
 
 use super::screen::{Scene, Screen};
 use crate::failure::Failure;
@@ -9,7 +9,7 @@ use image::RgbImage;
 use std::path::{Path, PathBuf};
 use wgpu::{Texture, TextureFormat, TextureUsages};
 
-/// The pictures of both sides at their own resolution, divided as on screen, without marks.
+/// The output of both sides at its own resolution, split as on screen, without overlays.
 pub fn picture(gpu: &Headless, sides: [&Texture; 2], divider: Option<f32>, exposure_ev: f32) -> RgbImage {
     let read = |texture| to_rgb8(&metric::encode(&gpu.read_rgb(texture, 0), exposure_ev));
     let mut picture = read(sides[0]);
@@ -25,7 +25,7 @@ pub fn picture(gpu: &Headless, sides: [&Texture; 2], divider: Option<f32>, expos
     picture
 }
 
-/// A scene as a window of `size` shows it.
+/// The contents of a window of `size`.
 pub fn window(gpu: &Headless, size: [u32; 2], panel: &RgbImage, scene: &Scene<'_>) -> RgbImage {
     let format = TextureFormat::Rgba32Float;
     let target = gpu.texture(size, 1, format, TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC);
@@ -37,7 +37,7 @@ pub fn window(gpu: &Headless, size: [u32; 2], panel: &RgbImage, scene: &Scene<'_
     to_rgb8(&metric::encode(&gpu.read_rgb(&target, 0), 0.0))
 }
 
-/// Writes a picture to `path`, or beside earlier ones in the current folder; says where.
+/// Writes a picture to `path`, by default to a new numbered file in the current folder, and prints the path.
 pub fn write(picture: &RgbImage, path: Option<&Path>) -> Result<(), Failure> {
     let path = path.map_or_else(free_name, Path::to_owned);
     write_png(&path, picture).map_err(|e| Failure::writing(&path, e))?;
@@ -45,8 +45,8 @@ pub fn write(picture: &RgbImage, path: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The first name that is not taken.
+/// The first numbered name that does not exist yet.
 fn free_name() -> PathBuf {
     let names = (1..).map(|i| PathBuf::from(format!("afterimage-{i:04}.png")));
-    names.into_iter().find(|path| !path.exists()).expect("there is no end of names")
+    names.into_iter().find(|path| !path.exists()).expect("the numbers are endless")
 }

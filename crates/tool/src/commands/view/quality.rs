@@ -1,4 +1,4 @@
-//! The error of what is shown in the periphery, added up on the device and read back a few frames late.
+//! PSNR of each side in the periphery. Squared errors are summed on the device and read back a few frames later, without a stall.
 
 use super::device;
 use super::shader::SHADERS;
@@ -11,35 +11,35 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
 
-/// Where the periphery begins, as of reports, degrees.
+/// Eccentricity where the periphery begins, degrees, as in the reports.
 const PERIPHERY_DEG: f32 = 7.5;
-/// Pixels that a workgroup adds up. Also in the shader.
+/// Pixels per workgroup, as in the shader.
 const TILE: [u32; 2] = [64, 16];
 
 /// `QualityConstants` in `shaders/view/view_quality.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct QualityConstants {
-    /// Slope of rays per pixel, and the ray through pixel (0, 0).
+    /// Tangent of the ray's angle: change per pixel, and value at pixel (0, 0).
     ray_scale: [f32; 2],
     ray_offset: [f32; 2],
     /// Ray through the gaze.
     gaze_ray: [f32; 4],
     size: [u32; 2],
-    /// Factor of the exposure.
+    /// Exposure factor, linear.
     gain: f32,
-    /// Eccentricity beyond which errors count.
+    /// Eccentricity beyond which errors count, degrees.
     from_deg: f32,
 }
 
-/// What is shown to whom.
+/// Viewing conditions: view geometry, gaze in pixels, exposure factor.
 pub struct Viewing<'a> {
     pub geometry: &'a ViewGeometry,
     pub gaze_px: [f32; 2],
     pub gain: f32,
 }
 
-/// Adds up errors of both sides.
+/// Measures the PSNR of both sides.
 pub struct Quality {
     pipeline: ComputePipeline,
     sums: Buffer,
@@ -48,7 +48,7 @@ pub struct Quality {
 
 struct Readback {
     buffer: Buffer,
-    /// Set when what was measured last is there.
+    /// Pending measurement: becomes `true` when the buffer is mapped.
     done: Option<Arc<AtomicBool>>,
 }
 
@@ -76,7 +76,7 @@ impl Quality {
         Self { pipeline, sums: buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC), sides: [readback(), readback()] }
     }
 
-    /// Measures a side's picture, unless its last figure is still on its way.
+    /// Starts to measure a side's output, unless a measurement of that side is pending.
     pub fn measure(&mut self, gpu: &Headless, side: Side, full: &Texture, shown: &Texture, viewing: &Viewing<'_>) {
         let readback = &mut self.sides[side as usize];
         if readback.done.is_some() {
@@ -116,15 +116,15 @@ impl Quality {
         encoder.copy_buffer_to_buffer(&self.sums, 0, &readback.buffer, 0, self.sums.size());
         gpu.queue.submit([encoder.finish()]);
         let done = Arc::new(AtomicBool::new(false));
-        let tell = done.clone();
-        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| tell.store(r.is_ok(), Ordering::Release));
+        let mapped = done.clone();
+        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| mapped.store(r.is_ok(), Ordering::Release));
         readback.done = Some(done);
     }
 
-    /// The PSNR of a side's periphery in dB, if a measurement of it has come back: `Some(None)` if there was no error.
+    /// The PSNR of a side's periphery in dB, if a measurement has finished: `Some(None)` if the error is zero.
     pub fn take(&mut self, gpu: &Headless, side: Side) -> Option<Option<f64>> {
         let readback = &mut self.sides[side as usize];
-        // A lost device is noticed elsewhere.
+        // `Viewer::frame` handles a lost device.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         readback.done.take_if(|done| done.load(Ordering::Acquire))?;
         let sums = readback.buffer.slice(..).get_mapped_range().ok().map(|mapped| {
@@ -152,7 +152,7 @@ mod tests {
         Image::from_fn(SIZE, |[x, y]| [0, 1, 2].map(|c| value(x, y, c)))
     }
 
-    /// The formula, pixel by pixel.
+    /// PSNR of the periphery in dB, computed on the CPU.
     fn expected_db(full: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, viewing: &Viewing<'_>) -> f64 {
         let encode = |v: f32| f64::from(srgb_encode((v * GAIN).clamp(0.0, 1.0)));
         let (mut squared, mut count) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! What the window shows, drawn in one pass: pictures, divider, gaze, panel.
+//! Draws the window in one pass: pictures, divider, gaze mark, panel.
 
 use super::device;
 use super::layout::Layout;
@@ -17,62 +17,64 @@ use wgpu::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct ScreenConstants {
-    /// In which direction the eye looks, of length 1.
+    /// Direction of the gaze, unit length.
     gaze_direction: [f32; 4],
-    /// Where the picture's top left corner lies in the window, pixels.
+    /// Top left corner of the picture, pixels of the window.
     corner: [f32; 2],
-    /// Of the picture, in its own pixels.
+    /// Size of the picture, pixels of the picture.
     size: [f32; 2],
-    /// Slope of rays per pixel of the picture, and the ray through pixel (0, 0).
+    /// Tangent of the ray's angle: change per pixel of the picture, and value at pixel (0, 0).
     ray_scale: [f32; 2],
     ray_offset: [f32; 2],
-    /// Where the eye looks, in pixels of the picture.
+    /// Gaze, pixels of the picture.
     gaze_px: [f32; 2],
-    /// Cosines of the eccentricities between which the ring lies; the first above the second: no ring.
+    /// Cosines of the outer and inner eccentricity of the ring; no ring if the first is greater.
     ring_cosines: [f32; 2],
-    /// Size of the panel in its own pixels; 0: none.
+    /// Size of the panel in its own pixels; 0: no panel.
     panel: [f32; 2],
-    /// Pixels of the window for a pixel of the picture.
+    /// Window pixels per picture pixel.
     scale: f32,
-    /// Where the picture is divided, in its own pixels; beyond its width: nowhere.
+    /// Position of the divider, pixels of the picture; beyond the width: no divider.
     divider: f32,
-    /// Pixels of the window for a pixel of the panel.
+    /// Window pixels per panel pixel.
     panel_scale: f32,
-    /// No part of the ring is farther from the gaze, pixels of the window.
+    /// Upper bound on the ring's distance from the gaze, pixels of the window.
     ring_reach_px: f32,
-    /// Factor of the exposure.
+    /// Exposure factor, linear.
     gain: f32,
     unused: [u32; 1],
 }
 
-/// What is on screen.
+/// Contents of the window.
 pub struct Scene<'a> {
     pub layout: &'a Layout,
     pub geometry: &'a ViewGeometry,
-    /// Left and right picture, and the factors of their exposure.
+    /// Left and right picture.
     pub pictures: [&'a Texture; 2],
+    /// Exposure factor of each picture, linear.
     pub gain: [f32; 2],
-    /// As a share of the picture's width, if it is divided.
+    /// Position of the divider as a fraction of the picture's width; `None`: no split.
     pub divider: Option<f32>,
-    /// Where the eye looks, if that is to be marked, and the diameter of its fovea in degrees.
+    /// Gaze in pixels of the picture; `None`: no gaze mark.
     pub gaze_px: Option<[f32; 2]>,
+    /// Diameter of the fovea, degrees.
     pub fovea_deg: f32,
     pub has_panel: bool,
-    /// Pixels of the window for a pixel of the panel.
+    /// Window pixels per panel pixel.
     pub panel_scale: u32,
 }
 
 /// Width of the ring around the fovea, pixels of the window.
 const RING_PX: f32 = 1.5;
 
-/// Most texels a side that are averaged where the picture is made smaller.
-const MOST_TAPS: f32 = 4.0;
+/// Largest box filter when the picture is minified, texels per side.
+const MAX_TAPS: f32 = 4.0;
 
-/// Draws scenes to targets of one format.
+/// Draws scenes to render targets of one format.
 pub struct Screen {
     module: ShaderModule,
     format: TextureFormat,
-    /// For so many taps, which go with the sizes of window and picture.
+    /// Pipeline, and the number of taps that it was created for: depends on the sizes of window and picture.
     pipeline: Option<(u32, RenderPipeline)>,
     panel: Texture,
 }
@@ -86,7 +88,7 @@ impl Screen {
         Self { module, format, pipeline: None, panel: panel_texture(gpu, [1, 1]) }
     }
 
-    /// Takes another panel.
+    /// Uploads the panel.
     pub fn set_panel(&mut self, gpu: &Headless, panel: &RgbImage) {
         let (width, height) = panel.dimensions();
         if [self.panel.width(), self.panel.height()] != [width, height] {
@@ -135,11 +137,11 @@ impl Screen {
     }
 
     fn pipeline_for(&mut self, gpu: &Headless, scale: f32) -> RenderPipeline {
-        let taps = if scale > 1.0 { 0 } else { (1.0 / scale).ceil().min(MOST_TAPS) as u32 };
+        let taps = if scale > 1.0 { 0 } else { (1.0 / scale).ceil().min(MAX_TAPS) as u32 };
         if let Some((_, pipeline)) = self.pipeline.as_ref().filter(|(made_for, _)| *made_for == taps) {
             return pipeline.clone();
         }
-        // Targets of floats stay linear.
+        // Float targets stay linear.
         let encodes = !self.format.is_srgb() && self.format != TextureFormat::Rgba32Float;
         let constants = [("TAPS", f64::from(taps)), ("SHADER_ENCODES", f64::from(u8::from(encodes)))];
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
@@ -167,7 +169,7 @@ impl Screen {
         self.pipeline.insert((taps, pipeline)).1.clone()
     }
 
-    /// What is bound for a side.
+    /// Bind group of a side.
     fn group(&self, gpu: &Headless, pipeline: &RenderPipeline, scene: &Scene<'_>, side: usize) -> BindGroup {
         let constants = device::constants(gpu, "view screen", &self.constants(scene, side));
         let [picture, panel] = [scene.pictures[side], &self.panel].map(|t| t.create_view(&Default::default()));
@@ -192,7 +194,7 @@ impl Screen {
         let gaze_px = scene.gaze_px.unwrap_or([-1e6; 2]);
         let direction = geometry.ray(gaze_px).normalize();
         let radius = (0.5 * scene.fovea_deg).to_radians();
-        // As wide everywhere as in the middle of the view.
+        // Constant angular width: `RING_PX` at the center of the view.
         let half_width = 0.5 * RING_PX * ray_scale[0] / scene.layout.scale;
         let ring = [radius + half_width, (radius - half_width).max(0.0)].map(f32::cos);
         ScreenConstants {
@@ -214,7 +216,7 @@ impl Screen {
     }
 }
 
-/// How far the ring reaches at most: away from the middle of the view, where a degree has most pixels.
+/// Upper bound on the ring's radius, pixels of the window: its radius away from the center of the view, where a degree spans most pixels.
 fn ring_reach_px(geometry: &ViewGeometry, gaze_px: [f32; 2], scene: &Scene<'_>) -> f32 {
     let ray = geometry.ray(gaze_px);
     let (eccentricity, radius) = ((ray.length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());

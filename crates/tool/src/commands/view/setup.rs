@@ -1,4 +1,4 @@
-//! What is known before the window opens.
+//! Options of the viewer and properties of the input, checked before the window opens.
 
 use super::ViewArgs;
 use super::state::{Shows, State};
@@ -8,13 +8,13 @@ use crate::failure::Failure;
 use afterimage::{Settings, ViewGeometry};
 use afterimage_lab::source::SourceInfo;
 
-/// Options and facts of the input.
+/// Options, and properties of the input.
 pub struct Setup {
     pub args: ViewArgs,
     pub info: SourceInfo,
     pub fps: f32,
     pub hfov_deg: f32,
-    /// Gaze by frame, in pixels of the input; `None`: lost.
+    /// Gaze per frame, in pixels of the input; `None`: tracking lost.
     pub track: Vec<Option<[f32; 2]>>,
 }
 
@@ -40,7 +40,7 @@ impl Setup {
         Ok(setup)
     }
 
-    /// What is shown first.
+    /// Initial state.
     pub fn state(&self) -> State {
         let args = &self.args;
         State {
@@ -62,7 +62,7 @@ impl Setup {
         }
     }
 
-    /// Tunables of what is shown, as of `run`.
+    /// Settings of the method, as in `run`.
     pub fn settings(&self, state: &State, shows: Shows) -> Settings {
         let mut foveation = self.args.foveation.clone();
         (foveation.filter, foveation.fovea) = (state.filter, state.fovea_deg);
@@ -70,19 +70,19 @@ impl Setup {
         Settings { foveation: foveation.foveation(), ..self.args.wrs.settings(method, self.args.seed, false) }
     }
 
-    /// Pixels and angles at an internal scale.
+    /// View geometry at a factor on the input's resolution.
     pub fn geometry(&self, scale: f32) -> Result<ViewGeometry, Failure> {
         let size = self.info.size.map(|s| ((s as f32 * scale).round() as u32).max(1));
         Ok(ViewGeometry::flat(size, self.hfov_deg)?)
     }
 
-    /// Where the eye looks in a frame of playback, in pixels at an internal scale.
+    /// Gaze of the scanpath in a frame, in pixels at a factor on the input's resolution.
     pub fn played_px(&self, position: u64, scale: f32) -> Option<[f32; 2]> {
         let px = self.track[(position % self.track.len() as u64) as usize]?;
         Some(if scale == 1.0 { px } else { px.map(|v| (v + 0.5) * scale - 0.5) })
     }
 
-    /// Factor of the exposure.
+    /// Exposure factor, linear.
     pub fn gain(&self) -> f32 {
         self.args.exposure.exp2()
     }

@@ -5,5 +5,5 @@ use afterimage::shader::{Composer, Module};
 
 static MODULES: &[Module] = &[module!("view", "view_quality"), module!("view", "view_screen")];
 
-/// They may use the drop-in's modules.
+/// Composer of the window's shaders, which may import the modules of the drop-in.
 pub static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]);

@@ -1,11 +1,11 @@
-//! What is shown, and what keys and clicks change about it. No window, no device.
+//! User-controlled state of the viewer, and how keys and clicks change it. Needs no window and no device.
 
 use crate::args::{DebugName, FilterName};
 use afterimage::Method;
 use clap::ValueEnum;
 use winit::keyboard::KeyCode;
 
-/// What a side of the picture shows.
+/// Method, or the reference, that a side of the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Shows {
     /// The foveated frame alone
@@ -21,7 +21,7 @@ pub enum Shows {
 }
 
 impl Shows {
-    /// As typed.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -32,7 +32,7 @@ impl Shows {
         }
     }
 
-    /// What makes it of the foveated frame; `None`: nothing does.
+    /// The method; `None`: the full-rate frame is shown.
     pub fn method(self) -> Option<Method> {
         match self {
             Self::None => Some(Method::None),
@@ -44,7 +44,7 @@ impl Shows {
     }
 }
 
-/// A side of the split picture; without a split the left one is all of it.
+/// A side of the split picture; without a split, the left side fills the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Left = 0,
@@ -56,15 +56,15 @@ impl Side {
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 }
 
-/// What a key or a click asks for.
+/// Command of a key or a click.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     Show(Side, Shows),
-    /// The next method.
+    /// Switch to the next method.
     Next(Side),
     Split,
     Filter,
-    /// A factor on the fovea's diameter.
+    /// Multiply the fovea's diameter.
     Fovea(f32),
     Debug,
     Freeze,
@@ -73,78 +73,80 @@ pub enum Action {
     Mark,
     Panel,
     Restart,
-    /// The shown picture at its own resolution, without marks.
+    /// Save the picture at its own resolution, without overlays.
     Picture,
-    /// The window as it is.
+    /// Save the contents of the window.
     Window,
     LoseDevice,
     Quit,
 }
 
-/// What follows from an action.
+/// Work for the viewer that follows from an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// The next frame shows it.
+    /// None: the next frame uses the new state.
     Nothing,
-    /// Something else is computed: history starts afresh, on both sides, so that they have the same past.
-    Anew,
-    /// Everything from the input's first frame on.
+    /// Update the pipeline and reset the history of both sides, so that both have the same past.
+    Update,
+    /// Start again at the input's first frame.
     Restart,
-    /// A file is to be written.
+    /// Save the picture.
     Picture,
+    /// Save the window.
     Window,
     LoseDevice,
     Quit,
 }
 
-/// Smallest and largest fovea, degrees.
+/// Smallest and largest diameter of the fovea, degrees.
 const FOVEA_DEG: [f32; 2] = [1.0, 60.0];
 
-/// What is shown.
+/// State that keys and clicks change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     pub sides: [Shows; 2],
     pub is_split: bool,
-    /// Where the picture is divided, as a share of its width.
+    /// Position of the divider, as a fraction of the picture's width.
     pub divider: f32,
     pub filter: FilterName,
     pub fovea_deg: f32,
-    /// Diameter of the middle region, degrees; the fovea never passes it.
+    /// Diameter of the middle region, degrees; upper limit of the fovea.
     pub mid_deg: f32,
     pub debug: Option<DebugName>,
     pub is_frozen: bool,
-    /// The gaze is the scanpath's, not the mouse's.
+    /// The gaze follows the scanpath, not the mouse.
     pub is_playing: bool,
-    /// The camera is steered; `None` if there is none to steer.
+    /// Whether the user steers the camera; `None`: the input has no camera.
     pub is_flying: Option<bool>,
+    /// Whether the gaze and the fovea are marked.
     pub is_marked: bool,
     pub has_panel: bool,
 }
 
 impl State {
-    /// Does what is asked for.
+    /// Applies an action.
     pub fn apply(&mut self, action: Action) -> Effect {
         match action {
             Action::Show(Side::Right, _) | Action::Next(Side::Right) if !self.is_split => {
                 self.is_split = true;
                 self.apply(action);
-                return Effect::Anew;
+                return Effect::Update;
             }
             Action::Show(side, shows) => {
                 let before = std::mem::replace(&mut self.sides[side as usize], shows);
-                return if before == shows { Effect::Nothing } else { Effect::Anew };
+                return if before == shows { Effect::Nothing } else { Effect::Update };
             }
             Action::Next(side) => {
                 self.sides[side as usize] = next(self.sides[side as usize]);
-                return Effect::Anew;
+                return Effect::Update;
             }
             Action::Split => {
                 self.is_split = !self.is_split;
-                return Effect::Anew;
+                return Effect::Update;
             }
             Action::Filter => {
                 self.filter = next(self.filter);
-                return Effect::Anew;
+                return Effect::Update;
             }
             Action::Fovea(factor) => {
                 let most = FOVEA_DEG[1].min(self.mid_deg);
@@ -153,7 +155,7 @@ impl State {
                     return Effect::Nothing;
                 }
                 self.fovea_deg = fovea_deg;
-                return Effect::Anew;
+                return Effect::Update;
             }
             Action::Debug => {
                 self.debug = match self.debug {
@@ -163,7 +165,7 @@ impl State {
             }
             Action::Freeze => self.is_frozen = !self.is_frozen,
             Action::Play => self.is_playing = !self.is_playing,
-            Action::Fly => self.is_flying = self.is_flying.map(|flies| !flies),
+            Action::Fly => self.is_flying = self.is_flying.map(|is_flying| !is_flying),
             Action::Mark => self.is_marked = !self.is_marked,
             Action::Panel => self.has_panel = !self.has_panel,
             Action::Restart => {
@@ -184,22 +186,22 @@ impl State {
     }
 }
 
-/// The value after this one; `None` after the last.
+/// The next value of the enum; `None` after the last.
 fn following<T: ValueEnum + PartialEq + Clone>(value: T) -> Option<T> {
     let all = T::value_variants();
     let at = all.iter().position(|v| *v == value)?;
     all.get(at + 1).cloned()
 }
 
-/// The value after this one; the first after the last.
+/// The next value of the enum; the first after the last.
 fn next<T: ValueEnum + PartialEq + Clone>(value: T) -> T {
     following(value).unwrap_or_else(|| T::value_variants()[0].clone())
 }
 
-/// Largest step of the fovea's diameter that still looks like a step.
+/// Factor per key press on the fovea's diameter; larger steps are hard to compare by eye.
 const FOVEA_STEP: f32 = 1.25;
 
-/// What a key does.
+/// The action of a key.
 pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
     let side = if shift { Side::Right } else { Side::Left };
     Some(match key {
@@ -257,9 +259,9 @@ pub(super) mod tests {
     fn digits_choose_methods_and_only_changes_cost_anything() {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::Digit4, false), Effect::Nothing, "smr is shown already");
-        assert_eq!(press(&mut state, KeyCode::Digit3, false), Effect::Anew);
+        assert_eq!(press(&mut state, KeyCode::Digit3, false), Effect::Update);
         assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Reference], false));
-        assert_eq!(press(&mut state, KeyCode::Digit2, true), Effect::Anew);
+        assert_eq!(press(&mut state, KeyCode::Digit2, true), Effect::Update);
         assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Taa], true), "what is chosen is shown");
         assert_eq!(state.shown_sides(), Side::BOTH);
         press(&mut state, KeyCode::Tab, false);

@@ -1,4 +1,4 @@
-//! The window's surface: configured, lost, found again.
+//! The window's surface: configuration, resizing, recovery after a loss.
 
 use super::device::Device;
 use crate::failure::Failure;
@@ -6,12 +6,12 @@ use std::sync::Arc;
 use wgpu::{CurrentSurfaceTexture, PresentMode, SurfaceConfiguration, SurfaceTexture, TextureFormat};
 use winit::window::Window;
 
-/// What there is to draw to.
+/// Result of acquiring a surface texture.
 pub enum Acquired {
     Frame(SurfaceTexture),
-    /// Nothing this time.
+    /// No texture in this frame.
     Nothing,
-    /// The surface was made anew: what it showed is gone.
+    /// The surface was configured again: its contents are lost.
     Renewed,
 }
 
@@ -21,17 +21,19 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// For a window of `size`.
+    /// Configures the surface for a window of `size`.
     pub fn new(device: &Device, size: [u32; 2]) -> Result<Self, Failure> {
         let caps = &device.capabilities;
-        // Formats that encode by themselves spare the shader a third of its time on a software device.
-        let encoding = [TextureFormat::Bgra8UnormSrgb, TextureFormat::Rgba8UnormSrgb];
-        let format = encoding.iter().chain(&caps.formats).find(|f| caps.formats.contains(f)).copied();
-        let format = format.ok_or_else(|| Failure::Work("the window takes no format that can be drawn".into()))?;
-        // A software device never keeps up with the screen: waiting for it would only cost frames.
-        let wanted: &[PresentMode] =
+        // sRGB formats encode in hardware, which saves the shader a third of its time on a software device.
+        let srgb = [TextureFormat::Bgra8UnormSrgb, TextureFormat::Rgba8UnormSrgb];
+        let format = srgb.iter().chain(&caps.formats).find(|f| caps.formats.contains(f)).copied();
+        let format =
+            format.ok_or_else(|| Failure::Work("the window supports no texture format that can be drawn to".into()))?;
+        // A software device is slower than the screen: waiting for vertical sync would only cost frames.
+        let preferred: &[PresentMode] =
             if device.gpu.is_software() { &[PresentMode::Immediate, PresentMode::Mailbox] } else { &[] };
-        let present_mode = wanted.iter().find(|m| caps.present_modes.contains(m)).copied().unwrap_or(PresentMode::Fifo);
+        let present_mode =
+            preferred.iter().find(|m| caps.present_modes.contains(m)).copied().unwrap_or(PresentMode::Fifo);
         let config = SurfaceConfiguration {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             format,
@@ -39,7 +41,7 @@ impl Surface {
             width: size[0].max(1),
             height: size[1].max(1),
             present_mode,
-            // No frame waits behind another: the picture is of the latest gaze.
+            // No queued frames: the picture uses the latest gaze.
             desired_maximum_frame_latency: 1,
             alpha_mode: wgpu::CompositeAlphaMode::Auto,
             view_formats: vec![],
@@ -48,17 +50,17 @@ impl Surface {
         Ok(Self { config })
     }
 
-    /// Pixels.
+    /// Size in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.config.width, self.config.height]
     }
 
-    /// What is drawn to.
+    /// Texture format.
     pub fn format(&self) -> TextureFormat {
         self.config.format
     }
 
-    /// Follows the window.
+    /// Configures the surface for the window's new size.
     pub fn resize(&mut self, device: &Device, [width, height]: [u32; 2]) {
         (self.config.width, self.config.height) = (width.max(1), height.max(1));
         device.surface.configure(&device.gpu.device, &self.config);
@@ -71,7 +73,7 @@ impl Surface {
                 return Ok(Acquired::Frame(frame));
             }
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(Acquired::Nothing),
-            // Counted by the device.
+            // The device's error handler counts validation errors.
             CurrentSurfaceTexture::Validation => return Ok(Acquired::Nothing),
             CurrentSurfaceTexture::Outdated => {}
             CurrentSurfaceTexture::Lost => {

@@ -1,4 +1,4 @@
-//! How long each pass takes: by the device's clock where it has one, else by submitting and waiting for one pass after the other.
+//! Time of each pass: timestamp queries where the device supports them, else wall time of submitting one pass and waiting for it.
 
 use afterimage::gpu::Timestamps;
 use afterimage_lab::device::Headless;
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use wgpu::{Buffer, BufferUsages, CommandEncoder, QuerySet};
 
-/// What is timed.
+/// Passes that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
     Foveation,
@@ -17,15 +17,16 @@ pub enum Pass {
 }
 
 impl Pass {
-    /// All, in the order of a frame.
+    /// All passes, in the order of a frame.
     pub const ALL: [Self; 4] = [Self::Foveation, Self::Left, Self::Right, Self::Screen];
 }
 
+/// Size of the query buffers: two 64-bit timestamps per pass.
 const BYTES: u64 = 16 * Pass::ALL.len() as u64;
 
 /// Times of the passes.
 pub struct PassTimes {
-    /// Milliseconds of each pass of the last frame that is known.
+    /// Milliseconds of each pass, of the last frame whose times have been read back.
     ms: [Option<f64>; Pass::ALL.len()],
     clock: Option<Clock>,
 }
@@ -35,9 +36,10 @@ struct Clock {
     resolved: Buffer,
     readback: Buffer,
     period_ms: f64,
-    /// Passes written in this frame; `None` while an earlier frame's are on their way back.
+    /// Passes timed in this frame; `None` while an earlier frame's timestamps are in flight.
     written: Option<Vec<Pass>>,
-    on_their_way: Option<(Vec<Pass>, Arc<AtomicBool>)>,
+    /// Passes whose timestamps are being read back, and whether the readback has finished.
+    in_flight: Option<(Vec<Pass>, Arc<AtomicBool>)>,
 }
 
 impl PassTimes {
@@ -57,26 +59,26 @@ impl PassTimes {
             readback: buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ),
             period_ms: f64::from(gpu.queue.get_timestamp_period()) * 1e-6,
             written: None,
-            on_their_way: None,
+            in_flight: None,
         });
         Self { ms: [None; 4], clock }
     }
 
-    /// Milliseconds of a pass of the last frame whose times are known; `None` if it had no such pass.
+    /// Milliseconds of a pass, of the last frame whose times have been read back; `None` if that frame did not run the pass.
     pub fn ms(&self, pass: Pass) -> Option<f64> {
         self.ms[pass as usize]
     }
 
-    /// Begins a frame.
+    /// Starts a frame: takes times that have been read back.
     pub fn begin(&mut self, gpu: &Headless) {
         let Some(clock) = &mut self.clock else {
             self.ms = [None; 4];
             return;
         };
-        // A lost device is noticed elsewhere.
+        // `Viewer::frame` handles a lost device.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
-        if clock.on_their_way.as_ref().is_some_and(|(_, done)| done.load(Ordering::Acquire))
-            && let Some((passes, _)) = clock.on_their_way.take()
+        if clock.in_flight.as_ref().is_some_and(|(_, done)| done.load(Ordering::Acquire))
+            && let Some((passes, _)) = clock.in_flight.take()
         {
             if let Ok(mapped) = clock.readback.slice(..).get_mapped_range() {
                 let ticks: Vec<u64> = mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
@@ -88,7 +90,7 @@ impl PassTimes {
             }
             clock.readback.unmap();
         }
-        clock.written = clock.on_their_way.is_none().then(Vec::new);
+        clock.written = clock.in_flight.is_none().then(Vec::new);
     }
 
     /// Records, submits and times a pass.
@@ -114,7 +116,7 @@ impl PassTimes {
         Ok(())
     }
 
-    /// Ends a frame.
+    /// Ends a frame: starts to read its timestamps back.
     pub fn end(&mut self, gpu: &Headless) {
         let Some(clock) = &mut self.clock else { return };
         let Some(written) = clock.written.take().filter(|w| !w.is_empty()) else { return };
@@ -126,8 +128,10 @@ impl PassTimes {
         }
         gpu.queue.submit([encoder.finish()]);
         let done = Arc::new(AtomicBool::new(false));
-        let tell = done.clone();
-        clock.readback.map_async(wgpu::MapMode::Read, .., move |result| tell.store(result.is_ok(), Ordering::Release));
-        clock.on_their_way = Some((written, done));
+        let mapped = done.clone();
+        clock
+            .readback
+            .map_async(wgpu::MapMode::Read, .., move |result| mapped.store(result.is_ok(), Ordering::Release));
+        clock.in_flight = Some((written, done));
     }
 }

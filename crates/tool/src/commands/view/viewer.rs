@@ -1,19 +1,19 @@
-//! From gaze and input to the window, frame by frame.
+//! The viewer: takes gaze and input frames, runs the pipeline and draws the window, frame by frame.
 
 mod output;
 
-use super::feed::Feed;
-use super::figures::Figures;
-use super::fly::Flight;
+use super::auto_scale::AutoScale;
+use super::fly_camera::FlyCamera;
+use super::frame_loader::FrameLoader;
 use super::layout::Layout;
-use super::on_device::OnDevice;
 use super::panel;
+use super::panel_stats::PanelStats;
 use super::record::{Record, rounded};
+use super::resources::DeviceResources;
 use super::setup::Setup;
 use super::state::{Action, Effect, State};
 use super::surface::Acquired;
 use super::times::Pass;
-use super::usable::Usable;
 use crate::failure::Failure;
 use afterimage_lab::source::Stance;
 use glam::DMat4;
@@ -21,71 +21,72 @@ use std::sync::Arc;
 use std::time::Duration;
 use winit::window::Window;
 
-/// What became of a frame.
+/// Result of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is on screen.
+    /// The frame is on screen.
     Shown,
     /// The input or the window is not ready.
     Waiting,
-    /// It was the last.
+    /// The frame is on screen and was the last one.
     Done,
 }
 
-/// The viewer behind a window.
+/// The viewer of a window.
 pub struct Viewer {
     setup: Setup,
     pub state: State,
-    pub flight: Flight,
+    pub fly_camera: FlyCamera,
     window: Arc<Window>,
-    feed: Feed,
-    on: OnDevice,
-    /// Internal resolution as a share of the input's.
+    loader: FrameLoader,
+    resources: DeviceResources,
+    /// Rendering resolution as a factor on the input's.
     scale: f32,
-    usable: Usable,
-    figures: Figures,
-    /// Where the mouse last was on the picture, in pixels of the window.
+    auto_scale: AutoScale,
+    stats: PanelStats,
+    /// Last position of the mouse on the picture, in pixels of the window.
     pub pointer: Option<[f32; 2]>,
     gaze_px: [f32; 2],
     /// Playback position of the input and the scanpath.
     position: u64,
-    /// Frames since the last fresh start, and where the eye looked in them.
+    /// Gaze of the frames since the last history reset.
     record: Record,
-    /// Where the camera is, and where it is steered to.
+    /// Camera of the current frame.
     stance: Option<Stance>,
+    /// Pose (world from camera) to which the user steers the camera.
     pose: Option<DMat4>,
-    /// The window is not what the state says.
+    /// The window does not show the current state yet.
     pub is_stale: bool,
-    /// Pictures to write when the next frame is on screen.
-    wanted: Vec<Effect>,
+    /// Pictures to save after the next frame.
+    to_save: Vec<Effect>,
 }
 
 impl Viewer {
-    /// Opens the device of a window and asks for the first frame.
-    pub fn new(setup: Setup, feed: Feed, window: Arc<Window>) -> Result<Self, Failure> {
+    /// Opens a device for the window and requests the first frame.
+    pub fn new(setup: Setup, loader: FrameLoader, window: Arc<Window>) -> Result<Self, Failure> {
         let state = setup.state();
         let scale = setup.args.internal_scale.unwrap_or(1.0);
-        let on = OnDevice::open(&window, &setup, &state, scale)?;
+        let resources = DeviceResources::open(&window, &setup, &state, scale)?;
         let mut viewer = Self {
-            gaze_px: on.lanes.geometry().size_px().map(|s| 0.5 * s as f32 - 0.5),
+            gaze_px: resources.pipeline.geometry().size_px().map(|s| 0.5 * s as f32 - 0.5),
             setup,
             state,
-            flight: Flight::default(),
+            fly_camera: FlyCamera::default(),
             window,
-            feed,
-            on,
+            loader,
+            resources,
             scale,
-            usable: Usable::default(),
-            figures: Figures::new(),
+            auto_scale: AutoScale::default(),
+            stats: PanelStats::new(),
             pointer: None,
             position: 0,
             record: Record::default(),
             stance: None,
             pose: None,
             is_stale: true,
-            wanted: vec![],
+            to_save: vec![],
         };
-        viewer.ask();
+        viewer.request_frame();
         Ok(viewer)
     }
 
@@ -94,23 +95,23 @@ impl Viewer {
         Duration::from_secs_f64(1.0 / f64::from(self.setup.fps))
     }
 
-    /// Does what a key or click asks for; whether the viewer goes on.
+    /// Performs an action; returns whether the viewer continues.
     pub fn act(&mut self, action: Action) -> Result<bool, Failure> {
         self.is_stale = true;
         match self.state.apply(action) {
             Effect::Nothing => {}
-            Effect::Anew => {
+            Effect::Update => {
                 let (setup, state) = (&self.setup, &self.state);
-                self.on.lanes.adapt(state, &|shows| setup.settings(state, shows))?;
-                self.begin_anew();
+                self.resources.pipeline.adapt(state, &|shows| setup.settings(state, shows))?;
+                self.reset_history();
             }
             Effect::Restart => {
                 (self.position, self.pose) = (0, None);
-                self.begin_anew();
-                self.fetch_anew();
+                self.reset_history();
+                self.refetch();
             }
-            wanted @ (Effect::Picture | Effect::Window) => self.wanted.push(wanted),
-            Effect::LoseDevice => self.on.device.gpu.device.destroy(),
+            effect @ (Effect::Picture | Effect::Window) => self.to_save.push(effect),
+            Effect::LoseDevice => self.resources.device.gpu.device.destroy(),
             Effect::Quit => return Ok(false),
         }
         if self.state.is_flying == Some(false) {
@@ -119,32 +120,32 @@ impl Viewer {
         Ok(true)
     }
 
-    /// The window has another size.
+    /// Handles a new size of the window.
     pub fn resize(&mut self, size: [u32; 2]) {
-        if size != self.on.surface.size() && !size.contains(&0) {
-            self.on.surface.resize(&self.on.device, size);
-            self.begin_anew();
+        if size != self.resources.surface.size() && !size.contains(&0) {
+            self.resources.surface.resize(&self.resources.device, size);
+            self.reset_history();
         }
     }
 
-    /// History, record and figures start afresh: the next frame shows nothing of what was.
-    pub fn begin_anew(&mut self) {
-        self.on.lanes.forget();
+    /// Resets history, record and statistics: the next frame shows nothing of earlier ones.
+    pub fn reset_history(&mut self) {
+        self.resources.pipeline.forget();
         self.record.clear();
-        self.usable = Usable::default();
-        self.figures.clear();
+        self.auto_scale = AutoScale::default();
+        self.stats.clear();
         self.is_stale = true;
     }
 
-    /// Where the picture lies in the window.
+    /// Position of the picture in the window.
     pub fn layout(&self) -> Layout {
-        self.on.layout()
+        self.resources.layout()
     }
 
-    /// What a click at a position in the window asks of the panel; `None` beside it.
+    /// The panel's action for a click at a position in the window; `None` outside the panel.
     pub fn panel_click(&self, at: [f32; 2]) -> Option<Option<Action>> {
         let at = at.map(|v| v / self.panel_scale() as f32);
-        let (panel, lines) = (&self.figures.panel, self.figures.lines.len());
+        let (panel, lines) = (&self.stats.panel, self.stats.lines.len());
         self.state.has_panel.then(|| panel::click(&self.state, lines, panel.dimensions().into(), at))?
     }
 
@@ -152,67 +153,72 @@ impl Viewer {
         (self.window.scale_factor().round() as u32).max(1)
     }
 
-    /// One frame. A device that is lost in it is found lost at the next.
+    /// Shows one frame. If the device is lost, the next call opens another.
     pub fn frame(&mut self) -> Result<Outcome, Failure> {
         match self.try_frame() {
-            Err(_) if self.on.device.is_lost() => Ok(Outcome::Waiting),
+            Err(_) if self.resources.device.is_lost() => Ok(Outcome::Waiting),
             outcome => outcome,
         }
     }
 
     fn try_frame(&mut self) -> Result<Outcome, Failure> {
-        if self.on.device.is_lost() {
-            eprintln!("afterimage: the device is lost; another is opened");
+        if self.resources.device.is_lost() {
+            eprintln!("afterimage: the device is lost; opening another");
             self.reopen()?;
         }
         self.fetch()?;
-        // Playback and counted frames wait for the input; the mouse does not, and is shown the last frame again.
+        // Playback and --frames wait for each input frame. Otherwise the last frame is shown again at the current gaze.
         let waits = self.state.is_playing || self.setup.args.frames.is_some();
-        if !self.on.has_frame || (waits && !self.on.is_new && !self.state.is_frozen) {
+        if !self.resources.has_frame || (waits && !self.resources.is_new && !self.state.is_frozen) {
             return Ok(Outcome::Waiting);
         }
-        let target = match self.on.surface.acquire(&mut self.on.device, &self.window)? {
+        let target = match self.resources.surface.acquire(&mut self.resources.device, &self.window)? {
             Acquired::Frame(target) => target,
             Acquired::Nothing => return Ok(Outcome::Waiting),
             Acquired::Renewed => {
-                self.begin_anew();
+                self.reset_history();
                 return Ok(Outcome::Waiting);
             }
         };
-        self.on.times.begin(&self.on.device.gpu);
-        // What is frozen is computed once more where its history was given up.
-        if !self.state.is_frozen || self.on.lanes.index() == 0 {
-            self.look();
-            self.on.lanes.show(self.gaze_px, !self.on.is_new, &self.state, &mut self.on.times)?;
+        self.resources.times.begin(&self.resources.device.gpu);
+        // A frozen picture is computed again only after a history reset.
+        if !self.state.is_frozen || self.resources.pipeline.index() == 0 {
+            self.update_gaze();
+            self.resources.pipeline.show(
+                self.gaze_px,
+                !self.resources.is_new,
+                &self.state,
+                &mut self.resources.times,
+            )?;
             self.record.push(self.gaze_px);
             self.advance();
         }
         self.measure();
         self.draw(&target.texture.create_view(&Default::default()))?;
         self.window.pre_present_notify();
-        self.on.device.gpu.queue.present(target);
-        self.on.times.end(&self.on.device.gpu);
+        self.resources.device.gpu.queue.present(target);
+        self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;
-        self.figures.frame(&self.on.times);
-        for wanted in std::mem::take(&mut self.wanted) {
-            if wanted == Effect::Picture { self.write_picture()? } else { self.write_window()? }
+        self.stats.frame(&self.resources.times);
+        for effect in std::mem::take(&mut self.to_save) {
+            if effect == Effect::Picture { self.write_picture()? } else { self.write_window()? }
         }
         if self.setup.args.frames == Some(self.record.len() as u64) {
             return Ok(Outcome::Done);
         }
-        self.keep_usable()?;
+        self.lower_resolution_if_slow()?;
         Ok(Outcome::Shown)
     }
 
-    /// Takes the frame that was asked for, if it has come.
+    /// Uploads the requested frame, if it is ready.
     fn fetch(&mut self) -> Result<(), Failure> {
-        if self.state.is_frozen && self.on.has_frame {
+        if self.state.is_frozen && self.resources.has_frame {
             return Ok(());
         }
-        if let Some(given) = self.feed.take()? {
-            self.on.lanes.upload(&given.frame);
-            (self.on.has_frame, self.on.is_new) = (true, true);
-            self.stance = given.stance;
+        if let Some(loaded) = self.loader.take()? {
+            self.resources.pipeline.upload(&loaded.frame);
+            (self.resources.has_frame, self.resources.is_new) = (true, true);
+            self.stance = loaded.stance;
             if self.state.is_flying.is_none() && self.stance.is_some() {
                 self.state.is_flying = Some(false);
             }
@@ -220,8 +226,8 @@ impl Viewer {
         Ok(())
     }
 
-    /// Where the eye looks in this frame, as late as possible.
-    fn look(&mut self) {
+    /// Updates the gaze, as late as possible in the frame.
+    fn update_gaze(&mut self) {
         if self.state.is_playing {
             self.gaze_px = self.setup.played_px(self.position, self.scale).unwrap_or(self.gaze_px);
         } else if let Some(at) = self.pointer {
@@ -229,9 +235,9 @@ impl Viewer {
         }
     }
 
-    /// After a frame was shown: on to the next.
+    /// Moves on to the next input frame after a frame was shown.
     fn advance(&mut self) {
-        if !self.on.is_new {
+        if !self.resources.is_new {
             return;
         }
         self.position += 1;
@@ -240,42 +246,45 @@ impl Viewer {
         }
         if let (Some(true), Some(stance)) = (self.state.is_flying, self.stance) {
             let from = self.pose.unwrap_or(stance.world_from_camera);
-            self.pose = Some(self.flight.step(from, self.figures.since_last_s(), stance.speed_m_s));
+            self.pose = Some(self.fly_camera.step(from, self.stats.since_last_s(), stance.speed_m_s));
         }
-        self.on.is_new = false;
-        self.ask();
+        self.resources.is_new = false;
+        self.request_frame();
     }
 
-    fn ask(&mut self) {
-        self.feed.ask(self.position, self.on.lanes.geometry().size_px(), self.pose);
+    fn request_frame(&mut self) {
+        self.loader.request(self.position, self.resources.pipeline.geometry().size_px(), self.pose);
     }
 
-    /// The input again, from the playback position.
-    fn fetch_anew(&mut self) {
-        self.feed.drop_pending();
-        (self.on.has_frame, self.on.is_new) = (false, false);
-        self.ask();
+    /// Discards input frames and requests the one at the playback position.
+    fn refetch(&mut self) {
+        self.loader.cancel();
+        (self.resources.has_frame, self.resources.is_new) = (false, false);
+        self.request_frame();
     }
 
-    /// Another device in place of one that has gone, or another resolution.
+    /// Opens the device again, after a loss or with another resolution.
     fn reopen(&mut self) -> Result<(), Failure> {
-        self.on = OnDevice::open(&self.window, &self.setup, &self.state, self.scale)?;
-        self.begin_anew();
-        self.fetch_anew();
+        self.resources = DeviceResources::open(&self.window, &self.setup, &self.state, self.scale)?;
+        self.reset_history();
+        self.refetch();
         Ok(())
     }
 
-    /// On a software device: a lower resolution, if this one takes too long.
-    fn keep_usable(&mut self) -> Result<(), Failure> {
-        let gpu = &self.on.device.gpu;
+    /// Lowers the resolution on a software device if frames take too long.
+    fn lower_resolution_if_slow(&mut self) -> Result<(), Failure> {
+        let gpu = &self.resources.device.gpu;
         if !gpu.is_software() || self.setup.args.internal_scale.is_some() || self.state.is_frozen {
             return Ok(());
         }
-        let ms = Pass::ALL.iter().filter_map(|pass| self.on.times.ms(*pass)).sum();
-        let Some(scale) = self.usable.judge(ms, self.scale) else { return Ok(()) };
+        let ms = Pass::ALL.iter().filter_map(|pass| self.resources.times.ms(*pass)).sum();
+        let Some(scale) = self.auto_scale.push(ms, self.scale) else { return Ok(()) };
         let [w, h] = self.setup.geometry(scale)?.size_px();
-        let taken = self.usable.usual_ms();
-        eprintln!("afterimage: {} takes {taken:.0} ms a frame; internal resolution lowered to {w}x{h}", gpu.info.name);
+        let typical = self.auto_scale.typical_ms();
+        eprintln!(
+            "afterimage: {} takes {typical:.0} ms a frame; internal resolution lowered to {w}x{h}",
+            gpu.info.name
+        );
         let ratio = scale / self.scale;
         self.gaze_px = self.gaze_px.map(|v| (v + 0.5) * ratio - 0.5);
         self.scale = scale;

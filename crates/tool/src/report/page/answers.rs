@@ -1,11 +1,11 @@
-//! What a reader asks first, in sentences made of the figures alone, and what was measured on what.
+//! Summary of a sweep in generated sentences, and the table of clips and machines.
 
 use super::{escaped, largest};
 use crate::sweep::equal::{Line, equal};
 use crate::sweep::prices::Price;
 use crate::sweep::{METRICS, Metric, Row, Table};
 
-/// Sentences for every input, as HTML.
+/// Summary for every input, as HTML.
 pub fn answers(table: &Table, inputs: &[&str]) -> String {
     let of_input = |input: &&str| {
         let sentences = [budgets(table, input), switches(table, input)].concat();
@@ -15,7 +15,7 @@ pub fn answers(table: &Table, inputs: &[&str]) -> String {
     inputs.iter().map(of_input).collect()
 }
 
-/// The figure that sentences are about: the first that the input has.
+/// The metric of the summary: the first one that was measured for the input.
 fn figure(table: &Table, input: &str) -> Option<&'static Metric> {
     let has = |m: &&Metric| {
         table.rows.iter().any(|r| r.point.input == input && r.values.get(m.key).copied().flatten().is_some())
@@ -24,7 +24,7 @@ fn figure(table: &Table, input: &str) -> Option<&'static Metric> {
 }
 
 fn budgets(table: &Table, input: &str) -> Vec<String> {
-    let Some(metric) = figure(table, input) else { return vec!["Nothing was scored.".into()] };
+    let Some(metric) = figure(table, input) else { return vec!["No metric was measured.".into()] };
     let sections = equal(table, input, metric);
     let Some(section) = largest(&sections) else { return vec![] };
     let lines = &section.equal_time;
@@ -45,7 +45,7 @@ fn budgets(table: &Table, input: &str) -> Vec<String> {
         .collect();
     let (figure, direction) = (metric.title, if metric.more_is_better { "highest" } else { "lowest" });
     let share = section.samples_share.map_or_else(String::new, |share| {
-        format!(" among the {} points that shade {:.1} % of the samples", section.points, 100.0 * share)
+        format!(" among the {} points that trace {:.1} % of the samples", section.points, 100.0 * share)
     });
     vec![format!("The {direction} {figure}{share}: for {}.", parts.join("; for "))]
 }
@@ -61,7 +61,7 @@ fn row<'a>(table: &'a Table, id: &str) -> Option<&'a Row> {
     table.rows.iter().find(|r| r.id == id)
 }
 
-/// As budgets are rounded.
+/// Three significant digits, as in the table of budgets.
 fn three_digits(ms: f64) -> String {
     let digits = if ms > 0.0 { (2.0 - ms.log10().floor()).max(0.0) as usize } else { 0 };
     format!("{ms:.digits$}")
@@ -81,17 +81,17 @@ fn switches(table: &Table, input: &str) -> Vec<String> {
     let more = |p: &&&Price| p.pass_ms[1] - p.pass_ms[0];
     let by_time = |a: &&&Price, b: &&&Price| more(a).total_cmp(&more(b));
     let (Some(most), Some(least)) = (prices.iter().max_by(by_time), prices.iter().min_by(by_time)) else {
-        return vec!["No switch was priced.".into()];
+        return vec!["No switch was measured.".into()];
     };
     let sentence = |which: &str, price: &Price| format!("{which}: {}.", effect(table, input, price));
     if prices.len() == 1 {
-        return vec![sentence("The one switch that was thrown", most)];
+        return vec![sentence("The only switch", most)];
     }
     let (count, adds, saves) = (prices.len(), more(&most), more(&least));
     let adds = if adds > 0.0 { "adds the most time" } else { "saves the least time" };
     let saves = if saves < 0.0 { "saves the most time" } else { "adds the least time" };
     vec![
-        sentence(&format!("Of {count} switches thrown, the one that {saves}"), least),
+        sentence(&format!("Of {count} switches, the one that {saves}"), least),
         sentence(&format!("The one that {adds}"), most),
     ]
 }
@@ -105,7 +105,7 @@ fn effect(table: &Table, input: &str, price: &Price) -> String {
     let name = format!("<b>{}</b> takes the pass of {}", escaped(&price.switch), escaped(of));
     let mut text = format!("{name} from {without:.3} to {with:.3} ms ({percent:+.1} %)");
     if ratio.p25 <= 1.0 && ratio.p75 >= 1.0 {
-        text += ", no more than frames vary,";
+        text += ", within the variation between frames,";
     }
     let figure = figure(table, input).and_then(|m| Some((m, price.values.get(m.key)?)));
     if let Some((metric, [Some(a), Some(b)])) = figure.map(|(m, v)| (m, *v)) {
@@ -118,20 +118,20 @@ fn effect(table: &Table, input: &str, price: &Price) -> String {
         };
         let spreads = points.and_then(|(a, b)| Some((a.spread.get(metric.key)?, b.spread.get(metric.key)?)));
         let varies = spreads.is_some_and(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
-        let verdict = if varies { "no more than seeds differ" } else { verdict };
+        let verdict = if varies { "within the variation between seeds" } else { verdict };
         text += &format!(" and {} from {a} to {b} ({verdict})", metric.title);
     }
     text
 }
 
-/// Clips and machines, as rows of a table in HTML.
+/// Clips, machines and renderer, as rows of an HTML table.
 pub fn facts(table: &Table) -> String {
     let clips = table.clips.iter().map(|(input, c)| {
         let [w, h] = c.size;
-        // Pixels a degree in the middle of the view, as FLIP is told.
+        // Pixels per degree at the center of the view, as used by FLIP.
         let degrees = 2.0 * ((0.5 * f64::from(c.hfov_deg).to_radians()).tan() / f64::from(w)).atan().to_degrees();
         let text = format!(
-            "{w}x{h} pixels, {} frames scored and {} timed, {} a second, {} degrees wide, {:.1} pixels a degree in the middle",
+            "{w}x{h} pixels, {} frames scored and {} timed, {} frames per second, {} degrees wide, {:.1} pixels per degree at the center",
             c.frames, c.timed_frames, c.fps, c.hfov_deg, degrees.recip()
         );
         (format!("Clip {input}"), text)
@@ -142,11 +142,12 @@ pub fn facts(table: &Table) -> String {
     });
     let renderer = match (table.renderer_ms, table.rows.iter().any(|r| r.render_ms.is_some())) {
         (Some(ms), _) => {
-            format!("said to take {ms} ms for a full-rate frame, and its share of that for a foveated one")
+            format!("{ms} ms for a full-rate frame (--renderer-ms); foveated frames take their share of the samples")
         }
-        (None, true) => "traced and timed, frame by frame".into(),
+        (None, true) => "path tracer, timed in every frame".into(),
         (None, false) => {
-            "its time is not known: costs are those of the pass alone, compared where as many samples are shaded".into()
+            "time unknown: costs are those of the pass alone, and points are compared at equal shares of the samples"
+                .into()
         }
     };
     let rows = clips.chain(machines).chain([("Renderer".to_owned(), renderer)]);

@@ -1,11 +1,11 @@
-// What the other parts share: the data, what is chosen, and elements whose text is never taken for HTML.
+// Shared by the other parts: data, selection, and a constructor of elements whose text is never parsed as HTML.
 const data = (id) => JSON.parse(document.getElementById(`data-${id}`).textContent);
 const table = data("table"), metrics = data("metrics"), equal = data("equal"), plots = data("plots"), pictures = data("pictures");
 const rows = new Map(table.rows.map((row) => [row.id, row]));
 const inputs = [...new Set(table.rows.map((row) => row.input))];
 const chosen = { input: inputs[0], metric: metrics[0], pinned: null };
 
-// Figures that tables always have.
+// Metrics that tables always show.
 const MAIN = ["flip", "psnr_db", "retained_psnr_db", "flicker", "ghost_energy"];
 const mainMetrics = () => metrics.filter((m) => MAIN.includes(m.key) || m === chosen.metric);
 const ofInput = () => table.rows.filter((row) => row.input === chosen.input);
@@ -30,7 +30,7 @@ const withUnit = (metric, value) => fixed(value, metric.digits) + (metric.unit &
 const headed = (metric) => metric.title + (metric.unit ? `, ${metric.unit}` : "");
 const direction = (metric) => (metric.more_is_better ? "higher is better" : "lower is better");
 
-// By what is printed, so that no verdict is about digits that nobody sees.
+// Compares the printed values, so that invisible digits do not change the verdict.
 const verdict = (metric, before, after) => {
   if (before == null || after == null) return "";
   const [a, b] = [before, after].map((v) => Number(v.toFixed(metric.digits)));
@@ -44,7 +44,7 @@ const copyButton = (text, name) => {
     try {
       await navigator.clipboard.writeText(text);
     } catch {
-      // A page from disk may be denied the clipboard; a selection is not.
+      // Browsers may deny the clipboard to a page opened from disk. Copying a selection works.
       const area = el("textarea", { readonly: true });
       area.value = text;
       button.after(area);

@@ -1,14 +1,14 @@
-// Two pictures under a divider, and where each is wrong.
+// Two pictures with a divider, and their error maps.
 const REFERENCE = "";
 
 function showCompare() {
   const of = (row) => pictures.points[row.id];
   const shown = ofInput().filter((row) => of(row)?.shown != null);
-  if (!shown.length) return byId("compare").replaceChildren(el("p", {}, "There are no pictures of this input."));
+  if (!shown.length) return byId("compare").replaceChildren(el("p", {}, "No pictures for this input."));
   const image = (index) => (index == null ? null : pictures.images[index]);
   const reference = image(of(shown[0]).reference);
   const select = (name, value) => {
-    const list = el("select", { onchange: draw }, reference && el("option", { value: REFERENCE }, "reference: every pixel at full rate"),
+    const list = el("select", { onchange: draw }, reference && el("option", { value: REFERENCE }, "reference: all pixels at full rate"),
       ...shown.map((row) => el("option", { value: row.id }, `${row.label} (${withUnit(chosen.metric, row.values[chosen.metric.key])})`)));
     list.value = value;
     return [el("label", {}, name, list), list];
@@ -43,9 +43,9 @@ function showCompare() {
     }));
   }
   const count = ofInput().length;
-  const note = shown.length < count ? `${shown.length} of the ${count} points have pictures in this page. ` : "";
+  const note = shown.length < count ? `Pictures of ${shown.length} of the ${count} points are embedded in this page. ` : "";
   byId("compare").replaceChildren(
-    el("p", { class: "faint" }, note, "The last frame of the clip. Drag the divider over the picture, or move it with the arrow keys. Below, FLIP of each pixel: black 0, white 1."),
+    el("p", { class: "faint" }, note, "The last frame of the clip. Drag the divider over the picture, or move it with the arrow keys. Below: FLIP per pixel, black 0, white 1."),
     el("div", { class: "choose" }, leftLabel, rightLabel), split, divider, errors);
   draw();
 }

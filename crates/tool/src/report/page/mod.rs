@@ -1,7 +1,7 @@
-//! A sweep as one page that opens from disk and fetches nothing: figures, plots, pictures, style and script are in the file.
+//! Report of a sweep as one HTML file that loads nothing else: data, plots, pictures, style and script are embedded.
 //!
-//! Numbers are made here and shown by the script as they are; names of files and options reach the page as text alone: escaped in what
-//! is written here, as text nodes in what the script makes.
+//! All numbers are computed here; the script only formats them. Names of files and options are always text: escaped here, and set as
+//! text nodes by the script.
 
 mod answers;
 mod pictures;
@@ -23,7 +23,7 @@ const SCRIPTS: [&str; 5] = [
     include_str!("main.js"),
 ];
 
-/// The page. `pictures`: a JPEG by [`Row::id`](crate::sweep::Row::id) and `shown`, `error` or `reference`, where there is one.
+/// The page. `pictures` returns the JPEG of a [`Row::id`](crate::sweep::Row::id) and `shown`, `error` or `reference`, if it exists.
 pub fn page(table: &Table, pictures: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> String {
     let inputs = inputs(table);
     let by_metric = |of: &dyn Fn(&str, &Metric) -> serde_json::Value| {
@@ -55,19 +55,19 @@ pub fn page(table: &Table, pictures: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> 
     })
 }
 
-/// As an element of HTML, which needs no namespace.
+/// The plot as an HTML element, without its XML namespace.
 fn inline_plot(table: &Table, input: &str, metric: &Metric) -> String {
     pareto::svg(table, input, metric).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }
 
-/// In the order of the rows.
+/// Inputs in the order of the rows.
 fn inputs(table: &Table) -> Vec<&str> {
     let mut inputs: Vec<&str> = table.rows.iter().map(|r| r.point.input.as_str()).collect();
     inputs.dedup();
     inputs
 }
 
-/// Puts something for every `{{name}}`, in one go: what is put in is not looked at again.
+/// Replaces every `{{name}}` in a single pass, so that inserted text is never expanded.
 fn fill(template: &str, of: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut page = parts.next().unwrap_or_default().to_owned();
@@ -79,13 +79,13 @@ fn fill(template: &str, of: impl Fn(&str) -> String) -> String {
     page
 }
 
-/// Data for the script. No `<` is left in it, so that nothing in it ends the element.
+/// JSON data for the script. `<` is escaped, so that the data cannot close the element.
 fn island(id: &str, data: &impl Serialize) -> String {
     let text = serde_json::to_string(data).expect("figures are JSON").replace('<', "\\u003c");
     format!("<script type=\"application/json\" id=\"data-{id}\">{text}</script>")
 }
 
-/// As text of HTML, or a quoted attribute.
+/// Escapes text for HTML content and quoted attributes.
 fn escaped(text: &str) -> String {
     let entity = |c: char| match c {
         '&' => "&amp;".into(),
@@ -98,7 +98,7 @@ fn escaped(text: &str) -> String {
     text.chars().map(entity).collect()
 }
 
-/// The section with the most points: what sentences are about.
+/// The section with the most points, which the summary is about.
 fn largest(sections: &[Section]) -> Option<&Section> {
     sections.iter().max_by_key(|s| s.points)
 }

@@ -1,4 +1,4 @@
-//! The pictures of a page: those of the points that a reader will ask for first, each once.
+//! Pictures embedded in a page: those of the most interesting points, without duplicates.
 
 use crate::sweep::{Row, Table};
 use base64::Engine;
@@ -6,22 +6,22 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 
-/// Points with pictures that a page has at most.
+/// Limit on points with pictures in a page.
 const MAX_POINTS: usize = 24;
 
-/// Bytes that pictures take of a page at most.
+/// Limit on the size of all pictures in a page, bytes.
 const MAX_BYTES: usize = 8 << 20;
 
-/// Pictures, and whose they are.
+/// Pictures, and the points that they belong to.
 #[derive(Debug, Default, Serialize)]
 pub struct Pictures {
-    /// As addresses that hold the picture itself.
+    /// Pictures as data URLs.
     images: Vec<String>,
-    /// Where in `images` each picture of a point is, by the point's id and what is shown.
+    /// Index into `images` by the point's id and `shown`, `error` or `reference`.
     points: BTreeMap<String, BTreeMap<&'static str, usize>>,
 }
 
-/// Those that there is room for.
+/// Embeds pictures up to the limits.
 pub fn embed(table: &Table, read: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> Pictures {
     let mut pictures = Pictures::default();
     let mut known: HashMap<Vec<u8>, usize> = HashMap::new();
@@ -48,7 +48,7 @@ pub fn embed(table: &Table, read: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> Pic
     pictures
 }
 
-/// What is on a frontier first, then what switches are compared with, then the rest; inputs in turn.
+/// Rows in order of interest: points on a frontier, then the base points of switches, then the rest; inputs take turns.
 fn in_order(table: &Table) -> Vec<&Row> {
     let rank = |row: &Row| {
         let place = ["flip", "psnr_db", "retained_psnr_db"].iter().position(|key| row.frontier.contains(key));

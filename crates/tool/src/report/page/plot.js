@@ -1,9 +1,9 @@
-// The plot, drawn beforehand, and the card of the point that is looked at.
+// The plot, which the tool draws in advance, and the card of the selected point.
 const pointLink = (id, text = rows.get(id).label) =>
-  el("button", { type: "button", class: "point-link", title: "Show it in the plot", onclick: () => { pin(id); byId("plot").scrollIntoView(); } }, text);
+  el("button", { type: "button", class: "point-link", title: "Show in the plot", onclick: () => { pin(id); byId("plot").scrollIntoView(); } }, text);
 
 function showPlot() {
-  // Made and escaped by the tool; what it says of labels is text.
+  // The tool composes the SVG and escapes all text in it.
   byId("figure").innerHTML = plots[chosen.input][chosen.metric.key];
   const svg = byId("figure").firstElementChild;
   svg.setAttribute("role", "group");
@@ -11,7 +11,7 @@ function showPlot() {
   const points = [...svg.querySelectorAll(".point")].sort((a, b) => cost(a) - cost(b));
   points.forEach((point, i) => {
     const row = rows.get(point.dataset.row);
-    // One stop of the Tab key for all of them.
+    // All points share one stop of the Tab key; arrow keys move between them.
     point.setAttribute("tabindex", i === 0 ? 0 : -1);
     point.setAttribute("role", "button");
     point.setAttribute("aria-label", `${row.label}: ${withUnit(chosen.metric, row.values[chosen.metric.key])}, ${ms(row.cost_ms)} ms`);
@@ -34,7 +34,7 @@ function showPlot() {
   pin(ofInput().some((row) => row.id === chosen.pinned) ? chosen.pinned : firstPinned());
 }
 
-// The best on the frontier.
+// The point with the best quality on the frontier.
 function firstPinned() {
   const best = ofInput().filter((row) => row.frontier.includes(chosen.metric.key));
   return (best.at(-1) ?? ofInput()[0])?.id;
@@ -59,10 +59,10 @@ function showCard(row) {
   const lines = [
     line("Cost", `${ms(row.cost_ms)} ms`),
     line("Pass", `${ms(median)} ms`, el("span", { class: "small" }, ` (quartiles ${ms(p25)} to ${ms(p75)})`)),
-    line("Renderer", row.render_ms == null ? "not known" : `${ms(row.render_ms)} ms`),
-    line("Copy of as many bytes", `${ms(row.copy_ms)} ms`),
+    line("Renderer", row.render_ms == null ? "unknown" : `${ms(row.render_ms)} ms`),
+    line("Copy of the same size", `${ms(row.copy_ms)} ms`),
     line("Samples", percent(row.samples_share)),
-    line("Bytes a pixel", `${row.bytes_per_pixel ?? "—"} moved, ${fixed(row.memory_bytes_per_pixel, 1)} kept`),
+    line("Bytes per pixel", `${row.bytes_per_pixel ?? "—"} moved, ${fixed(row.memory_bytes_per_pixel, 1)} kept`),
     ...metrics.map(figure),
     line("Seeds", String(row.seeds)),
   ];

@@ -1,4 +1,4 @@
-// Same time and same quality, prices of switches, all points.
+// Tables: equal time and equal quality, cost of switches, convergence, all points.
 function showEqual() {
   const metric = chosen.metric;
   const sections = equal[chosen.input][metric.key];
@@ -8,17 +8,17 @@ function showEqual() {
       (cell) => withUnit(metric, cell.value), (a, b) => metric.more_is_better ? b.value - a.value : a.value - b.value,
       `The best ${metric.title} within a budget (${direction(metric)})`);
     const quality = lines(section, section.equal_quality, headed(metric), (line) => `${metric.more_is_better ? "≥" : "≤"} ${fixed(line.bound, metric.digits)}`,
-      (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The least time for a ${metric.title}`);
+      (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The shortest time for a given ${metric.title}`);
     const both = el("div", { class: "beside" }, time, quality);
     if (section.samples_share == null) return both;
     const share = `${percent(section.samples_share)} of the samples (${section.points} points)`;
     return el("details", { open: section.points === most }, el("summary", {}, share), both);
   });
   const note = sections.some((s) => s.samples_share != null)
-    ? "What the renderer takes is not known, so points are compared with those that shade as many samples; --renderer-ms says what it takes." : null;
+    ? "The renderer's time is unknown, so points are compared at equal shares of the samples; set --renderer-ms to compare all of them." : null;
   byId("equal").replaceChildren(
-    el("p", { class: "faint" }, "Bold with ★: the best of the methods in its line. —: no point of the method is within it. ", note),
-    ...(parts.length ? parts : [el("p", {}, `No point of this input has a figure of ${metric.title}.`)]),
+    el("p", { class: "faint" }, "Bold with ★: the best method of the line. —: no point of the method is within the bound. ", note),
+    ...(parts.length ? parts : [el("p", {}, `${metric.title} was not measured for this input.`)]),
   );
 }
 
@@ -37,17 +37,17 @@ function lines(section, all, heading, bound, text, order, caption) {
   return el("div", { class: "wide" }, el("h3", {}, caption), el("table", {}, el("thead", {}, head), el("tbody", {}, ...body)));
 }
 
-// In a column of one method its name says nothing.
+// Labels in a method's column do not repeat its name.
 const withoutMethod = (row) => row.label.startsWith(`${row.method}, `) ? row.label.slice(row.method.length + 2) : row.label;
 
 function change(before, after, text, how) {
-  const mark = { better: "▲ better", worse: "▼ worse", same: "same", seeds: "as seeds differ", "": "" }[how];
+  const mark = { better: "▲ better", worse: "▼ worse", same: "same", seeds: "within seed variation", "": "" }[how];
   return el("td", { class: "number" }, `${text(before)} → ${text(after)}`, el("div", { class: `small ${how}` }, mark));
 }
 
 function showPrices() {
   const prices = table.prices.filter((p) => p.input === chosen.input);
-  if (!prices.length) return byId("prices").replaceChildren(el("tbody", {}, el("tr", {}, el("td", {}, "No switch was priced for this input."))));
+  if (!prices.length) return byId("prices").replaceChildren(el("tbody", {}, el("tr", {}, el("td", {}, "No switch was measured for this input."))));
   const less = (digits) => ({ digits, more_is_better: false });
   const time = (p) => {
     const [before, after] = p.pass_ms;
@@ -56,7 +56,7 @@ function showPrices() {
     const percent = (ratio) => `${ratio >= 1 ? "+" : "−"}${Math.abs(100 * (ratio - 1)).toFixed(1)}`;
     const part = ` ${percent(median)} % (${percent(p25)} to ${percent(p75)})`;
     const cell = change(before, after, ms, how);
-    cell.lastChild.textContent = { better: "▲ faster", worse: "▼ slower", "": "as frames vary" }[how] + part;
+    cell.lastChild.textContent = { better: "▲ faster", worse: "▼ slower", "": "within frame variation" }[how] + part;
     return cell;
   };
   const body = prices.map((p) => el("tr", { "data-row": p.switched },
@@ -71,7 +71,7 @@ function showPrices() {
       return change(...pair, (v) => fixed(v, m.digits), varies ? "seeds" : verdict(m, ...pair));
     }),
   ));
-  const names = ["Pass, ms", "Bytes moved a pixel", "Bytes kept a pixel", ...mainMetrics().map(headed)];
+  const names = ["Pass, ms", "Bytes moved per pixel", "Bytes kept per pixel", ...mainMetrics().map(headed)];
   const head = el("tr", {}, el("th", {}, "Switch"), ...names.map((n) => el("th", { class: "number" }, n)));
   byId("prices").replaceChildren(el("caption", { class: "small" }, "without the switch → with it"), el("thead", {}, head), el("tbody", {}, ...body));
 }
@@ -81,7 +81,7 @@ function showConvergences() {
   byId("converging").hidden = !all.length;
   const bands = ["whole", "< 2.5°", "2.5° to 7.5°", "> 7.5°"];
   const number = (text) => el("td", { class: "number" }, text);
-  // Where another sample pays no more, time is better spent elsewhere: the highest of all numbers of samples.
+  // The highest efficiency over all sample counts: beyond it, further samples are worth less than their time.
   const efficiencies = all.map((c) => bands.map((_, i) => Math.max(0, ...c.points.map((p) => p.efficiency[i] ?? 0))));
   const highest = bands.map((_, i) => Math.max(...efficiencies.map((e) => e[i])));
   const efficiency = (v, i) => number(v === 0 ? "—" : v === highest[i] ? el("b", {}, `★ ${threeDigits(v)}`) : threeDigits(v));
@@ -92,7 +92,7 @@ function showConvergences() {
   });
   const titles = ["slope by samples", "slope by time", "highest efficiency"];
   const groups = el("tr", {}, el("td"), el("td"), ...titles.map((n) => el("th", { colspan: bands.length, class: "number" }, n)));
-  const head = el("tr", {}, el("th", {}, "Points"), el("th", { class: "number" }, "Samples a pixel"),
+  const head = el("tr", {}, el("th", {}, "Points"), el("th", { class: "number" }, "Samples per pixel"),
     ...titles.flatMap(() => bands).map((n) => el("th", { class: "number" }, n)));
   byId("convergences").replaceChildren(el("thead", {}, groups, head), el("tbody", {}, ...body));
 }
@@ -117,7 +117,7 @@ function showPoints() {
     number("Not finite", (row) => row.nonfinite_out, String),
   ];
   const by = columns.find((c) => c.name === sorting.column) ?? columns[2];
-  // What is not known comes last, either way.
+  // Unknown values come last in both directions.
   const order = (a, b) => {
     const [x, y] = [by.of(a), by.of(b)];
     if (x == null || y == null) return (x == null) - (y == null);

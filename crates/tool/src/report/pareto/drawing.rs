@@ -1,4 +1,4 @@
-//! The drawing.
+//! SVG drawing of the plot.
 
 use super::marks::Mark;
 use super::scale::Scale;
@@ -10,20 +10,20 @@ use svg::Document;
 use svg::node::element::{Group, Line, Path, Rectangle, Text};
 
 const WIDTH_PX: f64 = 960.0;
-/// Corners of what lies between the axes.
+/// Corners of the plot area.
 const LOW_PX: [f64; 2] = [84.0, 78.0];
 const HIGH_PX: [f64; 2] = [886.0, 500.0];
-/// Where the second column of notes begins.
+/// X position of the second column of notes.
 const MIDDLE_PX: f64 = 528.0;
 const LINE_PX: f64 = 20.0;
-/// What a letter of a note is given: a little more than the font's letters take on average.
-const LETTER_PX: f64 = 6.9;
+/// Width of a character in notes: a little more than the font's mean.
+const CHAR_PX: f64 = 6.9;
 
 const INK: &str = "#1b1b1f";
 const FAINT: &str = "#5c5c66";
 const GRID: &str = "#dcdce2";
 
-/// A row that the figure is known of, and where it is.
+/// A row with its value and position.
 struct Spot<'a> {
     row: &'a Row,
     value: f64,
@@ -31,7 +31,7 @@ struct Spot<'a> {
     is_best: bool,
 }
 
-/// Points of an input by a figure and their cost. Rows that have no such figure are left out, and counted.
+/// Plot of an input's points by cost and a metric. Rows without the metric are counted in a note.
 pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let of_input = || table.rows.iter().filter(|r| r.point.input == input && r.cost_ms.is_finite());
     let value = |r: &Row| r.values.get(metric.key).copied().flatten().filter(|v| v.is_finite());
@@ -57,7 +57,7 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     plot = plot.add(text(&title, [LOW_PX[0], 24.0], "start").set("font-size", 17).set("class", "ink"));
     plot = plot.add(legend(&spots)).add(axes(&x, &y, metric, renders_known)).add(roofline(&floors, &x));
     plot = plot.add(steps(&best, metric));
-    // What is best lies on top.
+    // Draw the frontier on top.
     for spot in spots.iter().filter(|s| !s.is_best).chain(best.iter().copied()) {
         plot = plot.add(point(spot, &x));
     }
@@ -79,12 +79,12 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
         .to_string()
 }
 
-/// No renderer can run the oracle: what it takes tells nobody anything, and what it reaches is a bound.
+/// The oracle is an upper bound that no renderer can run, so its time has no meaning.
 fn is_bound(row: &Row) -> bool {
     row.point.method == "oracle"
 }
 
-/// The least that a point of each method could cost: what its renderer takes, and a copy of the bytes that it moves.
+/// Lower bound of each method's cost: time of the renderer and of a copy that moves as many bytes.
 fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
     let mut floors = BTreeMap::new();
     for (row, _) in known.iter().filter(|(r, _)| r.copy_ms > 0.0 && !is_bound(r)) {
@@ -106,8 +106,8 @@ fn axes(x: &Scale, y: &Scale, metric: &Metric, renders_known: bool) -> Group {
         axes = axes.add(line([LOW_PX[0], at], [HIGH_PX[0], at], GRID).set("class", "grid"));
         axes = axes.add(text(&name, [LOW_PX[0] - 8.0, at + 4.5], "end").set("class", "ink"));
     }
-    let cost = if renders_known { "renderer and pass" } else { "pass alone, the renderer's time is not known" };
-    let along = format!("milliseconds a frame ({cost}); further left is cheaper");
+    let cost = if renders_known { "renderer and pass" } else { "pass alone, renderer's time unknown" };
+    let along = format!("milliseconds a frame ({cost}); left is cheaper");
     let unit = if metric.unit.is_empty() { String::new() } else { format!(", {}", metric.unit) };
     let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
     let up = format!("{}{unit}; {better}", metric.title);
@@ -119,7 +119,7 @@ fn axes(x: &Scale, y: &Scale, metric: &Metric, renders_known: bool) -> Group {
         .add(text(&up, [20.0, middle[1]], "middle").set("transform", turned).set("class", "ink"))
 }
 
-/// The methods in a line above the plot.
+/// Legend: the methods in a line above the plot.
 fn legend(spots: &[Spot<'_>]) -> Group {
     let mut left = LOW_PX[0];
     in_order(spots.iter().map(|s| s.row.point.method.as_str())).iter().fold(Group::new(), |legend, method| {
@@ -131,7 +131,7 @@ fn legend(spots: &[Spot<'_>]) -> Group {
     })
 }
 
-/// A bar at the foot for each method that nothing of it can pass; above another's where it would hide it.
+/// A bar at the bottom for each method's lower bound. Bars that would overlap are stacked.
 fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
     let mut sorted: Vec<(f64, &str)> = floors.iter().map(|(method, ms)| (px(x.px(*ms)), *method)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -146,7 +146,7 @@ fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
     group
 }
 
-/// For each class of comparable points, the best that a budget buys: level until the next step.
+/// Frontier of each class of comparable points as a step line.
 fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
     let mut classes: BTreeMap<Option<u32>, Vec<&Spot<'_>>> = BTreeMap::new();
     best.iter().for_each(|spot| classes.entry(class(spot.row)).or_default().push(spot));
@@ -165,7 +165,7 @@ fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
         group = group.add(path.set("fill", "none").set("stroke", INK).set("stroke-dasharray", "5 3"));
         ends.extend(class.map(|thousandths| (last.at[1], format!("{:.1} %", f64::from(thousandths) / 10.0))));
     }
-    // Each at the end of its line, and below the one before it.
+    // Labels at the ends of the lines, without overlaps.
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut lowest = LOW_PX[1] - 12.0;
     if !ends.is_empty() {
@@ -179,14 +179,14 @@ fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
     group
 }
 
-/// Legible on lines that it crosses.
+/// Text with an outline in the background color, legible on lines.
 fn on_ground(text: Text) -> Text {
     let class = format!("{} over", text.get_attributes().get("class").map_or_else(String::new, ToString::to_string));
     let text = text.set("class", class).set("paint-order", "stroke").set("stroke", "#ffffff");
     text.set("stroke-width", 4).set("stroke-linejoin", "round")
 }
 
-/// A point, with the quartiles of its pass.
+/// A point, with a bar for the quartiles of its pass.
 fn point(spot: &Spot<'_>, x: &Scale) -> Group {
     let row = spot.row;
     let other = row.cost_ms - row.pass_ms.median;
@@ -199,7 +199,7 @@ fn point(spot: &Spot<'_>, x: &Scale) -> Group {
     group.add(mark(&row.point.method, spot.at, spot.is_best))
 }
 
-/// Filled if nothing beats it.
+/// A method's mark; filled if the point is on the frontier.
 fn mark(method: &str, at: [f64; 2], is_best: bool) -> Path {
     let mark = Mark::of(method);
     let path = Path::new().set("d", mark.path(at)).set("fill", mark.color).set("stroke", mark.color);
@@ -216,7 +216,7 @@ fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
     })
 }
 
-/// What the numbers are, and how to read the marks. With it the height of the whole.
+/// List of the numbered points, and a key to the marks. Returns the total height as well.
 fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -> (Group, f64) {
     let top = HIGH_PX[1] + 68.0;
     let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
@@ -225,9 +225,9 @@ fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -
         format!("{value:.digits$}{unit} in {ms:.3} ms: {}", visible(&spot.row.label))
     };
     let entries: Vec<String> = best.iter().map(what).collect();
-    // One column where two have no room: what labels differ in may be at their ends.
+    // One column if an entry is too long for two, since labels may differ at their ends only.
     let longest = entries.iter().map(|e| e.chars().count()).max().unwrap_or(0);
-    let columns = if longest <= letters_from(MIDDLE_PX) { 2 } else { 1 };
+    let columns = if longest <= chars_from(MIDDLE_PX) { 2 } else { 1 };
     let lines = best.len().div_ceil(columns);
     let mut notes = Group::new();
     for (i, entry) in entries.iter().enumerate() {
@@ -237,14 +237,14 @@ fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -
         notes = notes.add(number).add(text(&shortened(entry), [x, y], "start").set("class", "ink"));
     }
     let mut reading = vec![
-        "filled, with a number: no point costs less and is better (hollow: some point does); dashes: the best for a budget".into(),
-        "bars at marks: quartiles of the pass; bars at the foot: the method can be no further left, a copy of its bytes takes so long".into(),
+        "filled, with a number: on the frontier, no point is both cheaper and better; hollow: other points; dashed: the frontier".into(),
+        "bars at marks: quartiles of the pass; bars at the bottom: lower bound of the method's time, a copy of as many bytes".into(),
     ];
     if has_bound {
-        reading.push("oracle: the most that reuse could show; no renderer can run it, so it is at the border and not at its time".into());
+        reading.push("oracle: upper bound of any reuse; no renderer can run it, so it is drawn at the border instead of at its time".into());
     }
     if missing > 0 {
-        reading.push(format!("{missing} points have no such figure and are left out"));
+        reading.push(format!("{missing} points without this metric are left out"));
     }
     let mut y = top + LINE_PX * lines as f64 + 6.0;
     for line in reading {
@@ -262,32 +262,32 @@ fn line(from: [f64; 2], to: [f64; 2], color: &str) -> Line {
     Line::new().set("x1", from[0]).set("y1", from[1]).set("x2", to[0]).set("y2", to[1]).set("stroke", color)
 }
 
-/// To a tenth.
+/// Rounds to a tenth of a pixel.
 fn px(v: f64) -> f64 {
     (v * 10.0).round() / 10.0
 }
 
-/// As a class of CSS; of a stranger `other`.
+/// CSS class of a method; `other` for unknown ones.
 fn name(method: &str) -> &'static str {
     ["none", "taa", "wrs", "smr", "oracle"].into_iter().find(|m| *m == method).unwrap_or("other")
 }
 
-/// Without characters that XML forbids.
+/// Replaces characters that XML forbids.
 fn visible(text: &str) -> String {
     let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// Letters for which there is room from `x` to the border.
-fn letters_from(x: f64) -> usize {
-    ((WIDTH_PX - x) / LETTER_PX) as usize
+/// Number of characters that fit between `x` and the border.
+fn chars_from(x: f64) -> usize {
+    ((WIDTH_PX - x) / CHAR_PX) as usize
 }
 
-/// To what a line has room for.
+/// Shortens a text to one line.
 fn shortened(label: &str) -> String {
-    let most = letters_from(LOW_PX[0]);
-    if label.chars().count() <= most {
+    let max = chars_from(LOW_PX[0]);
+    if label.chars().count() <= max {
         return label.to_owned();
     }
-    label.chars().take(most - 1).chain(['…']).collect()
+    label.chars().take(max - 1).chain(['…']).collect()
 }

@@ -1,14 +1,14 @@
-//! What tells the methods apart: a color that every eye tells from the others, and a shape.
+//! Marks of the methods: a color that is distinguishable with color blindness, and a shape.
 
-/// Look of a method.
+/// Mark of a method.
 #[derive(Clone, Copy)]
 pub struct Mark {
-    /// Of Okabe and Ito's palette (2008), which people who are blind to some colors tell apart too.
+    /// Color from Okabe and Ito's palette for color blindness (2008).
     pub color: &'static str,
     outline: &'static str,
 }
 
-/// Outlines are paths around a point, 12 pixels wide.
+/// Outlines are SVG paths relative to a point, about 12 pixels wide.
 const MARKS: [(&str, Mark); 5] = [
     ("none", Mark { color: "#7a7a7a", outline: "m-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0z" }),
     ("taa", Mark { color: "#e69f00", outline: "m-5.5 -5.5h11v11h-11z" }),
@@ -17,15 +17,16 @@ const MARKS: [(&str, Mark); 5] = [
     ("oracle", Mark { color: "#cc79a7", outline: "m-6 -2h4v-4h4v4h4v4h-4v4h-4v-4h-4z" }),
 ];
 
-const STRANGER: Mark = Mark { color: "#d55e00", outline: "m-6.5 -5.5h13l-6.5 12z" };
+/// Mark of unknown methods.
+const OTHER: Mark = Mark { color: "#d55e00", outline: "m-6.5 -5.5h13l-6.5 12z" };
 
 impl Mark {
-    /// Of a method.
+    /// The mark of a method.
     pub fn of(method: &str) -> Self {
-        MARKS.iter().find(|(name, _)| *name == method).map_or(STRANGER, |(_, mark)| *mark)
+        MARKS.iter().find(|(name, _)| *name == method).map_or(OTHER, |(_, mark)| *mark)
     }
 
-    /// Its shape there, as data of a path.
+    /// SVG path data of the mark at a position.
     pub fn path(&self, at: [f64; 2]) -> String {
         format!("M{} {}{}", at[0], at[1], self.outline)
     }

@@ -1,7 +1,7 @@
-//! Error against time, the points that nothing beats marked: one drawing, as SVG and as PNG.
+//! Plot of error against time with the Pareto frontier, as SVG and as PNG.
 //!
-//! SVG is composed by `svg`, which escapes what it is given, and drawn by `resvg` in a font that comes with the crate, so that a machine
-//! without fonts makes the same picture.
+//! `svg` composes the document and escapes all text. `resvg` rasterizes it with a font from a crate, so that the result does not depend
+//! on the machine's fonts.
 
 mod drawing;
 mod marks;
@@ -16,15 +16,15 @@ use image::RgbImage;
 use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
-/// Pixels of the PNG for one of the SVG.
+/// PNG pixels per SVG pixel.
 const PNG_SCALE: f32 = 2.0;
 
-/// The SVG as pixels.
+/// The plot as pixels.
 pub fn png(table: &Table, input: &str, metric: &Metric) -> RgbImage {
-    rasterise(&svg(table, input, metric))
+    rasterize(&svg(table, input, metric))
 }
 
-fn rasterise(svg: &str) -> RgbImage {
+fn rasterize(svg: &str) -> RgbImage {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
     let family = fonts.faces().next().map_or_else(String::new, |face| face.families[0].0.clone());
@@ -35,7 +35,7 @@ fn rasterise(svg: &str) -> RgbImage {
     let mut pixels = tiny_skia::Pixmap::new(size[0], size[1]).expect("a plot has a size");
     pixels.fill(tiny_skia::Color::WHITE);
     resvg::render(&tree, tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE), &mut pixels.as_mut());
-    // On white nothing is transparent, so that premultiplied colors are the colors.
+    // All pixels are opaque on white, so premultiplied colors are the colors.
     let rgb = pixels.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
     RgbImage::from_raw(size[0], size[1], rgb).expect("three bytes a pixel")
 }

@@ -1,9 +1,9 @@
-//! From values to pixels, and the values that an axis names.
+//! Axis scales: from values to pixels, and tick values.
 
-/// Values are spread by their logarithm if the largest is so many times the least.
+/// Ratio of largest to smallest value from which the axis is logarithmic.
 const LOG_FROM: f64 = 10.0;
 
-/// Most values that an axis names.
+/// Limit on the ticks of an axis.
 const MAX_TICKS: usize = 9;
 
 /// One axis.
@@ -16,7 +16,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of values that are all finite, with room at the ends; `may_be_log`: where they span more than a decade.
+    /// A scale for finite values, with margins. `may_be_log`: logarithmic if they span more than a decade.
     pub fn new(values: impl Iterator<Item = f64> + Clone, may_be_log: bool, from_px: f64, to_px: f64) -> Self {
         let low = values.clone().fold(f64::INFINITY, f64::min);
         let high = values.fold(f64::NEG_INFINITY, f64::max);
@@ -27,12 +27,12 @@ impl Scale {
             return Self { low: low / room, high: high * room, is_log, from_px, to_px };
         }
         let room = if high > low { 0.06 * (high - low) } else { 0.05 * high.abs().max(1e-3) };
-        // What cannot be negative is shown on no axis that is.
+        // The axis of nonnegative values does not extend below zero.
         let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
         Self { low: (low - room).max(floor), high: high + room, is_log, from_px, to_px }
     }
 
-    /// Where a value is; beyond the ends, at the end.
+    /// Position of a value, clamped to the ends.
     pub fn px(&self, value: f64) -> f64 {
         let place = |v: f64| if self.is_log { v.ln() } else { v };
         let (low, high) = (place(self.low), place(self.high));
@@ -40,13 +40,13 @@ impl Scale {
         self.from_px + t * (self.to_px - self.from_px)
     }
 
-    /// Values that the axis names, with their text.
+    /// Tick values with their text.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let values = if self.is_log { self.log_ticks() } else { self.linear_ticks() };
         let least_step = values.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let digits = if least_step.is_finite() { (-least_step.log10() - 1e-9).ceil().max(0.0) as usize } else { 3 };
         let text = |v: f64| {
-            // On a logarithmic axis small values need digits that large ones do not.
+            // On a logarithmic axis, small values need more digits than large ones.
             let digits = if self.is_log { (-v.log10() - 1e-9).ceil().max(0.0) as usize } else { digits };
             format!("{v:.digits$}")
         };

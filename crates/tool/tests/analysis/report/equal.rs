@@ -1,16 +1,16 @@
-//! The tables against every row, one by one.
+//! Tables at equal time and equal quality, compared with a search over all rows.
 
 use super::table::{INPUTS, table};
 use afterimage_cli::sweep::equal::{Cell, Section, equal};
 use afterimage_cli::sweep::{METRICS, Metric, Row, Table};
 
-/// Whether a row may be in a section, told in the table's own terms.
+/// Whether a row belongs to a section, by the columns of the table.
 fn comparable(row: &Row, input: &str, section: &Section) -> bool {
     let same_share = |share: f64| (row.samples_share * 1000.0).round() == (share * 1000.0).round();
     row.point.input == input && row.point.method != "oracle" && section.samples_share.is_none_or(same_share)
 }
 
-/// Checks every cell of every section. Says what is wrong with the first that is.
+/// Checks every cell of every section; returns the first error.
 fn check(table: &Table, input: &str, metric: &Metric, sections: &[Section]) -> Result<usize, String> {
     let mut checked = 0;
     for section in sections {

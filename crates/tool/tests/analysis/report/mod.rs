@@ -1,4 +1,4 @@
-//! What a reader gets of a sweep: tables at equal time and equal quality, plots, the page.
+//! Reports of a sweep: tables at equal time and equal quality, plots, the page.
 
 mod equal;
 mod page;

@@ -1,4 +1,4 @@
-//! The page: alone, whole, and safe from names.
+//! The page: self-contained, complete, and safe against HTML in names.
 
 use super::table::{INPUTS, measurements, of, table};
 use afterimage_cli::report::page::page;
@@ -9,14 +9,14 @@ fn nothing(_: &str, _: &str) -> Option<Vec<u8>> {
     None
 }
 
-/// The data of an element for the script.
+/// The JSON data of an element.
 fn island(page: &str, id: &str) -> Value {
     let start = format!("<script type=\"application/json\" id=\"data-{id}\">");
     let text = page.split(&start).nth(1).unwrap().split("</script>").next().unwrap();
     serde_json::from_str(text).unwrap()
 }
 
-/// The page without its data: what a browser takes for elements.
+/// The markup of the page without its data.
 fn markup(page: &str) -> String {
     let mut rest = page;
     let mut markup = String::new();
@@ -45,7 +45,7 @@ fn it_fetches_nothing() {
 fn its_data_is_the_table() {
     for table in [table(Some(12.0)), table(None)] {
         let page = page(&table, &nothing);
-        // Read from text as well: the last digit of a number is the reader's.
+        // Parse from text as well, since the last digit of a number may differ.
         let same: serde_json::Value = serde_json::from_str(&serde_json::to_string(&table).unwrap()).unwrap();
         assert!(island(&page, "table") == same);
         for (input, key) in INPUTS.iter().flat_map(|i| ["flip", "psnr_db"].map(|k| (*i, k))) {
@@ -115,7 +115,7 @@ fn it_answers_in_sentences_that_hold() {
     println!("{text}");
     assert_eq!(text.matches("<h3>").count(), INPUTS.len());
     assert_eq!(text.matches("<li>").count(), 3 * INPUTS.len());
-    // The switch that saves most was made to: smr without its chain, 0.71 of the time.
+    // The table is built so that no-chain of smr saves most: 0.71 of the time.
     assert!(
         text.contains("<b>no-chain</b> takes the pass of smr, fovea 5, rate-far 16 from 1.276 to 0.906 ms (-29.0 %)")
     );

@@ -1,4 +1,4 @@
-//! The plot: well-formed, whole, legible, the same every time.
+//! The plot: well-formed, complete, legible, reproducible.
 
 use super::table::{INPUTS, measurements, of, table};
 use afterimage_cli::report::pareto;
@@ -64,7 +64,7 @@ fn better_and_cheaper_are_where_the_axes_say() {
 
 #[test]
 fn numbers_lie_on_no_other_number() {
-    // Foveae close to each other crowd the frontier.
+    // Similar sizes of the fovea crowd the frontier.
     let mut all = measurements();
     for (i, m) in all.iter_mut().enumerate() {
         m.pass_ms.median = 0.5 + 0.002 * i as f64;
@@ -103,7 +103,7 @@ fn labels_that_differ_at_their_ends_are_whole() {
         places.push(note.attribute("y").unwrap().parse::<f64>().unwrap());
     }
     assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
-    // Even those that have no room are cut before the border.
+    // Labels that are too long even so are cut before the border.
     for m in &mut all {
         let fovea = &m.point.options["fovea"];
         let value = format!("{fovea} {}", "a much longer value ".repeat(10));
@@ -126,7 +126,7 @@ fn png_has_marks_and_letters_and_is_the_same_again() {
     {
         assert!(count(color) > 100, "{method} has {} pixels", count(color));
     }
-    // Ink between the title's line and the frame is letters: the machine's fonts play no part in it.
+    // Dark pixels in the title area are letters, which do not depend on the machine's fonts.
     let title = image::imageops::crop_imm(&picture, 150, 16, 1000, 40).to_image();
     let dark = title.pixels().filter(|p| p.0.iter().all(|v| *v < 128)).count();
     assert!(dark > 500, "{dark} pixels of letters");

@@ -1,6 +1,6 @@
-//! A sweep that nobody ran, with the sizes and the gaps of a real one.
+//! A synthetic sweep with the sizes and gaps of a real one.
 
-use afterimage_cli::report::tally::MethodReport;
+use afterimage_cli::report::method::MethodReport;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};
 use afterimage_cli::sweep::{Measurement, Options, Point, Table};
 use afterimage_lab::clock::Quartiles;
@@ -8,7 +8,7 @@ use afterimage_lab::metric::{BandScores, Scores};
 
 pub const INPUTS: [&str; 2] = ["sponza/", "still.png"];
 
-/// Method, milliseconds of its pass, bytes that it moves a pixel, and how much of the foveation's error it leaves.
+/// Method, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that remains.
 const METHODS: [(&str, f64, u32, f64); 5] = [
     ("none", 0.21, 14, 1.0),
     ("taa", 0.55, 38, 0.8),
@@ -21,7 +21,7 @@ fn options(pairs: &[(&str, &str)]) -> Options {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 
-/// Switches: name, value, methods that have it, and what they do to milliseconds, bytes and error.
+/// Switches: name, value, methods that have it, and and their factor on milliseconds, change in bytes, and factor on the error.
 type Switch = (&'static str, &'static str, &'static [&'static str], f64, i32, f64);
 const SWITCHES: [Switch; 4] = [
     ("no-flush", "", &["wrs", "smr", "taa"], 0.93, -8, 1.3),
@@ -30,12 +30,12 @@ const SWITCHES: [Switch; 4] = [
     ("no-chain", "", &["smr"], 0.71, -12, 1.12),
 ];
 
-/// Measurements on both inputs: foveae, rates, switches, and of what is random three seeds.
+/// Measurements on both inputs: sizes of the fovea, rates, switches, and three seeds of randomized methods.
 pub fn measurements() -> Vec<Measurement> {
     let mut all = vec![];
     for (i, input) in INPUTS.iter().enumerate() {
         for (method, ms, bytes, left) in METHODS {
-            // An oracle needs a still.
+            // The oracle needs a still.
             if method == "oracle" && *input != "still.png" {
                 continue;
             }
@@ -125,7 +125,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
     }
 }
 
-/// The table; `renderer_ms` of a full-rate frame, if it is known.
+/// The table for a renderer that takes `renderer_ms` for a full-rate frame, if known.
 pub fn table(renderer_ms: Option<f64>) -> Table {
     of(&measurements(), renderer_ms)
 }

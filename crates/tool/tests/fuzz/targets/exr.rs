@@ -2,7 +2,7 @@
 
 #[path = "../entries.rs"]
 mod entries;
-#[path = "../../common/panics.rs"]
+#[path = "../../../../testing/src/panics.rs"]
 mod panics;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

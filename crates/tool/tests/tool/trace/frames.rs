@@ -1,4 +1,4 @@
-//! One eye: files, options, cameras.
+//! `afterimage trace` with one eye: files, options, cameras.
 
 use super::rig::{Traced, picture, trace};
 use afterimage_lab::trace::effects::Effect;
@@ -89,7 +89,7 @@ fn every_option_does_something() {
         &["--tonemap", "reinhard"],
         &["--exposure", "-1.5"],
     ] {
-        // The last of an option given twice counts, if it may be.
+        // If an option may be repeated, the last one counts.
         let args: Vec<&str> = more.to_vec();
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
@@ -117,7 +117,7 @@ fn a_written_camera_file_is_a_camera() {
     let file = first.path("cameras.json");
     let again = Traced::new("builtin:cubes", &["--camera", file.to_str().unwrap()]);
     let (a, b) = (picture(&first.path("color/000000.exr")), picture(&again.path("color/000000.exr")));
-    // The field of view goes through the file as decimal degrees: some samples fall on other cubes.
+    // The file stores the field of view in decimal degrees, so some samples hit other cubes.
     let alike = a.pixels().iter().zip(b.pixels()).filter(|(a, b)| (0..3).all(|k| (a[k] - b[k]).abs() < 0.02)).count();
     assert!(alike > 24 * 16 * 95 / 100, "{alike}");
 }

@@ -1,4 +1,4 @@
-//! `afterimage trace` as other programs use it: what it writes, and how it refuses.
+//! `afterimage trace` as a process: files and errors.
 
 mod frames;
 mod refusals;

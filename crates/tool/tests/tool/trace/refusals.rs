@@ -1,4 +1,4 @@
-//! Values and scene files that cannot be.
+//! Invalid values and scene files.
 
 use super::rig::refuses;
 use std::fs;

@@ -1,4 +1,4 @@
-//! The tool as a process, and what a trace of it wrote.
+//! Runs the tool as a process and reads a trace's files.
 
 use afterimage_lab::source::{FrameSource, ReadLimits, StillSource};
 use serde_json::Value;
@@ -10,7 +10,7 @@ pub fn trace(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_afterimage"))
         .arg("trace")
         .args(args)
-        // Silences a line of Mesa's about windows.
+        // Silences a message of Mesa about windows.
         .env("NODEVICE_SELECT", "1")
         .current_dir(afterimage_testing::workspace())
         .output()
@@ -19,7 +19,7 @@ pub fn trace(args: &[&str]) -> Output {
 
 pub const SMALL: [&str; 6] = ["--size", "24x16", "--spp", "2", "--backend", "cpu"];
 
-/// Traces into a folder of its own.
+/// Traces into a fresh folder.
 pub struct Traced {
     folder: tempfile::TempDir,
     pub stdout: String,
@@ -57,7 +57,7 @@ impl Traced {
     }
 }
 
-/// One clear line that holds `words`, exit code 2, no panic.
+/// Checks for an error in one line that contains `words`, exit code 2, and no panic.
 #[track_caller]
 pub fn refuses(scene: &str, more: &[&str], words: &[&str]) {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Two eyes.
+//! `afterimage trace --stereo`.
 
 use super::rig::{Traced, picture, refuses};
 use afterimage_lab::source::{FrameSource, ReadLimits, SequenceSource};
@@ -31,7 +31,7 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     }
     assert!(t.stdout.contains("2 frames for each of two eyes of 24x16"), "{}", t.stdout);
 
-    // Eyes are where they should be. In the file's axes x is the scene's, and this camera's right is -x.
+    // Positions of the eyes. The file's x axis is the scene's, and this camera's right is -x.
     let eye_x = |name: &str| {
         let cameras: Value = serde_json::from_slice(&t.bytes(name)).unwrap();
         cameras["frames"][1]["camera_to_world"][0][3].as_f64().unwrap()
@@ -39,7 +39,7 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     let [head, left, right] = ["cameras.json", "left/cameras.json", "right/color/cameras.json"].map(eye_x);
     assert!((left - right - 0.064).abs() < 1e-9 && (left + right - 2.0 * head).abs() < 1e-9, "{left} {head} {right}");
 
-    // Gazes: apart by ipd f / z, f being half the width over the tangent of half the field of view.
+    // The gazes differ by ipd f / z, where f is half the width divided by the tangent of half the field of view.
     let report = t.report();
     let focal_px = 12.0 / (report["hfov_deg"].as_f64().unwrap().to_radians() / 2.0).tan();
     let [l, r] = ["left/gaze.csv", "right/gaze.csv"].map(|name| gaze(&t.path(name)));
@@ -50,7 +50,7 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     let mono = Traced::new("builtin:cornell", &[&FOVEATED[..], &["--aov", "depth"]].concat());
     let mut source = SequenceSource::open(&mono.path("color"), &ReadLimits::default()).unwrap();
     let depth = source.frame(0).unwrap().depth.unwrap().at(12, 12);
-    // Three decimals of a pixel.
+    // The file has three decimals.
     assert!((z / f64::from(depth) - 1.0).abs() < 0.002 / apart, "{z} m of {depth} m");
 
     let stereo = &report["stereo"];
@@ -64,7 +64,7 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     assert!(mono.report()["stereo"].is_null());
     assert_eq!(of(0, "uniform"), 2 * mono.report()["samples"]["uniform"].as_u64().unwrap());
 
-    // An eye's folder and its scanpath are what `run` reads.
+    // `run` reads an eye's folder and its scanpath.
     let out = t.path("run");
     let [input, path] = ["right/color", "right/scanpath.csv"].map(|name| t.path(name).to_str().unwrap().to_owned());
     let args = ["run", &input, "--gaze", &path, "--frames", "2", "--method", "none", "--backend", "cpu", "--out"];
@@ -84,7 +84,7 @@ fn each_eye_is_sampled_around_its_own_gaze() {
     let t = at("6,8", &["--stereo", "0.2"]);
     let report = t.report();
     let of = |eye: usize| report["stereo"]["eyes"][eye]["samples"]["regions"].clone();
-    // Near the edge, where fewer samples lie around the gaze.
+    // Gaze near the border, where fewer samples surround it.
     assert_ne!(of(0), of(1));
     for (eye, name) in ["left", "right"].iter().enumerate() {
         let [x, y] = gaze(&t.path(&format!("{name}/gaze.csv")))[0];

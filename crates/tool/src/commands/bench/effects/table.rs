@@ -1,4 +1,4 @@
-//! The prices as Markdown.
+//! Costs of effects as Markdown.
 
 use super::{Price, Report, SceneReport};
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use std::path::Path;
 const BEGIN: &str = "<!-- what `afterimage bench effects` wrote -->";
 const END: &str = "<!-- end of what it wrote -->";
 
-/// Puts `text` between the markers of a file, or into a new one.
+/// Replaces the text between the markers of a file, or writes a new file.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let before = std::fs::read_to_string(path).unwrap_or_default();
     let whole = match (before.find(BEGIN), before.find(END)) {
@@ -20,7 +20,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
         }
         _ if before.is_empty() => format!("{text}\n"),
         _ => {
-            let text = format!("{}: has no markers to write between; expected '{BEGIN}' and '{END}'", path.display());
+            let text = format!("{}: has no markers for the tables; add '{BEGIN}' and '{END}'", path.display());
             return Err(Failure::Input(text));
         }
     };
@@ -55,18 +55,18 @@ fn cold(report: &Report) -> &'static str {
     if report.compiled_cold { "cold: the driver's cache is switched off" } else { "as the driver's cache has them" }
 }
 
-/// How far `again` is from 1 at most, for its interval: what is noise.
+/// Noise: largest distance from 1 of the interval of `again`.
 fn noise(prices: &[Price]) -> f64 {
     let again = prices.iter().find(|p| p.what == "again").and_then(|p| p.interval);
     again.map_or(0.0, |[low, high]| (1.0 - low).max(high - 1.0).max(0.0))
 }
 
-/// Whether the effect costs more than noise for certain.
+/// Whether the interval of the cost is above the noise.
 fn is_beyond_noise(price: &Price, noise: f64) -> bool {
     price.interval.is_some_and(|[low, _]| low > 1.0 + noise)
 }
 
-/// Effects down, scenes across.
+/// Summary with one row per effect and one column per scene.
 fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
     for (b, backend) in report.backends.iter().enumerate() {
         writeln!(out, "More time a frame, {}, in percent; bold beyond noise:\n", backend.kind)?;
@@ -79,8 +79,8 @@ fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
                 let Some(price) = prices.iter().find(|p| p.what == what) else { return "needed".to_owned() };
                 let Some(ratio) = price.ratio else { return "-".to_owned() };
                 let percent = format!("{:+.1}", 100.0 * (ratio.median - 1.0));
-                let sure = what != "again" && is_beyond_noise(price, noise(prices));
-                if sure { format!("**{percent}**") } else { percent }
+                let is_bold = what != "again" && is_beyond_noise(price, noise(prices));
+                if is_bold { format!("**{percent}**") } else { percent }
             };
             report.scenes.iter().map(cell).collect()
         };

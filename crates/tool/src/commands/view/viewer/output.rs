@@ -1,24 +1,31 @@
-//! What a viewer puts out: the window, figures, files.
+//! Output of the viewer: window, statistics, files.
 
-use super::super::on_device::{OnDevice, scene};
 use super::super::pictures;
 use super::super::quality::Viewing;
+use super::super::resources::{DeviceResources, scene};
 use super::super::state::Side;
 use super::super::times::Pass;
 use super::Viewer;
 use crate::failure::Failure;
 
 impl Viewer {
-    /// Quality of what is shown, now and then.
+    /// Takes finished measurements of quality, and starts new ones at the panel's interval.
     pub(super) fn measure(&mut self) {
-        let on = &mut self.on;
+        let resources = &mut self.resources;
         for &side in self.state.shown_sides() {
-            if let Some(psnr_db) = on.quality.take(&on.device.gpu, side) {
-                self.figures.quality(side, psnr_db);
+            if let Some(psnr_db) = resources.quality.take(&resources.device.gpu, side) {
+                self.stats.quality(side, psnr_db);
             }
-            if self.figures.is_due() && self.state.has_panel {
-                let viewing = Viewing { geometry: on.lanes.geometry(), gaze_px: self.gaze_px, gain: self.setup.gain() };
-                on.quality.measure(&on.device.gpu, side, on.lanes.full(), on.lanes.picture(side), &viewing);
+            if self.stats.is_due() && self.state.has_panel {
+                let viewing =
+                    Viewing { geometry: resources.pipeline.geometry(), gaze_px: self.gaze_px, gain: self.setup.gain() };
+                resources.quality.measure(
+                    &resources.device.gpu,
+                    side,
+                    resources.pipeline.full(),
+                    resources.pipeline.picture(side),
+                    &viewing,
+                );
             }
         }
     }
@@ -26,53 +33,54 @@ impl Viewer {
     /// Draws panel and window.
     pub(super) fn draw(&mut self, target: &wgpu::TextureView) -> Result<(), Failure> {
         let panel_scale = self.panel_scale();
-        if self.state.has_panel && (self.is_stale || self.figures.is_due()) {
-            let [w, h] = self.on.lanes.geometry().size_px();
+        if self.state.has_panel && (self.is_stale || self.stats.is_due()) {
+            let [w, h] = self.resources.pipeline.geometry().size_px();
             let lines = vec![
                 shortened(self.setup.info.name.rsplit(['/', '\\']).next().unwrap_or_default()),
-                format!("{w}x{h}, {:.2} of the input, {:.1} fps", self.scale, self.figures.fps()),
-                shortened(&self.on.device.gpu.info.name),
+                format!("{w}x{h}, {:.2} of the input, {:.1} fps", self.scale, self.stats.fps()),
+                shortened(&self.resources.device.gpu.info.name),
             ];
-            self.figures.draw(&self.state, lines);
-            self.on.screen.set_panel(&self.on.device.gpu, &self.figures.panel);
+            self.stats.draw(&self.state, lines);
+            self.resources.screen.set_panel(&self.resources.device.gpu, &self.stats.panel);
         }
-        let layout = self.on.layout();
-        let OnDevice { device, surface, lanes, times, screen, .. } = &mut self.on;
-        let scene = scene(lanes, &layout, &self.state, self.gaze_px, self.setup.gain(), panel_scale);
+        let layout = self.resources.layout();
+        let DeviceResources { device, surface, pipeline, times, screen, .. } = &mut self.resources;
+        let scene = scene(pipeline, &layout, &self.state, self.gaze_px, self.setup.gain(), panel_scale);
         times.pass(&device.gpu, Pass::Screen, |encoder, timestamps| {
             screen.record(&device.gpu, encoder, (target, surface.size()), &scene, timestamps);
             Ok(())
         })
     }
 
-    /// The picture, and the record of how it came about.
+    /// Saves the picture, and the gaze record that led to it.
     pub(super) fn write_picture(&self) -> Result<(), Failure> {
-        let (on, state) = (&self.on, &self.state);
-        let sides = Side::BOTH.map(|side| on.lanes.picture(side));
+        let (resources, state) = (&self.resources, &self.state);
+        let sides = Side::BOTH.map(|side| resources.pipeline.picture(side));
         let divider = state.is_split.then_some(state.divider);
-        let picture = pictures::picture(&on.device.gpu, sides, divider, self.setup.args.exposure);
+        let picture = pictures::picture(&resources.device.gpu, sides, divider, self.setup.args.exposure);
         pictures::write(&picture, self.setup.args.screenshot.as_deref())?;
         self.write_record()
     }
 
     pub(super) fn write_window(&self) -> Result<(), Failure> {
-        let (on, layout) = (&self.on, self.on.layout());
-        let scene = scene(&on.lanes, &layout, &self.state, self.gaze_px, self.setup.gain(), self.panel_scale());
-        let picture = pictures::window(&on.device.gpu, on.surface.size(), &self.figures.panel, &scene);
+        let (resources, layout) = (&self.resources, self.resources.layout());
+        let scene =
+            scene(&resources.pipeline, &layout, &self.state, self.gaze_px, self.setup.gain(), self.panel_scale());
+        let picture = pictures::window(&resources.device.gpu, resources.surface.size(), &self.stats.panel, &scene);
         pictures::write(&picture, None)
     }
 
-    /// Where the eye looked since the last fresh start, if that is asked for and it looked anywhere.
+    /// Saves the gaze record, if --record is given and there are frames.
     fn write_record(&self) -> Result<(), Failure> {
         match &self.setup.args.record {
             Some(path) if self.record.len() > 0 => {
-                self.record.write(path, self.on.lanes.geometry().size_px(), f64::from(self.setup.fps))
+                self.record.write(path, self.resources.pipeline.geometry().size_px(), f64::from(self.setup.fps))
             }
             _ => Ok(()),
         }
     }
 
-    /// Writes what was asked for at the end.
+    /// Saves the files due at the end.
     pub fn finish(&self) -> Result<(), Failure> {
         match (self.setup.args.frames, &self.setup.args.screenshot) {
             (Some(frames), Some(_)) if frames == self.record.len() as u64 => self.write_picture(),
@@ -81,9 +89,9 @@ impl Viewer {
     }
 }
 
-/// The end of a text that is too long for the panel.
+/// The last characters of a text that is too long for the panel.
 fn shortened(text: &str) -> String {
-    const MOST: usize = 40;
+    const MAX_CHARS: usize = 40;
     let length = text.chars().count();
-    if length <= MOST { text.into() } else { text.chars().skip(length - MOST).collect() }
+    if length <= MAX_CHARS { text.into() } else { text.chars().skip(length - MAX_CHARS).collect() }
 }

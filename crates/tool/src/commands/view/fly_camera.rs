@@ -1,25 +1,26 @@
-//! A camera that is steered: a walk by W, A, S, D, up and down by E and Q, a turn by dragging with the right button.
+//! Fly camera: W, A, S, D move, E and Q move up and down, dragging with the right button turns.
 
 use glam::{DMat4, DQuat, DVec3};
 use winit::keyboard::KeyCode;
 
-/// Degrees of a turn for each pixel of a drag.
+/// Rotation per pixel of a drag, degrees.
 const TURN_DEG_PER_PX: f64 = 0.2;
-/// Longest step in seconds: a window that stood still is no reason to jump.
-const LONGEST_STEP_S: f64 = 0.1;
+/// Longest time step in seconds, so that the camera does not jump after a pause.
+const MAX_STEP_S: f64 = 0.1;
 /// Factor on the speed while Shift is held.
-const HASTE: f64 = 4.0;
+const FAST_FACTOR: f64 = 4.0;
 
-/// What is held down, and what was dragged since the last step.
+/// Keys held down, and the mouse drag since the last step.
 #[derive(Clone, Debug, Default)]
-pub struct Flight {
+pub struct FlyCamera {
     held: Vec<KeyCode>,
-    pub is_hasty: bool,
+    /// Whether Shift is held.
+    pub is_fast: bool,
     dragged_px: [f64; 2],
 }
 
-impl Flight {
-    /// Takes a key; whether it is one that steers.
+impl FlyCamera {
+    /// Handles a key; returns whether it is one that moves the camera.
     pub fn key(&mut self, key: KeyCode, is_down: bool) -> bool {
         if direction(key).is_none() {
             return false;
@@ -31,25 +32,25 @@ impl Flight {
         true
     }
 
-    /// Lets go of everything.
+    /// Releases all keys.
     pub fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes a drag.
+    /// Adds a mouse drag.
     pub fn drag(&mut self, by_px: [f64; 2]) {
         self.dragged_px = [self.dragged_px[0] + by_px[0], self.dragged_px[1] + by_px[1]];
     }
 
-    /// The camera (x right, y up, looking along -z) after `seconds`, at `speed_m_s`.
+    /// The camera pose (x right, y up, looking along -z) after `seconds` at `speed_m_s`.
     pub fn step(&mut self, world_from_camera: DMat4, seconds: f64, speed_m_s: f64) -> DMat4 {
         let [yaw, pitch] = std::mem::take(&mut self.dragged_px).map(|px| (-px * TURN_DEG_PER_PX).to_radians());
         let (eye, mut basis) = (world_from_camera.w_axis.truncate(), DQuat::from_mat4(&world_from_camera));
-        // To the side around the world's upright axis, so that the horizon stays level.
+        // Yaw around the world's vertical axis, so that the horizon stays level.
         basis = (DQuat::from_rotation_y(yaw) * basis * DQuat::from_rotation_x(pitch)).normalize();
         let along: DVec3 = self.held.iter().filter_map(|&key| direction(key)).sum();
-        let haste = if self.is_hasty { HASTE } else { 1.0 };
-        let stride = speed_m_s * haste * seconds.clamp(0.0, LONGEST_STEP_S);
+        let factor = if self.is_fast { FAST_FACTOR } else { 1.0 };
+        let stride = speed_m_s * factor * seconds.clamp(0.0, MAX_STEP_S);
         DMat4::from_rotation_translation(basis, eye + basis * (along.normalize_or_zero() * stride))
     }
 }
@@ -72,26 +73,26 @@ mod tests {
 
     #[test]
     fn keys_walk_and_letting_go_stops() {
-        let mut flight = Flight::default();
-        assert!(flight.key(KeyCode::KeyW, true) && flight.key(KeyCode::KeyW, true) && !flight.key(KeyCode::KeyV, true));
-        let there = flight.step(DMat4::IDENTITY, 0.05, 2.0);
+        let mut camera = FlyCamera::default();
+        assert!(camera.key(KeyCode::KeyW, true) && camera.key(KeyCode::KeyW, true) && !camera.key(KeyCode::KeyV, true));
+        let there = camera.step(DMat4::IDENTITY, 0.05, 2.0);
         assert!(
             (there.w_axis.truncate() - DVec3::new(0.0, 0.0, -0.1)).length() < 1e-12,
-            "held once, however often told"
+            "a repeated key press counts once"
         );
-        assert!(flight.step(DMat4::IDENTITY, 60.0, 2.0).w_axis.z > -0.201, "a pause is no jump");
-        flight.key(KeyCode::KeyW, false);
-        assert_eq!(flight.step(there, 0.05, 2.0).w_axis, there.w_axis);
+        assert!(camera.step(DMat4::IDENTITY, 60.0, 2.0).w_axis.z > -0.201, "a pause is no jump");
+        camera.key(KeyCode::KeyW, false);
+        assert_eq!(camera.step(there, 0.05, 2.0).w_axis, there.w_axis);
     }
 
     #[test]
     fn a_drag_to_the_right_looks_right_once() {
-        let mut flight = Flight::default();
-        flight.drag([450.0, 0.0]);
-        let turned = flight.step(DMat4::IDENTITY, 0.0, 1.0);
+        let mut camera = FlyCamera::default();
+        camera.drag([450.0, 0.0]);
+        let turned = camera.step(DMat4::IDENTITY, 0.0, 1.0);
         assert!((turned.transform_vector3(DVec3::NEG_Z) - DVec3::X).length() < 1e-12);
-        assert!(flight.step(turned, 0.0, 1.0).abs_diff_eq(turned, 1e-12));
-        flight.drag([0.0, -100.0]);
-        assert!(flight.step(turned, 0.0, 1.0).transform_vector3(DVec3::NEG_Z).y > 0.3, "and up is up");
+        assert!(camera.step(turned, 0.0, 1.0).abs_diff_eq(turned, 1e-12));
+        camera.drag([0.0, -100.0]);
+        assert!(camera.step(turned, 0.0, 1.0).transform_vector3(DVec3::NEG_Z).y > 0.3, "and up is up");
     }
 }

@@ -1,4 +1,4 @@
-//! What a method came to over a clip: scores, times, counts.
+//! Scores, times and counts of a method over a clip.
 
 use afterimage::Image;
 use afterimage_lab::clock::Quartiles;
@@ -7,35 +7,35 @@ use afterimage_lab::metric::{FrameErrors, Reference, Scorer, Scores, psnr_db};
 use afterimage_lab::pipeline::{Shown, Step};
 use serde::{Deserialize, Serialize};
 
-/// Figures of a method, as `report.json` has them.
+/// Results of a method, as in `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MethodReport {
-    /// How far the method gets from the foveated frame to what any reuse could show; where both were run.
+    /// Gain over the foveated frame as a fraction of the oracle's gain, if `none` and `oracle` were run.
     pub share_of_oracle: Option<Share>,
-    /// Wall time of the pass a frame.
+    /// Wall time of the pass per frame.
     pub ms: Option<Quartiles>,
-    /// Mean CPU time of the pass a frame.
+    /// Mean CPU time of the pass per frame.
     pub cpu_ms: Option<f64>,
-    /// How good the frames are.
+    /// Quality of the frames.
     #[serde(flatten)]
     pub scores: Scores,
     /// PSNR of the last frame alone.
     pub psnr_last_frame_db: Option<f64>,
-    /// Pixels that came in NaN or infinite.
+    /// Input pixels that were NaN or infinite.
     pub nonfinite_in: u64,
-    /// Pixels that were shown NaN or infinite.
+    /// Output pixels that were NaN or infinite.
     pub nonfinite_out: u64,
-    /// Share of pixels that lost their history to occlusion, the border or bad vectors, after the first frame.
+    /// Share of pixels whose history was rejected (disocclusion, frame border or invalid motion), after the first frame.
     pub flushed: Option<f64>,
-    /// Share of pixels with a history whose sample was replaced.
+    /// Share of replaced samples among pixels with valid history.
     pub replaced: Option<f64>,
-    /// Bytes that the pass reads and writes a pixel and frame, half-float inputs assumed.
+    /// Bytes per pixel and frame that the pass reads and writes, for half-float inputs.
     pub bytes_per_pixel: Option<u32>,
-    /// Bytes kept between frames a pixel.
+    /// Bytes per pixel that are kept between frames.
     pub persistent_bytes_per_pixel: f64,
 }
 
-/// A part of the way from `none` (0) to `oracle` (1); below 0 is worse than doing nothing.
+/// Position between `none` (0) and `oracle` (1); below 0 is worse than the foveated frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// In whole-image PSNR.
@@ -44,9 +44,9 @@ pub struct Share {
     pub ssim: Option<f64>,
 }
 
-/// Sums over the frames of a clip.
+/// Accumulates scores, times and counts of a method over the frames of a clip.
 #[derive(Default)]
-pub struct Tally {
+pub struct MethodAccumulator {
     scorer: Scorer,
     wall_ms: Vec<f64>,
     cpu_ms: Vec<Option<f64>>,
@@ -61,8 +61,8 @@ pub struct Tally {
     traffic: Option<u32>,
 }
 
-impl Tally {
-    /// Takes a frame of the method: what it showed, and the same sRGB-encoded.
+impl MethodAccumulator {
+    /// Adds a frame: the method's output, and its sRGB-encoded image.
     pub fn push(
         &mut self,
         frame: &SourceFrame,
@@ -87,17 +87,17 @@ impl Tally {
         }
     }
 
-    /// The scores so far.
+    /// Scores of the frames so far.
     pub fn scores(&self) -> Scores {
         self.scorer.scores()
     }
 
-    /// What the pass cost in each frame, [`Shown::cost_ms`].
+    /// Cost of the pass in each frame, [`Shown::cost_ms`].
     pub fn cost_ms(&self) -> &[f64] {
         &self.cost_ms
     }
 
-    /// A line of `frames.csv`.
+    /// A row of `frames.csv` for the last frame.
     pub fn row(&self, index: usize, name: &str) -> String {
         let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
         let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
@@ -106,7 +106,7 @@ impl Tally {
         format!("{index},{name},{psnr},{retained},{ms:.3},{fovea},{mid},{periphery}")
     }
 
-    /// The figures, of a method that keeps so much.
+    /// The results of the method.
     pub fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
         let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();

@@ -1,8 +1,8 @@
-//! Everything that is on one device, and gone with it.
+//! All GPU resources of the viewer. A lost device takes them with it, so they are created and replaced together.
 
 use super::device::Device;
-use super::lanes::Lanes;
 use super::layout::Layout;
+use super::pipeline::ViewPipeline;
 use super::quality::Quality;
 use super::screen::{Scene, Screen};
 use super::setup::Setup;
@@ -13,21 +13,21 @@ use crate::failure::Failure;
 use std::sync::Arc;
 use winit::window::Window;
 
-/// A window's device and what is made of it.
-pub struct OnDevice {
+/// The window's device, and everything created on it.
+pub struct DeviceResources {
     pub device: Device,
     pub surface: Surface,
-    pub lanes: Lanes,
+    pub pipeline: ViewPipeline,
     pub times: PassTimes,
     pub quality: Quality,
     pub screen: Screen,
-    /// A frame of the input is there.
+    /// An input frame has been uploaded.
     pub has_frame: bool,
-    /// It has not been shown yet.
+    /// The uploaded frame has not been shown yet.
     pub is_new: bool,
 }
 
-impl OnDevice {
+impl DeviceResources {
     pub fn open(window: &Arc<Window>, setup: &Setup, state: &State, scale: f32) -> Result<Self, Failure> {
         let device = Device::open(window)?;
         let size = window.inner_size();
@@ -35,7 +35,7 @@ impl OnDevice {
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
         Ok(Self {
-            lanes: Lanes::new(gpu, geometry, state, &|shows| setup.settings(state, shows))?,
+            pipeline: ViewPipeline::new(gpu, geometry, state, &|shows| setup.settings(state, shows))?,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),
             screen: Screen::new(gpu, surface.format()),
@@ -46,27 +46,27 @@ impl OnDevice {
         })
     }
 
-    /// Where the picture lies in the window.
+    /// Position of the picture in the window.
     pub fn layout(&self) -> Layout {
-        Layout::new(self.lanes.geometry().size_px(), self.surface.size())
+        Layout::new(self.pipeline.geometry().size_px(), self.surface.size())
     }
 }
 
-/// What the lanes show, as the state has it.
+/// Contents of the window: the output of both sides, and the overlays that the state turns on.
 pub fn scene<'a>(
-    lanes: &'a Lanes,
+    pipeline: &'a ViewPipeline,
     layout: &'a Layout,
     state: &State,
     gaze_px: [f32; 2],
     gain: f32,
     panel_scale: u32,
 ) -> Scene<'a> {
-    let [left, right] = Side::BOTH.map(|side| lanes.on_screen(side, state));
-    // Colors of decisions stand for themselves.
-    let gain_of = |is_decisions| if is_decisions { 1.0 } else { gain };
+    let [left, right] = Side::BOTH.map(|side| pipeline.on_screen(side, state));
+    // Exposure does not apply to the false colors of debug views.
+    let gain_of = |is_debug_view| if is_debug_view { 1.0 } else { gain };
     Scene {
         layout,
-        geometry: lanes.geometry(),
+        geometry: pipeline.geometry(),
         pictures: [left.0, right.0],
         gain: [gain_of(left.1), gain_of(right.1)],
         divider: state.is_split.then_some(state.divider),

@@ -1,4 +1,4 @@
-//! From a full-rate frame on the device to what each side shows: foveation, then the methods. Nothing is read back.
+//! GPU passes of the viewer: foveate the full-rate frame, then run the method of each side. Nothing is read back.
 
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
@@ -11,41 +11,41 @@ use afterimage_lab::frame::SourceFrame;
 use std::sync::Arc;
 use wgpu::{Texture, TextureFormat, TextureUsages};
 
-/// As of `run`, whose pictures are to be the same.
+/// Same format as in `run`, so that both give the same pictures.
 const COLOR: TextureFormat = TextureFormat::Rgba32Float;
 
-const WRITTEN: TextureUsages =
+const STORAGE: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::STORAGE_BINDING).union(TextureUsages::COPY_SRC);
 
-/// A side: its method and what that shows.
-struct Lane {
+/// The method of one side of the window, and its output.
+struct MethodRun {
     shows: Shows,
     /// `None`: the full-rate frame is shown.
     post: Option<Afterimage>,
     output: Texture,
-    /// A picture of its decisions.
-    decisions: Texture,
+    /// Debug view of the method's decisions.
+    debug_view: Texture,
 }
 
-/// Frames of one size on a device.
-pub struct Lanes {
+/// Textures and passes for frames of one size.
+pub struct ViewPipeline {
     gpu: Arc<Headless>,
     geometry: ViewGeometry,
     full: Texture,
     depth: Texture,
     motion: Texture,
-    /// For a frame that is shown again.
+    /// All zero, for a frame that is shown again.
     no_motion: Texture,
     lod: Texture,
     foveated: Texture,
     foveation: GpuSimulator,
-    lanes: Vec<Lane>,
-    /// What is known of the uploaded frame.
+    runs: Vec<MethodRun>,
+    // Properties of the uploaded frame.
     has_depth: bool,
     has_motion: bool,
     previous_from_current: Option<[[f32; 4]; 4]>,
     cut: bool,
-    /// Frames since the history started afresh.
+    /// Frames since the last history reset.
     index: u64,
 }
 
@@ -53,8 +53,8 @@ fn desc(geometry: &ViewGeometry, settings: Settings) -> GpuDesc {
     GpuDesc { context: ContextDesc::new(geometry.size_px()), output_format: COLOR, settings }
 }
 
-impl Lanes {
-    /// For frames of `geometry`'s size. `settings` gives those of each method, its foveation included.
+impl ViewPipeline {
+    /// Creates textures of `geometry`'s size. `settings` returns a method's settings, foveation included.
     pub fn new(
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
@@ -63,15 +63,15 @@ impl Lanes {
     ) -> Result<Self, Failure> {
         let texture = |format, usage| gpu.texture(geometry.size_px(), 1, format, usage);
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
-        let mut made = Self {
+        let mut pipeline = Self {
             full: texture(COLOR, read),
             depth: texture(TextureFormat::R32Float, read),
             motion: texture(TextureFormat::Rg32Float, read),
             no_motion: texture(TextureFormat::Rg32Float, read),
-            lod: texture(TextureFormat::R32Float, WRITTEN),
-            foveated: texture(COLOR, WRITTEN),
+            lod: texture(TextureFormat::R32Float, STORAGE),
+            foveated: texture(COLOR, STORAGE),
             foveation: GpuSimulator::new(&gpu.device, &desc(&geometry, settings(Shows::None)))?,
-            lanes: vec![],
+            runs: vec![],
             has_depth: false,
             has_motion: false,
             previous_from_current: None,
@@ -80,11 +80,11 @@ impl Lanes {
             geometry,
             gpu: gpu.clone(),
         };
-        made.adapt(state, settings)?;
-        Ok(made)
+        pipeline.adapt(state, settings)?;
+        Ok(pipeline)
     }
 
-    /// Follows the state: methods of the sides, foveation. All history starts afresh.
+    /// Applies changes of the state to methods and foveation. Resets all history.
     pub fn adapt(&mut self, state: &State, settings: &dyn Fn(Shows) -> Settings) -> Result<(), Failure> {
         let device = &self.gpu.device;
         let foveation = settings(Shows::None).foveation;
@@ -92,23 +92,23 @@ impl Lanes {
             self.foveation = GpuSimulator::new(device, &desc(&self.geometry, settings(Shows::None)))?;
         }
         let sides = state.shown_sides();
-        self.lanes.truncate(sides.len());
+        self.runs.truncate(sides.len());
         for (i, &side) in sides.iter().enumerate() {
             let shows = state.sides[side as usize];
-            match self.lanes.get_mut(i) {
-                Some(lane) if lane.shows == shows => {
-                    if let Some(post) = &mut lane.post {
+            match self.runs.get_mut(i) {
+                Some(run) if run.shows == shows => {
+                    if let Some(post) = &mut run.post {
                         post.set_settings(device, settings(shows))?;
                     }
                 }
                 Some(_) => {
                     let post = self.post(shows, settings)?;
-                    (self.lanes[i].post, self.lanes[i].shows) = (post, shows);
+                    (self.runs[i].post, self.runs[i].shows) = (post, shows);
                 }
                 None => {
-                    let texture = || self.gpu.texture(self.geometry.size_px(), 1, COLOR, WRITTEN);
+                    let texture = || self.gpu.texture(self.geometry.size_px(), 1, COLOR, STORAGE);
                     let post = self.post(shows, settings)?;
-                    self.lanes.push(Lane { shows, post, output: texture(), decisions: texture() });
+                    self.runs.push(MethodRun { shows, post, output: texture(), debug_view: texture() });
                 }
             }
         }
@@ -121,23 +121,23 @@ impl Lanes {
         Ok(shows.method().map(make).transpose()?)
     }
 
-    /// Pixels and angles of its frames.
+    /// Size in pixels and field of view of the frames.
     pub fn geometry(&self) -> &ViewGeometry {
         &self.geometry
     }
 
-    /// Frames since the history started afresh.
+    /// Frames since the last history reset.
     pub fn index(&self) -> u64 {
         self.index
     }
 
-    /// Forgets all history.
+    /// Resets the history of all methods.
     pub fn forget(&mut self) {
         self.index = 0;
-        self.lanes.iter_mut().filter_map(|lane| lane.post.as_mut()).for_each(Afterimage::forget);
+        self.runs.iter_mut().filter_map(|run| run.post.as_mut()).for_each(Afterimage::forget);
     }
 
-    /// Puts a full-rate frame onto the device.
+    /// Uploads a full-rate frame.
     pub fn upload(&mut self, frame: &SourceFrame) {
         self.gpu.write_rgb(&self.full, 0, &frame.color);
         if let Some(depth) = &frame.depth {
@@ -152,7 +152,8 @@ impl Lanes {
         self.cut = frame.cut;
     }
 
-    /// Shows the uploaded frame to an eye that looks at `gaze_px`. `again`: it is the frame of the last call, and nothing has moved.
+    /// Foveates the uploaded frame around `gaze_px` and runs the methods. `again`: the frame is that of the last call, so motion is
+    /// zero.
     pub fn show(
         &mut self,
         gaze_px: [f32; 2],
@@ -165,30 +166,31 @@ impl Lanes {
             gaze: Gaze::At { px: gaze_px },
             previous_from_current: self.previous_from_current.filter(|_| !again),
         }];
-        // Blocks are decided by their centres, which the methods do not know.
-        let told = self.foveation.desc().settings.foveation.filter == Filter::Block;
+        // `Filter::Block` takes each block's level of detail at the block's center. The methods cannot derive that from the gaze alone, so
+        // they read it from the texture.
+        let lod_given = self.foveation.desc().settings.foveation.filter == Filter::Block;
         let (gpu, device) = (&self.gpu, &self.gpu.device);
         times.pass(gpu, Pass::Foveation, |encoder, timestamps| {
-            let lod = told.then_some(&self.lod);
+            let lod = lod_given.then_some(&self.lod);
             let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, &views) };
             self.foveation.record(device, encoder, &frame)
         })?;
-        // A cut is one when its frame comes, not for as long as it stays.
+        // A cut resets the history once, not again each time its frame is shown.
         let cut = std::mem::take(&mut self.cut);
-        let fresh = cut || self.index == 0;
+        let reset = cut || self.index == 0;
         let motion = if again { &self.no_motion } else { &self.motion };
-        for (lane, pass) in self.lanes.iter_mut().zip([Pass::Left, Pass::Right]) {
-            let Some(post) = &mut lane.post else { continue };
+        for (run, pass) in self.runs.iter_mut().zip([Pass::Left, Pass::Right]) {
+            let Some(post) = &mut run.post else { continue };
             let frame = Frame {
                 depth: self.has_depth.then_some(&self.depth),
                 motion: self.has_motion.then_some(motion),
-                lod: told.then_some(&self.lod),
-                reset: if fresh { Reset::All } else { Reset::None },
-                ..Frame::new(&self.foveated, &lane.output, &views, self.index)
+                lod: lod_given.then_some(&self.lod),
+                reset: if reset { Reset::All } else { Reset::None },
+                ..Frame::new(&self.foveated, &run.output, &views, self.index)
             };
             if let Some(debug) = state.debug {
                 let mut encoder = device.create_command_encoder(&Default::default());
-                let frame = Frame { output: &lane.decisions, ..frame };
+                let frame = Frame { output: &run.debug_view, ..frame };
                 post.record_view(device, &mut encoder, &frame, debug.view())?;
                 gpu.queue.submit([encoder.finish()]);
             }
@@ -205,17 +207,17 @@ impl Lanes {
         &self.full
     }
 
-    /// The picture of a side, without marks; of a side that is not shown that of the left one.
+    /// A side's output, without overlays; the left side's if `side` is not shown.
     pub fn picture(&self, side: Side) -> &Texture {
-        let lane = self.lanes.get(side as usize).unwrap_or(&self.lanes[0]);
-        if lane.shows == Shows::Reference { &self.full } else { &lane.output }
+        let run = self.runs.get(side as usize).unwrap_or(&self.runs[0]);
+        if run.shows == Shows::Reference { &self.full } else { &run.output }
     }
 
-    /// What is on screen of a side, and whether it is a picture of decisions.
+    /// The texture that the window shows for a side, and whether it is a debug view.
     pub fn on_screen(&self, side: Side, state: &State) -> (&Texture, bool) {
-        let lane = self.lanes.get(side as usize).unwrap_or(&self.lanes[0]);
+        let run = self.runs.get(side as usize).unwrap_or(&self.runs[0]);
         match state.debug {
-            Some(_) if lane.post.is_some() => (&lane.decisions, true),
+            Some(_) if run.post.is_some() => (&run.debug_view, true),
             _ => (self.picture(side), false),
         }
     }

@@ -1,4 +1,4 @@
-//! What the panel says: frames a second, times and quality of the last seconds.
+//! Statistics in the panel: frames per second, and pass times and quality over the last seconds.
 
 use super::graph::Graph;
 use super::panel::{self, Facts};
@@ -7,10 +7,10 @@ use super::times::{Pass, PassTimes};
 use image::RgbImage;
 use std::time::{Duration, Instant};
 
-/// Between two drawings of the panel, and between two measurements of quality.
-const EVERY: Duration = Duration::from_millis(250);
-/// Share of the newest frame in the mean of frames a second.
-const NEWEST: f64 = 0.1;
+/// Interval at which the panel is redrawn and quality is measured.
+const INTERVAL: Duration = Duration::from_millis(250);
+/// Weight of the newest frame in the moving average of the frame time.
+const NEWEST_WEIGHT: f64 = 0.1;
 
 /// Colors, the same in every graph.
 const FOVEATION: (&str, [u8; 3]) = ("foveation", [120, 200, 255]);
@@ -18,20 +18,20 @@ const LEFT: (&str, [u8; 3]) = ("left", [250, 190, 80]);
 const RIGHT: (&str, [u8; 3]) = ("right", [235, 120, 160]);
 const SCREEN: (&str, [u8; 3]) = ("screen", [140, 220, 130]);
 
-/// Figures and the panel that shows them.
-pub struct Figures {
+/// Statistics and the panel that shows them.
+pub struct PanelStats {
     begun: Instant,
     last: Option<Instant>,
     seconds_a_frame: Option<f64>,
     milliseconds: Graph,
     periphery_db: Graph,
-    /// Above the rows.
+    /// Text lines above the rows.
     pub lines: Vec<String>,
     pub panel: RgbImage,
     drawn: Option<Instant>,
 }
 
-impl Figures {
+impl PanelStats {
     pub fn new() -> Self {
         Self {
             begun: Instant::now(),
@@ -45,7 +45,7 @@ impl Figures {
         }
     }
 
-    /// Forgets what was.
+    /// Clears all statistics.
     pub fn clear(&mut self) {
         self.milliseconds.clear();
         self.periphery_db.clear();
@@ -57,17 +57,17 @@ impl Figures {
         self.last.map_or(0.0, |last| last.elapsed().as_secs_f64())
     }
 
-    /// Frames a second.
+    /// Frames per second, moving average.
     pub fn fps(&self) -> f64 {
         self.seconds_a_frame.map_or(0.0, |s| 1.0 / s)
     }
 
-    /// Takes a frame that was shown.
+    /// Adds a frame that was shown.
     pub fn frame(&mut self, times: &PassTimes) {
         if self.last.is_some() {
             let seconds = self.since_last_s();
             let mean = self.seconds_a_frame.get_or_insert(seconds);
-            *mean += NEWEST * (seconds - *mean);
+            *mean += NEWEST_WEIGHT * (seconds - *mean);
         }
         self.last = Some(Instant::now());
         let now_s = self.begun.elapsed().as_secs_f64();
@@ -78,16 +78,16 @@ impl Figures {
         }
     }
 
-    /// Takes the PSNR of a side's periphery in dB; a picture without error has none.
+    /// Adds the PSNR of a side's periphery in dB; `None` (no error) is skipped.
     pub fn quality(&mut self, side: Side, psnr_db: Option<f64>) {
         if let Some(psnr_db) = psnr_db {
             self.periphery_db.push(side as usize, self.begun.elapsed().as_secs_f64(), psnr_db);
         }
     }
 
-    /// Whether the panel is to be drawn again, if it is not `stale` anyway.
+    /// Whether the last drawing of the panel is older than [`INTERVAL`].
     pub fn is_due(&self) -> bool {
-        self.drawn.is_none_or(|drawn| drawn.elapsed() >= EVERY)
+        self.drawn.is_none_or(|drawn| drawn.elapsed() >= INTERVAL)
     }
 
     /// Draws the panel.

@@ -1,21 +1,21 @@
-//! Kernels from which an effect's text was cut out: what an effect that is switched off may cost at most.
+//! Removal of an effect's source from the kernels, to measure the cost of an effect that is compiled in but switched off.
 
 use afterimage_lab::trace::effects::Effect;
 
-/// How an effect's text is cut out.
+/// Edits that remove an effect's source.
 pub struct Removal {
     pub effect: Effect,
-    /// Its overrides.
+    /// Names of its override constants.
     names: &'static [&'static str],
-    /// Functions that nothing else calls.
+    /// Functions that only this effect calls.
     functions: &'static [&'static str],
-    /// What else of it there is: text, and what takes its place.
+    /// Other text of the effect, and its replacement.
     rest: &'static [(&'static str, &'static str)],
-    /// What takes the functions' place.
+    /// Text that replaces the functions.
     added: &'static str,
 }
 
-/// The effects that take most text, and two lights.
+/// Removals for the effects with most source, and for two kinds of light.
 pub const REMOVALS: &[Removal] = &[
     Removal {
         effect: Effect::Clearcoat,
@@ -112,7 +112,7 @@ pub const REMOVALS: &[Removal] = &[
 ];
 
 impl Removal {
-    /// `text` without the effect; as it is if there is nothing of the effect in it.
+    /// `text` without the effect; unchanged if it does not contain the effect.
     pub fn cut(&self, text: &str) -> String {
         let declared = |line: &str| self.names.iter().any(|n| line.starts_with(&format!("override {n}:")));
         if !text.lines().any(declared) {
@@ -136,7 +136,7 @@ impl Removal {
     }
 }
 
-/// Without the branches that are taken only if `name` is true.
+/// `text` without the branches that are taken only if `name` is true.
 fn without_branches(mut text: String, name: &str) -> String {
     let mut at = 0;
     while let Some(found) = text[at..].find("if ") {
@@ -166,7 +166,7 @@ fn without_branches(mut text: String, name: &str) -> String {
     text
 }
 
-/// Where the first block after `from` ends.
+/// End of the first block after `from`.
 fn block_end(text: &str, from: usize) -> usize {
     let mut depth = 0;
     for (i, c) in text[from..].char_indices() {

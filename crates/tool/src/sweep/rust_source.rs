@@ -1,8 +1,8 @@
-//! Settings as a program has them.
+//! Settings as Rust source.
 
 use afterimage::{Bias, Foveation, Settings, Smr};
 
-/// `Settings { .. }` with what differs from the defaults, ready to paste.
+/// `Settings { .. }` with the fields that differ from the defaults, ready to paste into a program.
 pub fn as_rust(settings: &Settings) -> String {
     Literal::new("Settings", settings, &Settings::default())
         .field("method", |s| format!("Method::{:?}", s.method))
@@ -48,7 +48,7 @@ fn smr(smr: &Smr) -> String {
         .end()
 }
 
-/// The expression of a struct, field by field, without those that are written as the default's are.
+/// A struct expression, built field by field. Fields equal to the default are left out.
 struct Literal<'a, T> {
     name: &'static str,
     value: &'a T,
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use afterimage::{DepthTest, Filter, Gate, GateMetric, Method, Sampler};
 
-    /// The text compiles to the settings it was made of: it is a macro's argument and its own expectation.
+    /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {
         ($settings:expr) => {
             let compact = |text: &str| text.split_whitespace().collect::<String>().replace(",}", "}");

@@ -1,4 +1,4 @@
-//! One frame of one eye, traced.
+//! Tracing of one frame for one eye.
 
 use super::TraceArgs;
 use super::frames::Picture;
@@ -12,19 +12,19 @@ use afterimage_lab::trace::work::Spans;
 use indicatif::ProgressBar;
 use std::ops::Range;
 
-/// Work items that are traced between two looks at the progress bar.
+/// Samples traced between two updates of the progress bar.
 const STEP_ITEMS: u64 = 1 << 20;
 
-/// A frame as one eye sees it.
-pub struct Shot {
+/// One frame for one eye.
+pub struct EyeFrame {
     pub view: View,
     pub frame: u64,
-    /// Which draws it is traced with.
+    /// Index of its sequence of random numbers.
     pub draws: u64,
 }
 
-impl Shot {
-    /// With the same number of samples everywhere.
+impl EyeFrame {
+    /// Traces the same number of samples in every pixel.
     pub fn uniform(&self, args: &TraceArgs, setup: &Setup, bar: &ProgressBar) -> (Picture, Counts) {
         let mut film = Film::new(args.size);
         for (rows, samples) in steps(args) {
@@ -41,7 +41,7 @@ impl Shot {
         (Picture { color: film.color(), variance: Some(film.variance()), lod }, counts)
     }
 
-    /// Around a gaze.
+    /// Traces a foveated frame around a gaze.
     pub fn foveated(
         &self,
         args: &TraceArgs,
@@ -60,7 +60,7 @@ impl Shot {
     }
 }
 
-/// Rows and samples that are traced together.
+/// Ranges of rows and samples that are traced together.
 fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
     let [w, h] = args.size;
     let samples = (STEP_ITEMS / u64::from(w)).clamp(1, u64::from(args.spp)) as u32;
@@ -68,7 +68,7 @@ fn steps(args: &TraceArgs) -> impl Iterator<Item = (Range<u32>, Range<u32>)> {
     ranges(h, rows).flat_map(move |rows| ranges(args.spp, samples).map(move |samples| (rows.clone(), samples)))
 }
 
-/// 0 to `end`, `step` at a time.
+/// The range 0 to `end`, split into ranges of `step`.
 fn ranges(end: u32, step: u32) -> impl Iterator<Item = Range<u32>> {
     (0..end).step_by(step as usize).map(move |start| start..start.saturating_add(step).min(end))
 }
