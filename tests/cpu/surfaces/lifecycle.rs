@@ -112,14 +112,14 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
             }
         }
     }
-    // Two words of two frames, and for smr levels 1 to 4 of eight bytes a texel: a quarter, a sixteenth, ...
+    // Two words of two frames, and for smr levels 1 to 4 of sixteen bytes a texel of two frames: a quarter, a sixteenth, ...
     let bytes = |method| {
         CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new([64, 48]) })
             .unwrap()
             .memory_bytes()
     };
     let texels = 32 * 24 + 16 * 12 + 8 * 6 + 4 * 3;
-    assert_eq!((bytes(Method::Taa), bytes(Method::Smr)), (16 * 64 * 48, 16 * (64 * 48 + texels)));
+    assert_eq!((bytes(Method::Taa), bytes(Method::Smr)), (16 * 64 * 48, 16 * 64 * 48 + 32 * texels));
 }
 
 #[test]
