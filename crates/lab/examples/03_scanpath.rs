@@ -5,7 +5,7 @@
 use afterimage::{Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let none = Settings { method: Method::None, ..Settings::default() };
-    let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
+    let lanes = [none, Settings::default()].map(RunKind::PostProcess);
     let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Cpu)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
     let mut references = References::default();
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let step = pipeline.step(index, &frame, gaze.px(index))?;
         let full = encode(&frame.color, 0.0);
         let reference = references.next(&full, &step.tracked);
-        for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
+        for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }
     }

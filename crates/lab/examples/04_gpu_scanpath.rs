@@ -6,7 +6,7 @@ use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Without the gate, which on a still can only lose detail.
     let none = Settings { method: Method::None, ..Settings::default() };
-    let lanes = [none, Settings::default()].map(LaneKind::PostProcess);
+    let lanes = [none, Settings::default()].map(RunKind::PostProcess);
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Gpu(gpu))?;
     let mut last = None;
@@ -35,12 +35,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = source.frame(index)?;
         let step = pipeline.step(index, &frame, gaze.px(index))?;
         if index % 20 == 19 {
-            let stats = step.shown[1].stats;
+            let stats = step.outputs[1].stats;
             let [x, y] = step.gaze_px;
             println!(
                 "frame {index:3}: eye at ({x:3.0}, {y:3.0}), {:4.1} % of all samples replaced, {:.1} ms",
                 100.0 * stats.replaced as f64 / stats.pixels as f64,
-                step.shown[1].wall_ms
+                step.outputs[1].wall_ms
             );
         }
         last = Some(step);
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         match away[0].max(away[1]) {
             0.0..3.0 => [1.0; 3],
             3.0..5.0 => [0.0; 3],
-            _ => step.shown[(y / height) as usize].image.at(x as usize, (y % height) as usize),
+            _ => step.outputs[(y / height) as usize].image.at(x as usize, (y % height) as usize),
         }
     });
     std::fs::create_dir_all("out")?;

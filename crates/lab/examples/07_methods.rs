@@ -6,7 +6,7 @@
 use afterimage::{Filter, Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{AnalyticSource, ReadLimits, SceneOptions};
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("smr steady", Settings::steady()),
         ("smr responsive", Settings::responsive()),
     ];
-    let kinds = lanes.map(|lane| LaneKind::PostProcess(lane.1));
+    let kinds = lanes.map(|lane| RunKind::PostProcess(lane.1));
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let scene = input.strip_prefix("analytic:").map(|n| AnalyticSource::new(n, info.size, hfov, fps)).transpose()?;
     let mut scorers = lanes.map(|_| Scorer::default());
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let reference = references.next(&full, &step.tracked);
         let mask = scene.as_ref().and_then(|s| s.panel_mask(index));
         let mut foveated = None;
-        for (i, shown) in step.shown.iter().enumerate() {
+        for (i, shown) in step.outputs.iter().enumerate() {
             let shown = encode(&shown.image, 0.0);
             let mse = scorers[i].push(&reference, &shown, &step.tracked, &step.ecc_deg).mse;
             let gain = 10.0 * (*foveated.get_or_insert(mse) / mse).log10();

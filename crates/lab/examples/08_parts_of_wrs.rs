@@ -7,12 +7,12 @@
 use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
 
-fn variants() -> Vec<(&'static str, LaneKind)> {
+fn variants() -> Vec<(&'static str, RunKind)> {
     let paper = Settings::paper();
     let gate = |divisor, offset| Some(Gate { divisor, offset, ..Gate::default() });
     let ungated = Settings { gate: None, ..paper };
@@ -29,8 +29,8 @@ fn variants() -> Vec<(&'static str, LaneKind)> {
         ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
         ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
     ];
-    let mut lanes: Vec<_> = list.map(|(name, s)| (name, LaneKind::PostProcess(s))).into();
-    lanes.push(("oracle: upper bound of any reuse", LaneKind::Oracle));
+    let mut lanes: Vec<_> = list.map(|(name, s)| (name, RunKind::PostProcess(s))).into();
+    lanes.push(("oracle: upper bound of any reuse", RunKind::Oracle));
     lanes
 }
 
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let full = encode(&frame.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         let mut last = vec![];
-        for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
+        for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             let errors = scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
             last.push(-10.0 * errors.mse.log10());
         }

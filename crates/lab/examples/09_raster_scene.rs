@@ -8,7 +8,7 @@ use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::picture::{to_rgb8, write_png};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{FrameSource, RasterSource, ReadLimits, SceneOptions};
 use std::path::Path;
 
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("taa", Settings { method: Method::Taa, ..Settings::default() }),
         ("smr", Settings::default()),
     ];
-    let kinds = lanes.map(|lane| LaneKind::PostProcess(lane.1));
+    let kinds = lanes.map(|lane| RunKind::PostProcess(lane.1));
     let backend = Backend::Gpu(device);
     let mut pipeline = Pipeline::new(geometry, Foveation::default(), &kinds, info.still, &[], &backend)?;
     let mut scorers = lanes.map(|_| Scorer::default());
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let step = pipeline.step(index, &frame, Some(gaze))?;
         let full = encode(&frame.color, 0.0);
         let reference = references.next(&full, &step.tracked);
-        for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
+        for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }
         if index + 1 == frames {
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 seen.map(|v| v[0].hypot(v[1])).fold(0.0, f32::max)
             });
             println!("{}, {}x{}: fastest {moves:.1} px a frame", info.name, info.size[0], info.size[1]);
-            sheet = vec![frame.color.clone(), step.shown[0].image.clone(), step.shown[2].image.clone()];
+            sheet = vec![frame.color.clone(), step.outputs[0].image.clone(), step.outputs[2].image.clone()];
         }
     }
     println!("method  PSNR dB  retained dB");

@@ -51,3 +51,19 @@ pub struct Guide {
     /// nothing to be gained.
     pub deviation: Image<f32>,
 }
+
+/// A full-rate frame on a device, as the rasterizer leaves it until it renders the next one.
+#[cfg(feature = "full")]
+#[derive(Clone, Debug)]
+pub struct DeviceFrame {
+    /// The device.
+    pub device: std::sync::Arc<crate::device::Headless>,
+    /// Linear color.
+    pub color: wgpu::Texture,
+    /// Near plane over distance; 0 where there is nothing.
+    pub depth: wgpu::Texture,
+    /// Pixels, y down, previous minus current; `Rg32Float`.
+    pub motion: wgpu::Texture,
+    /// Distance of the near plane.
+    pub near: f32,
+}

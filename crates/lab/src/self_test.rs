@@ -5,7 +5,7 @@
 
 use crate::device::{Backend, Headless};
 use crate::error::InputError;
-use crate::pipeline::{LaneKind, Pipeline};
+use crate::pipeline::{Pipeline, RunKind};
 use crate::source::{AnalyticSource, FrameSource};
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::{CreateError, Filter, Foveation, Image, Method, Settings};
@@ -183,7 +183,7 @@ fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> 
     let foveation = Foveation { rate_mid: 4, rate_far: 8, filter: Filter::Mip, ..Foveation::default() };
     let settings = Settings { method, ..Settings::default() };
     let pipeline = |backend: &Backend| {
-        Pipeline::new(*source.view(), foveation, &[LaneKind::PostProcess(settings)], false, &[], backend)
+        Pipeline::new(*source.view(), foveation, &[RunKind::PostProcess(settings)], false, &[], backend)
     };
     let mut lanes = [pipeline(&Backend::Cpu)?, pipeline(&Backend::Gpu(gpu.clone()))?];
     let (mut differ, mut largest) = (0, 0.0_f32);
@@ -192,7 +192,7 @@ fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> 
         let gaze = Some([20.0 + 10.0 * index as f32, 27.0]);
         let mut shown = Vec::new();
         for lane in &mut lanes {
-            shown.push(lane.step(index, &frame, gaze)?.shown.swap_remove(0).image);
+            shown.push(lane.step(index, &frame, gaze)?.outputs.swap_remove(0).image);
         }
         let (pixels, most) = difference(&shown[0], &shown[1]);
         (differ, largest) = (differ + pixels, largest.max(most));

@@ -3,14 +3,14 @@
 use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 
 const SIZE: [u32; 2] = [96, 64];
 const FRAMES: u64 = 8;
 
 /// What a lane shows of a picture that glides sideways, with broken pixels in every frame.
-fn shown(backend: &Backend, lane: LaneKind) -> Vec<Image<[f32; 3]>> {
+fn shown(backend: &Backend, lane: RunKind) -> Vec<Image<[f32; 3]>> {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let foveation = Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() };
@@ -19,7 +19,7 @@ fn shown(backend: &Backend, lane: LaneKind) -> Vec<Image<[f32; 3]>> {
         .map(|index| {
             let frame = source.frame(index).unwrap();
             let gaze = [20.0 + 8.0 * index as f32, 32.0];
-            pipeline.step(index, &frame, Some(gaze)).unwrap().shown.remove(0).image
+            pipeline.step(index, &frame, Some(gaze)).unwrap().outputs.remove(0).image
         })
         .collect()
 }
@@ -49,14 +49,14 @@ fn leaving_a_part_out_changes_what_is_shown() {
     let backend = Backend::Gpu(Headless::find(true).expect("there is an adapter"));
     for method in [Method::Taa, Method::Wrs, Method::Smr] {
         let settings = Settings { method, ..Settings::default() };
-        let whole = shown(&backend, LaneKind::PostProcess(settings));
+        let whole = shown(&backend, RunKind::PostProcess(settings));
         let broken = |frames: &[Image<[f32; 3]>]| {
             let pixels = frames.iter().flat_map(|f| f.pixels());
             pixels.filter(|c| !c.iter().all(|v| v.is_finite())).count()
         };
         assert_eq!(broken(&whole), 0, "{method:?}");
         for part in PARTS.iter().filter(|part| part.methods.contains(&method)) {
-            let without = shown(&backend, LaneKind::Without(settings, part));
+            let without = shown(&backend, RunKind::Without(settings, part));
             let differ = bits(&whole).iter().zip(bits(&without)).filter(|(a, b)| **a != *b).count();
             println!("{method:?} without {}: {differ} pixels differ, {} are broken", part.name, broken(&without));
             assert!(differ > 0, "{method:?} without {}", part.name);
@@ -66,7 +66,7 @@ fn leaving_a_part_out_changes_what_is_shown() {
 
 #[test]
 fn parts_cannot_be_left_out_on_the_cpu() {
-    let lane = LaneKind::Without(Settings::default(), &PARTS[0]);
+    let lane = RunKind::Without(Settings::default(), &PARTS[0]);
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let error = Pipeline::new(geometry, Foveation::default(), &[lane], false, &[], &Backend::Cpu).err().unwrap();
     assert!(error.to_string().contains("expected a device"), "{error}");

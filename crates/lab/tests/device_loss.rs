@@ -3,7 +3,7 @@
 
 use afterimage::{Foveation, FrameError, Settings};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{
     AnalyticSource, FrameSource, RasterSource, ReadLimits, SceneOptions, TracedSamples, TracedSource,
 };
@@ -30,7 +30,7 @@ fn a_lost_device_is_an_error_and_a_new_one_goes_on() {
     let Some(lost) = device() else { return };
     let mut source = AnalyticSource::new("lateral", [64, 36], 70.0, 60.0).unwrap();
     let pipeline = |device: &Arc<Headless>, geometry| {
-        let (foveation, kinds) = (Foveation::default(), [LaneKind::PostProcess(Settings::default())]);
+        let (foveation, kinds) = (Foveation::default(), [RunKind::PostProcess(Settings::default())]);
         Pipeline::new(geometry, foveation, &kinds, false, &[], &Backend::Gpu(device.clone())).unwrap()
     };
     let mut first = pipeline(&lost, *source.view());
@@ -48,7 +48,7 @@ fn a_lost_device_is_an_error_and_a_new_one_goes_on() {
     // A new device shows what one shows that never had another: no frame of the past.
     let show = |pipeline: &mut Pipeline, source: &mut AnalyticSource| {
         let step = pipeline.step(5, &source.frame(5).unwrap(), Some([30.0, 18.0])).unwrap();
-        step.shown[0].image.pixels().to_vec()
+        step.outputs[0].image.pixels().to_vec()
     };
     let again = [device().unwrap(), device().unwrap()].map(|d| show(&mut pipeline(&d, *source.view()), &mut source));
     assert_eq!(again[0], again[1]);

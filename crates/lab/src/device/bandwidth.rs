@@ -11,7 +11,7 @@ const BYTES: usize = 1 << 26;
 const COPIES: usize = 7;
 
 /// Milliseconds that one byte takes to be read or written by a copy, by the clock that passes are timed with
-/// ([`Shown::cost_ms`](super::Shown::cost_ms)); on a GPU by wall time, which over 64 MiB is as good.
+/// ([`MethodOutput::cost_ms`](crate::pipeline::MethodOutput::cost_ms)); on a GPU by wall time, which over 64 MiB is as good.
 pub fn copy_ms_per_byte(backend: &Backend) -> f64 {
     let mut times = vec![];
     match backend {

@@ -1,87 +1,50 @@
-//! What times a pass: the device's clock by timestamp queries, or the CPU time of the process.
+//! Time of a pass: by the device's clock, or the CPU time of the process.
 
-use super::Headless;
+use super::{DeviceClock, Headless};
 use crate::clock::Stopwatch;
 use afterimage::gpu::Timestamps;
+use wgpu::CommandEncoder;
 
-/// The device's clock, or the process's.
+/// Clock of one pass at a time.
 #[derive(Debug)]
-pub struct PassClock(Kind);
-
-#[derive(Debug)]
-enum Kind {
-    Device { queries: wgpu::QuerySet, resolved: wgpu::Buffer, readback: wgpu::Buffer, period_ns: f64 },
-    Process,
-}
+pub struct PassClock(Option<DeviceClock>);
 
 impl PassClock {
-    /// Timestamps where the device is real and has them.
+    /// The device's clock where the device is no software and has one, else the process's.
     pub fn new(gpu: &Headless) -> Self {
-        if gpu.is_software() || !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-            return Self(Kind::Process);
-        }
-        let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timestamps"),
-                size: 16,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        Self(Kind::Device {
-            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("timestamps"),
-                ty: wgpu::QueryType::Timestamp,
-                count: 2,
-            }),
-            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
-            readback: buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
-            period_ns: f64::from(gpu.queue.get_timestamp_period()),
-        })
+        Self(if gpu.is_software() { None } else { DeviceClock::new(gpu, 1) })
     }
 
     /// Whether times are the device's own.
     pub fn is_device(&self) -> bool {
-        matches!(self.0, Kind::Device { .. })
+        self.0.is_some()
     }
 
-    /// What its times are, in words.
+    /// Description of its times, for reports.
     pub fn name(&self) -> &'static str {
         match &self.0 {
-            Kind::Device { .. } => "the device's, by timestamp queries",
-            Kind::Process => "CPU time of the process, recording and waiting included",
+            Some(_) => "the device's, by timestamp queries",
+            None => "CPU time of the process, recording and waiting included",
         }
     }
 
-    /// For the frame whose pass is timed.
+    /// Timestamps for the pass that is timed.
     pub fn timestamps(&self) -> Option<Timestamps<'_>> {
-        match &self.0 {
-            Kind::Device { queries, .. } => Some(Timestamps { queries, begin: 0, end: 1 }),
-            Kind::Process => None,
-        }
+        self.0.as_ref().map(|clock| clock.timestamps(0))
     }
 
     /// To be recorded after the pass.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Kind::Device { queries, resolved, readback, .. } = &self.0 {
-            encoder.resolve_query_set(queries, 0..2, resolved, 0);
-            encoder.copy_buffer_to_buffer(resolved, 0, readback, 0, 16);
+    pub fn resolve(&self, encoder: &mut CommandEncoder) {
+        if let Some(clock) = &self.0 {
+            clock.resolve(encoder, 0..1);
         }
     }
 
-    /// Milliseconds of a pass that is done: since `watch` was started, where the device does not tell.
+    /// Milliseconds of a pass that is done, or, without a device's clock, since `watch` was started.
     pub fn read_ms(&self, gpu: &Headless, watch: &Stopwatch) -> f64 {
-        let Kind::Device { readback, period_ns, .. } = &self.0 else {
-            return watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
-        };
-        readback.map_async(wgpu::MapMode::Read, .., |_| ());
-        gpu.wait();
-        let ticks = {
-            let mapped = readback.slice(..).get_mapped_range().expect("the readback was mapped and waited for");
-            let at = |i: usize| u64::from_le_bytes(mapped[i * 8..(i + 1) * 8].try_into().expect("eight bytes"));
-            at(1).saturating_sub(at(0))
-        };
-        readback.unmap();
-        ticks as f64 * period_ns * 1e-6
+        match &self.0 {
+            Some(clock) => clock.wait_ms(gpu).first().copied().unwrap_or_default(),
+            None => watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()),
+        }
     }
 }

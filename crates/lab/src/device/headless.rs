@@ -113,15 +113,20 @@ impl Headless {
 
     /// Writes a layer of a texture whose texels are laid out like the image's pixels.
     pub fn write<T: bytemuck::NoUninit>(&self, texture: &Texture, layer: u32, image: &Image<T>) {
+        self.write_bytes(texture, layer, bytemuck::cast_slice(image.pixels()));
+    }
+
+    /// Writes a layer of a texture from the bytes of its texels, row after row.
+    pub fn write_bytes(&self, texture: &Texture, layer: u32, bytes: &[u8]) {
         let mut to = texture.as_image_copy();
         to.origin.z = layer;
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(image.size()[0] * size_of::<T>() as u32),
+            bytes_per_row: Some(bytes.len() as u32 / texture.height()),
             rows_per_image: None,
         };
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
-        self.queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, size);
+        self.queue.write_texture(to, bytes, layout, size);
     }
 
     /// Writes a layer of an `Rgba32Float` texture.

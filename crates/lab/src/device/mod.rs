@@ -6,6 +6,8 @@ mod bandwidth;
 mod clock;
 #[cfg(feature = "full")]
 mod headless;
+#[cfg(feature = "full")]
+mod timestamps;
 
 #[cfg(feature = "full")]
 pub use bandwidth::copy_ms_per_byte;
@@ -13,6 +15,8 @@ pub use bandwidth::copy_ms_per_byte;
 pub use clock::PassClock;
 #[cfg(feature = "full")]
 pub use headless::Headless;
+#[cfg(feature = "full")]
+pub use timestamps::DeviceClock;
 
 #[cfg(feature = "full")]
 use std::sync::Arc;

@@ -1,72 +1,79 @@
-//! One frame through everything: foveate it for a gaze, give it to each method, keep what metrics need.
+//! The pipeline of a clip: each frame is foveated for a gaze and given to each method; what metrics need is kept.
 
 #[cfg(feature = "ablation")]
 pub mod ablation;
 #[cfg(feature = "full")]
-mod gpu_lane;
+mod device;
 mod guide;
 
+#[cfg(feature = "full")]
+pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
+
 use crate::clock::Stopwatch;
+use crate::device::Backend;
+#[cfg(feature = "full")]
+use crate::device::{Headless, PassClock};
+#[cfg(feature = "full")]
+use crate::frame::DeviceFrame;
+use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use crate::metric::{Tracked, Tracker};
 #[cfg(feature = "ablation")]
 use afterimage::SettingsError;
-use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::kernel::debug_view::{DebugView, PixelTrace, view_color};
+use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, ViewFrame,
-    ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings,
+    ViewFrame, ViewGeometry,
 };
-
-use crate::device::Backend;
-use crate::frame::{FoveatedFrame, Guide, SourceFrame};
-#[cfg(feature = "full")]
-use gpu_lane::{GpuLane, LaneInput};
 use guide::Knowledge;
+#[cfg(feature = "full")]
+use std::sync::Arc;
 
-/// What a lane of the pipeline does with the foveated frame.
+/// A run of the pipeline: what is done with the foveated frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LaneKind {
+pub enum RunKind {
     /// The post-process with these settings; their foveation is replaced by the pipeline's.
     PostProcess(Settings),
-    /// The same with a part of the pass left out, on a device only: to see what the part costs and buys.
+    /// The post-process with a part of the pass left out, on a device only: to see what the part costs and buys.
     #[cfg(feature = "ablation")]
-    Without(Settings, &'static crate::pipeline::ablation::Part),
-    /// Every pixel at the best level of detail it was ever shown at: the upper bound of temporal reuse. Only right for stills.
+    Without(Settings, &'static ablation::Part),
+    /// Every pixel at the best level of detail that it was ever shown at: the upper bound of temporal reuse. Defined for stills only.
     Oracle,
 }
 
-/// One method's result for one frame.
+/// A run's output for one frame.
 #[derive(Clone, Debug)]
-pub struct Shown {
-    /// What the user sees, linear.
+pub struct MethodOutput {
+    /// The frame that the user sees, linear.
     pub image: Image<[f32; 3]>,
     /// Wall time of the pass in milliseconds.
     pub wall_ms: f64,
     /// CPU time of the process during the pass in milliseconds, where the system tells.
     pub cpu_ms: Option<f64>,
-    /// The pass's time on a device that tells it; `None` on software devices and the CPU.
+    /// Time of the pass by the device's clock, in milliseconds; `None` on software devices and the CPU.
     pub device_ms: Option<f64>,
-    /// What the pass counted; empty for the oracle.
+    /// Counts of the pass; empty for the oracle.
     pub stats: FrameStats,
     /// Bytes that the pass reads and writes a pixel; `None` for the oracle.
     pub traffic_bytes_per_pixel: Option<u32>,
-    /// Pictures of pixel decisions, linear, in the order in which they were asked for; none for the oracle.
+    /// Debug views, linear, in the order in which they were asked for; none for the oracle.
     pub debug: Vec<Image<[f32; 3]>>,
 }
 
-impl Shown {
-    /// What the pass costs: the device's own time, else CPU time, which other work on the machine disturbs less than wall time.
+impl MethodOutput {
+    /// Cost of the pass in milliseconds: the device's own time, else CPU time, which other work on the machine disturbs less than wall
+    /// time.
     pub fn cost_ms(&self) -> f64 {
         self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
     }
 }
 
-/// One frame, foveated, and what each lane made of it.
+/// One frame, foveated, and the output of each run.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Where the eye was taken to look, in pixels.
+    /// Position that the eye is taken to look at, in pixels.
     pub gaze_px: [f32; 2],
     /// Eccentricity of every pixel in degrees.
     pub ecc_deg: Image<f32>,
@@ -74,62 +81,54 @@ pub struct Step {
     pub lods: Image<f32>,
     /// Correspondence and retention.
     pub tracked: Tracked,
-    /// Results in the order of the lanes.
-    pub shown: Vec<Shown>,
+    /// Outputs in the order of the runs.
+    pub outputs: Vec<MethodOutput>,
     /// Wall time of the foveation simulator in milliseconds.
     pub foveation_ms: f64,
 }
 
-/// A foveated frame.
+/// A foveated frame in memory.
 struct Candidate<'a> {
     color: &'a Image<[f32; 3]>,
-    lods: &'a Image<f32>,
-    /// Whether the methods are told its levels of detail.
-    told: bool,
+    /// Levels of detail that the methods are given, if any.
+    lod_given: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
-    /// What it was made of, if by a simulator.
-    pyramid: Option<&'a Pyramid>,
 }
 
-enum Executor {
-    PostProcess(Box<CpuAfterimage>),
+/// State of a run.
+enum Run {
+    Cpu(Box<CpuAfterimage>),
     #[cfg(feature = "full")]
-    Gpu(Box<GpuLane>),
+    Device(Box<DeviceRun>),
     Oracle {
         best: Option<Image<f32>>,
     },
 }
 
-impl Executor {
-    /// Noise of what its history holds, if that is noisy, and its settings.
-    fn noise(&self) -> Option<(Image<Noise>, &Settings)> {
-        let (words, settings) = match self {
-            Self::PostProcess(post) => {
-                let words = post.history().noise().to_vec();
-                let size_px = post.desc().size_px;
-                let image = (!words.is_empty()).then(|| Image::from_pixels(size_px, words).expect("a word a pixel"));
-                (image?, &post.desc().settings)
-            }
-            #[cfg(feature = "full")]
-            Self::Gpu(lane) => (lane.noise()?, lane.settings()),
-            Self::Oracle { .. } => return None,
-        };
-        Some((words.map(unpack_noise), settings))
-    }
+/// Device side of a pipeline.
+#[cfg(feature = "full")]
+struct Device {
+    gpu: Arc<Headless>,
+    inputs: DeviceInputs,
+    clock: PassClock,
+    /// Whether the picture of a still is on the device.
+    has_still: bool,
 }
 
-/// The pipeline of a clip: state of all lanes, and of the foveation.
+/// The pipeline of a clip: state of all runs, and of the foveation.
 pub struct Pipeline {
     geometry: ViewGeometry,
     foveation: Foveation,
-    lanes: Vec<Executor>,
+    runs: Vec<Run>,
+    #[cfg(feature = "full")]
+    device: Option<Device>,
     tracker: Tracker,
     held_gaze: Option<[f32; 2]>,
     still: Option<Pyramid>,
     is_still: bool,
     debug: Vec<DebugView>,
     use_trust: bool,
-    /// For guided sampling, if that is done.
+    /// For guided sampling.
     knowledge: Option<Knowledge>,
     is_guided: bool,
     #[cfg(feature = "ablation")]
@@ -137,52 +136,36 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// A pipeline for frames of `geometry`'s size. `is_still`: all frames are the same picture, whose mip levels are then
-    /// built once. `debug`: pixel decisions to draw.
+    /// A pipeline for frames of `geometry`'s size. `is_still`: all frames are the same picture, whose mip levels are then built once.
+    /// `debug`: debug views to draw.
     ///
     /// # Errors
-    /// If a setting is out of range, or the device cannot do it.
+    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
     pub fn new(
         geometry: ViewGeometry,
         foveation: Foveation,
-        lanes: &[LaneKind],
+        runs: &[RunKind],
         is_still: bool,
         debug: &[DebugView],
         backend: &Backend,
     ) -> Result<Self, CreateError> {
         foveation.validate()?;
-        let lanes = lanes
-            .iter()
-            .map(|lane| match lane {
-                LaneKind::Oracle => Ok(Executor::Oracle { best: None }),
-                LaneKind::PostProcess(settings) => {
-                    let settings = Settings { foveation, ..*settings };
-                    let desc = ContextDesc::new(geometry.size_px());
-                    match backend {
-                        Backend::Cpu => {
-                            Ok(Executor::PostProcess(Box::new(CpuAfterimage::new(&ContextDesc { settings, ..desc })?)))
-                        }
-                        #[cfg(feature = "full")]
-                        Backend::Gpu(gpu) => Ok(Executor::Gpu(Box::new(GpuLane::new(gpu, desc, settings)?))),
-                    }
-                }
-                #[cfg(feature = "ablation")]
-                LaneKind::Without(settings, part) => {
-                    let Backend::Gpu(gpu) = backend else {
-                        let expected = "a device: parts are left out of shaders".into();
-                        Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })?
-                    };
-                    let settings = Settings { foveation, ..*settings };
-                    let shader = part.shader_without(settings.method);
-                    let desc = ContextDesc::new(geometry.size_px());
-                    Ok(Executor::Gpu(Box::new(GpuLane::from_shader(gpu, desc, settings, &shader)?)))
-                }
-            })
-            .collect::<Result<_, CreateError>>()?;
+        let desc = ContextDesc::new(geometry.size_px());
+        let desc = ContextDesc { settings: Settings { foveation, ..desc.settings }, ..desc };
         Ok(Self {
+            runs: runs.iter().map(|kind| Run::new(kind, &desc, backend)).collect::<Result<_, _>>()?,
+            #[cfg(feature = "full")]
+            device: match backend {
+                Backend::Cpu => None,
+                Backend::Gpu(gpu) => Some(Device {
+                    inputs: DeviceInputs::new(gpu, &desc, DeviceFormats::EXACT)?,
+                    clock: PassClock::new(gpu),
+                    has_still: false,
+                    gpu: gpu.clone(),
+                }),
+            },
             geometry,
             foveation,
-            lanes,
             tracker: Tracker::default(),
             held_gaze: None,
             still: None,
@@ -202,30 +185,61 @@ impl Pipeline {
         Self { use_trust: true, ..self }
     }
 
-    /// Spoils a share of the foveated pixels of every frame as renderers do: NaN, infinite, huge, negative.
+    /// Replaces a share of the foveated pixels of every frame by renderers' mistakes: NaN, infinite, huge, negative.
     #[cfg(feature = "ablation")]
     #[must_use]
     pub fn with_poison(self, share: f32) -> Self {
         Self { poison: share, ..self }
     }
 
-    /// Remembers after each frame what the history of the first noisy lane of smr knows.
+    /// Keeps after each frame what the history of the first noisy run of smr knows, for [`guide`](Self::guide).
     #[must_use]
     pub fn with_guidance(self) -> Self {
         Self { is_guided: true, ..self }
     }
 
-    /// What is known of a frame that is about to be foveated, for sampling that is guided by it. `None` before the first frame, after a
-    /// cut, and without [`with_guidance`](Self::with_guidance) or a lane that knows.
+    /// Guide for sampling a frame that is about to be foveated. `None` before the first frame, after a cut, and without
+    /// [`with_guidance`](Self::with_guidance) or a noisy run of smr.
     pub fn guide(&self, frame: &SourceFrame) -> Option<Guide> {
         self.knowledge.as_ref().filter(|_| !frame.cut).map(|k| k.guide(frame, &self.geometry))
     }
 
-    /// Takes frame `index`. A lost gaze holds the last position; before the first, the middle of the view.
+    /// Foveates frame `index` and gives it to all runs. A lost gaze holds the last position; before the first, the middle of the view.
     ///
     /// # Errors
-    /// If the frame's size is not the pipeline's.
+    /// [`FrameError::Size`] if the frame's size is not the pipeline's.
     pub fn step(&mut self, index: u64, frame: &SourceFrame, gaze: Option<[f32; 2]>) -> Result<Step, FrameError> {
+        self.step_frame(
+            index,
+            frame,
+            gaze,
+            #[cfg(feature = "full")]
+            None,
+        )
+    }
+
+    /// As [`step`](Self::step), of a frame that also lies on a device: if that is the pipeline's, it is not uploaded again.
+    ///
+    /// # Errors
+    /// As for `step`.
+    #[cfg(feature = "full")]
+    pub fn step_on_device(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze: Option<[f32; 2]>,
+        rendered: &DeviceFrame,
+    ) -> Result<Step, FrameError> {
+        self.step_frame(index, frame, gaze, Some(rendered))
+    }
+
+    fn step_frame(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze: Option<[f32; 2]>,
+        #[cfg(feature = "full")] rendered: Option<&DeviceFrame>,
+    ) -> Result<Step, FrameError> {
         let size = self.geometry.size_px();
         if frame.color.size() != size {
             return Err(FrameError::Size { input: "color", view: 0, found: frame.color.size(), expected: size });
@@ -234,27 +248,34 @@ impl Pipeline {
         let watch = Stopwatch::start();
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
         let lods = self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg);
-        let pyramid = match self.still.take() {
+        let view = self.view(frame, gaze_px);
+        // On a device a simulator of its own foveates, bit for bit like this one on software devices.
+        let pyramid = self.foveates_in_memory().then(|| match self.still.take() {
             Some(pyramid) => pyramid,
             None => Pyramid::new(frame.color.clone(), self.foveation.max_level()),
-        };
-        let color = self.foveation.render(&pyramid, &lods);
+        });
+        let color = pyramid.as_ref().map(|pyramid| self.foveation.render(pyramid, &lods));
+        #[cfg(feature = "ablation")]
+        let color = color.map(|color| poisoned(color, self.poison, index as u32));
+        let candidate = color.as_ref().map(|color| Candidate {
+            color,
+            lod_given: needs_lod(self.foveation.filter).then_some(&lods),
+            noise: None,
+        });
+        #[cfg(feature = "full")]
+        self.foveate_on_device(frame, rendered, candidate.as_ref(), &view)?;
         let foveation_ms = watch.wall_ms();
-        // Blocks are decided by their centres, which the post-process does not know.
-        let told = self.foveation.filter == Filter::Block;
-        let candidate = Candidate { color: &color, lods: &lods, told, noise: None, pyramid: Some(&pyramid) };
-        let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
-        if self.is_still {
-            self.still = Some(pyramid);
-        }
-        Ok(Step { gaze_px, ecc_deg, lods, tracked, shown, foveation_ms })
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+        let outputs = self.run(index, frame, &view, candidate.as_ref(), pyramid.as_ref().map(|p| (p, &lods)))?;
+        self.still = pyramid.filter(|_| self.is_still);
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
-    /// The same of a frame that its source foveated for the gaze that [`look`](Self::look) gave. Lanes' settings are taken to be
-    /// [`noisy`](Settings::noisy); there is no oracle of such frames.
+    /// As [`step`](Self::step), of a frame that its source foveated for the gaze that [`look`](Self::look) gave. The runs' settings
+    /// must be [`noisy`](Settings::noisy); there is no oracle of such frames.
     ///
     /// # Errors
-    /// If a frame's size is not the pipeline's.
+    /// As for `step`.
     pub fn step_foveated(
         &mut self,
         index: u64,
@@ -264,18 +285,26 @@ impl Pipeline {
     ) -> Result<Step, FrameError> {
         let FoveatedFrame { color, lod, noise, .. } = foveated;
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
-        let candidate = Candidate { color: &color, lods: &lod, told: true, noise: Some(&noise), pyramid: None };
-        let (tracked, shown) = self.show(index, frame, gaze_px, &ecc_deg, &candidate)?;
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lod);
+        #[cfg(feature = "ablation")]
+        let color = poisoned(color, self.poison, index as u32);
+        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise) };
+        let view = self.view(frame, gaze_px);
+        #[cfg(feature = "full")]
+        if let Some(device) = &mut self.device {
+            device.inputs.upload_foveated(frame, candidate.color, candidate.lod_given, candidate.noise);
+        }
+        let outputs = self.run(index, frame, &view, Some(&candidate), None)?;
         if self.is_guided {
-            let noise = self.lanes.iter().zip(&shown).find_map(|(lane, shown)| Some((lane.noise()?, &shown.image)));
+            let noise = self.runs.iter().zip(&outputs).find_map(|(run, output)| Some((self.noise(run)?, &output.image)));
             self.knowledge = noise.map(|((noise, settings), image)| {
                 Knowledge::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
             });
         }
-        Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, shown, foveation_ms: 0.0 })
+        Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, outputs, foveation_ms: 0.0 })
     }
 
-    /// Where the eye is taken to look: a lost gaze holds the last position; before the first, the middle of the view.
+    /// Position that the eye is taken to look at: a lost gaze holds the last one; before the first, the middle of the view.
     pub fn look(&mut self, gaze: Option<[f32; 2]>) -> [f32; 2] {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.held_gaze, self.geometry.size_px());
@@ -283,116 +312,205 @@ impl Pipeline {
         gaze_px
     }
 
-    /// Gives a candidate to all lanes.
-    fn show(
+    /// Bytes that run `index` keeps between frames.
+    pub fn memory_bytes(&self, index: usize) -> usize {
+        match &self.runs[index] {
+            Run::Cpu(post) => post.memory_bytes(),
+            #[cfg(feature = "full")]
+            Run::Device(run) => run.post().memory_bytes() as usize,
+            Run::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
+        }
+    }
+
+    fn view(&self, frame: &SourceFrame, gaze_px: [f32; 2]) -> ViewFrame {
+        let view = ViewFrame::new(self.geometry, Gaze::At { px: gaze_px });
+        ViewFrame { previous_from_current: frame.previous_from_current, ..view }
+    }
+
+    /// Whether frames are foveated in memory: for runs on the CPU, the oracle, and to spoil pixels.
+    fn foveates_in_memory(&self) -> bool {
+        #[cfg(feature = "ablation")]
+        if self.poison > 0.0 {
+            return true;
+        }
+        #[cfg(feature = "full")]
+        if self.device.is_some() {
+            return self.runs.iter().any(|run| !matches!(run, Run::Device(_)));
+        }
+        true
+    }
+
+    #[cfg(feature = "full")]
+    fn foveate_on_device(
+        &mut self,
+        frame: &SourceFrame,
+        rendered: Option<&DeviceFrame>,
+        candidate: Option<&Candidate<'_>>,
+        view: &ViewFrame,
+    ) -> Result<(), FrameError> {
+        let Some(Device { gpu, inputs, has_still, .. }) = &mut self.device else { return Ok(()) };
+        #[cfg(feature = "ablation")]
+        if let Some(candidate) = candidate.filter(|_| self.poison > 0.0) {
+            inputs.upload_foveated(frame, candidate.color, candidate.lod_given, None);
+            return Ok(());
+        }
+        #[cfg(not(feature = "ablation"))]
+        let _ = candidate;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        match rendered.filter(|rendered| Arc::ptr_eq(&rendered.device, gpu)) {
+            Some(rendered) => inputs.import(&mut encoder, rendered),
+            None if *has_still => {}
+            None => inputs.upload(frame),
+        }
+        *has_still = self.is_still;
+        inputs.foveate(&mut encoder, std::slice::from_ref(view), None)?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait();
+        gpu.check()
+    }
+
+    /// Gives the foveated frame to all runs. `still` is what the oracle needs: mip levels, and the frame's levels of detail.
+    fn run(
         &mut self,
         index: u64,
         frame: &SourceFrame,
-        gaze_px: [f32; 2],
-        ecc_deg: &Image<f32>,
-        candidate: &Candidate<'_>,
-    ) -> Result<(Tracked, Vec<Shown>), FrameError> {
-        let tracked = self.tracker.advance(frame, &self.geometry, ecc_deg, candidate.lods);
-        #[cfg(feature = "ablation")]
-        let spoiled = poisoned(candidate.color, self.poison, index as u32);
-        #[cfg(feature = "ablation")]
-        let candidate = &Candidate { color: &spoiled, ..*candidate };
-        let facts = ViewFrame {
-            geometry: self.geometry,
-            gaze: Gaze::At { px: gaze_px },
-            previous_from_current: frame.previous_from_current,
-        };
-        let view = SourceView {
-            facts,
-            color: candidate.color,
-            depth: frame.depth.as_ref(),
-            motion: frame.motion.as_ref(),
-            trust: frame.trust.as_ref().filter(|_| self.use_trust),
-            lod: candidate.told.then_some(candidate.lods),
-            noise: candidate.noise,
-        };
+        view: &ViewFrame,
+        candidate: Option<&Candidate<'_>>,
+        still: Option<(&Pyramid, &Image<f32>)>,
+    ) -> Result<Vec<MethodOutput>, FrameError> {
         let reset = if frame.cut { Reset::All } else { Reset::None };
-        let mut shown: Vec<Option<Shown>> = vec![None; self.lanes.len()];
-        // Another lane first in every frame: whoever is first finds the caches as the foveation left them.
-        let first = index as usize % self.lanes.len().max(1);
-        for i in (first..self.lanes.len()).chain(0..first) {
-            shown[i] = Some(match &mut self.lanes[i] {
-                Executor::PostProcess(post) => post_process(post, &view, index, reset, &self.debug)?,
+        let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
+        // Another run first in every frame: the first finds the caches as the foveation left them.
+        let first = index as usize % self.runs.len().max(1);
+        for i in (first..self.runs.len()).chain(0..first) {
+            outputs[i] = Some(match &mut self.runs[i] {
+                Run::Cpu(post) => {
+                    let candidate = candidate.expect("runs on the CPU have frames in memory");
+                    let trust = frame.trust.as_ref().filter(|_| self.use_trust);
+                    on_cpu(post, frame, trust, candidate, view, index, reset, &self.debug)?
+                }
                 #[cfg(feature = "full")]
-                Executor::Gpu(lane) => post_process_on_gpu(lane, &LaneInput { view, index, reset }, &self.debug)?,
-                Executor::Oracle { best } => {
-                    let pyramid = candidate.pyramid.ok_or_else(|| FrameError::Value {
+                Run::Device(run) => {
+                    let device = self.device.as_ref().expect("runs on a device have one");
+                    let views = std::slice::from_ref(view);
+                    let frame = device.inputs.frame(views, index, reset, self.use_trust);
+                    on_device(device, run, &frame, &self.debug)?
+                }
+                Run::Oracle { best } => {
+                    let (pyramid, lods) = still.ok_or_else(|| FrameError::Value {
                         what: "oracle",
                         view: 0,
                         found: "a frame that its source foveated".into(),
                         expected: "a simulator's",
                     })?;
-                    oracle(best, candidate.lods, &self.foveation, pyramid)
+                    oracle(best, lods, &self.foveation, pyramid)
                 }
             });
         }
-        Ok((tracked, shown.into_iter().flatten().collect()))
+        Ok(outputs.into_iter().flatten().collect())
     }
 
-    /// Bytes that lane `index` keeps between frames.
-    pub fn memory_bytes(&self, index: usize) -> usize {
-        match &self.lanes[index] {
-            Executor::PostProcess(post) => post.memory_bytes(),
+    /// Noise of what a run's history holds, if that is noisy, and its settings.
+    fn noise<'a>(&'a self, run: &'a Run) -> Option<(Image<Noise>, &'a Settings)> {
+        let (words, settings) = match run {
+            Run::Cpu(post) => {
+                let words = post.history().noise().to_vec();
+                let size_px = post.desc().size_px;
+                let image = (!words.is_empty()).then(|| Image::from_pixels(size_px, words).expect("a word a pixel"));
+                (image?, &post.desc().settings)
+            }
             #[cfg(feature = "full")]
-            Executor::Gpu(lane) => lane.memory_bytes(),
-            Executor::Oracle { best } => best.as_ref().map_or(0, |b| size_of_val(b.pixels())),
+            Run::Device(run) => {
+                let settings = &run.post().desc().settings;
+                let is_noisy = settings.method == afterimage::Method::Smr && settings.noisy;
+                let texture = run.post().history_textures().get(2).filter(|_| is_noisy)?;
+                (self.device.as_ref()?.gpu.read::<u32>(texture, 0), settings)
+            }
+            Run::Oracle { .. } => return None,
+        };
+        Some((words.map(unpack_noise), settings))
+    }
+}
+
+/// Whether methods must be given the levels of detail of a simulated frame. `Filter::Block` decides a block by its center, which a
+/// method cannot derive from the gaze.
+pub fn needs_lod(filter: Filter) -> bool {
+    filter == Filter::Block
+}
+
+impl Run {
+    fn new(kind: &RunKind, desc: &ContextDesc, backend: &Backend) -> Result<Self, CreateError> {
+        let of = |settings: &Settings| ContextDesc {
+            settings: Settings { foveation: desc.settings.foveation, ..*settings },
+            ..*desc
+        };
+        match kind {
+            RunKind::Oracle => Ok(Self::Oracle { best: None }),
+            RunKind::PostProcess(settings) => match backend {
+                Backend::Cpu => Ok(Self::Cpu(Box::new(CpuAfterimage::new(&of(settings))?))),
+                #[cfg(feature = "full")]
+                Backend::Gpu(gpu) => {
+                    Ok(Self::Device(Box::new(DeviceRun::new(gpu, &of(settings), DeviceFormats::EXACT)?)))
+                }
+            },
+            #[cfg(feature = "ablation")]
+            RunKind::Without(settings, part) => {
+                let Backend::Gpu(gpu) = backend else {
+                    let expected = "a device: parts are left out of shaders".into();
+                    Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })?
+                };
+                let shader = part.shader_without(settings.method);
+                let run = DeviceRun::with_shader(gpu, &of(settings), DeviceFormats::EXACT, &shader)?;
+                Ok(Self::Device(Box::new(run)))
+            }
         }
     }
 }
 
 /// A share of the pixels replaced by what renderers' mistakes leave.
 #[cfg(feature = "ablation")]
-fn poisoned(color: &Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3]> {
+fn poisoned(mut color: Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3]> {
     use afterimage::kernel::rng;
     const POISONS: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -5.0];
     /// No purpose of the methods' draws.
     const PURPOSE: u32 = 0x706f_6973;
-    let mut spoiled = color.clone();
+    if share == 0.0 {
+        return color;
+    }
     let width = color.width();
-    for (i, pixel) in spoiled.pixels_mut().iter_mut().enumerate() {
+    for (i, pixel) in color.pixels_mut().iter_mut().enumerate() {
         let bits = rng::bits((i % width) as u32, (i / width) as u32, index, PURPOSE);
         if rng::unit_draw(bits) < share {
             *pixel = [POISONS[bits as usize % POISONS.len()]; 3];
         }
     }
-    spoiled
+    color
 }
 
-/// Images of the one view of a frame.
-#[derive(Clone, Copy)]
-struct SourceView<'a> {
-    facts: ViewFrame,
-    color: &'a Image<[f32; 3]>,
-    depth: Option<&'a Image<f32>>,
-    motion: Option<&'a Image<[f32; 2]>>,
-    trust: Option<&'a Image<f32>>,
-    lod: Option<&'a Image<f32>>,
-    noise: Option<&'a Image<[f32; 2]>>,
-}
-
-fn post_process(
+#[allow(clippy::too_many_arguments, reason = "each is a different thing")]
+fn on_cpu(
     post: &mut CpuAfterimage,
-    view: &SourceView<'_>,
+    source: &SourceFrame,
+    trust: Option<&Image<f32>>,
+    candidate: &Candidate<'_>,
+    view: &ViewFrame,
     index: u64,
     reset: Reset,
     debug: &[DebugView],
-) -> Result<Shown, FrameError> {
+) -> Result<MethodOutput, FrameError> {
+    use std::slice::from_ref;
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
+    let (depth, motion) = (source.depth.as_ref(), source.motion.as_ref());
     let frame = Frame {
-        depth: view.depth.as_ref().map(std::slice::from_ref),
-        motion: view.motion.as_ref().map(std::slice::from_ref),
-        trust: view.trust.as_ref().map(std::slice::from_ref),
-        lod: view.lod.as_ref().map(std::slice::from_ref),
-        noise: view.noise.as_ref().map(std::slice::from_ref),
+        depth: depth.as_ref().map(from_ref),
+        motion: motion.as_ref().map(from_ref),
+        trust: trust.as_ref().map(from_ref),
+        lod: candidate.lod_given.as_ref().map(from_ref),
+        noise: candidate.noise.as_ref().map(from_ref),
         reset,
-        ..Frame::new(std::slice::from_ref(&view.color), std::slice::from_ref(&view.facts), index)
+        ..Frame::new(from_ref(&candidate.color), from_ref(view), index)
     };
     let watch = Stopwatch::start();
     let stats = match &mut traces {
@@ -400,9 +518,9 @@ fn post_process(
         None => post.process(&frame, &mut output)?,
     };
     let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+    let given = [depth.is_some(), motion.is_some(), trust.is_some()];
     let [image] = output;
-    let given = [view.depth.is_some(), view.motion.is_some(), view.trust.is_some()];
-    Ok(Shown {
+    Ok(MethodOutput {
         image,
         wall_ms,
         cpu_ms,
@@ -416,27 +534,52 @@ fn post_process(
 }
 
 #[cfg(feature = "full")]
-fn post_process_on_gpu(lane: &mut GpuLane, input: &LaneInput<'_>, debug: &[DebugView]) -> Result<Shown, FrameError> {
-    let made = lane.process(input, debug)?;
-    Ok(Shown {
-        image: made.image,
-        wall_ms: made.wall_ms,
-        cpu_ms: made.cpu_ms,
-        device_ms: made.device_ms,
-        stats: made.stats,
-        traffic_bytes_per_pixel: Some(made.traffic_bytes_per_pixel),
-        debug: made.debug,
-    })
+fn on_device(
+    device: &Device,
+    run: &mut DeviceRun,
+    frame: &afterimage::gpu::Frame<'_>,
+    debug: &[DebugView],
+) -> Result<MethodOutput, FrameError> {
+    let gpu = &device.gpu;
+    let encoder = || gpu.device.create_command_encoder(&Default::default());
+    let mut pictures = vec![];
+    for &view in debug {
+        let mut encoder = encoder();
+        run.record_view(&mut encoder, frame, view)?;
+        gpu.queue.submit([encoder.finish()]);
+        pictures.extend(run.debug().map(|picture| gpu.read_rgb(picture, 0)));
+    }
+    // Nothing else is under way when the watch starts.
+    gpu.wait();
+    let watch = Stopwatch::start();
+    let mut encoder = encoder();
+    run.record(&mut encoder, frame, true, device.clock.timestamps())?;
+    device.clock.resolve(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait();
+    let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+    let device_ms = device.clock.is_device().then(|| device.clock.read_ms(gpu, &watch));
+    let given = [frame.depth.is_some(), frame.motion.is_some(), frame.trust.is_some()];
+    let output = MethodOutput {
+        image: gpu.read_rgb(run.output(), 0),
+        wall_ms,
+        cpu_ms,
+        device_ms,
+        stats: run.stats(),
+        traffic_bytes_per_pixel: Some(run.post().desc().settings.traffic_bytes_per_pixel(given)),
+        debug: pictures,
+    };
+    gpu.check().map(|()| output)
 }
 
-fn oracle(best: &mut Option<Image<f32>>, lods: &Image<f32>, foveation: &Foveation, pyramid: &Pyramid) -> Shown {
+fn oracle(best: &mut Option<Image<f32>>, lods: &Image<f32>, foveation: &Foveation, pyramid: &Pyramid) -> MethodOutput {
     let watch = Stopwatch::start();
     let best = best.get_or_insert_with(|| lods.clone());
     for (b, &l) in best.pixels_mut().iter_mut().zip(lods.pixels()) {
         *b = b.min(l);
     }
     let image = foveation.render(pyramid, best);
-    Shown {
+    MethodOutput {
         image,
         wall_ms: watch.wall_ms(),
         cpu_ms: watch.cpu_ms(),

@@ -10,6 +10,7 @@ pub mod limits;
 pub mod motion_check;
 #[cfg(feature = "full")]
 mod open;
+mod peeked;
 #[cfg(feature = "full")]
 pub mod raster;
 #[cfg(feature = "full")]
@@ -22,6 +23,7 @@ pub mod still;
 pub mod traced;
 
 pub use analytic::AnalyticSource;
+pub use peeked::PeekedSource;
 #[cfg(feature = "full")]
 pub use limits::ReadLimits;
 #[cfg(feature = "full")]
@@ -38,6 +40,8 @@ pub use still::StillSource;
 pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
+#[cfg(feature = "full")]
+use crate::frame::DeviceFrame;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use glam::DMat4;
 
@@ -94,6 +98,12 @@ pub trait FrameSource {
         _guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
         Ok(None)
+    }
+
+    /// The frame that [`frame`](Self::frame) gave last, where it was rendered on a device and still lies there.
+    #[cfg(feature = "full")]
+    fn device_frame(&self) -> Option<DeviceFrame> {
+        None
     }
 
     /// Where the camera stands at playback position `index`; `None` if there is none that can be steered.

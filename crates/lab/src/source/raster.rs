@@ -6,7 +6,7 @@ use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::device::Headless;
 use crate::error::InputError;
-use crate::frame::SourceFrame;
+use crate::frame::{DeviceFrame, SourceFrame};
 use crate::raster::{Raster, RasterSettings};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
@@ -138,6 +138,17 @@ impl FrameSource for RasterSource {
             previous_from_current: Some(view.previous_from_current(&previous)),
             cut: index == 0,
             nonfinite,
+        })
+    }
+
+    fn device_frame(&self) -> Option<DeviceFrame> {
+        let targets = self.raster.targets();
+        Some(DeviceFrame {
+            device: self.device.clone(),
+            color: targets.color.clone(),
+            depth: targets.depth.clone(),
+            motion: targets.motion.clone(),
+            near: self.raster.near(),
         })
     }
 

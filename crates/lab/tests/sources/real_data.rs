@@ -6,7 +6,7 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{References, Scorer, Scores, encode};
-use afterimage_lab::pipeline::{LaneKind, Pipeline};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
@@ -54,11 +54,11 @@ struct Outcome {
     flushed: f64,
 }
 
-fn lane(method: Method) -> LaneKind {
-    LaneKind::PostProcess(Settings { method, ..Settings::default() })
+fn lane(method: Method) -> RunKind {
+    RunKind::PostProcess(Settings { method, ..Settings::default() })
 }
 
-fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcome {
+fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[RunKind]) -> Outcome {
     let info = source.info().clone();
     let hfov = clip.hfov_deg.or(info.hfov_deg).unwrap();
     let view = ViewGeometry::flat(info.size, hfov).unwrap();
@@ -76,7 +76,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[LaneKind]) -> Outcom
         let full = encode(&frame.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         last.clear();
-        for (scorer, shown) in scorers.iter_mut().zip(&step.shown) {
+        for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             assert!(shown.image.pixels().as_flattened().iter().all(|v| v.is_finite()));
             let shown_encoded = encode(&shown.image, 0.0);
             let errors = scorer.push(&reference, &shown_encoded, &step.tracked, &step.ecc_deg);
@@ -119,7 +119,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
         return;
     };
     let outcome =
-        play(open(&path).as_mut(), &Clip::default(), &[lane(Method::None), lane(Method::Wrs), LaneKind::Oracle]);
+        play(open(&path).as_mut(), &Clip::default(), &[lane(Method::None), lane(Method::Wrs), RunKind::Oracle]);
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");
     assert!(psnr(&outcome, 2) > psnr(&outcome, 1) && psnr(&outcome, 2) > psnr(&outcome, 0));
     assert!(retained(&outcome, 2) > 45.0, "the oracle shows what was seen");
@@ -138,7 +138,7 @@ fn the_oracle_agrees_with_an_independent_measurement() {
     };
     for (map, average, last) in [(GazeMap::Angle, 1.7, 2.7), (GazeMap::Fit, 2.2, 3.6)] {
         let clip = Clip { map, frames: 300, ..Clip::default() };
-        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), LaneKind::Oracle]);
+        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), RunKind::Oracle]);
         let gains = [psnr(&outcome, 1) - psnr(&outcome, 0), outcome.last_psnr_db[1] - outcome.last_psnr_db[0]];
         println!("{map:?}: oracle {:+.2} dB on average, {:+.2} dB in the last frame", gains[0], gains[1]);
         assert!((gains[0] - average).abs() < 0.3 && (gains[1] - last).abs() < 0.3);
@@ -188,6 +188,6 @@ fn a_4k_page_is_read_with_a_recorded_eye() {
     };
     let clip =
         Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
-    let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs), LaneKind::Oracle]);
+    let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs), RunKind::Oracle]);
     assert!(psnr(&outcome, 2) >= psnr(&outcome, 0));
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::source::is_scene;
 use clap::ValueEnum;
 
 /// Message when there is no adapter.
@@ -30,6 +31,11 @@ impl BackendName {
             ),
         };
         Ok(found.map_or(Backend::Cpu, Backend::Gpu))
+    }
+
+    /// Opens the backend for an input: with room for a scene, if it is one.
+    pub fn open_for(self, input: &str) -> Result<Backend, Failure> {
+        if is_scene(input) { self.open_for_scenes() } else { self.open() }
     }
 
     /// Opens the backend with the adapter's own limits on textures and buffers, since scenes exceed wgpu's defaults.

@@ -1,11 +1,11 @@
 //! Options of the input that `run`, `sweep` and `view` share, and opening it.
 
-use crate::args::backend::{BackendName, NO_ADAPTER};
+use crate::args::backend::NO_ADAPTER;
 use crate::args::paths::PathArgs;
 use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
-use afterimage_lab::device::Headless;
+use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::source;
 use afterimage_lab::source::{
     FrameSource, RasterSource, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,
@@ -55,9 +55,9 @@ pub enum SourceName {
     Trace,
 }
 
-/// Settings of `--source trace` that are no options of the input.
-pub struct Tracing {
-    pub backend: BackendName,
+/// Settings of renderers that are no options of the input.
+pub struct Rendering {
+    pub backend: Backend,
     pub seed: u64,
     /// Sampling pattern of foveated frames, and samples per pixel of their full-rate references; `None`: full-rate frames only.
     pub foveated: Option<(Sampling, u32)>,
@@ -65,7 +65,7 @@ pub struct Tracing {
 
 impl InputArgs {
     /// Opens files directly, and scenes with a renderer.
-    pub fn open(&self, tracing: &Tracing) -> Result<Box<dyn FrameSource + Send>, Failure> {
+    pub fn open(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
         let refuse = |option: &str| {
             Err(Failure::Input(format!(
                 "{option}: {} has frames already; give a scene (.gltf, .glb, builtin:NAME), or leave the option out",
@@ -73,8 +73,8 @@ impl InputArgs {
             )))
         };
         match (source::is_scene(&self.name), self.source, &self.camera) {
-            (true, Some(SourceName::Trace), _) => self.traced(tracing),
-            (true, ..) => self.rasterised(),
+            (true, Some(SourceName::Trace), _) => self.traced(rendering),
+            (true, ..) => self.rasterised(rendering),
             (false, Some(_), _) => refuse("--source"),
             (false, _, Some(_)) => refuse("--camera"),
             (false, None, None) => self.read(),
@@ -86,10 +86,13 @@ impl InputArgs {
         Ok(source::open(&self.name, &self.limits(), &self.scene_options())?)
     }
 
-    /// Opens a scene for rasterization, which needs a device even if the methods run on the CPU.
-    fn rasterised(&self) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        let device =
-            Headless::find_roomy(true).ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
+    /// Opens a scene for rasterization: on the methods' device, or, since it needs one, on any if they run on the CPU.
+    fn rasterised(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
+        let device = match &rendering.backend {
+            Backend::Gpu(device) => Some(device.clone()),
+            Backend::Cpu => Headless::find_roomy(true),
+        };
+        let device = device.ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
         let (limits, options) = (self.limits(), self.scene_options());
         let source = RasterSource::open(&self.name, &limits, &options, self.camera.as_deref(), device)?;
         warn(source.warnings());
@@ -97,13 +100,13 @@ impl InputArgs {
     }
 
     /// Opens a scene for path tracing.
-    fn traced(&self, tracing: &Tracing) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        let (foveated, full_rate_samples) = tracing.foveated.map_or((None, self.spp), |(s, n)| (Some(s), n));
+    fn traced(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
+        let (foveated, full_rate_samples) = rendering.foveated.map_or((None, self.spp), |(s, n)| (Some(s), n));
         let samples = TracedSamples { foveated, samples: self.spp, full_rate_samples };
-        let backend = tracing.backend.open_for_scenes()?;
-        let settings = self.paths.settings(tracing.seed)?;
+        let settings = self.paths.settings(rendering.seed)?;
         let (limits, options, camera) = (self.limits(), self.scene_options(), self.camera.as_deref());
-        let source = TracedSource::open(&self.name, &limits, &options, camera, &backend, settings, samples)?;
+        let backend = &rendering.backend;
+        let source = TracedSource::open(&self.name, &limits, &options, camera, backend, settings, samples)?;
         warn(source.warnings());
         Ok(Box::new(source))
     }

@@ -8,14 +8,14 @@ use crate::output::Output;
 use crate::progress;
 use crate::report::method::{MethodAccumulator, MethodReport, Share};
 use crate::report::sheet::{Column, Sheet};
-use afterimage::{DebugView, Foveation, Image, ViewGeometry};
+use afterimage::{DebugView, Foveation, FrameError, Image, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric;
 use afterimage_lab::metric::{Flip, Reference, References};
 use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::pipeline::{LaneKind, Pipeline, Step};
+use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
@@ -26,7 +26,7 @@ pub struct Clip {
     pub geometry: ViewGeometry,
     pub foveation: Foveation,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
-    pub methods: Vec<(&'static str, LaneKind)>,
+    pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
     pub exposure_ev: f32,
@@ -71,6 +71,21 @@ pub struct ClipReport {
     pub backend: String,
     /// Gaze position used for each frame, in frame pixels.
     pub gaze_px: Vec<[f32; 2]>,
+}
+
+/// Gives a frame to the pipeline, from the device where it was rendered, if it was.
+fn step(
+    pipeline: &mut Pipeline,
+    index: u64,
+    frame: &SourceFrame,
+    gaze: Option<[f32; 2]>,
+    #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "renders nothing"))] source: &dyn FrameSource,
+) -> Result<Step, FrameError> {
+    #[cfg(feature = "full")]
+    if let Some(rendered) = source.device_frame() {
+        return pipeline.step_on_device(index, frame, gaze, &rendered);
+    }
+    pipeline.step(index, frame, gaze)
 }
 
 /// Title of a contact sheet: input, size and foveation.
@@ -126,7 +141,7 @@ impl Clip {
         source: &mut dyn FrameSource,
         each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>,
     ) -> Result<Pipeline, Failure> {
-        let kinds: Vec<LaneKind> = self.methods.iter().map(|l| l.1).collect();
+        let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
@@ -150,7 +165,7 @@ impl Clip {
             let render_ms = foveated.as_ref().map(|_| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()));
             let step = match foveated {
                 Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
-                None => pipeline.step(index as u64, &frame, gaze)?,
+                None => step(&mut pipeline, index as u64, &frame, gaze, source)?,
             };
             let reference = references.next(&full, &step.tracked);
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
@@ -186,7 +201,7 @@ impl Clip {
         accumulators
             .par_iter_mut()
             .zip(&self.methods)
-            .zip(&step.shown)
+            .zip(&step.outputs)
             .map(|((accumulator, (name, _)), shown)| {
                 let encoded = metric::encode(&shown.image, self.exposure_ev);
                 accumulator.push(frame, reference, &encoded, shown, step);

@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::report::method::MethodReport;
 use afterimage::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::pipeline::LaneKind;
+use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: track.map,
         start_s: 0.0,
     };
-    let post_process = |method| LaneKind::PostProcess(Settings { method, ..Settings::default() });
+    let post_process = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation, facts.simulator),
         geometry,
@@ -57,7 +57,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
             ("none", post_process(Method::None)),
             ("wrs", post_process(Method::Wrs)),
             ("smr", post_process(Method::Smr)),
-            ("oracle", LaneKind::Oracle),
+            ("oracle", RunKind::Oracle),
         ],
         gaze: track.px,
         exposure_ev: 0.0,

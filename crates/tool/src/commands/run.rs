@@ -4,7 +4,7 @@ pub mod plan;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
-use crate::args::input::{InputArgs, SourceName, Tracing};
+use crate::args::input::{InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
@@ -15,6 +15,8 @@ use crate::failure::Failure;
 use crate::output::Output;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
+use afterimage_lab::device::Backend;
+use afterimage_lab::source::PeekedSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
 use std::ffi::OsString;
@@ -94,10 +96,10 @@ impl RunArgs {
         Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args)
     }
 
-    /// Settings for path tracing a scene.
-    pub fn tracing(&self) -> Result<Tracing, Failure> {
+    /// Settings for rendering a scene on `backend`.
+    pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
-        Ok(Tracing { backend: self.backend, seed: self.seed, foveated })
+        Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
     }
 
     /// Sampling pattern of traced frames; `None` if a simulator foveates full-rate frames.
@@ -146,12 +148,13 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// Runs the clip and writes its files; prints nothing.
 pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
-    let mut source = args.input.open(&args.tracing()?)?;
-    let plan = plan::plan(args, source.info())?;
-    // Check that the input can be read before writing anything.
-    source.frame(0)?;
+    let backend = args.backend.open_for(&args.input.name)?;
+    let mut source = args.input.open(&args.rendering(&backend)?)?;
+    let plan = plan::plan(args, source.info(), backend)?;
+    // The input can be read, or nothing is written.
+    let mut source = PeekedSource::new(source.as_mut())?;
     let out = Output::create(&args.out, &folders(args), "report.json")?;
-    let report = plan.clip.run(source.as_mut(), &out)?;
+    let report = plan.clip.run(&mut source, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
         fps: plan.fps,

@@ -24,7 +24,7 @@ mod viewer;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeMapName;
-use crate::args::input::{InputArgs, Tracing};
+use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
 use crate::failure::Failure;
 use app::App;
@@ -92,8 +92,9 @@ pub struct ViewArgs {
 
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
-    let tracing = Tracing { backend: BackendName::Auto, seed: args.seed, foveated: None };
-    let source = args.input.open(&tracing)?;
+    let backend = BackendName::Auto.open_for(&args.input.name)?;
+    let rendering = Rendering { backend, seed: args.seed, foveated: None };
+    let source = args.input.open(&rendering)?;
     let setup = Setup::new(args, source.info())?;
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())

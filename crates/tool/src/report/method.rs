@@ -4,7 +4,7 @@ use afterimage::Image;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{FrameErrors, Reference, Scorer, Scores, psnr_db};
-use afterimage_lab::pipeline::{Shown, Step};
+use afterimage_lab::pipeline::{MethodOutput, Step};
 use serde::{Deserialize, Serialize};
 
 /// Results of a method, as in `report.json`.
@@ -68,7 +68,7 @@ impl MethodAccumulator {
         frame: &SourceFrame,
         reference: &Reference<'_>,
         encoded: &Image<[f32; 3]>,
-        shown: &Shown,
+        shown: &MethodOutput,
         step: &Step,
     ) {
         self.last = Some(self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg));
@@ -92,7 +92,7 @@ impl MethodAccumulator {
         self.scorer.scores()
     }
 
-    /// Cost of the pass in each frame, [`Shown::cost_ms`].
+    /// Cost of the pass in each frame, [`MethodOutput::cost_ms`].
     pub fn cost_ms(&self) -> &[f64] {
         &self.cost_ms
     }

@@ -2,7 +2,6 @@
 //! paths advance together, one kernel at a time: `generate`, then for each bounce `extend`, `shade` and `shadow`. Only
 //! the device knows how many paths are still alive.
 
-mod clock;
 mod compute;
 mod expand;
 mod passes;
@@ -17,9 +16,8 @@ use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
 use super::work::Work;
 use super::world::World;
-use crate::device::Headless;
+use crate::device::{DeviceClock, Headless};
 use afterimage::{FrameError, Image};
-use clock::Clock;
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
@@ -152,9 +150,14 @@ impl GpuTracer {
         film: &mut Film,
     ) -> Option<Duration> {
         let work = work.into();
-        let clock = Clock::new(&self.device, batches(work).len() as u32);
+        let clock = DeviceClock::new(&self.device, batches(work).len() as u32);
         self.trace_batches(world, view, frame, work, film, clock.as_ref());
-        Some(clock?.read(&self.device))
+        let clock = clock?;
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        clock.resolve(&mut encoder, 0..batches(work).len() as u32);
+        self.device.queue.submit([encoder.finish()]);
+        let ms: f64 = clock.wait_ms(&self.device).iter().sum();
+        Some(Duration::from_secs_f64(ms * 1e-3))
     }
 
     fn trace_batches(
@@ -164,7 +167,7 @@ impl GpuTracer {
         frame: u64,
         work: Work,
         film: &mut Film,
-        clock: Option<&Clock>,
+        clock: Option<&DeviceClock>,
     ) {
         if batches(work).is_empty() {
             return;
@@ -198,7 +201,7 @@ impl GpuTracer {
             uniforms.items = batch.items;
             let mut encoder = device.create_command_encoder(&Default::default());
             self.expand.record(device, &mut encoder, expansion.as_ref(), &batch);
-            let timestamps = clock.map(|c| c.around(index));
+            let timestamps = clock.map(|c| c.writes(index));
             run.record(device, &mut encoder, &self.passes, &uniforms, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
             // Without waiting, a software device holds the memory of all batches at once.

@@ -3,15 +3,23 @@
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
 use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
+use afterimage::module;
+use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::{CreateError, Filter, FrameError, Gaze, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, CreateError, Filter, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
+use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use serde::Serialize;
-use wgpu::{Texture, TextureFormat, TextureUsages};
+use std::sync::Arc;
+use wgpu::{Texture, TextureUsages};
+
+static MODULES: &[Module] = &[module!("bench", "copy_pass")];
+
+/// Shaders of the benches, which may use the drop-in's modules.
+static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]);
 
 /// Untimed frames: pipelines compile, caches fill.
 const WARM_UP: u64 = 8;
@@ -41,17 +49,6 @@ struct PassReport {
     bytes_per_pixel: u32,
     /// Time of a copy that moves as many bytes, divided by the pass's time.
     share_of_copy_bandwidth: Option<f64>,
-}
-
-/// Textures of a frame in the formats that engines use.
-struct Inputs {
-    full: Texture,
-    /// The full-rate frame after the foveation simulator, at the frame's gaze.
-    color: Texture,
-    foveation: GpuSimulator,
-    depth: Texture,
-    motion: Texture,
-    output: Texture,
 }
 
 /// A pass that can be timed.
@@ -84,24 +81,29 @@ const PASSES: [PassSpec; 8] = [
 
 /// A pass, created on the device.
 enum CreatedPass {
-    Copy(Afterimage),
-    Post(Afterimage),
-    Foveate(GpuSimulator),
+    Post(DeviceRun),
+    Foveate { simulator: GpuSimulator, output: Texture },
 }
 
 impl CreatedPass {
-    fn new(gpu: &Headless, size: [u32; 2], kind: PassKind) -> Result<Self, CreateError> {
-        let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
-        desc.settings = Settings::paper();
+    fn new(gpu: &Arc<Headless>, size: [u32; 2], kind: PassKind) -> Result<Self, CreateError> {
+        let mut desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
         Ok(match kind {
-            PassKind::Copy => Self::Copy(Afterimage::new(&gpu.device, &desc)?),
+            PassKind::Copy => {
+                let source = SHADERS.compose("copy_pass").source;
+                Self::Post(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?)
+            }
             PassKind::Post(method) => {
                 desc.settings.method = method;
-                Self::Post(Afterimage::new(&gpu.device, &desc)?)
+                Self::Post(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?)
             }
             PassKind::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
-                Self::Foveate(GpuSimulator::new(&gpu.device, &desc)?)
+                let format = DeviceFormats::ENGINE.color;
+                Self::Foveate {
+                    simulator: GpuSimulator::new(&gpu.device, &desc, format)?,
+                    output: gpu.texture(size, 1, format, TextureUsages::STORAGE_BINDING),
+                }
             }
         })
     }
@@ -119,9 +121,9 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     let passes: Vec<&PassSpec> = PASSES.iter().filter(chosen).collect();
     let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
     let clock = PassClock::new(&gpu);
-    let mut inputs = Inputs::new(&gpu, size)?;
+    let mut inputs = inputs(&gpu, size)?;
     let first = views(size, 0)?;
-    inputs.foveate(&gpu, &first)?;
+    foveate(&gpu, &mut inputs, &first)?;
     let mut created = vec![];
     let mut cold_start_ms = 0.0;
     for spec in &passes {
@@ -136,7 +138,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     let mut times: Vec<Vec<f64>> = vec![vec![]; passes.len()];
     for index in 1..WARM_UP + frames {
         let views = views(size, index)?;
-        inputs.foveate(&gpu, &views)?;
+        foveate(&gpu, &mut inputs, &views)?;
         for (pass, times) in created.iter_mut().zip(&mut times) {
             let ms = time(&gpu, &clock, &inputs, pass, &views, index)?;
             if index >= WARM_UP {
@@ -211,108 +213,59 @@ fn print(report: &Report) {
 fn time(
     gpu: &Headless,
     clock: &PassClock,
-    inputs: &Inputs,
+    inputs: &DeviceInputs,
     pass: &mut CreatedPass,
     views: &[ViewFrame],
     index: u64,
 ) -> Result<f64, Failure> {
-    let color = if matches!(pass, CreatedPass::Foveate(_)) { &inputs.full } else { &inputs.color };
-    let frame = Frame {
-        depth: Some(&inputs.depth),
-        motion: Some(&inputs.motion),
-        timestamps: clock.timestamps(),
-        ..Frame::new(color, &inputs.output, views, index)
-    };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let watch = Stopwatch::start();
-    record(gpu, &mut encoder, pass, &frame)?;
+    match pass {
+        CreatedPass::Post(run) => {
+            run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), false, clock.timestamps())?;
+        }
+        CreatedPass::Foveate { simulator, output } => {
+            let frame = SimulatorFrame {
+                timestamps: clock.timestamps(),
+                ..SimulatorFrame::new(inputs.full(), output, views)
+            };
+            simulator.record(&gpu.device, &mut encoder, &frame)?;
+        }
+    }
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
     Ok(clock.read_ms(gpu, &watch))
 }
 
-fn record(
-    gpu: &Headless,
-    encoder: &mut wgpu::CommandEncoder,
-    pass: &mut CreatedPass,
-    frame: &Frame<'_>,
-) -> Result<(), FrameError> {
-    match pass {
-        CreatedPass::Copy(post) => post.record_copy(&gpu.device, encoder, frame).map(|_| ()),
-        CreatedPass::Post(post) => post.record(&gpu.device, encoder, frame).map(|_| ()),
-        CreatedPass::Foveate(foveation) => {
-            let foveated = SimulatorFrame {
-                timestamps: frame.timestamps,
-                ..SimulatorFrame::new(frame.color, frame.output, frame.views)
-            };
-            foveation.record(&gpu.device, encoder, &foveated)
-        }
-    }
-}
-
 /// A view whose gaze moves on a circle.
 fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
     let turn = index as f32 * 0.1;
     let px = [(0.5 + 0.3 * turn.cos()) * size[0] as f32, (0.5 + 0.3 * turn.sin()) * size[1] as f32];
-    let geometry = ViewGeometry::flat(size, 70.0)?;
-    Ok([ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None }])
+    Ok([ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px })])
 }
 
-impl Inputs {
-    /// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not follow, so
-    /// that half of the history is valid and half is rejected.
-    fn new(gpu: &Headless, size: [u32; 2]) -> Result<Self, Failure> {
-        let texture = |format, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("bench"),
-                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let upload = |texture: &Texture, bytes: &[u8]| {
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(bytes.len() as u32 / size[1]),
-                rows_per_image: None,
-            };
-            gpu.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
-        };
-        let pixels = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y]));
-        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-        let half = |v: f32| half_bits(v) as u16;
-        let mut desc = GpuDesc::new(size, TextureFormat::Rgba16Float);
-        desc.settings = Settings::paper();
-        let inputs = Self {
-            full: texture(TextureFormat::Rgba16Float, read),
-            color: texture(TextureFormat::Rgba16Float, TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING),
-            foveation: GpuSimulator::new(&gpu.device, &desc)?,
-            depth: texture(TextureFormat::R32Float, read),
-            motion: texture(TextureFormat::Rg16Float, read),
-            output: texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING),
-        };
-        let color: Vec<[u16; 4]> =
-            pixels().map(|[x, y]| [0, 1, 2, 3].map(|i| half(rng::unit_draw(rng::bits(x, y, i, 1))))).collect();
-        upload(&inputs.full, bytemuck::cast_slice(&color));
-        let depth: Vec<f32> = pixels().map(|[x, _]| if x / 64 % 2 == 0 { 3.0 } else { 12.0 }).collect();
-        upload(&inputs.depth, bytemuck::cast_slice(&depth));
-        let motion: Vec<[u16; 2]> =
-            pixels().map(|[x, _]| if x / 64 % 2 == 0 { [half(-3.0), half(1.0)] } else { [0, 0] }).collect();
-        upload(&inputs.motion, bytemuck::cast_slice(&motion));
-        Ok(inputs)
-    }
+/// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not follow, so that
+/// half of the history is valid and half is rejected.
+fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> {
+    let desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
+    let mut inputs = DeviceInputs::new(gpu, &desc, DeviceFormats::ENGINE)?;
+    let pixels = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y]));
+    let half = |v: f32| half_bits(v) as u16;
+    let color: Vec<[u16; 4]> =
+        pixels().map(|[x, y]| [0, 1, 2, 3].map(|i| half(rng::unit_draw(rng::bits(x, y, i, 1))))).collect();
+    let depth: Vec<f32> = pixels().map(|[x, _]| if x / 64 % 2 == 0 { 3.0 } else { 12.0 }).collect();
+    let motion: Vec<[u16; 2]> =
+        pixels().map(|[x, _]| if x / 64 % 2 == 0 { [half(-3.0), half(1.0)] } else { [0, 0] }).collect();
+    inputs.upload_bytes(bytemuck::cast_slice(&color), bytemuck::cast_slice(&depth), bytemuck::cast_slice(&motion));
+    Ok(inputs)
+}
 
-    /// Foveates the frame for these views.
-    fn foveate(&mut self, gpu: &Headless, views: &[ViewFrame]) -> Result<(), Failure> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.foveation.record(&gpu.device, &mut encoder, &SimulatorFrame::new(&self.full, &self.color, views))?;
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait();
-        Ok(())
-    }
+/// Foveates the frame for these views.
+fn foveate(gpu: &Headless, inputs: &mut DeviceInputs, views: &[ViewFrame]) -> Result<(), Failure> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    inputs.foveate(&mut encoder, views, None)?;
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait();
+    Ok(())
 }

@@ -9,7 +9,7 @@ use crate::clip::{Clip, title};
 use crate::failure::Failure;
 use afterimage::{Foveation, Method};
 use afterimage_lab::device::Backend;
-use afterimage_lab::pipeline::LaneKind;
+use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::source::SourceInfo;
 
 /// The clip of a run, and facts that its report needs.
@@ -20,7 +20,7 @@ pub struct Plan {
 }
 
 /// Plans a run on an input.
-pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
+pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
@@ -28,14 +28,13 @@ pub fn plan(args: &RunArgs, info: &SourceInfo) -> Result<Plan, Failure> {
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let foveation = foveation(args)?;
-    let mut methods: Vec<(&'static str, LaneKind)> = vec![];
+    let mut methods: Vec<(&'static str, RunKind)> = vec![];
     for &method in &args.method {
         if methods.iter().any(|m| m.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
         methods.push((method.name(), lane_kind(args, method, info.still)?));
     }
-    let backend = args.backend.open()?;
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
     Ok(Plan {
         fps,
@@ -72,7 +71,7 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
 }
 
 /// Pipeline stage of a method with these options. The oracle needs a still input.
-pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<LaneKind, Failure> {
+pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
     let method = match method {
         MethodName::None => Method::None,
@@ -83,7 +82,7 @@ pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<L
             let text = "--method oracle: needs simulated foveation; leave out --sampling";
             return Err(Failure::Input(text.into()));
         }
-        MethodName::Oracle if is_still => return Ok(LaneKind::Oracle),
+        MethodName::Oracle if is_still => return Ok(RunKind::Oracle),
         MethodName::Oracle => {
             return Err(Failure::Input(format!(
                 "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
@@ -98,7 +97,7 @@ pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<L
         if args.backend != BackendName::Gpu {
             return Err(Failure::Input("--without: works on the GPU only; add --backend gpu".into()));
         }
-        return Ok(LaneKind::Without(settings, part));
+        return Ok(RunKind::Without(settings, part));
     }
-    Ok(LaneKind::PostProcess(settings))
+    Ok(RunKind::PostProcess(settings))
 }

@@ -18,7 +18,7 @@ use afterimage_lab::device::{Backend, PassClock, copy_ms_per_byte};
 use afterimage_lab::metric;
 use afterimage_lab::metric::Flip;
 use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::pipeline::{LaneKind, Shown};
+use afterimage_lab::pipeline::{MethodOutput, RunKind};
 use afterimage_lab::source::FrameSource;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -64,8 +64,9 @@ fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
 /// Measures the points of a batch and saves the measurements.
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
-    let mut source = args.input.open(&args.tracing()?)?;
-    let plan = plan::plan(args, source.info())?;
+    let backend = args.backend.open_for(&args.input.name)?;
+    let mut source = args.input.open(&args.rendering(&backend)?)?;
+    let plan = plan::plan(args, source.info(), backend)?;
     let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
         methods.push((subject.method.name(), plan::lane_kind(&subject.args, subject.method, source.info().still)?));
@@ -87,10 +88,10 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     for (i, (subject, accumulator)) in batch.subjects.iter().zip(&sums.subjects).enumerate() {
         let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
         let rust = match clip.methods[i + 1].1 {
-            LaneKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
+            RunKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
             #[cfg(feature = "ablation")]
-            LaneKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
-            LaneKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
+            RunKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
+            RunKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
         };
         let measurement = Measurement {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -115,9 +116,9 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
 }
 
 /// The control method, the same in every batch: its time shows the drift of the machine's speed between batches.
-fn control(subject: &Subject) -> LaneKind {
+fn control(subject: &Subject) -> RunKind {
     let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
-    LaneKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
+    RunKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
 }
 
 fn timed(times: &[f64]) -> Quartiles {
@@ -143,17 +144,17 @@ fn play(
     let flip = Flip::for_view(&clip.geometry);
     let pipeline = clip.play(source, &mut |result| {
         let is_last = result.index + 1 == clip.gaze.len();
-        sums.control_ms.push(result.step.shown[0].cost_ms());
+        sums.control_ms.push(result.step.outputs[0].cost_ms());
         sums.render_ms.extend(result.render_ms);
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
         sums.samples = result.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
-        let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &Shown))| {
+        let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
             accumulator.push(result.frame, result.reference, &encoded, shown, result.step);
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };
-        let subjects = batch.subjects.par_iter().zip(&result.step.shown[1..]);
+        let subjects = batch.subjects.par_iter().zip(&result.step.outputs[1..]);
         sums.subjects.par_iter_mut().zip(subjects).try_for_each(of_subject)?;
         bar.inc(batch.subjects.len() as u64);
         Ok(())

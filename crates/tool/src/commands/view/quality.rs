@@ -9,6 +9,7 @@ use afterimage_lab::metric::psnr_db;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use glam::Vec3;
 use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
 
 /// Eccentricity where the periphery begins, degrees, as in the reports.
@@ -87,7 +88,7 @@ impl Quality {
         let constants = QualityConstants {
             ray_scale,
             ray_offset,
-            gaze_ray: viewing.geometry.ray(viewing.gaze_px).extend(0.0).to_array(),
+            gaze_ray: Vec3::from(viewing.geometry.ray(viewing.gaze_px)).extend(0.0).to_array(),
             size,
             gain: viewing.gain,
             from_deg: PERIPHERY_DEG,

@@ -8,6 +8,7 @@ use afterimage::gpu::Timestamps;
 use afterimage_lab::device::Headless;
 use bytemuck::{Pod, Zeroable};
 use image::RgbImage;
+use glam::Vec3;
 use wgpu::{
     BindGroup, BindGroupEntry, CommandEncoder, RenderPipeline, ShaderModule, Texture, TextureFormat, TextureUsages,
     TextureView,
@@ -192,7 +193,7 @@ impl Screen {
         let size = geometry.size_px().map(|s| s as f32);
         let (ray_scale, ray_offset) = geometry.scale_offset();
         let gaze_px = scene.gaze_px.unwrap_or([-1e6; 2]);
-        let direction = geometry.ray(gaze_px).normalize();
+        let direction = Vec3::from(geometry.ray(gaze_px)).normalize();
         let radius = (0.5 * scene.fovea_deg).to_radians();
         // Constant angular width: `RING_PX` at the center of the view.
         let half_width = 0.5 * RING_PX * ray_scale[0] / scene.layout.scale;
@@ -219,7 +220,7 @@ impl Screen {
 /// Upper bound on the ring's radius, pixels of the window: its radius away from the center of the view, where a degree spans most pixels.
 fn ring_reach_px(geometry: &ViewGeometry, gaze_px: [f32; 2], scene: &Scene<'_>) -> f32 {
     let ray = geometry.ray(gaze_px);
-    let (eccentricity, radius) = ((ray.length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());
+    let (eccentricity, radius) = ((Vec3::from(ray).length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());
     let outer = (eccentricity + radius).min(1.5);
     let (scale, _) = geometry.scale_offset();
     (outer.tan() - eccentricity.min(1.5).tan()) / scale[0].min(scale[1]) * scene.layout.scale + 8.0

@@ -1,0 +1,82 @@
+//! Times of passes by the device's own clock.
+
+use super::Headless;
+use afterimage::gpu::Timestamps;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wgpu::{Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, Features, QuerySet};
+
+/// Timestamps before and after each of a number of spans.
+#[derive(Debug)]
+pub struct DeviceClock {
+    queries: QuerySet,
+    resolved: Buffer,
+    readback: Buffer,
+    period_ms: f64,
+}
+
+impl DeviceClock {
+    /// A clock of `spans` spans. `None` if the device has no timestamps, or a query set cannot hold that many.
+    pub fn new(gpu: &Headless, spans: u32) -> Option<Self> {
+        let count = spans.checked_mul(2).filter(|n| (1..=wgpu::QUERY_SET_MAX_QUERIES).contains(n))?;
+        gpu.device.features().contains(Features::TIMESTAMP_QUERY).then(|| Self {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("timestamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count,
+            }),
+            resolved: gpu.buffer(u64::from(count) * 8, BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
+            readback: gpu.buffer(u64::from(count) * 8, BufferUsages::COPY_DST | BufferUsages::MAP_READ),
+            period_ms: f64::from(gpu.queue.get_timestamp_period()) * 1e-6,
+        })
+    }
+
+    /// Queries of a span, for a pass of the drop-in.
+    pub fn timestamps(&self, span: u32) -> Timestamps<'_> {
+        Timestamps { queries: &self.queries, begin: 2 * span, end: 2 * span + 1 }
+    }
+
+    /// Queries of a span, for a compute pass.
+    pub fn writes(&self, span: u32) -> ComputePassTimestampWrites<'_> {
+        ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(2 * span),
+            end_of_pass_write_index: Some(2 * span + 1),
+        }
+    }
+
+    /// Records the resolution of `spans`, whose passes were recorded before.
+    pub fn resolve(&self, encoder: &mut CommandEncoder, spans: Range<u32>) {
+        let bytes = u64::from(spans.end - spans.start) * 16;
+        encoder.resolve_query_set(&self.queries, 2 * spans.start..2 * spans.end, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, u64::from(spans.start) * 16, bytes);
+    }
+
+    /// Starts to read what was resolved and submitted. The flag is set when [`take_ms`](Self::take_ms) may be called.
+    pub fn start_reading(&self) -> Arc<AtomicBool> {
+        let done = Arc::new(AtomicBool::new(false));
+        let mapped = done.clone();
+        self.readback
+            .map_async(wgpu::MapMode::Read, .., move |result| mapped.store(result.is_ok(), Ordering::Release));
+        done
+    }
+
+    /// Milliseconds of every span, of which only those that were resolved mean anything; empty on a lost device.
+    pub fn take_ms(&self) -> Vec<f64> {
+        let ticks: Vec<u64> = match self.readback.slice(..).get_mapped_range() {
+            Ok(mapped) => mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect(),
+            Err(_) => vec![],
+        };
+        self.readback.unmap();
+        let spans = ticks.as_chunks::<2>().0;
+        spans.iter().map(|[begin, end]| end.saturating_sub(*begin) as f64 * self.period_ms).collect()
+    }
+
+    /// Waits for all that was submitted, and gives the milliseconds of every span.
+    pub fn wait_ms(&self, gpu: &Headless) -> Vec<f64> {
+        self.start_reading();
+        gpu.wait();
+        self.take_ms()
+    }
+}

@@ -1,0 +1,318 @@
+//! The pipeline on a device: frames are uploaded or rendered there once, foveated there, and given to the methods there. `run`, the
+//! window and benches share it.
+
+use super::needs_lod;
+use crate::device::Headless;
+use crate::frame::{DeviceFrame, SourceFrame};
+use crate::shader::SHADERS;
+use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
+use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps, array_view, filled};
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, FrameStats, Image, Reset, ViewFrame};
+use std::sync::Arc;
+use wgpu::{BindingResource, Buffer, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
+
+/// Formats of a pipeline's textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeviceFormats {
+    /// Of the full-rate frame, the foveated frame and outputs: `Rgba32Float` or `Rgba16Float`.
+    pub color: TextureFormat,
+    /// Of motion vectors: `Rg32Float` or `Rg16Float`.
+    pub motion: TextureFormat,
+}
+
+impl DeviceFormats {
+    /// Full floats: the numbers of frames in memory, exactly.
+    pub const EXACT: Self = Self { color: TextureFormat::Rgba32Float, motion: TextureFormat::Rg32Float };
+    /// Halves, as engines have them.
+    pub const ENGINE: Self = Self { color: TextureFormat::Rgba16Float, motion: TextureFormat::Rg16Float };
+}
+
+const WRITTEN: TextureUsages =
+    TextureUsages::TEXTURE_BINDING.union(TextureUsages::STORAGE_BINDING).union(TextureUsages::COPY_SRC);
+
+/// Inputs of the methods on a device: one full-rate frame, and the foveated one that a simulator makes of it.
+#[derive(Debug)]
+pub struct DeviceInputs {
+    gpu: Arc<Headless>,
+    size: [u32; 2],
+    formats: DeviceFormats,
+    full: Texture,
+    depth: Texture,
+    motion: Texture,
+    /// All zero, for a frame that is shown again.
+    no_motion: Texture,
+    trust: Texture,
+    lod: Texture,
+    noise: Texture,
+    foveated: Texture,
+    simulator: GpuSimulator,
+    import: Option<ComputeShader>,
+    given: Given,
+}
+
+/// Inputs that the current frame has.
+#[derive(Clone, Copy, Debug, Default)]
+struct Given {
+    depth: bool,
+    motion: bool,
+    trust: bool,
+    lod: bool,
+    noise: bool,
+}
+
+impl DeviceInputs {
+    /// Textures of `desc`'s size, and a simulator of the foveation in its settings.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
+    pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, formats: DeviceFormats) -> Result<Self, CreateError> {
+        let texture = |format, usage| gpu.texture(desc.size_px, 1, format, usage);
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
+        Ok(Self {
+            size: desc.size_px,
+            formats,
+            full: texture(formats.color, read | TextureUsages::STORAGE_BINDING),
+            depth: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
+            motion: texture(formats.motion, read),
+            no_motion: texture(formats.motion, read),
+            trust: texture(TextureFormat::R32Float, read),
+            lod: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
+            noise: texture(TextureFormat::Rg32Float, read),
+            foveated: texture(formats.color, WRITTEN | TextureUsages::COPY_DST),
+            simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
+            import: None,
+            given: Given::default(),
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Follows another foveation.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn set_foveation(&mut self, desc: &ContextDesc) -> Result<(), CreateError> {
+        if desc.settings.foveation != self.simulator.desc().settings.foveation {
+            self.simulator = GpuSimulator::new(&self.gpu.device, desc, self.formats.color)?;
+        }
+        Ok(())
+    }
+
+    /// Uploads a full-rate frame, in [`DeviceFormats::EXACT`].
+    pub fn upload(&mut self, frame: &SourceFrame) {
+        self.gpu.write_rgb(&self.full, 0, &frame.color);
+        self.upload_geometry(frame);
+    }
+
+    /// Takes a full-rate frame that was rendered on this device: the same numbers as [`upload`](Self::upload) of the frame that is read
+    /// back. Records into `encoder`.
+    pub fn import(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame) {
+        let device = &self.gpu.device;
+        let import = self.import.get_or_insert_with(|| {
+            let types = [
+                uniform(),
+                float_texture(),
+                float_texture(),
+                storage_texture(self.formats.color),
+                storage_texture(TextureFormat::R32Float),
+            ];
+            ComputeShader::new(device, "import", SHADERS.compose("import_pass").source, &types)
+        });
+        let near = filled(device, "near", &frame.near.to_ne_bytes(), BufferUsages::UNIFORM);
+        let views = [&frame.color, &frame.depth, &self.full, &self.depth].map(array_view);
+        let resources = std::iter::once(near.as_entire_binding()).chain(views.iter().map(BindingResource::TextureView));
+        let group = import.group(device, resources);
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            import.dispatch(device, &mut pass, &[], &group, self.size, 1);
+        }
+        let size = frame.motion.size();
+        encoder.copy_texture_to_texture(frame.motion.as_image_copy(), self.motion.as_image_copy(), size);
+        self.given = Given { depth: true, motion: true, ..Given::default() };
+    }
+
+    /// Uploads a frame that its source foveated, with what the full-rate frame `frame` knows besides color.
+    pub fn upload_foveated(
+        &mut self,
+        frame: &SourceFrame,
+        color: &Image<[f32; 3]>,
+        lod: Option<&Image<f32>>,
+        noise: Option<&Image<[f32; 2]>>,
+    ) {
+        self.upload_geometry(frame);
+        self.gpu.write_rgb(&self.foveated, 0, color);
+        if let Some(lod) = lod {
+            self.gpu.write(&self.lod, 0, lod);
+        }
+        if let Some(noise) = noise {
+            self.gpu.write(&self.noise, 0, noise);
+        }
+        (self.given.lod, self.given.noise) = (lod.is_some(), noise.is_some());
+    }
+
+    fn upload_geometry(&mut self, frame: &SourceFrame) {
+        for (image, texture) in [(&frame.depth, &self.depth), (&frame.trust, &self.trust)] {
+            if let Some(image) = image {
+                self.gpu.write(texture, 0, image);
+            }
+        }
+        if let Some(motion) = &frame.motion {
+            self.gpu.write(&self.motion, 0, motion);
+        }
+        self.given = Given {
+            depth: frame.depth.is_some(),
+            motion: frame.motion.is_some(),
+            trust: frame.trust.is_some(),
+            ..Given::default()
+        };
+    }
+
+    /// Uploads bytes of texels to the full-rate frame, its depth and its motion, in the formats of the textures.
+    pub fn upload_bytes(&mut self, color: &[u8], depth: &[u8], motion: &[u8]) {
+        for (texture, bytes) in [(&self.full, color), (&self.depth, depth), (&self.motion, motion)] {
+            self.gpu.write_bytes(texture, 0, bytes);
+        }
+        self.given = Given { depth: true, motion: true, ..Given::default() };
+    }
+
+    /// Records the simulator: foveates the full-rate frame for the gaze of `views`.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a view does not fit.
+    pub fn foveate(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        views: &[ViewFrame],
+        timestamps: Option<Timestamps<'_>>,
+    ) -> Result<(), FrameError> {
+        let needs_lod = needs_lod(self.simulator.desc().settings.foveation.filter);
+        let lod = needs_lod.then_some(&self.lod);
+        let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, views) };
+        self.simulator.record(&self.gpu.device, encoder, &frame)?;
+        (self.given.lod, self.given.noise) = (needs_lod, false);
+        Ok(())
+    }
+
+    /// The foveated frame, for the methods. `use_trust`: with the trust mask, if there is one.
+    pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
+        let given = self.given;
+        Frame {
+            depth: given.depth.then_some(&self.depth),
+            motion: given.motion.then_some(&self.motion),
+            trust: (given.trust && use_trust).then_some(&self.trust),
+            lod: given.lod.then_some(&self.lod),
+            noise: given.noise.then_some(&self.noise),
+            reset,
+            ..Frame::new(&self.foveated, views, index)
+        }
+    }
+
+    /// The same frame once more: nothing has moved since.
+    pub fn again<'a>(&'a self, frame: Frame<'a>) -> Frame<'a> {
+        Frame { motion: frame.motion.map(|_| &self.no_motion), ..frame }
+    }
+
+    /// The full-rate frame.
+    pub fn full(&self) -> &Texture {
+        &self.full
+    }
+
+    /// The foveated frame.
+    pub fn foveated(&self) -> &Texture {
+        &self.foveated
+    }
+}
+
+/// A method's run on a device: its context, its output and its counters.
+#[derive(Debug)]
+pub struct DeviceRun {
+    gpu: Arc<Headless>,
+    post: Afterimage,
+    output: Texture,
+    counters: Buffer,
+    debug: Option<Texture>,
+}
+
+impl DeviceRun {
+    /// A run with `desc`'s settings and outputs of the format of `formats`.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
+    pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, formats: DeviceFormats) -> Result<Self, CreateError> {
+        Ok(Self::of(gpu, Afterimage::new(&gpu.device, desc, formats.color)?, formats))
+    }
+
+    /// A run with another text of the method's pass.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn with_shader(
+        gpu: &Arc<Headless>,
+        desc: &ContextDesc,
+        formats: DeviceFormats,
+        source: &str,
+    ) -> Result<Self, CreateError> {
+        Ok(Self::of(gpu, Afterimage::with_shader(&gpu.device, desc, formats.color, source)?, formats))
+    }
+
+    fn of(gpu: &Arc<Headless>, post: Afterimage, formats: DeviceFormats) -> Self {
+        let output = gpu.texture(post.desc().size_px, 1, formats.color, WRITTEN);
+        Self { post, output, counters: gpu.counters(), debug: None, gpu: gpu.clone() }
+    }
+
+    /// The context.
+    pub fn post(&self) -> &Afterimage {
+        &self.post
+    }
+
+    /// The context, to change its settings or to empty its history.
+    pub fn post_mut(&mut self) -> &mut Afterimage {
+        &mut self.post
+    }
+
+    /// Records the method's pass. `count`: with counts of what becomes of the pixels, for [`stats`](Self::stats).
+    ///
+    /// # Errors
+    /// [`FrameError`] if the frame does not fit.
+    pub fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        count: bool,
+        timestamps: Option<Timestamps<'_>>,
+    ) -> Result<Recorded, FrameError> {
+        let counters = count.then_some(&self.counters);
+        let target = Target { counters, timestamps, ..Target::new(&self.output) };
+        self.post.record(&self.gpu.device, encoder, frame, target)
+    }
+
+    /// Records a debug view of the decisions that [`record`](Self::record) of the same frame would make. Call it before.
+    ///
+    /// # Errors
+    /// As for `record`.
+    pub fn record_view(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        view: DebugView,
+    ) -> Result<Recorded, FrameError> {
+        let (gpu, size, format) = (&self.gpu, self.post.desc().size_px, self.output.format());
+        let debug = &*self.debug.get_or_insert_with(|| gpu.texture(size, 1, format, WRITTEN));
+        self.post.record_view(&gpu.device, encoder, frame, debug, view)
+    }
+
+    /// The frame that the user sees.
+    pub fn output(&self) -> &Texture {
+        &self.output
+    }
+
+    /// The picture of the last [`record_view`](Self::record_view).
+    pub fn debug(&self) -> Option<&Texture> {
+        self.debug.as_ref()
+    }
+
+    /// Waits for all that was submitted, and reads the counts of the last frame.
+    pub fn stats(&self) -> FrameStats {
+        self.gpu.read_counters(&self.counters)
+    }
+}

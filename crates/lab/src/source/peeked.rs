@@ -1,0 +1,60 @@
+//! A source whose first frame was read ahead.
+
+use super::{FrameSource, SourceInfo, Stance};
+#[cfg(feature = "full")]
+use crate::frame::DeviceFrame;
+use crate::error::InputError;
+use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+use glam::DMat4;
+
+/// Reads frame 0 when it is made, as a check that the input can be read, and hands that out when it is asked for first.
+pub struct PeekedSource<'a> {
+    source: &'a mut dyn FrameSource,
+    first: Option<SourceFrame>,
+}
+
+impl<'a> PeekedSource<'a> {
+    /// Reads frame 0 of `source`.
+    ///
+    /// # Errors
+    /// As for [`FrameSource::frame`].
+    pub fn new(source: &'a mut dyn FrameSource) -> Result<Self, InputError> {
+        let first = Some(source.frame(0)?);
+        Ok(Self { source, first })
+    }
+}
+
+impl FrameSource for PeekedSource<'_> {
+    fn info(&self) -> &SourceInfo {
+        self.source.info()
+    }
+
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        match self.first.take() {
+            Some(first) if index == 0 => Ok(first),
+            _ => self.source.frame(index),
+        }
+    }
+
+    fn foveated(
+        &mut self,
+        index: u64,
+        gaze_px: [f32; 2],
+        guide: Option<&Guide>,
+    ) -> Result<Option<FoveatedFrame>, InputError> {
+        self.source.foveated(index, gaze_px, guide)
+    }
+
+    #[cfg(feature = "full")]
+    fn device_frame(&self) -> Option<DeviceFrame> {
+        self.source.device_frame()
+    }
+
+    fn stance(&self, index: u64) -> Option<Stance> {
+        self.source.stance(index)
+    }
+
+    fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
+        self.source.steer(index, before_and_now);
+    }
+}
