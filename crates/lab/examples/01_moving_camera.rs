@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
-    ContextDesc, DepthConvention, Gaze, Image, MotionConvention, MotionDirection, MotionUnit, Reset, Settings, Verdict,
+    ContextDesc, DepthConvention, Gaze, Image, MotionConvention, MotionDirection, MotionUnit, Reset, Verdict,
     ViewFrame, YAxis,
 };
 use afterimage_lab::source::{AnalyticSource, FrameSource};
@@ -31,17 +31,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = source.frame(index)?;
         // What that engine's G-buffer would hold.
         let scale = desc.motion.to_internal(size);
-        let motion = frame.motion.map(|m| m.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
-        let depth = frame.depth.map(|d| d.map(|z| near / z));
-        let facts = ViewFrame {
-            geometry: *source.view(),
-            gaze: Gaze::At { px: [160.0, 90.0] },
+        let motion = frame.motion.ok_or("no motion")?.map(|v| [v[0] / scale[0], v[1] / scale[1]]);
+        let depth = frame.depth.ok_or("no depth")?.map(|z| near / z);
+        let views = [ViewFrame {
             previous_from_current: frame.previous_from_current,
-        };
-        let view = CpuView { depth: depth.as_ref(), motion: motion.as_ref(), ..CpuView::new(facts, &frame.color) };
+            ..ViewFrame::new(*source.view(), Gaze::At { px: [160.0, 90.0] })
+        }];
         // A cut at frame 20: nothing of the frames before is true any more.
         let reset = if index == 20 { Reset::All } else { Reset::None };
-        let stats = post.process(&CpuFrame { reset, ..CpuFrame::new(&[view], index) }, &mut output, None)?;
+        // One image a view.
+        let (color, depth, motion) = ([&frame.color], [&depth], [&motion]);
+        let frame =
+            Frame { depth: Some(&depth), motion: Some(&motion), reset, ..Frame::new(&color, &views, index) };
+        let stats = post.process(&frame, &mut output)?;
         let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
         println!(
             "frame {index:2}: history valid {:5.1} %, disoccluded {:4.1} %, from outside {:4.1} %, reset {:5.1} %",

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::{
     ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, MotionUnit, Verdict, ViewFrame, YAxis,
 };
@@ -35,10 +35,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let motion = gpu.texture(size, 1, TextureFormat::Rg32Float, read);
     let output = gpu.texture(size, 1, TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING);
     let counters = gpu.counters();
-    for (name, context) in [("as it is", right), ("with the wrong sign", wrong)] {
+    for (name, desc) in [("as it is", right), ("with the wrong sign", wrong)] {
         let mut source = AnalyticSource::new("occluder", size, 70.0, 60.0)?;
-        let desc = GpuDesc { context, ..GpuDesc::new(size, output.format()) };
-        let mut post = Afterimage::new(&gpu.device, &desc)?;
+        let mut post = Afterimage::new(&gpu.device, &desc, output.format())?;
         println!("motion {name}");
         for index in 0..20 {
             let frame = source.frame(index)?;
@@ -48,18 +47,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             gpu.write(&depth, 0, &frame.depth.ok_or("no depth")?.map(|z| near / z));
             gpu.write(&motion, 0, &frame.motion.ok_or("no motion")?.map(|v| [v[0] / scale[0], v[1] / scale[1]]));
             let views = [ViewFrame {
-                geometry: *source.view(),
-                gaze: Gaze::At { px: [160.0, 90.0] },
                 previous_from_current: frame.previous_from_current,
+                ..ViewFrame::new(*source.view(), Gaze::At { px: [160.0, 90.0] })
             }];
             let frame = Frame {
                 depth: Some(&depth),
                 motion: Some(&motion),
-                counters: Some(&counters),
-                ..Frame::new(&color, &output, &views, index)
+                ..Frame::new(&color, &views, index)
             };
+            let target = Target { counters: Some(&counters), ..Target::new(&output) };
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            post.record(&gpu.device, &mut encoder, &frame)?;
+            post.record(&gpu.device, &mut encoder, &frame, target)?;
             gpu.queue.submit([encoder.finish()]);
             if index % 6 == 1 {
                 let stats = gpu.read_counters(&counters);

@@ -2,8 +2,8 @@
 //!
 //! `cargo run -p afterimage-lab --example 05_cpu_fallback`; writes `out/05_cpu_fallback.png`
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::cpu::{self, CpuAfterimage};
+use afterimage::gpu::{self, Afterimage};
 use afterimage::simulator::Pyramid;
 use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
@@ -23,31 +23,31 @@ enum Post {
 
 impl Post {
     fn new(gpu: Option<Arc<Headless>>, settings: Settings) -> Result<Self, Box<dyn std::error::Error>> {
+        let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
         let Some(gpu) = gpu else {
-            return Ok(Self::Cpu(Box::new(CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) })?)));
+            return Ok(Self::Cpu(Box::new(CpuAfterimage::new(&desc)?)));
         };
-        let desc = GpuDesc { settings, ..GpuDesc::new(SIZE, TextureFormat::Rgba32Float) };
         let texture = |usage| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage);
         Ok(Self::Gpu {
-            post: Box::new(Afterimage::new(&gpu.device, &desc)?),
+            post: Box::new(Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba32Float)?),
             color: texture(TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST),
             output: texture(TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
             gpu,
         })
     }
 
-    fn show(&mut self, index: u64, color: &Image<[f32; 3]>, facts: ViewFrame) -> Result<Image<[f32; 3]>, FrameError> {
+    fn show(&mut self, index: u64, color: &Image<[f32; 3]>, view: ViewFrame) -> Result<Image<[f32; 3]>, FrameError> {
         match self {
             Self::Cpu(post) => {
                 let mut shown = [Image::filled(SIZE, [0.0; 3])];
-                post.process(&CpuFrame::new(&[CpuView::new(facts, color)], index), &mut shown, None)?;
+                post.process(&cpu::Frame::new(&[color], &[view], index), &mut shown)?;
                 let [shown] = shown;
                 Ok(shown)
             }
             Self::Gpu { gpu, post, color: input, output } => {
                 gpu.write_rgb(input, 0, color);
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                post.record(&gpu.device, &mut encoder, &Frame::new(input, output, &[facts], index))?;
+                post.record(&gpu.device, &mut encoder, &gpu::Frame::new(input, &[view], index), &*output)?;
                 gpu.queue.submit([encoder.finish()]);
                 Ok(gpu.read_rgb(output, 0))
             }

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p afterimage-lab --example 06_debug_views`; writes `out/06_debug_views.png`
 
-use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+use afterimage::gpu::{Afterimage, Frame};
 use afterimage::simulator::Pyramid;
-use afterimage::{DebugView, Foveation, Gaze, Image, ViewFrame};
+use afterimage::{ContextDesc, DebugView, Foveation, Gaze, Image, ViewFrame};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let depth = gpu.texture(size, 1, TextureFormat::R32Float, read);
     let motion = gpu.texture(size, 1, TextureFormat::Rg32Float, read);
     let output = gpu.texture(size, 1, TextureFormat::Rgba32Float, write);
-    let mut post = Afterimage::new(&gpu.device, &GpuDesc::new(size, output.format()))?;
+    let mut post = Afterimage::new(&gpu.device, &ContextDesc::new(size), output.format())?;
 
     let mut pictures = vec![];
     for index in 0..20 {
@@ -38,22 +38,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         gpu.write(&depth, 0, &frame.depth.ok_or("no depth")?);
         gpu.write(&motion, 0, &frame.motion.ok_or("no motion")?);
         let views = [ViewFrame {
-            geometry: *source.view(),
-            gaze: Gaze::At { px },
             previous_from_current: frame.previous_from_current,
+            ..ViewFrame::new(*source.view(), Gaze::At { px })
         }];
-        let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &output, &views, index) };
+        let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
         if index == 19 {
             // Before the frame itself is recorded, which moves the history on.
             for view in VIEWS {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                post.record_view(&gpu.device, &mut encoder, &frame, view)?;
+                post.record_view(&gpu.device, &mut encoder, &frame, &output, view)?;
                 gpu.queue.submit([encoder.finish()]);
                 pictures.push(gpu.read_rgb(&output, 0));
             }
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        post.record(&gpu.device, &mut encoder, &frame)?;
+        post.record(&gpu.device, &mut encoder, &frame, &output)?;
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -65,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all("out")?;
     write_png("out/06_debug_views.png".as_ref(), &to_rgb8(&encode(&sheet, 0.0)))?;
     println!("row by row {VIEWS:?}: out/06_debug_views.png");
-    println!("weight and age: black is none; survival: black is forgotten; gate: black is shut");
-    println!("flush: grey valid, red disoccluded, orange off screen; motion: grey none, red to the right");
+    println!("quality and age: black is none; survival: black is forgotten; gate: black is shut");
+    println!("rejection: grey valid, red disoccluded, orange off screen; motion: grey none, red to the right");
     Ok(())
 }

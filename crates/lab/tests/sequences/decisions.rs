@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, View, make_texture};
 use super::sequences::{SIZE, reset, trust, view};
-use afterimage::gpu::{Frame, Recorded};
+use afterimage::gpu::{Frame, Recorded, Target};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::{
     COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
@@ -95,9 +95,10 @@ fn counters_without_room_or_use_are_refused() {
     ] {
         let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
         let buffer = rig.device.create_buffer(&desc);
-        let frame = Frame { counters: Some(&buffer), ..Frame::new(&color, &output, &facts, 0) };
+        let frame = Frame::new(&color, &facts, 0);
+        let target = Target { counters: Some(&buffer), ..Target::new(&output) };
         let mut encoder = rig.device.create_command_encoder(&Default::default());
-        let error = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap_err();
+        let error = rig.gpu.record(&rig.device, &mut encoder, &frame, target).unwrap_err();
         println!("{error}");
         assert!(matches!(error, FrameError::Buffer { input: "counters", .. }));
         assert!(error.to_string().contains(word), "{error}");
@@ -118,9 +119,9 @@ fn h63_what_is_odd_about_the_gaze_is_said_at_once() {
         let views = gazes.map(|gaze| ViewFrame { gaze, ..facts });
         let mut encoder = rig.device.create_command_encoder(&Default::default());
         index += 1;
-        let frame = Frame::new(&color, &output, &views, index);
-        let seen = rig.gpu.record_view(&rig.device, &mut encoder, &frame, DebugView::Gate).unwrap();
-        let recorded = rig.gpu.record(&rig.device, &mut encoder, &frame).unwrap();
+        let frame = Frame::new(&color, &views, index);
+        let seen = rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Gate).unwrap();
+        let recorded = rig.gpu.record(&rig.device, &mut encoder, &frame, &output).unwrap();
         assert_eq!(seen, recorded, "a view moves no state");
         rig.queue.submit([encoder.finish()]);
         recorded

@@ -4,7 +4,7 @@ use super::rig::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated};
 use super::surfaces_variants::{both_methods, settings};
-use afterimage::gpu::{Afterimage, GpuDesc};
+use afterimage::gpu::Afterimage;
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Reset, Settings, ViewFrame};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::holds;
@@ -165,9 +165,8 @@ fn memory_bytes_is_what_is_made() {
     ] {
         let base = settings(method);
         let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-        let context = ContextDesc { view_count, ..ContextDesc::new(size) };
-        let desc = GpuDesc { context, settings, ..GpuDesc::new(size, TextureFormat::Rgba16Float) };
-        let post = Afterimage::new(&device, &desc).unwrap();
+        let desc = ContextDesc { view_count, settings, ..ContextDesc::new(size) };
+        let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
         // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never rounds.
         let levels = if method == Method::Taa { 0 } else { 5 + u64::from(filter == Filter::Block) };
         let padded = |len: u32| u64::from(len.div_ceil(2)).next_multiple_of(1 << (levels.max(1) - 1));

@@ -23,8 +23,8 @@ fn to_next(view: &ViewGeometry, depth: &Image<f32>, next_from_current: Mat4) -> 
     Image::from_fn(SIZE, |[x, y]| {
         let px = [x as f32, y as f32];
         let z = depth.at(x as usize, y as usize).min(1e6);
-        let point: Vec3 = next_from_current.transform_point3(view.ray(px) * z);
-        let there = view.project(point).expect("in front of the camera");
+        let point: Vec3 = next_from_current.transform_point3(Vec3::from(view.ray(px)) * z);
+        let there = view.project(point.into()).expect("in front of the camera");
         [there[0] - px[0], there[1] - px[1]]
     })
 }

@@ -4,7 +4,7 @@
 #[path = "../../../lab/tests/common/sound_scene.rs"]
 mod sound_scene;
 
-use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
     Bias, ContextDesc, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method, Reset, Sampler,
     Settings, Smr, ViewFrame, ViewGeometry,
@@ -138,27 +138,26 @@ pub fn settings(bytes: &[u8]) {
         let gaze = if has(0) { Gaze::At { px: [bits.float(), bits.float()] } } else { Gaze::Lost };
         let row = |bits: &mut Bits| [0; 4].map(|_| bits.float());
         let previous_from_current = has(8).then(|| [0; 4].map(|_| row(&mut bits)));
-        let facts = ViewFrame { geometry, gaze, previous_from_current };
-        let views = [CpuView {
+        let views = [ViewFrame { geometry, gaze, previous_from_current }];
+        let (color, depth, motion) = ([&color], [&depth], [&motion]);
+        let (trust, lod, noise) = ([&trust], [&lod], [&noise]);
+        let frame = Frame {
             depth: has(1).then_some(&depth),
             motion: has(2).then_some(&motion),
             trust: has(3).then_some(&trust),
             lod: has(4).then_some(&lod),
-            noise: post.settings().noisy.then_some(&noise),
-            ..CpuView::new(facts, &color)
-        }];
-        let frame = CpuFrame {
+            noise: post.desc().settings.noisy.then_some(&noise),
             reset: if has(5) { Reset::All } else { Reset::None },
             exposure: if has(6) { Exposure::Changed { ratio: bits.float() } } else { Exposure::Same },
-            ..CpuFrame::new(&views, index)
+            ..Frame::new(&color, &views, index)
         };
         let mut shown = [Image::filled(SIZE, [f32::NAN; 3])];
-        if let Err(refused) = post.process(&frame, &mut shown, None) {
+        if let Err(refused) = post.process(&frame, &mut shown) {
             assert!(!refused.to_string().contains('\n'));
             continue;
         }
-        assert!(shown[0].pixels().iter().flatten().all(|v| v.is_finite()), "{:?}", post.settings());
-        if has(7) && post.settings().method == Method::Wrs {
+        assert!(shown[0].pixels().iter().flatten().all(|v| v.is_finite()), "{:?}", post.desc().settings);
+        if has(7) && post.desc().settings.method == Method::Wrs {
             let words: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|_| [bits.word(), bits.word(), bits.word()]).collect();
             post.restore_history(&words);
         }

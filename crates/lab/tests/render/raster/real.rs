@@ -128,7 +128,7 @@ fn vectors_explain_the_next_frame() {
             let (s, t, i, j) = (px - i, py - j, i as usize, j as usize);
             let ray = source.views(4).0[0].geometry().ray([x as f32, y as f32]);
             let z = depth.at(x, y);
-            let expected = (row[0] * ray.x + row[1] * ray.y + row[2]) * z + row[3];
+            let expected = (row[0] * ray[0] + row[1] * ray[1] + row[2]) * z + row[3];
             let four = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
             if !four.iter().all(|&(i, j)| (previous.at(i, j) / expected - 1.0).abs() < 0.02) {
                 continue;

@@ -64,7 +64,7 @@ proptest! {
         let path = path_of(vec![at(0.0, [x, y])]).unwrap();
         let px = FrameGaze::new(&path, &view, GazeMap::Angle, 0.0, 60.0).unwrap().px(0).unwrap();
         let on_screen = [(f64::from(x) - 512.0) * 38.0 / 1024.0 / 67.0, (f64::from(y) - 384.0) * 30.0 / 768.0 / 67.0];
-        let ray = view.ray(px).as_dvec3();
+        let ray = glam::DVec3::from(view.ray(px).map(f64::from));
         let angle = |x: f64, y: f64| x.hypot(y).atan().to_degrees();
         prop_assert!((angle(ray.x, ray.y) - angle(on_screen[0], on_screen[1])).abs() < 1e-4);
         // Same direction too: the tangents agree one by one, so left stays left and up stays up.

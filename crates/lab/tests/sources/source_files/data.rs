@@ -27,8 +27,8 @@ fn by_camera(frame: &SourceFrame, view: &ViewGeometry, x: usize, y: usize) -> ([
     let rows = frame.previous_from_current.unwrap();
     let matrix = Mat4::from_cols_array_2d(&rows).transpose();
     let z = frame.depth.as_ref().unwrap().at(x, y);
-    let point: Vec3 = matrix.transform_point3(view.ray([x as f32, y as f32]) * z);
-    (view.project(point).unwrap(), point.z)
+    let point: Vec3 = matrix.transform_point3(Vec3::from(view.ray([x as f32, y as f32])) * z);
+    (view.project(point.into()).unwrap(), point.z)
 }
 
 /// Mean over steps of the PSNR of `previous` fetched at `p + sign * motion`. The same pixels for every sign: those that
