@@ -90,7 +90,6 @@ pub use geometry::ViewGeometry;
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
-pub use method::Method;
-pub use settings::{Bias, DepthTest, Gate, GateMetric, Sampler, Settings, Smr};
+pub use settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
 pub use stats::{COUNTERS_BYTES, FrameStats};
 pub use warning::Warning;

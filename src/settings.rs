@@ -2,7 +2,21 @@
 
 use crate::error::{SettingsError, check};
 use crate::foveation::Foveation;
-use crate::method::Method;
+
+/// Method of the post-process: what it does with history.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Method {
+    /// The foveated frame as it came; non-finite pixels are black. Keeps no history.
+    None,
+    /// Temporal antialiasing, which knows nothing of gaze: the rival.
+    Taa,
+    /// Scale-matched reservoirs: the sharpest sample of each surface point, shown while it explains the renderer's frame.
+    #[default]
+    Smr,
+    /// Weighted reservoirs (Cantory et al., MIG 2025).
+    Wrs,
+}
 
 /// How a reservoir picks between its sample and the candidate. Both follow the same law; only the use of chance differs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -15,15 +15,12 @@ mod wrs_pass;
 pub use crate::kernel::debug_view::PixelTrace;
 #[doc(hidden)]
 pub use history::History;
-pub(crate) use none_pass::run as none_pass;
-pub(crate) use surface_pass::run as surface_pass;
-pub(crate) use wrs_pass::run as wrs_pass;
 
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, check_size};
 use crate::image::Image;
 use crate::method::HistoryLayout;
-use crate::settings::Settings;
+use crate::settings::{Method, Settings};
 use crate::stats::FrameStats;
 
 /// One frame, with one image a view: `Frame::new(&[&left, &right], &views, index)`.
@@ -56,7 +53,7 @@ impl Executor for CpuAfterimage {
 }
 
 /// A frame on its way through a method's pass.
-pub(crate) struct Pass<'a, 'f> {
+struct Pass<'a, 'f> {
     desc: &'a ContextDesc,
     history: &'a mut History,
     frame: &'a Frame<'f>,
@@ -163,7 +160,11 @@ impl CpuAfterimage {
     ) -> Result<FrameStats, FrameError> {
         self.check(frame, output, traces.as_deref())?;
         let pass = Pass { desc: &self.desc, history: &mut self.history, frame, output, traces };
-        let stats = (self.desc.settings.method.entry().run)(pass);
+        let stats = match self.desc.settings.method {
+            Method::None => none_pass::run(pass),
+            Method::Taa | Method::Smr => surface_pass::run(pass),
+            Method::Wrs => wrs_pass::run(pass),
+        };
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();
         } else {

@@ -8,7 +8,7 @@ use crate::kernel::sanitize;
 use crate::stats::FrameStats;
 use glam::Vec3;
 
-pub(crate) fn run(pass: Pass<'_, '_>) -> FrameStats {
+pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, frame, output, mut traces, .. } = pass;
     let mut stats = FrameStats::default();
     let [sx, sy] = desc.motion.to_internal(desc.size_px);

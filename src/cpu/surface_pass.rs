@@ -7,7 +7,7 @@ use super::surface_history::SurfaceHistory;
 use super::taa_pass;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
-use crate::method::Method;
+use crate::settings::Method;
 use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-pub(crate) fn run(pass: Pass<'_, '_>) -> FrameStats {
+pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
     let settings = &desc.settings;
     let has_history = history.is_filled();

@@ -39,7 +39,7 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-pub(crate) fn run(pass: Pass<'_, '_>) -> FrameStats {
+pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
     let settings = &desc.settings;
     let has_history = history.is_filled();

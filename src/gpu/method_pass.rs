@@ -11,8 +11,8 @@ use super::frame::Target;
 use super::history::{History, array_view};
 use super::uniforms::FrameUniforms;
 use crate::kernel::debug_view::DebugView;
-use crate::method::{HistoryLayout, Method, Overrides};
-use crate::settings::Settings;
+use crate::method::{HistoryLayout, Overrides};
+use crate::settings::{Method, Settings};
 use crate::stats::COUNTERS_BYTES;
 use wgpu::{
     BindGroup, BindingResource, BindingType, Buffer, BufferBinding, BufferUsages, ComputePass, Device, Texture,

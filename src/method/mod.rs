@@ -1,7 +1,6 @@
 //! The methods: what each is called, keeps between frames, reads, and runs on either executor.
 //!
-//! To add one: a file here with its [`Entry`], a line in [`Method`] and in [`Method::entry`], its pass in `cpu/` and in
-//! `shaders/pass/`, its tests.
+//! To add one: a variant of [`Method`], a file here with its [`Entry`], its pass in `cpu/` and in `shaders/pass/`, its tests.
 
 mod none;
 mod smr;
@@ -11,22 +10,7 @@ mod wrs;
 pub(crate) use smr::smr_params;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
-use crate::settings::Settings;
-
-/// Method of the post-process: what it does with history.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Method {
-    /// The foveated frame as it came; non-finite pixels are black. Keeps no history.
-    None,
-    /// Temporal antialiasing, which knows nothing of gaze: the rival.
-    Taa,
-    /// Scale-matched reservoirs: the sharpest sample of each surface point, shown while it explains the renderer's frame.
-    #[default]
-    Smr,
-    /// Weighted reservoirs (Cantory et al., MIG 2025).
-    Wrs,
-}
+use crate::settings::{Method, Settings};
 
 impl Method {
     /// All methods.
@@ -75,9 +59,6 @@ pub(crate) struct Entry {
     /// Values of the shader's own overrides, besides those of `shaders/pass/inputs.wgsl`; `true` if the frame brings levels of detail.
     #[cfg(feature = "gpu")]
     pub overrides: fn(&Settings, bool) -> Overrides,
-    /// Its pass on the CPU.
-    #[cfg(feature = "cpu")]
-    pub run: fn(crate::cpu::Pass<'_, '_>) -> crate::stats::FrameStats,
 }
 
 /// Names and values of a shader's overrides.

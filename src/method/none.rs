@@ -13,6 +13,4 @@ pub(super) static ENTRY: Entry = Entry {
     block_px: 1,
     #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
-    #[cfg(feature = "cpu")]
-    run: crate::cpu::none_pass,
 };

@@ -24,8 +24,6 @@ pub(super) static ENTRY: Entry = Entry {
             ("RELIGHT_ON", u32::from(settings.smr.relight)),
         ]
     },
-    #[cfg(feature = "cpu")]
-    run: crate::cpu::surface_pass,
 };
 
 fn history(settings: &Settings) -> HistoryLayout {

@@ -24,8 +24,6 @@ pub(super) static ENTRY: Entry = Entry {
         let params = wrs_params(settings);
         vec![("SAMPLER", params.sampler as u32), ("BIAS", params.bias as u32), ("GATE", params.gate as u32)]
     },
-    #[cfg(feature = "cpu")]
-    run: crate::cpu::wrs_pass,
 };
 
 /// Whether reservoirs need a key besides their weight sum.

@@ -41,8 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let reset = if index == 20 { Reset::All } else { Reset::None };
         // One image a view.
         let (color, depth, motion) = ([&frame.color], [&depth], [&motion]);
-        let frame =
-            Frame { depth: Some(&depth), motion: Some(&motion), reset, ..Frame::new(&color, &views, index) };
+        let frame = Frame { depth: Some(&depth), motion: Some(&motion), reset, ..Frame::new(&color, &views, index) };
         let stats = post.process(&frame, &mut output)?;
         let share = |v: Verdict| 100.0 * stats.verdicts[v as usize] as f64 / stats.pixels as f64;
         println!(

@@ -50,11 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 previous_from_current: frame.previous_from_current,
                 ..ViewFrame::new(*source.view(), Gaze::At { px: [160.0, 90.0] })
             }];
-            let frame = Frame {
-                depth: Some(&depth),
-                motion: Some(&motion),
-                ..Frame::new(&color, &views, index)
-            };
+            let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
             let target = Target { counters: Some(&counters), ..Target::new(&output) };
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             post.record(&gpu.device, &mut encoder, &frame, target)?;

@@ -12,6 +12,7 @@ mod args;
 mod clip;
 mod commands;
 mod failure;
+pub mod method_report;
 mod output;
 mod progress;
 pub mod report;

@@ -57,8 +57,7 @@ impl DeviceClock {
     pub fn start_reading(&self) -> Arc<AtomicBool> {
         let done = Arc::new(AtomicBool::new(false));
         let mapped = done.clone();
-        self.readback
-            .map_async(wgpu::MapMode::Read, .., move |result| mapped.store(result.is_ok(), Ordering::Release));
+        self.readback.map_async(wgpu::MapMode::Read, .., move |result| mapped.store(result.is_ok(), Ordering::Release));
         done
     }
 

@@ -296,7 +296,8 @@ impl Pipeline {
         }
         let outputs = self.run(index, frame, &view, Some(&candidate), None)?;
         if self.is_guided {
-            let noise = self.runs.iter().zip(&outputs).find_map(|(run, output)| Some((self.noise(run)?, &output.image)));
+            let noise =
+                self.runs.iter().zip(&outputs).find_map(|(run, output)| Some((self.noise(run)?, &output.image)));
             self.knowledge = noise.map(|((noise, settings), image)| {
                 Knowledge::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
             });
@@ -543,17 +544,18 @@ fn on_device(
     let gpu = &device.gpu;
     let encoder = || gpu.device.create_command_encoder(&Default::default());
     let mut pictures = vec![];
-    for &view in debug {
+    // A debug view also counts; without one, its picture stays where it is.
+    for &view in if debug.is_empty() { &[DebugView::Rejection] } else { debug } {
         let mut encoder = encoder();
         run.record_view(&mut encoder, frame, view)?;
         gpu.queue.submit([encoder.finish()]);
-        pictures.extend(run.debug().map(|picture| gpu.read_rgb(picture, 0)));
+        pictures.extend(run.debug().filter(|_| !debug.is_empty()).map(|picture| gpu.read_rgb(picture, 0)));
     }
     // Nothing else is under way when the watch starts.
     gpu.wait();
     let watch = Stopwatch::start();
     let mut encoder = encoder();
-    run.record(&mut encoder, frame, true, device.clock.timestamps())?;
+    run.record(&mut encoder, frame, device.clock.timestamps())?;
     device.clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();

@@ -23,11 +23,11 @@ pub mod still;
 pub mod traced;
 
 pub use analytic::AnalyticSource;
-pub use peeked::PeekedSource;
 #[cfg(feature = "full")]
 pub use limits::ReadLimits;
 #[cfg(feature = "full")]
 pub use open::{is_scene, open};
+pub use peeked::PeekedSource;
 #[cfg(feature = "full")]
 pub use raster::RasterSource;
 #[cfg(feature = "full")]

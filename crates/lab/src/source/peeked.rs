@@ -1,9 +1,9 @@
 //! A source whose first frame was read ahead.
 
 use super::{FrameSource, SourceInfo, Stance};
+use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::DeviceFrame;
-use crate::error::InputError;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use glam::DMat4;
 

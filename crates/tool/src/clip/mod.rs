@@ -4,9 +4,9 @@ pub mod run_report;
 
 use crate::args::{DebugName, FormatName};
 use crate::failure::Failure;
+use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::output::Output;
 use crate::progress;
-use crate::report::method::{MethodAccumulator, MethodReport, Share};
 use crate::report::sheet::{Column, Sheet};
 use afterimage::{DebugView, Foveation, FrameError, Image, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};

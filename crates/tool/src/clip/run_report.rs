@@ -2,9 +2,9 @@
 
 use super::{Clip, ClipReport};
 use crate::failure::Failure;
+use crate::method_report::MethodReport;
 use crate::output::Output;
 use crate::report::backend::BackendReport;
-use crate::report::method::MethodReport;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 

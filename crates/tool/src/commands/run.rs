@@ -13,9 +13,9 @@ use crate::clip::ClipReport;
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::failure::Failure;
 use crate::output::Output;
+use afterimage_lab::device::Backend;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
-use afterimage_lab::device::Backend;
 use afterimage_lab::source::PeekedSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};

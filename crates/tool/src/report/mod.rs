@@ -4,7 +4,6 @@ pub mod backend;
 pub mod canvas;
 #[cfg(feature = "full")]
 pub mod jpeg;
-pub mod method;
 #[cfg(feature = "full")]
 pub mod page;
 #[cfg(feature = "full")]

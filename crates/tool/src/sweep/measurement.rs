@@ -1,7 +1,7 @@
 //! Measurement of a point, as stored in the files of a sweep.
 
 use super::grid::{Options, Point};
-use crate::report::method::MethodReport;
+use crate::method_report::MethodReport;
 use afterimage_lab::clock::Quartiles;
 use serde::{Deserialize, Serialize};
 

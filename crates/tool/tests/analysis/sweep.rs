@@ -1,6 +1,6 @@
 //! Grid, frontier, table and store of a sweep.
 
-use afterimage_cli::report::method::MethodReport;
+use afterimage_cli::method_report::MethodReport;
 use afterimage_cli::sweep::frontier::{Standing, frontier};
 use afterimage_cli::sweep::grid::parse_switch;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};

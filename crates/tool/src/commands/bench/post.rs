@@ -222,13 +222,11 @@ fn time(
     let watch = Stopwatch::start();
     match pass {
         CreatedPass::Post(run) => {
-            run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), false, clock.timestamps())?;
+            run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), clock.timestamps())?;
         }
         CreatedPass::Foveate { simulator, output } => {
-            let frame = SimulatorFrame {
-                timestamps: clock.timestamps(),
-                ..SimulatorFrame::new(inputs.full(), output, views)
-            };
+            let frame =
+                SimulatorFrame { timestamps: clock.timestamps(), ..SimulatorFrame::new(inputs.full(), output, views) };
             simulator.record(&gpu.device, &mut encoder, &frame)?;
         }
     }

@@ -134,7 +134,7 @@ impl ViewPipeline {
                 run.record_view(&mut encoder, &frame, debug.view())?;
                 gpu.queue.submit([encoder.finish()]);
             }
-            times.pass(gpu, pass, |encoder, timestamps| run.record(encoder, &frame, false, timestamps).map(drop))?;
+            times.pass(gpu, pass, |encoder, timestamps| run.record(encoder, &frame, timestamps).map(drop))?;
         }
         self.index += 1;
         Ok(())

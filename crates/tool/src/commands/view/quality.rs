@@ -7,9 +7,9 @@ use afterimage::ViewGeometry;
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::psnr_db;
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use glam::Vec3;
 use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
 
 /// Eccentricity where the periphery begins, degrees, as in the reports.

@@ -7,8 +7,8 @@ use afterimage::ViewGeometry;
 use afterimage::gpu::Timestamps;
 use afterimage_lab::device::Headless;
 use bytemuck::{Pod, Zeroable};
-use image::RgbImage;
 use glam::Vec3;
+use image::RgbImage;
 use wgpu::{
     BindGroup, BindGroupEntry, CommandEncoder, RenderPipeline, ShaderModule, Texture, TextureFormat, TextureUsages,
     TextureView,
@@ -220,7 +220,8 @@ impl Screen {
 /// Upper bound on the ring's radius, pixels of the window: its radius away from the center of the view, where a degree spans most pixels.
 fn ring_reach_px(geometry: &ViewGeometry, gaze_px: [f32; 2], scene: &Scene<'_>) -> f32 {
     let ray = geometry.ray(gaze_px);
-    let (eccentricity, radius) = ((Vec3::from(ray).length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());
+    let (eccentricity, radius) =
+        ((Vec3::from(ray).length_squared() - 1.0).sqrt().atan(), (0.5 * scene.fovea_deg).to_radians());
     let outer = (eccentricity + radius).min(1.5);
     let (scale, _) = geometry.scale_offset();
     (outer.tan() - eccentricity.min(1.5).tan()) / scale[0].min(scale[1]) * scene.layout.scale + 8.0

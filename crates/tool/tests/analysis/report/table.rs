@@ -1,6 +1,6 @@
 //! A synthetic sweep with the sizes and gaps of a real one.
 
-use afterimage_cli::report::method::MethodReport;
+use afterimage_cli::method_report::MethodReport;
 use afterimage_cli::sweep::measurement::{ClipFacts, Machine};
 use afterimage_cli::sweep::{Measurement, Options, Point, Table};
 use afterimage_lab::clock::Quartiles;
