@@ -11,7 +11,7 @@ pub fn alias_table(weights: &[f64]) -> (Vec<(f32, u32)>, Vec<f32>) {
         weights.fill(1.0);
         sum = n as f64;
     }
-    let chosen = weights.iter().map(|w| (w / sum) as f32).collect();
+    let probabilities = weights.iter().map(|w| (w / sum) as f32).collect();
     let mut share: Vec<f64> = weights.iter().map(|w| w / sum * n as f64).collect();
     let mut rows: Vec<(f32, u32)> = (0..n as u32).map(|i| (1.0, i)).collect();
     let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| share[i] < 1.0);
@@ -24,7 +24,7 @@ pub fn alias_table(weights: &[f64]) -> (Vec<(f32, u32)>, Vec<f32>) {
             small.push(l);
         }
     }
-    (rows, chosen)
+    (rows, probabilities)
 }
 
 #[cfg(test)]
@@ -34,7 +34,7 @@ mod tests {
     #[test]
     fn rows_add_up_to_the_weights() {
         let weights = [0.0, 3.0, 1.0, f64::NAN, 0.5, -1.0, 1e-9, 7.0];
-        let (rows, chosen) = alias_table(&weights);
+        let (rows, probabilities) = alias_table(&weights);
         let mut got = [0.0; 8];
         for (i, &(keep, alias)) in rows.iter().enumerate() {
             got[i] += f64::from(keep) / 8.0;
@@ -43,7 +43,7 @@ mod tests {
         for i in 0..8 {
             let expected = if weights[i] > 0.0 { weights[i] / 11.500000001 } else { 0.0 };
             assert!(
-                (got[i] - expected).abs() < 1e-7 && (f64::from(chosen[i]) - expected).abs() < 1e-7,
+                (got[i] - expected).abs() < 1e-7 && (f64::from(probabilities[i]) - expected).abs() < 1e-7,
                 "{i}: {}",
                 got[i]
             );

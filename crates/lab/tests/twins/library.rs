@@ -15,8 +15,16 @@ pub const WGSL_ONLY: &[(&str, &str)] = &[];
 pub const RUST_ONLY: &[(&str, &str)] = &[];
 
 /// Functions that are not public in the Rust kernel; probed through their callers.
-pub const PRIVATE: &[&str] =
-    &["compensation", "eval_reflection", "eval_transmission", "folded", "glass_fresnel", "mirror_probability"];
+pub const PRIVATE: &[&str] = &[
+    "compensation",
+    "eval_reflection",
+    "eval_transmission",
+    "folded",
+    "fraction",
+    "fraction_bits",
+    "glass_fresnel",
+    "mirror_probability",
+];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {

@@ -96,8 +96,8 @@ fn frames_are_orthonormal_and_stored_directions_are_close() {
     for n in random.into_iter().chain(axes).chain(axes.map(|v| -v)) {
         let n = unit(n);
         let [x, y] = basis(n);
-        for (dot, wanted) in [(x.dot(y), 0.0), (x.dot(n), 0.0), (y.dot(n), 0.0), (x.dot(x), 1.0), (y.dot(y), 1.0)] {
-            assert!((dot - wanted).abs() < 1e-6, "{n}: {dot}");
+        for (dot, expected) in [(x.dot(y), 0.0), (x.dot(n), 0.0), (y.dot(n), 0.0), (x.dot(x), 1.0), (y.dot(y), 1.0)] {
+            assert!((dot - expected).abs() < 1e-6, "{n}: {dot}");
         }
         assert!((x.cross(y) - n).length() < 1e-6, "{n}: left-handed");
         let v = Vec3::new(0.3, -0.5, 0.81);

@@ -28,8 +28,8 @@ fn stopped(triangles: &Triangles, outside: impl Fn(Vec3) -> Vec3, name: &str) ->
         let mut direction = direction(&mut d);
         // Includes grazing directions, down to a cosine of 1e-3.
         let above = direction.dot(normal);
-        let wanted = if i % 2 == 0 { 1e-3 } else { above.abs().max(1e-3) };
-        direction = (direction + normal * (wanted - above)).normalize();
+        let cosine = if i % 2 == 0 { 1e-3 } else { above.abs().max(1e-3) };
+        direction = (direction + normal * (cosine - above)).normalize();
         rays += 1;
         count += usize::from(bvh.occluded(&Ray { origin, direction, t_max: f32::INFINITY }, all));
     }
