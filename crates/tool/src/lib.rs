@@ -30,7 +30,7 @@ use std::process::ExitCode;
 
 /// Temporal post-process for foveated rendering: reuse the sharp samples of earlier gaze positions.
 #[derive(Parser)]
-#[command(version, about, max_term_width = 110)]
+#[command(name = "afterimage", version, max_term_width = 110)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Writes a JPEG at most `max_width` pixels wide, atomically.
 ///
 /// # Errors
-/// Those of the file system.
+/// If a file cannot be read or written.
 pub fn write_jpeg(path: &Path, picture: &RgbImage, max_width: u32) -> io::Result<()> {
     let narrower = (picture.width() > max_width).then(|| {
         let height = (u64::from(picture.height()) * u64::from(max_width) / u64::from(picture.width())).max(1);

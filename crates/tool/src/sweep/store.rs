@@ -61,7 +61,7 @@ impl Store {
     /// Saves a measurement.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// If a file cannot be read or written.
     pub fn save(&self, measurement: &Measurement) -> io::Result<()> {
         let text = serde_json::to_string_pretty(measurement).map_err(io::Error::other)?;
         write_whole(&self.file(&measurement.point), |file| file.write_all(text.as_bytes()))
@@ -70,7 +70,7 @@ impl Store {
     /// Copies a point and its pictures from another folder.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// If a file cannot be read or written.
     pub fn adopt(&self, from: &Self, point: &Point) -> io::Result<()> {
         // The measurement last, since it marks the point as finished.
         for what in PICTURES {

@@ -54,7 +54,7 @@ struct Readback {
 }
 
 impl Quality {
-    /// For pictures of `size`.
+    /// Creates the pass for outputs of `size`.
     pub fn new(gpu: &Headless, size: [u32; 2]) -> Self {
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("view quality"),
