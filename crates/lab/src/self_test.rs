@@ -317,7 +317,7 @@ mod tests {
         assert!(of(&strict, "a / b").contains(" 0.5 units") && !of(&loose, "a / b").contains(" 0.5 units"));
         assert!(of(&strict, "halves").starts_with("0 of") && !of(&loose, "halves").starts_with("0 of"));
         let kept: Vec<_> = arithmetic(&adapter(false)).into_iter().filter_map(|f| f.holds).collect();
-        assert_eq!(kept, [false], "NaN has to keep its bits: the scrub tests them");
+        assert_eq!(kept, [false], "NaN has to keep its bits: sanitizing tests them");
     }
 
     #[test]

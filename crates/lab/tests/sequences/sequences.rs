@@ -158,7 +158,7 @@ fn trust_and_exposure_agree_bit_for_bit() {
 }
 
 #[test]
-fn method_none_shows_the_scrubbed_frame() {
+fn method_none_shows_the_sanitized_frame() {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
     let settings = Settings { method: Method::None, ..Settings::paper() };
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
