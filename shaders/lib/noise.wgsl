@@ -4,7 +4,7 @@
 // Twin of src/kernel/noise.rs, which explains the constants.
 
 const NOISY_LEVELS: f32 = 3.0;
-const COMPARED_PIXELS: f32 = 64.0;
+const COMPARED_CANDIDATES: f32 = 64.0;
 const SIGMAS: f32 = 3.0;
 const CONFIDENCE_FALLOFF: vec2<f32> = vec2<f32>(0.5, 1.0);
 const COARSER_FRAMES: f32 = 4.0;
@@ -88,7 +88,7 @@ fn root_slope(around: f32) -> f32 {
 fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
-    return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_PIXELS));
+    return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES));
 }
 
 // noise::noise_confidence

@@ -6,7 +6,7 @@ use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
 pub use crate::uniforms::ViewUniforms;
 use bytemuck::{Pod, Zeroable};
 
-/// Largest number of views in a frame.
+/// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
 pub const MAX_VIEWS: usize = 4;
 
 /// `FrameUniforms` in `shaders/pass/inputs.wgsl`.

@@ -31,7 +31,27 @@ pub enum DebugView {
     Motion = 6,
 }
 
-/// Decision at a pixel, from which debug views are drawn. `cpu::CpuAfterimage::process_traced` writes it.
+/// Decision at a pixel, from which debug views are drawn. `cpu::CpuAfterimage::process_traced` writes it:
+///
+/// ```
+/// # #[cfg(feature = "cpu")]
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+/// use afterimage::{ContextDesc, Gaze, Image, Verdict, ViewFrame, ViewGeometry};
+///
+/// let size = [8, 8];
+/// let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
+/// let color = Image::filled(size, [0.5; 3]);
+/// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::Lost)];
+/// let mut output = [Image::filled(size, [0.0; 3])];
+/// let mut traces = [Image::filled(size, PixelTrace::default())];
+/// post.process_traced(&Frame::new(&[&color], &views, 0), &mut output, &mut traces)?;
+/// assert_eq!(traces[0].at(0, 0).verdict, Verdict::Reset);
+/// # Ok(())
+/// # }
+/// # #[cfg(not(feature = "cpu"))]
+/// # fn main() {}
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
     /// Verdict on the history.

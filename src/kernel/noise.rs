@@ -12,8 +12,8 @@ use glam::{Vec3, Vec4};
 /// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an eighth of the
 /// noise.
 pub const NOISY_LEVELS: f32 = 3.0;
-/// Pixels in the mean that is compared ([`NOISY_LEVELS`]).
-const COMPARED_PIXELS: f32 = 64.0;
+/// Number of candidates in such a mean.
+const COMPARED_CANDIDATES: f32 = 64.0;
 /// Standard deviations up to which a difference is attributed to noise.
 const SIGMAS: f32 = 3.0;
 /// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of `root_difference`. Both are
@@ -122,7 +122,7 @@ pub fn root_slope(luma: f32) -> f32 {
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
-    (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_PIXELS)).sqrt()
+    (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
 }
 
 /// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer sample replace a
