@@ -8,12 +8,12 @@ mod guide;
 
 use crate::clock::Stopwatch;
 use crate::metric::{Tracked, Tracker};
+#[cfg(feature = "ablation")]
+use afterimage::SettingsError;
 use afterimage::cpu::{CpuAfterimage, CpuFrame, CpuView};
 use afterimage::kernel::debug_view::{DebugView, PixelTrace, view_color};
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
-#[cfg(feature = "ablation")]
-use afterimage::SettingsError;
 use afterimage::{
     ContextDesc, CreateError, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings, ViewFrame,
     ViewGeometry,

@@ -49,11 +49,11 @@ impl FrameGaze {
     /// [`GazeMap::Angle`] is asked for and the screen's geometry is not known.
     pub fn new(path: &Scanpath, view: &ViewGeometry, map: GazeMap, start_s: f64, fps: f64) -> Result<Self, InputError> {
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::new("fps", format!("{fps} frames per second"), "expected a number above 0"));
+            return Err(InputError::request("fps", format!("{fps} frames per second"), "expected a number above 0"));
         }
         let left_s = path.duration_s() - start_s;
         if !(start_s >= 0.0 && left_s >= -TIME_SLACK_S) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 "start",
                 format!("{start_s} s is not within {}", path.name()),
                 format!("expected 0 to {} s", path.duration_s()),
@@ -119,7 +119,7 @@ fn mapping(
     let tangent_per_px = match map {
         GazeMap::Fit => None,
         GazeMap::Angle => Some(screen.tangent_per_px().ok_or_else(|| {
-            InputError::new(
+            InputError::request(
                 path.name(),
                 "the screen's size in cm or its distance is not known, so visual angles are not either",
                 "use the gaze map `fit`, or add `# screen_cm: WxH` and `# distance_cm: D` to the file",

@@ -122,24 +122,24 @@ impl Scanpath {
         mut samples: Vec<Sample>,
     ) -> Result<Self, InputError> {
         let name = name.into();
-        screen.check().map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
-        tidy(&mut about).map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
+        screen.check().map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
+        tidy(&mut about).map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
         for sample in &mut samples {
             sample.px = sample.px.filter(|px| px.iter().all(|v| v.is_finite()));
         }
         let bad_time = |i: usize| !samples[i].t_s.is_finite() || (i > 0 && samples[i].t_s <= samples[i - 1].t_s);
         if let Some(i) = (0..samples.len()).find(|&i| bad_time(i)) {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 name,
                 format!("sample {i} is at {} s", samples[i].t_s),
                 "times must be finite and increase from sample to sample",
             ));
         }
         if samples.is_empty() {
-            return Err(InputError::new(name, "there is no sample", "give at least one row with a valid gaze"));
+            return Err(InputError::invalid(name, "there is no sample", "give at least one row with a valid gaze"));
         }
         if samples.iter().all(|s| s.px.is_none()) {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 name,
                 format!("the gaze is lost in all {} samples", samples.len()),
                 "give a recording with at least one valid sample",

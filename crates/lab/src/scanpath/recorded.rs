@@ -12,7 +12,7 @@
 //! ```
 
 use super::{About, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
-use crate::error::InputError;
+use crate::error::{Bound, Exceeded, InputError};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -30,10 +30,11 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let path = path.as_ref();
     let name = path.display().to_string();
     let unreadable = |e: std::io::Error| {
-        InputError::new(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
+        InputError::io(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
     };
-    let too_large = || {
-        InputError::new(
+    let too_large = |bytes: Option<u64>| {
+        InputError::limit(
+            Exceeded { bound: Bound::Fixed, needed: bytes, allowed: MAX_FILE_BYTES },
             &name,
             format!("larger than {} MiB", MAX_FILE_BYTES >> 20),
             "cut the recording to the time window that is needed",
@@ -42,16 +43,16 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let file = File::open(path).map_err(unreadable)?;
     let meta = file.metadata().map_err(unreadable)?;
     if meta.is_dir() {
-        return Err(InputError::new(name, "is a folder", "give the path of a scanpath CSV file"));
+        return Err(InputError::request(name, "is a folder", "give the path of a scanpath CSV file"));
     }
     if meta.len() > MAX_FILE_BYTES {
-        return Err(too_large());
+        return Err(too_large(Some(meta.len())));
     }
     // Devices and pipes report no length, so the read is bounded as well.
     let mut bytes = Vec::new();
     file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(too_large());
+        return Err(too_large(None));
     }
     parse_csv(&name, &bytes)
 }
@@ -88,17 +89,18 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
                 format!("the first line without # must be {COLUMNS}"),
             ))
         };
-        parsed.map_err(|(problem, remedy)| InputError::new(format!("{name}, line {}", index + 1), problem, remedy))?;
+        parsed
+            .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
     }
     if !columns_seen {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             name,
             "there are no column names",
             format!("the first line without # must be {COLUMNS}"),
         ));
     }
     let Some(size_px) = header.size_px else {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             name,
             "the screen's size is not known",
             "state it in the header as `# screen_px: WIDTHxHEIGHT`",
@@ -161,7 +163,7 @@ fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
     std::str::from_utf8(bytes).map_err(|e| {
         let before = &bytes[..e.valid_up_to()];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        InputError::new(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
+        InputError::invalid(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
     })
 }
 

@@ -98,7 +98,7 @@ impl SyntheticOptions {
     /// After all checks: slope per pixel, and half the screen's width and height in degrees.
     fn aim_field(&self) -> Result<([f64; 2], [f64; 2]), InputError> {
         let fault = |option: &str, found: String, remedy: &str| {
-            Err(InputError::new(format!("synthetic scanpath, {option}"), found, remedy))
+            Err(InputError::request(format!("synthetic scanpath, {option}"), found, remedy))
         };
         if !(1.0..=10_000.0).contains(&self.rate_hz) {
             return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");

@@ -61,7 +61,7 @@ impl CameraFile {
     /// As [`CameraFile::open`].
     pub fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let error = |problem: String| {
-            InputError::new(
+            InputError::invalid(
                 subject,
                 problem,
                 "expected a cameras.json with camera_to_world for each frame, or {keyframes: [{time_s, position, target}]}",

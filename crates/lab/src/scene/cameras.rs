@@ -1,7 +1,6 @@
 //! `cameras.json`: frame rate, field of view and camera poses of a sequence.
 
-use crate::error::InputError;
-use crate::error::{io_error, one_line};
+use crate::error::{Bound, Exceeded, InputError, io_error, one_line};
 use glam::{DMat3, DMat4, DVec3};
 use serde::Deserialize;
 use std::fs;
@@ -71,14 +70,14 @@ impl Cameras {
 
     pub(crate) fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let form: FileForm = serde_json::from_slice(text).map_err(|e| {
-            InputError::new(
+            InputError::invalid(
                 subject,
                 one_line(&format!("is not the expected JSON ({e})")),
                 "expected {fps, horizontal_fov_deg, width, height, frames: [{frame, camera_to_world, world_to_camera}]}, all optional",
             )
         })?;
         let in_range = |name: &str, value: Option<f64>, max: f64| match value {
-            Some(v) if !(v > 0.0 && v < max) => Err(InputError::new(
+            Some(v) if !(v > 0.0 && v < max) => Err(InputError::invalid(
                 subject,
                 format!("its {name} is {v}"),
                 format!("expected a number above 0 and below {max}; correct or remove it"),
@@ -91,7 +90,7 @@ impl Cameras {
             poses.extend(pose(subject, number, frame)?);
         }
         if !poses.is_empty() && poses.len() != form.frames.len() {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 format!("has matrices for {} of its {} frames", poses.len(), form.frames.len()),
                 "expected camera_to_world for every frame, or for none",
@@ -115,7 +114,7 @@ impl Cameras {
     /// Checks that the images have the size that the cameras were made for.
     pub(crate) fn check_size(&self, size: [u32; 2]) -> Result<(), InputError> {
         match self.size {
-            Some(s) if s != size => Err(InputError::new(
+            Some(s) if s != size => Err(InputError::invalid(
                 &self.subject,
                 format!("says {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
                 "use the file that belongs to these frames, or remove width and height from it",
@@ -133,7 +132,7 @@ impl Cameras {
         if self.numbers.iter().chain(file_numbers).all(Option::is_some) {
             let find = |n: &Option<u64>| {
                 self.numbers.iter().position(|m| m == n).ok_or_else(|| {
-                    InputError::new(
+                    InputError::invalid(
                         &self.subject,
                         format!("has no camera for frame {}", n.unwrap_or_default()),
                         "expected one for every file; use the file that belongs to these frames, or remove it",
@@ -145,7 +144,7 @@ impl Cameras {
         if self.poses.len() == file_numbers.len() {
             return Ok(Some((0..self.poses.len()).collect()));
         }
-        Err(InputError::new(
+        Err(InputError::invalid(
             &self.subject,
             format!("has {} cameras for {} files", self.poses.len(), file_numbers.len()),
             "expected one for every file, or numbers in both the file names and `frame`",
@@ -166,7 +165,8 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let subject = path.display().to_string();
     let bytes = fs::metadata(path).map_err(|e| io_error(&subject, &e))?.len();
     if bytes > MAX_BYTES {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            Exceeded { bound: Bound::Fixed, needed: Some(bytes), allowed: MAX_BYTES },
             &subject,
             format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
             "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
@@ -181,7 +181,7 @@ fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, I
             let matrix = DMat4::from_cols_array_2d(&rows).transpose();
             match why_not_rigid(matrix) {
                 None => Ok(matrix),
-                Some(why) => Err(InputError::new(
+                Some(why) => Err(InputError::invalid(
                     subject,
                     format!("{name} of frame {number} {why}"),
                     "expected a rotation and a translation, row-major, for column vectors",
@@ -200,7 +200,7 @@ fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, I
     };
     let distance = world_from_camera.w_axis.truncate().length();
     if !(world_from_camera * camera_from_world).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             subject,
             format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
             "correct one of them, or remove it",

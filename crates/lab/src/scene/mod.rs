@@ -99,7 +99,7 @@ impl Scene {
         for triangles in [&still, &pose.moving] {
             let known = |m: &u32| (*m as usize) < materials.len();
             if !(triangles.is_complete() && triangles.materials.iter().all(known)) {
-                return Err(InputError::new(
+                return Err(InputError::request(
                     name,
                     "has triangles without all attributes or with a material that it lacks",
                     "give each triangle an entry in every array and the index of one of the materials",
@@ -134,7 +134,7 @@ impl Scene {
     pub fn open_clip(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Result<Self, InputError> {
         if let Some(("builtin", name)) = input.split_once(':') {
             let scene = builtin::open(name).ok_or_else(|| {
-                InputError::new(
+                InputError::request(
                     input,
                     "is not a built-in scene",
                     "expected builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes, \
@@ -145,14 +145,14 @@ impl Scene {
                 None => Ok(scene),
                 Some(clip) => {
                     let problem = format!("has no animation '{clip}', nor any other");
-                    Err(InputError::new(input, problem, "leave the animation out"))
+                    Err(InputError::request(input, problem, "leave the animation out"))
                 }
             };
         }
         let extension = Path::new(input).extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some("gltf" | "glb") => gltf_file::open(input, clip, limits),
-            _ => Err(InputError::new(
+            _ => Err(InputError::not_supported(
                 input,
                 "is not a scene that is read",
                 "expected a .gltf or .glb file, or builtin:NAME",

@@ -33,22 +33,23 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// An error of the `exr` crate as one line of ours.
 fn exr_error(subject: &str, error: exr::error::Error) -> InputError {
     use exr::error::Error;
-    let (problem, remedy) = match error {
-        Error::NotSupported(what) => (
-            format!("uses a feature of EXR that is not supported ({what})"),
+    let invalid = |problem: String| InputError::invalid(subject, one_line(&problem), "export it again, or remove it");
+    match error {
+        Error::NotSupported(what) => InputError::not_supported(
+            subject,
+            one_line(&format!("uses a feature of EXR that is not supported ({what})")),
             "write it as a flat scan-line or tiled EXR with ZIP compression",
         ),
-        Error::Invalid(what) => (format!("is not a valid EXR file ({what})"), "export it again, or remove it"),
-        Error::Io(error) => return io_error(subject, &error),
-        other => (format!("cannot be read ({other})"), "export it again, or remove it"),
-    };
-    InputError::new(subject, one_line(&problem), remedy)
+        Error::Invalid(what) => invalid(format!("is not a valid EXR file ({what})")),
+        Error::Io(error) => io_error(subject, &error),
+        other => invalid(format!("cannot be read ({other})")),
+    }
 }
 
 /// Runs a decoder of another crate: a panic on a malformed file is that file's fault, not a reason to stop.
 pub(crate) fn guarded<T>(subject: &str, decode: impl FnOnce() -> Result<T, InputError>) -> Result<T, InputError> {
     catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|_| {
-        Err(InputError::new(
+        Err(InputError::invalid(
             subject,
             "is malformed in a way that its decoder does not handle",
             "export it again, or remove it",

@@ -79,7 +79,9 @@ pub trait FrameSource {
     /// `index - 1`.
     ///
     /// # Errors
-    /// If the file behind it cannot be read or is not what its header promised.
+    /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or contradicts its
+    /// header, [`Limit`](InputError::Limit) if it is larger than the limits by now, [`Device`](InputError::Device) if the renderer
+    /// failed or lost its device.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
 
     /// The same frame as the source foveates it for a gaze in pixels, with samples where `guide` misses them; `None` if it does not, and

@@ -66,7 +66,7 @@ pub fn detect(
     let size = current.size();
     for (name, other) in [("previous frame", previous.size()), ("motion", raw.size())] {
         if other != size {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 name,
                 format!("has {}x{} pixels but the frame has {}x{}", other[0], other[1], size[0], size[1]),
                 "expected one size for both frames and the motion",

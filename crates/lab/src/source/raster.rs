@@ -69,7 +69,7 @@ impl RasterSource {
         let fps = fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
         if !(fps.is_finite() && fps > 0.0) {
             let problem = format!("the frame rate is {fps}");
-            return Err(InputError::new(&scene.name, problem, "expected frames per second above 0"));
+            return Err(InputError::request(&scene.name, problem, "expected frames per second above 0"));
         }
         let size = camera.geometry().size_px();
         let raster = Raster::new(&device.device, &device.queue, &scene, size, settings)?;

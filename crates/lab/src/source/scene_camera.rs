@@ -92,8 +92,8 @@ impl SceneCamera {
             Some(name) => {
                 let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
                 let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-                return Err(InputError::new(
-                    format!("--camera {name}"),
+                return Err(InputError::request(
+                    format!("camera {name}"),
                     "the scene has no such camera",
                     format!("expected still, lateral, orbit, framing, a .json file, or one of its cameras: {there}"),
                 ));
@@ -184,7 +184,7 @@ fn own_path(cameras: &[Camera], framing: &Camera) -> CameraPath {
 
 fn flat(scene: &Scene, size_px: [u32; 2], hfov_deg: f32) -> Result<ViewGeometry, InputError> {
     ViewGeometry::flat(size_px, hfov_deg).map_err(|e| {
-        InputError::new(&scene.name, format!("{} is {}", e.setting, e.found), format!("expected {}", e.expected))
+        InputError::request(&scene.name, format!("{} is {}", e.setting, e.found), format!("expected {}", e.expected))
     })
 }
 

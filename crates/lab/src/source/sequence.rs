@@ -86,7 +86,7 @@ impl FrameSource for SequenceSource {
         let (file, step) = playback(index, self.files.len() as u64);
         let header = ExrHeader::open(&self.files[file], &self.limits)?;
         if header.size() != self.info.size || header.has_depth() != self.has_depth {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 self.files[file].display().to_string(),
                 "has changed since the sequence was opened",
                 "leave the frames alone while they are read",
@@ -154,7 +154,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
         }
     }
     if files.is_empty() {
-        return Err(InputError::new(
+        return Err(InputError::request(
             subject,
             "holds no .exr file",
             "expected a folder of EXR frames, or the path of one image",
@@ -185,7 +185,7 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     let smallest = steps.iter().copied().min().unwrap_or(0);
     // Equal numbers are a naming scheme of its own.
     match steps.iter().position(|&s| s != smallest) {
-        Some(at) if smallest > 0 => Err(InputError::new(
+        Some(at) if smallest > 0 => Err(InputError::invalid(
             subject,
             format!("its frame numbers jump from {} to {}", numbers[at], numbers[at + 1]),
             format!(
@@ -205,7 +205,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
         let subject = file.display().to_string();
         if header.size() != first.size() {
             let ([w, h], [w0, h0]) = (header.size(), first.size());
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 format!("has {w}x{h} pixels but {first_name} has {w0}x{h0}"),
                 "expected frames of one size; keep one sequence in a folder",
@@ -221,7 +221,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
         for ((what, here), (_, there)) in traits(&header).into_iter().zip(traits(&first)) {
             if here != there {
                 let (has, lacks) = if here { ("has", "does not") } else { ("has no", "does") };
-                return Err(InputError::new(
+                return Err(InputError::invalid(
                     subject,
                     format!("{has} {what} but {first_name} {lacks}"),
                     "expected the same channels in every frame; export the sequence again",
@@ -232,7 +232,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
     if first.has(Vectors::ToPrevious) {
         Ok(first)
     } else {
-        Err(InputError::new(
+        Err(InputError::invalid(
             first_name.to_string(),
             "has no motion vectors, without which a sequence cannot be reprojected",
             "expected <layer>.Vector.X/Y (Blender: enable the Vector pass) or motion.X/Y; or give one frame as a still",

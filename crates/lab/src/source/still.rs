@@ -1,7 +1,7 @@
 //! Still images: the same frame for ever.
 
 use super::exr_file::{ExrHeader, Vectors, guarded};
-use super::limits::ReadLimits;
+use super::limits::{ReadLimits, SMALLER};
 use super::{FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
@@ -33,7 +33,7 @@ impl StillSource {
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         if path.is_dir() {
-            return Err(InputError::new(subject, "is a folder", "expected an image file"));
+            return Err(InputError::request(subject, "is a folder", "expected an image file"));
         }
         match super::open::extension(path).as_str() {
             "exr" => Self::open_exr(path, subject, limits),
@@ -50,7 +50,7 @@ impl StillSource {
                 };
                 Ok(Self::new(subject, frame, None))
             }
-            _ => Err(InputError::new(
+            _ => Err(InputError::not_supported(
                 subject,
                 "is not of a kind that is read as a still",
                 "expected .png, .jpg, .jpeg or .exr",
@@ -107,18 +107,23 @@ impl FrameSource for StillSource {
     }
 }
 
+/// Memory of the decoders: their buffers and a 16-bit RGBA result take at most this for each pixel.
+const PIXEL_BYTES: u64 = 24;
+/// Memory of the decoders that does not depend on the image's size.
+const FIXED_BYTES: u64 = 1 << 24;
+
 fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Image<[f32; 3]>, InputError> {
     let io = |e: std::io::Error| io_error(subject, &e);
-    // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
-    let most_bytes = limits.max_pixels.saturating_mul(24).saturating_add(1 << 24);
+    let most_bytes = limits.max_pixels.saturating_mul(PIXEL_BYTES).saturating_add(FIXED_BYTES);
     let mut allowed = Limits::no_limits();
     allowed.max_alloc = Some(most_bytes);
     let file_bytes = fs::metadata(path).map_err(io)?.len();
     if file_bytes > most_bytes {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            limits.exceeded(Some((file_bytes - FIXED_BYTES).div_ceil(PIXEL_BYTES))),
             subject,
             format!("has {} MB, more than the largest allowed image", file_bytes >> 20),
-            "use a smaller image, or raise the limit with --max-megapixels N",
+            SMALLER,
         ));
     }
     let bytes = fs::read(path).map_err(io)?;
@@ -128,7 +133,7 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
         Some(ImageFormat::Jpeg) if jpeg_is_whole(&bytes) => {}
         Some(ImageFormat::Jpeg) => return Err(io_error(subject, &ErrorKind::UnexpectedEof.into())),
         _ => {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 "holds neither a PNG nor a JPEG image",
                 "export it again as PNG, JPEG or EXR",
@@ -136,13 +141,14 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
         }
     }
     reader.limits(allowed.clone());
-    let error = |e: ImageError| image_error(subject, e);
+    let error = |e: ImageError| image_error(subject, e, limits);
     let mut decoder = reader.into_decoder().map_err(error)?;
     let (w, h) = decoder.dimensions();
     let size = limits.check(subject, u64::from(w), u64::from(h))?;
     decoder.set_limits(allowed).map_err(error)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
-    Image::from_pixels(size, linear(decoded)).map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+    Image::from_pixels(size, linear(decoded))
+        .map_err(|e| InputError::invalid(subject, e.to_string(), "export it again"))
 }
 
 /// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
@@ -193,21 +199,24 @@ fn srgb_to_linear(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
-fn image_error(subject: &str, error: ImageError) -> InputError {
+fn image_error(subject: &str, error: ImageError, limits: &ReadLimits) -> InputError {
     match error {
         ImageError::IoError(e) => io_error(subject, &e),
-        ImageError::Limits(e) => InputError::new(
+        ImageError::Limits(e) => InputError::limit(
+            limits.exceeded(None),
             subject,
             one_line(&format!("needs more memory than allowed ({e})")),
-            "use a smaller image, or raise the limit with --max-megapixels N",
+            SMALLER,
         ),
-        ImageError::Unsupported(e) => InputError::new(
+        ImageError::Unsupported(e) => InputError::not_supported(
             subject,
             one_line(&format!("uses a feature that is not supported ({e})")),
             "export it again as 8 or 16 bit PNG",
         ),
-        other => {
-            InputError::new(subject, one_line(&format!("is damaged or truncated ({other})")), "copy or export it again")
-        }
+        other => InputError::invalid(
+            subject,
+            one_line(&format!("is damaged or truncated ({other})")),
+            "copy or export it again",
+        ),
     }
 }

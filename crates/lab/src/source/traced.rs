@@ -75,11 +75,11 @@ impl TracedSource {
         let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
         let world = World::new(&scene);
         let tracer = Tracer::new(backend, &world, settings)
-            .map_err(|e| InputError::new(input, e.to_string(), "trace it on the CPU"))?;
+            .map_err(|e| InputError::device(input, e.to_string(), "trace it on the CPU"))?;
         let fps = options.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
         if !(fps.is_finite() && fps > 0.0) {
             let problem = format!("the frame rate is {fps}");
-            return Err(InputError::new(input, problem, "expected frames per second above 0"));
+            return Err(InputError::request(input, problem, "expected frames per second above 0"));
         }
         let info = SourceInfo {
             name: scene.name.clone(),
@@ -107,7 +107,7 @@ impl TracedSource {
             self.world.pose(&self.scene, times[0], times[1]);
             self.tracer
                 .update(&self.world)
-                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "trace it on the CPU"))?;
+                .map_err(|e| InputError::device(&self.info.name, e.to_string(), "trace it on the CPU"))?;
         }
         Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
     }
@@ -171,7 +171,7 @@ impl FrameSource for TracedSource {
             None => plan,
             Some(guide) => plan
                 .guided(guide, index, self.seed)
-                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
+                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
         };
         let frame = plan.trace(&self.tracer, &self.world, &view, index);
         self.check()?;

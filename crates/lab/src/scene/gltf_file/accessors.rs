@@ -1,6 +1,7 @@
 //! Numbers out of buffers: any component type, sparse or not, never more than the buffers hold.
 
-use super::{Document, InputError};
+use super::{Document, InputError, SceneLimits};
+use crate::error::{Bound, Exceeded};
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Index, buffer};
@@ -112,7 +113,9 @@ impl<'a> Accessors<'a> {
         let elements = self.elements.get().saturating_add(found);
         let limit = self.document.limits.max_elements();
         if elements > limit {
-            return Err(InputError::new(
+            let needed = Some(elements.div_ceil(SceneLimits::ELEMENTS_PER_TRIANGLE));
+            return Err(InputError::limit(
+                Exceeded { bound: Bound::Triangles, needed, allowed: self.document.limits.max_triangles },
                 self.document.subject,
                 format!("its vertices, indices and keys come to more than {limit} elements"),
                 "use a smaller scene, or raise SceneLimits::max_triangles",

@@ -101,7 +101,7 @@ fn find(document: &Document, clip: &str) -> Result<usize, InputError> {
     by_name.or_else(by_number).ok_or_else(|| {
         let names = animations.iter().enumerate().take(20).map(|(i, a)| named("animation", i, a.name.as_deref()));
         let names = names.collect::<Vec<_>>().join(", ");
-        InputError::new(
+        InputError::request(
             document.subject,
             format!("has no animation \"{}\"", shown(clip)),
             if names.is_empty() { "it has none at all".to_owned() } else { format!("expected one of {names}") },

@@ -41,12 +41,12 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     let json = &bytes[json];
     let unreadable = |e: serde_json::Error| {
         let problem = format!("is not a glTF 2.0 description: {}", shown(&e.to_string()));
-        InputError::new(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
+        InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
     };
     let preamble: Preamble = serde_json::from_slice(json).map_err(unreadable)?;
     if !preamble.asset.version.starts_with("2.") {
         let problem = format!("is of glTF version {}", shown(&preamble.asset.version));
-        return Err(InputError::new(input, problem, "expected version 2.0; convert it"));
+        return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
     }
     extensions::check_required(input, &preamble.extensions_required)?;
     let root = Root::from_slice(json).map_err(unreadable)?;
@@ -57,19 +57,19 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
 /// A whole file of at most `allowed` bytes. Pipes and devices, which may have no end, are no files.
 pub(super) fn read_file(path: &Path, subject: &str, allowed: u64, limits: &SceneLimits) -> Result<Vec<u8>, InputError> {
     let failed = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => InputError::new(subject, "does not exist", "check its name and folder"),
-        _ => InputError::new(subject, format!("cannot be read: {e}"), "check its permissions"),
+        std::io::ErrorKind::NotFound => InputError::io(subject, "does not exist", "check its name and folder"),
+        _ => InputError::io(subject, format!("cannot be read: {e}"), "check its permissions"),
     };
     let metadata = std::fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
-        return Err(InputError::new(subject, "is not a file", "expected a regular file"));
+        return Err(InputError::io(subject, "is not a file", "expected a regular file"));
     }
     let over = |bytes: u64| limits.check_file_bytes(subject, limits.max_file_bytes - allowed + bytes);
     over(metadata.len())?;
     let mut bytes = Vec::new();
     let reserved = bytes.try_reserve_exact(metadata.len() as usize);
     reserved.map_err(|_| {
-        InputError::new(subject, format!("its {} bytes do not fit into memory", metadata.len()), "use a smaller scene")
+        InputError::io(subject, format!("its {} bytes do not fit into memory", metadata.len()), "use a smaller scene")
     })?;
     // It may have grown meanwhile.
     let file = File::open(path).map_err(failed)?;
@@ -84,7 +84,7 @@ fn split(subject: &str, bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usiz
     let truncated = || damaged(subject, format!("ends after {} bytes, before its contents do", bytes.len()));
     let version = word(4).ok_or_else(truncated)?;
     if version != 2 {
-        return Err(InputError::new(
+        return Err(InputError::not_supported(
             subject,
             format!("is a .glb of version {version}"),
             "expected version 2; convert it",

@@ -34,7 +34,11 @@ pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), I
         }
         _ => "export the scene without it",
     };
-    Err(InputError::new(subject, format!("requires the extension {}, which is not supported", shown(missing)), remedy))
+    Err(InputError::not_supported(
+        subject,
+        format!("requires the extension {}, which is not supported", shown(missing)),
+        remedy,
+    ))
 }
 
 /// Names what a file uses and is left out.

@@ -120,7 +120,7 @@ impl<'a> Textures<'a> {
         let format = reader.ok().and_then(|r| r.format());
         let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = format else {
             let found = format.map_or("of an unknown format".to_owned(), |f| format!("{f:?}"));
-            return Err(InputError::new(
+            return Err(InputError::not_supported(
                 document.subject,
                 format!("{} is {found}", self.name(index)),
                 "expected PNG or JPEG; convert it",

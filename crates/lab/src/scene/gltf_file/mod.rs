@@ -57,7 +57,7 @@ impl Document<'_> {
 }
 
 fn damaged(subject: &str, problem: impl Into<String>) -> InputError {
-    InputError::new(subject, problem, "export the scene again")
+    InputError::invalid(subject, problem, "export the scene again")
 }
 
 /// A name from the file, fit for a line of text: on one line and not too long.

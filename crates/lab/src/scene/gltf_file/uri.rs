@@ -26,7 +26,7 @@ pub(super) enum Resolved {
 /// If it leads, or could lead, out of the folder; if there is no such file; if its data are damaged.
 pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolved, InputError> {
     let damaged = |problem: &str| {
-        InputError::new(subject, format!("the address \"{}\" {problem}", shown(uri)), "export the scene again")
+        InputError::invalid(subject, format!("the address \"{}\" {problem}", shown(uri)), "export the scene again")
     };
     if let Some(rest) = uri.strip_prefix("data:") {
         let (kind, data) = rest.split_once(',').ok_or_else(|| damaged("has no data"))?;
@@ -37,7 +37,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
         return Ok(Resolved::Data(data));
     }
     let refused = |problem: &str| {
-        InputError::new(
+        InputError::not_supported(
             subject,
             format!("it refers to \"{}\", which {problem}", shown(uri)),
             "a scene may only read files in its own folder; copy them there",
@@ -61,7 +61,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
         }
     }
     let missing = |e: std::io::Error| {
-        InputError::new(
+        InputError::io(
             subject,
             format!("it refers to \"{}\", which cannot be read: {e}", shown(uri)),
             "put the file where the scene expects it",

@@ -99,28 +99,28 @@ impl AnalyticSource {
         let subject = format!("analytic:{name}");
         let Some(&(_, kind)) = KINDS.iter().find(|(known, _)| *known == name) else {
             let names: Vec<_> = Self::names().collect();
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
                 "there is no analytic scene of this name",
                 format!("expected one of {}", names.join(", ")),
             ));
         };
         if size.iter().any(|&s| s == 0 || s > MAX_SIDE) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
                 format!("the size is {}x{}", size[0], size[1]),
                 format!("expected 1 to {MAX_SIDE} pixels a side"),
             ));
         }
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
                 format!("the frame rate is {fps}"),
                 "expected frames per second above 0",
             ));
         }
         let view = ViewGeometry::flat(size, hfov_deg).map_err(|error| {
-            InputError::new(
+            InputError::request(
                 &subject,
                 format!("{} is {}", error.setting, error.found),
                 format!("expected {}", error.expected),

@@ -49,7 +49,7 @@ impl ExrHeader {
         for part in planes.parts() {
             self.read_part(&mut file, part, &mut planes)?;
         }
-        planes.finish(self.size).map_err(|e| InputError::new(&self.subject, e.to_string(), "export it again"))
+        planes.finish(self.size).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
     }
 
     fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
@@ -132,7 +132,7 @@ impl ExrHeader {
     }
 
     fn damaged(&self, index: usize) -> InputError {
-        InputError::new(
+        InputError::invalid(
             &self.subject,
             format!("is truncated or damaged: chunk {} is not what the table of chunks says", index + 1),
             "copy or export it again",
@@ -311,5 +311,5 @@ fn missing_vectors(header: &ExrHeader, vectors: Vectors) -> InputError {
         ),
         _ => ("to the previous frame", "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still"),
     };
-    InputError::new(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
+    InputError::invalid(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
 }

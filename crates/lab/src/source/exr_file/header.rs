@@ -4,7 +4,7 @@ use super::channels::{ChannelName, Roles};
 use super::{exr_error, guarded};
 use crate::error::InputError;
 use crate::error::io_error;
-use crate::source::limits::ReadLimits;
+use crate::source::limits::{BLOCK_BYTES_PER_PIXEL, ReadLimits};
 use exr::math::Vec2;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -54,7 +54,7 @@ impl ExrHeader {
         let file = File::open(path).map_err(io)?;
         let file_bytes = file.metadata().map_err(io)?.len();
         if file_bytes == 0 {
-            return Err(InputError::new(subject, "is empty", "copy or export it again"));
+            return Err(InputError::invalid(subject, "is empty", "copy or export it again"));
         }
         let mut reader = Counting::new(BufReader::new(file));
         let invalid = |e| exr_error(subject, e);
@@ -133,7 +133,7 @@ fn missing_color(subject: &str, shown: &[String]) -> InputError {
     if shown.len() > LISTED {
         list += &format!(" and {} more", shown.len() - LISTED);
     }
-    InputError::new(
+    InputError::invalid(
         subject,
         format!("has no color channels; it has {}", crate::error::one_line(&list)),
         "expected <layer>.Combined.R/G/B, R/G/B, <layer>.R/G/B or Y",
@@ -150,7 +150,7 @@ fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimi
         check_window(subject, header)?;
         check_blocks(subject, header, limits)?;
         if *size.get_or_insert(this) != this {
-            return Err(InputError::new(
+            return Err(InputError::not_supported(
                 subject,
                 "has parts of different sizes",
                 "expected color, depth and motion of one size; export them again",
@@ -178,7 +178,7 @@ fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
     let text = |b: exr::meta::attribute::IntegerBounds| {
         format!("{}x{} at ({}, {})", b.size.0, b.size.1, b.position.0, b.position.1)
     };
-    Err(InputError::new(
+    Err(InputError::not_supported(
         subject,
         format!("its data window is {} but its display window is {}", text(data), text(display)),
         "expected the whole frame; export it without crop or overscan",
@@ -188,7 +188,7 @@ fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
 /// Refuses subsampled channels, and blocks whose decoding would take far more memory than the frame.
 fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(), InputError> {
     if let Some(c) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
-        return Err(InputError::new(
+        return Err(InputError::not_supported(
             subject,
             crate::error::one_line(&format!("its channel {} is subsampled", c.name)),
             "expected a sample for every pixel; export it as RGB instead of luminance and chroma",
@@ -198,7 +198,8 @@ fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(
     let pixels = block.0.min(header.layer_size.0) as u64 * block.1.min(header.layer_size.1) as u64;
     let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
     if bytes > limits.max_block_bytes() {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            limits.exceeded(Some(bytes.div_ceil(BLOCK_BYTES_PER_PIXEL))),
             subject,
             format!(
                 "a block of it decodes to {} MB, above the limit of {} MB that follows from {} million pixels",
@@ -206,7 +207,7 @@ fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(
                 limits.max_block_bytes() / 1_000_000,
                 limits.max_pixels as f64 / 1e6
             ),
-            "write it with smaller tiles or fewer channels, or raise the limit with --max-megapixels N",
+            "write it with smaller tiles or fewer channels, or raise the limit",
         ));
     }
     Ok(())
@@ -274,7 +275,7 @@ fn check_chunk_is_whole(
 }
 
 fn truncated(subject: &str, what: &str) -> InputError {
-    InputError::new(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
+    InputError::invalid(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
 }
 
 /// Bytes before a chunk's data: the part's number in a file of several, the position, the size.

@@ -35,7 +35,7 @@ fn assert_refused(path: &Path, words: &[&str]) {
     let text = error.to_string();
     println!("{text}");
     assert!(!text.contains('\n'), "more than one line: {text:?}");
-    assert!(!error.remedy.is_empty(), "no remedy: {text}");
+    assert!(!error.message().remedy.is_empty(), "no remedy: {text}");
     let name = path.file_name().unwrap().to_str().unwrap();
     for word in words.iter().chain([&name]) {
         assert!(text.contains(word), "{word:?} is not in: {text}");

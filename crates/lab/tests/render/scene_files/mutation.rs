@@ -21,7 +21,7 @@ fn survives(bytes: &[u8], path: &std::path::Path) -> bool {
         }
         Err(e) => {
             let text = e.to_string();
-            assert!(!text.contains('\n') && !e.remedy.is_empty() && text.contains("damaged.glb"), "{text}");
+            assert!(!text.contains('\n') && !e.message().remedy.is_empty() && text.contains("damaged.glb"), "{text}");
             false
         }
     }

@@ -78,9 +78,18 @@ fn folder_of(n: u32, size: [u32; 2], extras: Extras) -> tempfile::TempDir {
 fn assert_says(error: &InputError, words: &[&str]) {
     let text = error.to_string();
     assert!(!text.contains('\n'), "more than one line: {text:?}");
-    assert!(!error.remedy.is_empty(), "no remedy: {text}");
+    assert!(!error.message().remedy.is_empty(), "no remedy: {text}");
     for word in words {
         assert!(text.contains(word), "{word:?} is not in: {text}");
+    }
+}
+
+/// Checks that an error is a limit of pixels, and that the limit it asks for is this.
+#[track_caller]
+fn assert_needs_megapixels(error: &InputError, megapixels: u64) {
+    match error {
+        InputError::Limit { exceeded, .. } => assert_eq!(exceeded.needed_megapixels(), Some(megapixels), "{error}"),
+        _ => panic!("not a limit: {error}"),
     }
 }
 

@@ -153,7 +153,7 @@ proptest! {
                 let text = e.to_string();
                 prop_assert!(text.contains(name.as_str()), "{}", text);
                 prop_assert!(!text.contains('\n'), "{}", text);
-                prop_assert!(!e.remedy.is_empty());
+                prop_assert!(!e.message().remedy.is_empty());
             }
             Ok(mut source) => {
                 let frame = source.frame(0).unwrap();
