@@ -56,7 +56,7 @@ pub struct Flip {
 
 /// What the eye makes of one picture.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct Preprocessed {
     /// L\*a\*b\* of what is left by the filters, chroma adjusted to lightness (Hunt).
     colors: Image<Vec3>,
     /// How much of an edge and of a point there is.
@@ -101,7 +101,7 @@ impl Flip {
     }
 
     /// Looks at a picture: sRGB-encoded, in \[0, 1\].
-    pub fn see(&self, encoded: &Image<[f32; 3]>) -> Seen {
+    pub fn preprocess(&self, encoded: &Image<[f32; 3]>) -> Preprocessed {
         let size = encoded.size();
         let width = encoded.width().max(1);
         let opponent: Vec<Vec3> = encoded.pixels().par_iter().map(|&c| self.opponent(c)).collect();
@@ -125,20 +125,20 @@ impl Flip {
             let i = y as usize * width + x as usize;
             [&edges, &points].map(|[across, down]| across[i].hypot(down[i]))
         });
-        Seen { colors, features }
+        Preprocessed { colors, features }
     }
 
     /// The difference of two pictures at every pixel, 0 to 1.
     ///
     /// # Panics
     /// If the sizes differ.
-    pub fn difference(&self, reference: &Seen, shown: &Seen) -> Image<f32> {
+    pub fn difference(&self, reference: &Preprocessed, output: &Preprocessed) -> Image<f32> {
         let size = reference.colors.size();
-        assert_eq!(size, shown.colors.size());
+        assert_eq!(size, output.colors.size());
         Image::from_fn_parallel(size, |[x, y]| {
             let (x, y) = (x as usize, y as usize);
-            let color = self.color_difference(reference.colors.at(x, y), shown.colors.at(x, y));
-            let [r, s] = [reference, shown].map(|seen| seen.features.at(x, y));
+            let color = self.color_difference(reference.colors.at(x, y), output.colors.at(x, y));
+            let [r, s] = [reference, output].map(|image| image.features.at(x, y));
             let feature = ((r[0] - s[0]).abs().max((r[1] - s[1]).abs()) * std::f32::consts::FRAC_1_SQRT_2).sqrt();
             color.powf(1.0 - feature.min(1.0))
         })
@@ -148,8 +148,8 @@ impl Flip {
     ///
     /// # Panics
     /// If the sizes differ.
-    pub fn map(&self, reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Image<f32> {
-        self.difference(&self.see(reference), &self.see(shown))
+    pub fn map(&self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>) -> Image<f32> {
+        self.difference(&self.preprocess(reference), &self.preprocess(output))
     }
 
     /// The difference of two colors, 0 to 1 (section 4.1.3).
@@ -170,7 +170,7 @@ impl Flip {
         Vec3::new(xyz.y, xyz.x - xyz.y, xyz.y - xyz.z)
     }
 
-    /// The way back from [`Self::opponent`], to linear values that can be shown.
+    /// The way back from [`Self::opponent`], to linear values that can be output.
     fn linear(&self, [y, red_green, blue_yellow]: [f32; 3]) -> Vec3 {
         let xyz = Vec3::new(y + red_green, y, y - blue_yellow);
         (self.linear_from_xyz * xyz).clamp(Vec3::ZERO, Vec3::ONE)

@@ -73,7 +73,7 @@ fn leaves(color: [f32; 3], before: &Image<[f32; 3]>, index: usize) -> bool {
 /// The shares of old pictures that a method shows, by frames since the change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GhostShares {
-    /// For each age, sums of (shown - new) (old - new) and (old - new)^2.
+    /// For each age, sums of (output - new) (old - new) and (old - new)^2.
     sums: [(f64, f64); GHOST_FRAMES],
 }
 
@@ -84,15 +84,15 @@ impl Default for GhostShares {
 }
 
 impl GhostShares {
-    pub fn add(&mut self, ghost: Ghost, new: Vec3, shown: Vec3) {
+    pub fn add(&mut self, ghost: Ghost, new: Vec3, output: Vec3) {
         if let Some((along, whole)) = self.sums.get_mut(usize::from(ghost.age)) {
             let old = Vec3::from(ghost.old) - new;
-            *along += f64::from((shown - new).dot(old));
+            *along += f64::from((output - new).dot(old));
             *whole += f64::from(old.length_squared());
         }
     }
 
-    /// The share of the old picture in what is shown, by least squares: 1 all, 0 none, for the ages that occurred.
+    /// The share of the old picture in what is output, by least squares: 1 all, 0 none, for the ages that occurred.
     fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(age, s)| (age, s.0 / s.1))
     }

@@ -1,6 +1,6 @@
 //! Full-rate frames made ready for comparison: what is the same for all methods is done once.
 
-use super::flip::{Flip, Seen};
+use super::flip::{Flip, Preprocessed};
 use super::ghost::{Ghost, Ghosts};
 use super::{Tracked, lab_map};
 use afterimage::Image;
@@ -18,7 +18,7 @@ pub struct References {
 pub struct Reference<'a> {
     pub(super) encoded: &'a Image<[f32; 3]>,
     pub(super) lab: Image<Vec3>,
-    pub(super) flip: Option<(&'a Flip, Seen)>,
+    pub(super) flip: Option<(&'a Flip, Preprocessed)>,
     pub(super) ghosts: Image<Ghost>,
 }
 
@@ -33,7 +33,7 @@ impl References {
         Reference {
             lab: lab_map(encoded),
             ghosts: self.ghosts.advance(encoded, tracked),
-            flip: self.flip.as_ref().map(|flip| (flip, flip.see(encoded))),
+            flip: self.flip.as_ref().map(|flip| (flip, flip.preprocess(encoded))),
             encoded,
         }
     }

@@ -56,13 +56,13 @@ pub struct Scores {
     pub delta_e94_mean: Option<f64>,
     /// Delta E 94 that 99 % of the pixels do not pass, to 1/32.
     pub delta_e94_p99: Option<f64>,
-    /// PSNR in dB over pixels beyond 3.5 degrees that were shown at full rate earlier and have stayed visible.
+    /// PSNR in dB over pixels beyond 3.5 degrees that were output at full rate earlier and have stayed visible.
     pub retained_psnr_db: Option<f64>,
     /// Share of pixels that the retained figure is about.
     pub retained_share: Option<f64>,
     /// 1000 x mean absolute change of the luma error from a frame to the next, along the motion.
     pub flicker: Option<f64>,
-    /// Squared share of the old picture in what is shown beyond 3.5 degrees after a change, added up over 32 frames.
+    /// Squared share of the old picture in what is output beyond 3.5 degrees after a change, added up over 32 frames.
     pub ghost_energy: Option<f64>,
     /// Frames until that share is half of what it is in the first frame after the change; `None`: not within 32 frames.
     pub ghost_half_frames: Option<u32>,
@@ -106,7 +106,7 @@ impl Scorer {
         Self { skip_ssim: true, ..Self::default() }
     }
 
-    /// Takes one frame: its reference, the sRGB-encoded image shown, what is known of the frame, eccentricities in degrees. Gives
+    /// Takes one frame: its reference, the sRGB-encoded image output, what is known of the frame, eccentricities in degrees. Gives
     /// the frame's own errors.
     ///
     /// # Panics
@@ -114,23 +114,23 @@ impl Scorer {
     pub fn push(
         &mut self,
         reference: &Reference<'_>,
-        shown: &Image<[f32; 3]>,
+        output: &Image<[f32; 3]>,
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
     ) -> FrameErrors {
-        assert_eq!(reference.encoded.size(), shown.size());
-        let errors = self.push_errors(reference, shown, tracked, ecc_deg);
-        self.push_flicker(reference.encoded, shown, tracked);
-        for (r, s) in reference.lab.pixels().iter().zip(lab_map(shown).pixels()) {
+        assert_eq!(reference.encoded.size(), output.size());
+        let errors = self.push_errors(reference, output, tracked, ecc_deg);
+        self.push_flicker(reference.encoded, output, tracked);
+        for (r, s) in reference.lab.pixels().iter().zip(lab_map(output).pixels()) {
             let difference = color::delta_e94(*r, *s);
             self.delta_e94.add(f64::from(difference));
             self.delta_e94_counts.add(difference);
         }
-        if let Some((flip, seen)) = &reference.flip {
-            add_by_band(&mut self.flip, &flip.difference(seen, &flip.see(shown)), ecc_deg);
+        if let Some((flip, preprocessed)) = &reference.flip {
+            add_by_band(&mut self.flip, &flip.difference(preprocessed, &flip.preprocess(output)), ecc_deg);
         }
         if !self.skip_ssim
-            && let Some(map) = ssim_map(reference.encoded, shown)
+            && let Some(map) = ssim_map(reference.encoded, output)
         {
             add_by_band(&mut self.ssim, &map, ecc_deg);
         }
@@ -141,13 +141,13 @@ impl Scorer {
     fn push_errors(
         &mut self,
         reference: &Reference<'_>,
-        shown: &Image<[f32; 3]>,
+        output: &Image<[f32; 3]>,
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
     ) -> FrameErrors {
         let mut squared = [Mean::default(); 3];
         let mut retained = Mean::default();
-        for (i, (r, s)) in reference.encoded.pixels().iter().zip(shown.pixels()).enumerate() {
+        for (i, (r, s)) in reference.encoded.pixels().iter().zip(output.pixels()).enumerate() {
             let (r, s, e_deg) = (Vec3::from(*r), Vec3::from(*s), ecc_deg.pixels()[i]);
             let error = f64::from((s - r).length_squared()) / 3.0;
             squared[Band::of(e_deg) as usize].add(error);
@@ -170,10 +170,10 @@ impl Scorer {
         }
     }
 
-    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, tracked: &Tracked) {
-        let error = |i: usize| color::luma(Vec3::from(shown.pixels()[i]) - Vec3::from(reference.pixels()[i]));
-        let mut index = 0..shown.pixels().len();
-        let luma_error = shown.map(|_| index.next().map_or(0.0, error));
+    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>, tracked: &Tracked) {
+        let error = |i: usize| color::luma(Vec3::from(output.pixels()[i]) - Vec3::from(reference.pixels()[i]));
+        let mut index = 0..output.pixels().len();
+        let luma_error = output.map(|_| index.next().map_or(0.0, error));
         if let Some(before) = &self.luma_error {
             for (now, &from) in luma_error.pixels().iter().zip(tracked.past.pixels()) {
                 if from != NO_PAST {

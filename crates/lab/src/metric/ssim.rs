@@ -18,8 +18,8 @@ const STRIP_ROWS: usize = 128;
 ///
 /// # Panics
 /// If the sizes differ.
-pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<Image<f32>> {
-    assert_eq!(reference.size(), shown.size());
+pub fn ssim_map(reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>) -> Option<Image<f32>> {
+    assert_eq!(reference.size(), output.size());
     let (width, height) = (reference.width(), reference.height());
     if width < WINDOW || height < WINDOW {
         return None;
@@ -37,7 +37,7 @@ pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<
                 width,
                 height: rows + WINDOW - 1,
             };
-            let outcome = ssim(&plane(reference), &plane(shown), &SsimOptions::default())
+            let outcome = ssim(&plane(reference), &plane(output), &SsimOptions::default())
                 .expect("strips have one size, at least that of the window");
             assert_eq!([outcome.map_width, outcome.map_height], [map_width, rows], "strips must not be shrunk");
             outcome.map

@@ -57,7 +57,7 @@ struct PosedVertex {
 
 impl Geometry {
     /// Moved as a whole.
-    pub fn place(&self, world: &DAffine3, weights: &[f32]) -> Posed {
+    pub fn transformed(&self, world: &DAffine3, weights: &[f32]) -> Posed {
         // In f64, so that the normals of tiny and huge scales survive.
         let largest = world.matrix3.to_cols_array().iter().fold(0.0f64, |a, x| a.max(x.abs())).max(f64::MIN_POSITIVE);
         let scaled = (world.matrix3 * (1.0 / largest)).as_mat3();
@@ -66,13 +66,13 @@ impl Geometry {
         self.posed(weights, |_, v| PosedVertex {
             position: world.transform_point3(v.position.as_dvec3()).as_vec3(),
             normal: Vec3::from(normal_from_local * Vec3A::from(v.normal)).normalize_or_zero(),
-            tangent: turned(scaled, v.tangent, mirrored),
+            tangent: transformed_tangent(scaled, v.tangent, mirrored),
             mirrored,
         })
     }
 
     /// Moved by joints.
-    pub fn bend(&self, joints: &[Affine3A], weights: &[f32]) -> Posed {
+    pub fn skinned(&self, joints: &[Affine3A], weights: &[f32]) -> Posed {
         let n = self.influences.per_vertex;
         self.posed(weights, |i, v| {
             let mut linear = Mat3A::ZERO;
@@ -89,14 +89,14 @@ impl Geometry {
             PosedVertex {
                 position: Vec3::from(linear * Vec3A::from(v.position) + shift),
                 normal: Vec3::from(signed_cofactors(scaled, mirrored) * Vec3A::from(v.normal)).normalize_or_zero(),
-                tangent: turned(scaled, v.tangent, mirrored),
+                tangent: transformed_tangent(scaled, v.tangent, mirrored),
                 mirrored,
             }
         })
     }
 
     /// Gives every corner a vertex of its own, in the order of the triangles.
-    pub fn unshare(&mut self) {
+    pub fn unweld(&mut self) {
         fn corners<T: Copy>(values: &mut Vec<T>, indices: &[[u32; 3]]) {
             if !values.is_empty() {
                 *values = indices.iter().flatten().map(|&i| values[i as usize]).collect();
@@ -152,7 +152,7 @@ impl Geometry {
 
     /// Adds the triangles. Those with a corner that is not finite or absurdly far are left out and counted if `drop_bad`,
     /// else they shrink to a point, so that order and number stay.
-    pub fn emit(&self, posed: &Posed, drop_bad: bool, out: &mut Triangles) -> u64 {
+    pub fn push_triangles(&self, posed: &Posed, drop_bad: bool, out: &mut Triangles) -> u64 {
         let mut dropped = 0;
         out.reserve(self.indices.len());
         for &triangle in &self.indices {
@@ -176,7 +176,7 @@ impl Geometry {
                     self.normals.len() == self.positions.len() && v.normal.is_finite() && v.normal != Vec3::ZERO;
                 if usable { v.normal } else { face }
             });
-            let tangents = std::array::from_fn(|k| beside(normals[k], corners[k].tangent));
+            let tangents = std::array::from_fn(|k| orthogonal_tangent(normals[k], corners[k].tangent));
             out.positions.push(positions);
             out.normals.push(normals);
             out.tangents.push(tangents);
@@ -206,13 +206,13 @@ fn signed_cofactors(m: Mat3, mirrored: bool) -> Mat3A {
     Mat3A::from_cols((y.cross(z) * sign).into(), (z.cross(x) * sign).into(), (x.cross(y) * sign).into())
 }
 
-fn turned(m: Mat3, tangent: Vec4, mirrored: bool) -> Vec4 {
+fn transformed_tangent(m: Mat3, tangent: Vec4, mirrored: bool) -> Vec4 {
     let direction = (m * tangent.truncate()).normalize_or_zero();
     direction.extend(if mirrored { -tangent.w } else { tangent.w })
 }
 
 /// The tangent made perpendicular to the normal; some direction where there is none.
-fn beside(normal: Vec3, tangent: Vec4) -> Vec4 {
+fn orthogonal_tangent(normal: Vec3, tangent: Vec4) -> Vec4 {
     let t = tangent.truncate();
     let flat = t - normal * normal.dot(t);
     let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };

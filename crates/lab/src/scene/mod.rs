@@ -89,7 +89,7 @@ impl Scene {
     ///
     /// # Errors
     /// If attributes are missing or a material does not exist.
-    pub fn made(
+    pub fn from_parts(
         name: &str,
         materials: Vec<Material>,
         still: Triangles,

@@ -1,4 +1,4 @@
-//! How much a file may ask for, checked from its header before memory is set aside for pixels.
+//! Size limits of image files, checked against the header before memory for pixels is allocated.
 
 use crate::error::{Bound, Exceeded, InputError};
 
@@ -8,7 +8,7 @@ pub(crate) const BLOCK_BYTES_PER_PIXEL: u64 = 16;
 /// Remedy for images above the limit.
 pub(crate) const SMALLER: &str = "use a smaller image, or raise the limit";
 
-/// Bounds on what is read. More admits larger images, and lets a damaged or hostile header ask for as much memory.
+/// Limits on image size. A higher limit admits larger images, and lets a damaged or hostile header claim as much memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Largest width x height of an image, in pixels. Default 64 million: an 8K frame has 33 million.
@@ -27,7 +27,7 @@ impl ReadLimits {
         Self { max_pixels: megapixels as u64 * 1_000_000 }
     }
 
-    /// The size, if an image of `width` x `height` pixels may be read.
+    /// Checks the size in an image's header, and returns it.
     pub(crate) fn check(&self, subject: &str, width: u64, height: u64) -> Result<[u32; 2], InputError> {
         if width == 0 || height == 0 {
             return Err(InputError::invalid(
@@ -51,13 +51,13 @@ impl ReadLimits {
         }
     }
 
-    /// This limit as exceeded by an input that needs a limit of `needed` pixels.
+    /// Numbers of the error for an input that a limit of `needed` pixels would admit.
     pub(crate) fn exceeded(&self, needed: Option<u64>) -> Exceeded {
         Exceeded { bound: Bound::Pixels, needed, allowed: self.max_pixels }
     }
 
-    /// Largest decoded block (a tile or a band of scan lines with all its channels) in bytes: four floats for every pixel
-    /// of the largest image.
+    /// Largest decoded block (a tile or a band of scan lines with all its channels) in bytes: that of an image at the limit with
+    /// four floats per pixel.
     pub(crate) fn max_block_bytes(&self) -> u64 {
         self.max_pixels.saturating_mul(BLOCK_BYTES_PER_PIXEL)
     }

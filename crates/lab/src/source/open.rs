@@ -1,4 +1,4 @@
-//! From what the user named to a source.
+//! Opens a source from the name that a user gives.
 
 use super::analytic::{self, AnalyticSource};
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
@@ -6,12 +6,12 @@ use crate::error::InputError;
 use afterimage::FrameError;
 use std::path::Path;
 
-/// Whether what the user named is a scene, which a renderer makes frames of ([`RasterSource`]), and not frames.
+/// Whether `input` names a scene, which needs a renderer (`RasterSource`, `TracedSource`), and not a file of frames.
 pub fn is_scene(input: &str) -> bool {
     input.starts_with("builtin:") || matches!(extension(Path::new(input)).as_str(), "gltf" | "glb")
 }
 
-/// Opens what the user named: a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
+/// Opens a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
 ///
 /// # Errors
 /// - [`Io`](InputError::Io): the file or folder does not exist or cannot be read.
@@ -21,7 +21,7 @@ pub fn is_scene(input: &str) -> bool {
 /// - [`Request`](InputError::Request): `scene` gives a size for a file, there is no analytic scene of that name, `input` is a
 ///   scene that needs a renderer, or the folder holds no frames.
 pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
-    // A scheme in front names a source that is no file. Checked first, so that no file hides it.
+    // Schemes first, so that a file of the same name cannot hide them.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
         _ if is_scene(input) => return Err(scene_error(input)),
@@ -30,7 +30,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     if let Some([w, h]) = scene.size {
         return Err(InputError::request(
             input,
-            format!("has a size of its own, and {w}x{h} was asked for"),
+            format!("has its own size, but {w}x{h} pixels were requested"),
             "give a size for scenes only",
         ));
     }
@@ -47,7 +47,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
         )),
         _ => Err(InputError::not_supported(
             input,
-            "is not of a kind that is read",
+            "is a kind of file that is not supported",
             "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
         )),
     }
@@ -64,7 +64,7 @@ fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Resul
     )
 }
 
-/// Refuses frames to be rendered that are larger than those that may be read.
+/// Checks the size of frames to render against the limit for frames to read.
 pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<(), InputError> {
     let pixels = u64::from(w) * u64::from(h);
     if pixels <= limits.max_pixels {
@@ -78,7 +78,7 @@ pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -
     ))
 }
 
-/// What a renderer says that has lost its device.
+/// The error of a renderer that has lost its device.
 pub(super) fn device_lost(name: &str, lost: &FrameError) -> InputError {
     InputError::device(name, lost.to_string(), "start again, or render on the CPU where that is possible")
 }
@@ -91,7 +91,7 @@ fn scene_error(input: &str) -> InputError {
     )
 }
 
-/// The ending of a file name in lower case, without the dot; empty if there is none.
+/// File name extension in lower case, without the dot; empty if there is none.
 pub(super) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

@@ -11,8 +11,8 @@ use crate::scene::cameras::Cameras;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json` beside
-/// them. Every header is checked on opening; a frame's pixels are read when it is asked for and not kept.
+/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json`. Opening
+/// checks every header; pixels are decoded on request and not cached.
 ///
 /// A folder with a single frame is a still.
 #[derive(Debug)]
@@ -29,9 +29,12 @@ impl SequenceSource {
     /// Opens `folder` and checks all headers. No pixel is decoded, except for a single frame.
     ///
     /// # Errors
-    /// If the folder is missing or has no `.exr`; if a frame is damaged, truncated, larger than the limits, without color,
-    /// or differs from the first in size or in whether it has depth or motion; if one is missing between two numbers; if
-    /// several frames have no motion vectors; or if `cameras.json` does not fit.
+    /// - [`Io`](InputError::Io): the folder or a file cannot be read.
+    /// - [`Request`](InputError::Request): the folder has no `.exr`.
+    /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of [`ExrHeader::open`].
+    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in size, or in
+    ///   whether it has depth or motion; a frame number is missing; several frames have no motion vectors; or `cameras.json` is
+    ///   invalid or belongs to other frames.
     pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let name = folder.display().to_string();
         let files = exr_files(folder)?;
@@ -68,7 +71,7 @@ impl SequenceSource {
         Ok(Self { info, limits: *limits, has_depth: first.has_depth(), cameras, still: None, files })
     }
 
-    /// The frames in playing order.
+    /// Paths of the frames in playback order.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
@@ -117,14 +120,14 @@ impl FrameSource for SequenceSource {
     }
 }
 
-/// How a frame was reached.
+/// Direction of playback that leads to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
-    /// Nothing was shown before.
+    /// There is no previous frame.
     First,
-    /// From the file before.
+    /// The previous frame is the file before.
     Forward,
-    /// From the file after.
+    /// The previous frame is the file after.
     Backward,
 }
 
@@ -142,7 +145,7 @@ fn playback(index: u64, n: u64) -> (usize, Step) {
     (file as usize, step)
 }
 
-/// The `.exr` files of a folder in playing order. Hidden files are not frames.
+/// The `.exr` files of a folder in playback order. Hidden files are skipped.
 fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let subject = folder.display().to_string();
     let mut files = Vec::new();
@@ -167,7 +170,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     Ok(files)
 }
 
-/// The last run of digits in the name, without the ending.
+/// The last run of digits in the file name, extension excluded.
 fn frame_number(path: &Path) -> Option<u64> {
     let stem = path.file_stem()?.to_string_lossy();
     let digits = |c: char| c.is_ascii_digit();
@@ -176,14 +179,14 @@ fn frame_number(path: &Path) -> Option<u64> {
     stem[start..end].parse().ok()
 }
 
-/// Refuses a sequence with a frame missing: the vectors of the one after it would point past their neighbour.
+/// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
 fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> {
     let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<u64>>>() else {
         return Ok(());
     };
     let steps: Vec<u64> = numbers.windows(2).map(|w| w[1] - w[0]).collect();
     let smallest = steps.iter().copied().min().unwrap_or(0);
-    // Equal numbers are a naming scheme of its own.
+    // Repeated numbers mean that they do not count frames.
     match steps.iter().position(|&s| s != smallest) {
         Some(at) if smallest > 0 => Err(InputError::invalid(
             subject,
@@ -196,7 +199,7 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     }
 }
 
-/// Checks every header against the first, which is returned.
+/// Checks every header against the first, and returns the first.
 fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, InputError> {
     let first = ExrHeader::open(&files[0], limits)?;
     let first_name = files[0].display();
@@ -234,7 +237,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
     } else {
         Err(InputError::invalid(
             first_name.to_string(),
-            "has no motion vectors, without which a sequence cannot be reprojected",
+            "has no motion vectors, which reprojection of a sequence needs",
             "expected <layer>.Vector.X/Y (Blender: enable the Vector pass) or motion.X/Y; or give one frame as a still",
         ))
     }

@@ -1,4 +1,4 @@
-//! Still images: the same frame for ever.
+//! Still images: a source with a single frame.
 
 use super::exr_file::{ExrHeader, Vectors, guarded};
 use super::limits::{ReadLimits, SMALLER};
@@ -16,9 +16,9 @@ use std::path::Path;
 
 /// A still image, decoded once.
 ///
-/// PNG and JPEG are taken as sRGB (gamma and color profiles in the file are ignored, and so is its orientation tag), grey
-/// counts for all three channels, alpha is ignored. EXR is linear; its depth is used, its motion is not, and a `cameras.json`
-/// beside it gives the field of view.
+/// PNG and JPEG are read as sRGB: gamma, color profiles, the orientation tag and alpha are ignored, and grey is replicated to all
+/// three channels. EXR is linear; its depth is used, its motion is ignored, and a `cameras.json` in its folder gives the field of
+/// view.
 #[derive(Clone, Debug)]
 pub struct StillSource {
     info: SourceInfo,
@@ -26,10 +26,14 @@ pub struct StillSource {
 }
 
 impl StillSource {
-    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
+    /// Opens and decodes `path`, by its extension: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
     ///
     /// # Errors
-    /// If the file is missing, damaged, larger than the limits, of another kind, or an EXR without color.
+    /// - [`Io`](InputError::Io): the file is missing or cannot be read.
+    /// - [`Invalid`](InputError::Invalid): it is damaged, or an EXR without color; or its `cameras.json` is.
+    /// - [`NotSupported`](InputError::NotSupported): another extension, or a feature of the format that is not implemented.
+    /// - [`Limit`](InputError::Limit): it is larger than `limits` allows.
+    /// - [`Request`](InputError::Request): it is a folder.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         if path.is_dir() {
@@ -52,7 +56,7 @@ impl StillSource {
             }
             _ => Err(InputError::not_supported(
                 subject,
-                "is not of a kind that is read as a still",
+                "is a kind of file that is not supported as a still",
                 "expected .png, .jpg, .jpeg or .exr",
             )),
         }
@@ -90,7 +94,7 @@ impl StillSource {
         Self { info, frame }
     }
 
-    /// The same still under the name that the user gave.
+    /// Replaces the name.
     pub(super) fn named(mut self, name: String) -> Self {
         self.info.name = name;
         self
@@ -151,18 +155,18 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
         .map_err(|e| InputError::invalid(subject, e.to_string(), "export it again"))
 }
 
-/// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
+/// Whether a JPEG has an end marker after its first scan. The decoder silently fills missing data with grey.
 fn jpeg_is_whole(bytes: &[u8]) -> bool {
     const START_OF_SCAN: u8 = 0xDA;
     const END: [u8; 2] = [0xFF, 0xD9];
     let mut at = 2;
-    // Segments state their length. A thumbnail in one of them has an end marker of its own.
+    // Skip segments by their length: a thumbnail inside one has its own end marker.
     while let Some(&[0xFF, marker, high, low]) = bytes.get(at..at + 4) {
         if marker == START_OF_SCAN {
-            // In a scan, 0xFF is never followed by a marker's second byte.
+            // Entropy-coded data never contain 0xFF followed by a marker code.
             return bytes[at..].windows(2).any(|w| w == END);
         }
-        // Before a marker there may be more 0xFF.
+        // Fill bytes of 0xFF may precede a marker.
         at += match marker {
             0xFF => 1,
             _ => 2 + usize::from(u16::from_be_bytes([high, low])),

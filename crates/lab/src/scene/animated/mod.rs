@@ -81,7 +81,7 @@ pub(crate) struct View {
 }
 
 /// Nodes and joints at a time.
-pub(crate) struct Moment {
+pub(crate) struct AnimationState {
     pub worlds: Vec<DAffine3>,
     /// Of each skin, from the mesh's space to the world.
     joints: Vec<Vec<Affine3A>>,
@@ -92,13 +92,13 @@ pub(crate) struct Moment {
 impl Animated {
     /// Everything that moves, `time_s` seconds into the animation, which starts over at its end.
     pub fn pose(&self, time_s: f64) -> Pose {
-        let moment = self.moment(time_s);
+        let state = self.evaluate(time_s);
         let parts: Vec<Triangles> = self
             .meshes
             .par_iter()
             .map(|mesh| {
                 let mut out = Triangles::default();
-                mesh.geometry.emit(&self.posed(mesh, &moment), false, &mut out);
+                mesh.geometry.push_triangles(&self.posed(mesh, &state), false, &mut out);
                 out
             })
             .collect();
@@ -107,21 +107,21 @@ impl Animated {
         for part in &parts {
             moving.extend(part);
         }
-        let lights = self.lights.iter().map(|l| placed(l, &moment.worlds)).collect();
-        let cameras = self.cameras.iter().map(|c| c.placed(&moment.worlds)).collect();
+        let lights = self.lights.iter().map(|l| placed(l, &state.worlds)).collect();
+        let cameras = self.cameras.iter().map(|c| c.placed(&state.worlds)).collect();
         Pose { moving, lights, cameras }
     }
 
     /// The vertices of a mesh at a time.
-    pub fn posed(&self, mesh: &Mesh, moment: &Moment) -> Posed {
-        let weights = moment.weights.get(&mesh.node).map_or(&*mesh.weights, |w| w);
+    pub fn posed(&self, mesh: &Mesh, state: &AnimationState) -> Posed {
+        let weights = state.weights.get(&mesh.node).map_or(&*mesh.weights, |w| w);
         match mesh.skin {
-            Some(skin) => mesh.geometry.bend(&moment.joints[skin as usize], weights),
-            None => mesh.geometry.place(&moment.worlds[mesh.node as usize], weights),
+            Some(skin) => mesh.geometry.skinned(&state.joints[skin as usize], weights),
+            None => mesh.geometry.transformed(&state.worlds[mesh.node as usize], weights),
         }
     }
 
-    pub fn moment(&self, time_s: f64) -> Moment {
+    pub fn evaluate(&self, time_s: f64) -> AnimationState {
         let time_s = match time_s.rem_euclid(self.duration_s) {
             t if t.is_finite() => t,
             // No length, or no time.
@@ -147,7 +147,7 @@ impl Animated {
             joints.map(|(&joint, bind)| (worlds[joint as usize] * *bind).as_affine3a()).collect()
         };
         let joints = self.skins.iter().map(matrices).collect();
-        Moment { joints, weights, worlds }
+        AnimationState { joints, weights, worlds }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::accessors::Accessors;
 use super::warnings::Warnings;
-use super::{Document, InputError, named, shown};
+use super::{Document, InputError, named, printable};
 use crate::scene::animated::curve::{Curve, Interpolation};
 use crate::scene::animated::{Channel, Property};
 use gltf::json::validation::Checked;
@@ -103,7 +103,7 @@ fn find(document: &Document, clip: &str) -> Result<usize, InputError> {
         let names = names.collect::<Vec<_>>().join(", ");
         InputError::request(
             document.subject,
-            format!("has no animation \"{}\"", shown(clip)),
+            format!("has no animation \"{}\"", printable(clip)),
             if names.is_empty() { "it has none at all".to_owned() } else { format!("expected one of {names}") },
         )
     })

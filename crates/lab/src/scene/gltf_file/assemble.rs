@@ -6,7 +6,7 @@ use super::images::Textures;
 use super::mesh::Primitives;
 use super::warnings::Warnings;
 use super::{Document, InputError, animation, extensions, materials, nodes, skins, viewpoints};
-use crate::scene::animated::{Animated, Mesh, Moment, Property, Skin};
+use crate::scene::animated::{Animated, AnimationState, Mesh, Property, Skin};
 use crate::scene::geometry::{Geometry, MAX_COORDINATE};
 use crate::scene::{Environment, Scene, Triangles};
 use gltf::json::{self, Index};
@@ -24,9 +24,9 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
 
     let set = channels.iter().filter(|c| c.property != Property::Weights).map(|c| c.node);
     let moving = nodes.moving(set);
-    let mut reshaped = vec![false; shown.len()];
+    let mut morphed = vec![false; shown.len()];
     for channel in channels.iter().filter(|c| c.property == Property::Weights) {
-        reshaped[channel.node as usize] = true;
+        morphed[channel.node as usize] = true;
     }
     let duration_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
     let placed: Vec<Placed> = placed(document, &shown)?;
@@ -45,12 +45,12 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     let primitives = Primitives { document, accessors: &accessors, surfaces: &surfaces, default_surface };
     check_triangles(document, &primitives, &placed)?;
     let mut stage = Stage {
-        moment: animated.moment(0.0),
+        state: animated.evaluate(0.0),
         animated,
         still: Triangles::default(),
         dropped: 0,
         moving: &moving,
-        reshaped: &reshaped,
+        morphed: &morphed,
         skin_of: &skin_of,
     };
     for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
@@ -144,13 +144,13 @@ fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Place
 struct Stage<'a> {
     animated: Animated,
     /// All nodes and joints at time 0.
-    moment: Moment,
+    state: AnimationState,
     still: Triangles,
     dropped: u64,
     /// Nodes that move.
     moving: &'a [bool],
     /// Nodes whose morph targets move.
-    reshaped: &'a [bool],
+    morphed: &'a [bool],
     skin_of: &'a HashMap<usize, u32>,
 }
 
@@ -188,7 +188,7 @@ impl Stage<'_> {
     ) -> Result<(), InputError> {
         let node = used.node as usize;
         let skin = used.skin.filter(|_| geometry.influences.per_vertex > 0).map(|s| self.skin_of[&s]);
-        let mut moves = self.reshaped[node];
+        let mut moves = self.morphed[node];
         if let Some(skin) = skin {
             let skin = &self.animated.skins[skin as usize];
             skins::check_joints(document, &geometry.influences, skin)?;
@@ -203,8 +203,8 @@ impl Stage<'_> {
         if moves {
             self.animated.meshes.push(placed);
         } else {
-            let posed = self.animated.posed(&placed, &self.moment);
-            self.dropped += geometry.emit(&posed, true, &mut self.still);
+            let posed = self.animated.posed(&placed, &self.state);
+            self.dropped += geometry.push_triangles(&posed, true, &mut self.still);
         }
         Ok(())
     }

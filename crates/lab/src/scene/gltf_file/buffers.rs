@@ -1,7 +1,7 @@
 //! Bytes that accessors and images are read from.
 
 use super::container::{Container, read_file};
-use super::{InputError, SceneLimits, damaged, shown, uri};
+use super::{InputError, SceneLimits, damaged, printable, uri};
 use gltf::json::{Index, buffer};
 
 /// All buffers of a file.
@@ -42,7 +42,7 @@ pub(super) fn fetch(file: &Container, address: &str, so_far: u64, limits: &Scene
     match uri::resolve(&file.subject, &file.folder, address)? {
         uri::Resolved::Data(bytes) => Ok(bytes),
         uri::Resolved::File(path) => {
-            let subject = format!("{}: {}", file.subject, shown(address));
+            let subject = format!("{}: {}", file.subject, printable(address));
             read_file(&path, &subject, limits.max_file_bytes.saturating_sub(so_far), limits)
         }
     }

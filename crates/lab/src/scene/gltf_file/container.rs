@@ -1,6 +1,6 @@
 //! The file itself: text or binary, its description, and what it must have.
 
-use super::{InputError, SceneLimits, damaged, extensions, shown};
+use super::{InputError, SceneLimits, damaged, extensions, printable};
 use gltf::json::Root;
 use serde::Deserialize;
 use std::fs::File;
@@ -40,12 +40,12 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     limits.check_json_bytes(input, json.len() as u64)?;
     let json = &bytes[json];
     let unreadable = |e: serde_json::Error| {
-        let problem = format!("is not a glTF 2.0 description: {}", shown(&e.to_string()));
+        let problem = format!("is not a glTF 2.0 description: {}", printable(&e.to_string()));
         InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
     };
     let preamble: Preamble = serde_json::from_slice(json).map_err(unreadable)?;
     if !preamble.asset.version.starts_with("2.") {
-        let problem = format!("is of glTF version {}", shown(&preamble.asset.version));
+        let problem = format!("is of glTF version {}", printable(&preamble.asset.version));
         return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
     }
     extensions::check_required(input, &preamble.extensions_required)?;

@@ -1,7 +1,7 @@
 //! Which extensions are understood.
 
 use super::warnings::Warnings;
-use super::{InputError, shown};
+use super::{InputError, printable};
 use std::collections::BTreeSet;
 
 const SUPPORTED: [&str; 12] = [
@@ -36,7 +36,7 @@ pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), I
     };
     Err(InputError::not_supported(
         subject,
-        format!("requires the extension {}, which is not supported", shown(missing)),
+        format!("requires the extension {}, which is not supported", printable(missing)),
         remedy,
     ))
 }
@@ -46,7 +46,7 @@ pub(super) fn warn_of_unsupported(used: &[String], warnings: &mut Warnings) {
     let unsupported: BTreeSet<&str> =
         used.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
     for name in unsupported.iter().take(MOST_NAMED) {
-        warnings.add(format!("extension {} is not supported and left out", shown(name)));
+        warnings.add(format!("extension {} is not supported and left out", printable(name)));
     }
     if unsupported.len() > MOST_NAMED {
         warnings.add(format!("{} more extensions are not supported and left out", unsupported.len() - MOST_NAMED));

@@ -15,11 +15,11 @@ use std::io::Cursor;
 /// The textures that materials turn out to use, each pair of image and sampler once.
 pub(super) struct Textures<'a> {
     document: &'a Document<'a>,
-    wanted: Vec<Wanted>,
+    uses: Vec<TextureUse>,
     indices: HashMap<(usize, Option<usize>), u32>,
 }
 
-struct Wanted {
+struct TextureUse {
     image: usize,
     wrap: [Wrap; 2],
     nearest: bool,
@@ -34,7 +34,7 @@ struct Encoded<'a> {
 
 impl<'a> Textures<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self { document, wanted: Vec::new(), indices: HashMap::new() }
+        Self { document, uses: Vec::new(), indices: HashMap::new() }
     }
 
     /// Notes that a texture of the file is used.
@@ -47,7 +47,7 @@ impl<'a> Textures<'a> {
             None => None,
         };
         let key = (texture.source.value(), texture.sampler.map(|s| s.value()));
-        let next = self.wanted.len() as u32;
+        let next = self.uses.len() as u32;
         let texture = *self.indices.entry(key).or_insert(next);
         if texture == next {
             let wrap = |mode: Option<&Checked<WrappingMode>>| match mode {
@@ -55,7 +55,7 @@ impl<'a> Textures<'a> {
                 Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Wrap::Mirror,
                 _ => Wrap::Repeat,
             };
-            self.wanted.push(Wanted {
+            self.uses.push(TextureUse {
                 image: key.0,
                 wrap: [wrap(sampler.map(|s| &s.wrap_s)), wrap(sampler.map(|s| &s.wrap_t))],
                 nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
@@ -70,12 +70,12 @@ impl<'a> Textures<'a> {
         let mut texels = 0u64;
         let mut encoded = Vec::new();
         let mut place_of_image = HashMap::new();
-        for wanted in &self.wanted {
-            let place = match place_of_image.get(&wanted.image) {
+        for used in &self.uses {
+            let place = match place_of_image.get(&used.image) {
                 Some(&place) => place,
                 None => {
-                    encoded.push((wanted.image, self.encoded(file, wanted.image, &mut total_bytes)?));
-                    place_of_image.insert(wanted.image, encoded.len() - 1);
+                    encoded.push((used.image, self.encoded(file, used.image, &mut total_bytes)?));
+                    place_of_image.insert(used.image, encoded.len() - 1);
                     encoded.len() - 1
                 }
             };
@@ -85,18 +85,18 @@ impl<'a> Textures<'a> {
         let decoded: Result<Vec<_>, _> =
             encoded.par_iter().map(|(image, encoded)| self.decoded(*image, encoded)).collect();
         let mut decoded = decoded?;
-        let mut uses = vec![0; decoded.len()];
-        for wanted in &self.wanted {
-            uses[place_of_image[&wanted.image]] += 1;
+        let mut remaining = vec![0; decoded.len()];
+        for used in &self.uses {
+            remaining[place_of_image[&used.image]] += 1;
         }
-        let texture = |wanted: &Wanted| {
-            let place = place_of_image[&wanted.image];
-            uses[place] -= 1;
+        let texture = |used: &TextureUse| {
+            let place = place_of_image[&used.image];
+            remaining[place] -= 1;
             let (size, texels) = &mut decoded[place];
-            let texels = if uses[place] == 0 { std::mem::take(texels) } else { texels.clone() };
-            Texture { size: *size, texels, wrap: wanted.wrap, nearest: wanted.nearest }
+            let texels = if remaining[place] == 0 { std::mem::take(texels) } else { texels.clone() };
+            Texture { size: *size, texels, wrap: used.wrap, nearest: used.nearest }
         };
-        Ok(self.wanted.iter().map(texture).collect())
+        Ok(self.uses.iter().map(texture).collect())
     }
 
     fn encoded(&self, file: &Container, index: usize, total_bytes: &mut u64) -> Result<Encoded<'a>, InputError> {
@@ -149,7 +149,7 @@ impl<'a> Textures<'a> {
     }
 
     fn undecodable(&self, index: usize, error: &image::ImageError) -> InputError {
-        self.bad(index, format!("cannot be decoded: {}", super::shown(&error.to_string())))
+        self.bad(index, format!("cannot be decoded: {}", super::printable(&error.to_string())))
     }
 
     fn bad(&self, index: usize, problem: String) -> InputError {

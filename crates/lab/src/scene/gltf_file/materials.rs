@@ -2,7 +2,7 @@
 
 use super::images::Textures;
 use super::lobes;
-use super::uv::{PLAIN, UvSource, agreed};
+use super::uv::{PLAIN, UvSource, common_source};
 use super::warnings::Warnings;
 use super::{Document, InputError, named};
 use crate::scene::{Alpha, Material, TextureRef};
@@ -18,7 +18,7 @@ pub(super) struct Surface {
     pub material: Material,
     pub uv: UvSource,
     pub textured: bool,
-    pub wants_tangents: bool,
+    pub needs_tangents: bool,
     /// By how much tangents are turned about the normal, in radians.
     pub tangent_turn: f32,
 }
@@ -36,7 +36,7 @@ pub(super) struct Reader<'a, 'b> {
 /// glTF's material for triangles that have none.
 pub(super) fn default() -> Surface {
     let material = Material { metallic: 1.0, double_sided: false, ..Material::default() };
-    Surface { material, uv: PLAIN, textured: false, wants_tangents: false, tangent_turn: 0.0 }
+    Surface { material, uv: PLAIN, textured: false, needs_tangents: false, tangent_turn: 0.0 }
 }
 
 /// All materials of the file, in its order.
@@ -95,11 +95,11 @@ fn surface(
         lobes::read(&mut r, extensions)?;
     }
     r.material.emissive = r.material.emissive.map(|c| r.clamped(c, 0.0, MAX_EMISSION));
-    let uv = agreed(&r.sources, r.warnings, || r.name.clone());
+    let uv = common_source(&r.sources, r.warnings, || r.name.clone());
     Ok(Surface {
         uv,
         textured: !r.sources.is_empty(),
-        wants_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
+        needs_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
         tangent_turn: r.tangent_turn,
         material: r.material,
     })

@@ -81,7 +81,7 @@ impl Primitives<'_> {
             geometry.normals = vectors(read.vectors(normals, "normals", Some(n))?);
         }
         if let Some(tangents) = attribute(primitive, Semantic::Tangents)
-            && surface.wants_tangents
+            && surface.needs_tangents
             && !geometry.normals.is_empty()
         {
             geometry.tangents =
@@ -138,7 +138,7 @@ impl Primitives<'_> {
 fn finish(geometry: &mut Geometry, surface: &Surface) {
     // Many vertices that no triangle uses would cost as much as used ones.
     if geometry.positions.len() > geometry.indices.len() * 3 {
-        geometry.unshare();
+        geometry.unweld();
     }
     for normal in &mut geometry.normals {
         *normal = normal.normalize_or_zero();
@@ -147,7 +147,7 @@ fn finish(geometry: &mut Geometry, surface: &Surface) {
         let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
         *tangent = tangent.truncate().normalize_or_zero().extend(sign);
     }
-    if surface.wants_tangents && geometry.tangents.is_empty() && !geometry.uvs.is_empty() {
+    if surface.needs_tangents && geometry.tangents.is_empty() && !geometry.uvs.is_empty() {
         tangents::generate(geometry);
     }
     if surface.tangent_turn != 0.0 {

@@ -61,7 +61,7 @@ fn damaged(subject: &str, problem: impl Into<String>) -> InputError {
 }
 
 /// A name from the file, fit for a line of text: on one line and not too long.
-fn shown(name: &str) -> String {
+fn printable(name: &str) -> String {
     const LONGEST: usize = 80;
     let mut text: String = name.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if name.chars().nth(LONGEST).is_some() {
@@ -73,7 +73,7 @@ fn shown(name: &str) -> String {
 /// A thing by its name, if it has one, and its number.
 fn named(what: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) if !name.is_empty() => format!("{what} {index} ({})", shown(name)),
+        Some(name) if !name.is_empty() => format!("{what} {index} ({})", printable(name)),
         _ => format!("{what} {index}"),
     }
 }

@@ -12,7 +12,7 @@ const MAX_VALENCE: u32 = 512;
 ///
 /// In w, glTF has the sign of the normal map's green, which points up in the image, against growing v: the opposite of MikkTSpace's.
 pub(super) fn generate(geometry: &mut Geometry) {
-    geometry.unshare();
+    geometry.unweld();
     geometry.tangents = vec![Vec4::ZERO; geometry.positions.len()];
     let flat = geometry.normals.is_empty();
     if flat {

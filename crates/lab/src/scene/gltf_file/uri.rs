@@ -1,6 +1,6 @@
 //! Addresses inside a scene: data that is in the address itself, and files in the scene's folder.
 
-use super::{InputError, shown};
+use super::{InputError, printable};
 use base64::Engine;
 use base64::alphabet;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -26,7 +26,7 @@ pub(super) enum Resolved {
 /// If it leads, or could lead, out of the folder; if there is no such file; if its data are damaged.
 pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolved, InputError> {
     let damaged = |problem: &str| {
-        InputError::invalid(subject, format!("the address \"{}\" {problem}", shown(uri)), "export the scene again")
+        InputError::invalid(subject, format!("the address \"{}\" {problem}", printable(uri)), "export the scene again")
     };
     if let Some(rest) = uri.strip_prefix("data:") {
         let (kind, data) = rest.split_once(',').ok_or_else(|| damaged("has no data"))?;
@@ -39,7 +39,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     let refused = |problem: &str| {
         InputError::not_supported(
             subject,
-            format!("it refers to \"{}\", which {problem}", shown(uri)),
+            format!("it refers to \"{}\", which {problem}", printable(uri)),
             "a scene may only read files in its own folder; copy them there",
         )
     };
@@ -63,7 +63,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     let missing = |e: std::io::Error| {
         InputError::io(
             subject,
-            format!("it refers to \"{}\", which cannot be read: {e}", shown(uri)),
+            format!("it refers to \"{}\", which cannot be read: {e}", printable(uri)),
             "put the file where the scene expects it",
         )
     };

@@ -49,7 +49,7 @@ impl UvSource {
 }
 
 /// The one source for all textures of a material: the first of those given, which are sorted by weight.
-pub(super) fn agreed(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> UvSource {
+pub(super) fn common_source(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> UvSource {
     let Some(&first) = sources.first() else { return PLAIN };
     if sources.iter().any(|s| *s != first) {
         warnings.about("textures of one material with different texture coordinates all take the first one's", name);

@@ -1,7 +1,7 @@
 //! Punctual lights and cameras of nodes.
 
 use super::warnings::Warnings;
-use super::{Document, InputError, named, shown};
+use super::{Document, InputError, named, printable};
 use crate::scene::animated::{Light, View};
 use crate::scene::{PunctualKind, PunctualLight};
 use glam::Vec3;
@@ -57,7 +57,7 @@ pub(super) fn light(
     let lights = document.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let lights = lights.map_or(&[][..], |l| &l.lights);
     let light = document.look_up(lights, index, "light")?;
-    let name = || named("light", index.value(), light.name.as_deref().map(shown).as_deref());
+    let name = || named("light", index.value(), light.name.as_deref().map(printable).as_deref());
     let kind = match light.type_ {
         Checked::Valid(khr::Type::Directional) => PunctualKind::Directional,
         Checked::Valid(khr::Type::Point) => PunctualKind::Point,

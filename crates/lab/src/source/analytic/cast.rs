@@ -119,11 +119,11 @@ impl<'a> Caster<'a> {
         (sum / self.pattern.offsets.len() as f32).to_array()
     }
 
-    /// Whether any color sample of a pixel meets object `wanted`.
-    pub fn touches(&self, x: u32, y: u32, tile: &Tile, wanted: usize) -> bool {
+    /// Whether any color sample of a pixel meets object `object`.
+    pub fn touches(&self, x: u32, y: u32, tile: &Tile, object: usize) -> bool {
         self.pattern.offsets.iter().any(|offset| {
             let ray = self.ray([x as f32 + offset[0], y as f32 + offset[1]]);
-            self.nearest(&ray, tile).is_some_and(|(index, _)| index == wanted)
+            self.nearest(&ray, tile).is_some_and(|(index, _)| index == object)
         })
     }
 

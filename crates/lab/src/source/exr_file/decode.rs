@@ -221,8 +221,8 @@ impl Planes {
         let mut first = 0;
         for (index, channel) in channels.list.iter().enumerate() {
             let bytes = w * channel.sample_type.bytes_per_sample();
-            let wanted = self.slots.iter().filter(|(id, _)| *id == (part, index));
-            for slot in wanted.map(|(_, slot)| *slot).collect::<Vec<_>>() {
+            let used = self.slots.iter().filter(|(id, _)| *id == (part, index));
+            for slot in used.map(|(_, slot)| *slot).collect::<Vec<_>>() {
                 for y in 0..h {
                     let at = y * w * channels.bytes_per_pixel + first;
                     let samples = &block.data[at..at + bytes];

@@ -140,7 +140,7 @@ fn a_floor_under_a_lamp_has_its_form_factor() {
         Material { base_color: [0.0; 3], specular: 0.0, emissive: [2.0; 3], double_sided: false, ..floor.clone() };
     let camera = Camera::look_at(DVec3::new(0.0, 0.5, 0.0), DVec3::ZERO, 0.2);
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    let rig = Rig::new(Scene::made("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
+    let rig = Rig::new(Scene::from_parts("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
     // Siegel and Howell, configuration factors: a corner above a point, four times.
     let corner = {
         let (a, b) = (1.0f64, 1.0f64);
@@ -165,7 +165,7 @@ fn a_plane_under_a_sky_shows_its_albedo() {
     let camera = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::ZERO, 40.0);
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = Environment::Constant([1.0, 2.0, 0.5]);
-    let rig = Rig::new(Scene::made("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
+    let rig = Rig::new(Scene::from_parts("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
     // By chance every path finds the sky with the density of the cosine: no noise at all.
     let film = rig.cpu(TraceSettings { integrator: Integrator::Naive, ..depth(5) }, 16);
     for m in film.moments.pixels() {

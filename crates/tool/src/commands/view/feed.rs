@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::source::{FrameSource, Stance};
+use afterimage_lab::source::{CameraPose, FrameSource};
 use glam::DMat4;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
@@ -21,7 +21,7 @@ struct Ask {
 /// A frame, and where its camera was.
 pub struct Given {
     pub frame: SourceFrame,
-    pub stance: Option<Stance>,
+    pub stance: Option<CameraPose>,
     generation: u64,
 }
 
@@ -80,14 +80,14 @@ fn serve(mut source: Box<dyn FrameSource + Send>, asked: &Receiver<Ask>, answer:
     let mut steered: Option<DMat4> = None;
     while let Ok(ask) = asked.recv() {
         // Off its path the camera comes from where it was; back on it, from nowhere.
-        let before = steered.or_else(|| Some(source.stance(ask.index.saturating_sub(1))?.world_from_camera));
+        let before = steered.or_else(|| Some(source.camera_pose(ask.index.saturating_sub(1))?.world_from_camera));
         let steps = before.zip(ask.pose).map(|(before, now)| [before, now]);
         let cut = steered.is_some() && steps.is_none();
         source.steer(ask.index, steps);
         steered = steps.map(|[_, now]| now);
         let given = source.frame(ask.index).map(|frame| {
             let frame = SourceFrame { cut: frame.cut || cut, ..resized(frame, ask.size) };
-            Given { frame, stance: source.stance(ask.index), generation: ask.generation }
+            Given { frame, stance: source.camera_pose(ask.index), generation: ask.generation }
         });
         if answer.send(given.map_err(Failure::from)).is_err() {
             break;

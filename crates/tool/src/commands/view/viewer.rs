@@ -15,7 +15,7 @@ use super::surface::Acquired;
 use super::times::Pass;
 use super::usable::Usable;
 use crate::failure::Failure;
-use afterimage_lab::source::Stance;
+use afterimage_lab::source::CameraPose;
 use glam::DMat4;
 use std::sync::Arc;
 use std::time::Duration;
@@ -52,7 +52,7 @@ pub struct Viewer {
     /// Frames since the last fresh start, and where the eye looked in them.
     record: Record,
     /// Where the camera is, and where it is steered to.
-    stance: Option<Stance>,
+    stance: Option<CameraPose>,
     pose: Option<DMat4>,
     /// The window is not what the state says.
     pub is_stale: bool,
