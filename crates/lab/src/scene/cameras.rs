@@ -6,14 +6,14 @@ use serde::Deserialize;
 use std::fs;
 use std::path::Path;
 
-/// Name of the file, beside the frames.
+/// Name of the file in the folder of the frames.
 pub const FILE_NAME: &str = "cameras.json";
 
-/// Largest file that is read: 100,000 frames with every field take less.
+/// Largest file size in bytes: 100,000 frames with every field take less.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// How far the rotation part may be from orthonormal, and a pair of matrices from inverse. Eight printed digits are off by
-/// 1e-8; a scaled or sheared camera by far more than this.
+/// Tolerance for orthonormality of a rotation, and for a pair of matrices being inverse to each other. Rounding to eight digits
+/// errs by 1e-8; a scaled or sheared camera by far more than this tolerance.
 const RIGID_TOLERANCE: f64 = 1e-3;
 
 #[derive(Deserialize)]
@@ -39,7 +39,7 @@ struct Pose {
     camera_from_world: DMat4,
 }
 
-/// What `cameras.json` says. Fields that it does not have are `None`.
+/// Contents of a `cameras.json`. Absent fields are `None`.
 #[derive(Clone, Debug)]
 pub struct Cameras {
     /// Frames per second, above 0.
@@ -56,7 +56,8 @@ impl Cameras {
     /// Reads `folder/cameras.json`; `None` if there is no such file.
     ///
     /// # Errors
-    /// If the file cannot be read, is not JSON of the expected form, or holds numbers that no camera has.
+    /// [`Io`](InputError::Io) if the file cannot be read, [`Limit`](InputError::Limit) if it is too large,
+    /// [`Invalid`](InputError::Invalid) if it is not JSON of the expected form or has numbers out of range.
     pub fn beside(folder: &Path) -> Result<Option<Self>, InputError> {
         let path = folder.join(FILE_NAME);
         match fs::metadata(&path) {
@@ -106,25 +107,25 @@ impl Cameras {
         })
     }
 
-    /// Camera-to-world of every frame, in the file's axes.
+    /// Camera-to-world matrix of every frame, in the file's axes.
     pub(crate) fn world_from_camera(&self) -> impl ExactSizeIterator<Item = DMat4> {
         self.poses.iter().map(|p| p.world_from_camera)
     }
 
-    /// Checks that the images have the size that the cameras were made for.
+    /// Checks that the images have the size that the file states, if it states one.
     pub(crate) fn check_size(&self, size: [u32; 2]) -> Result<(), InputError> {
         match self.size {
             Some(s) if s != size => Err(InputError::invalid(
                 &self.subject,
-                format!("says {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
+                format!("states {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
                 "use the file that belongs to these frames, or remove width and height from it",
             )),
             _ => Ok(()),
         }
     }
 
-    /// The pose of every file, by the number in its name, or in order where either side has no numbers. `None` if there are
-    /// no matrices at all.
+    /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no number.
+    /// `None` if there are no matrices.
     pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);
@@ -151,7 +152,7 @@ impl Cameras {
         ))
     }
 
-    /// From the view space of pose `current` to that of `previous`, row-major, x right, y down, z forward.
+    /// Matrix from the view space of pose `current` to that of `previous`; row-major; x right, y down, z forward.
     pub(crate) fn previous_from_current(&self, previous: usize, current: usize) -> [[f32; 4]; 4] {
         // The file's cameras have y up and look along -z; the flip is its own inverse.
         let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
@@ -160,7 +161,7 @@ impl Cameras {
     }
 }
 
-/// The bytes of a file of cameras, if there are not too many.
+/// Reads a camera file of at most [`MAX_BYTES`].
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let subject = path.display().to_string();
     let bytes = fs::metadata(path).map_err(|e| io_error(&subject, &e))?.len();
