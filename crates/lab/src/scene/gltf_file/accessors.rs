@@ -1,4 +1,4 @@
-//! Numbers out of buffers: any component type, sparse or not, never more than the buffers hold.
+//! Accessors: reads typed elements from buffers, of any component type, dense or sparse, with bounds checks.
 
 use super::{Document, InputError, SceneLimits};
 use crate::error::{Bound, Exceeded};
@@ -7,7 +7,7 @@ use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Index, buffer};
 use std::cell::Cell;
 
-/// Reads accessors and keeps count of what is read.
+/// Reads accessors, and counts the elements read against [`SceneLimits::max_elements`].
 pub(super) struct Accessors<'a> {
     document: &'a Document<'a>,
     elements: Cell<u64>,
@@ -18,12 +18,13 @@ impl<'a> Accessors<'a> {
         Self { document, elements: Cell::new(0) }
     }
 
-    /// Elements that an accessor claims to have.
+    /// Number of elements that an accessor states.
     pub fn count(&self, index: Index<Accessor>) -> Result<u64, InputError> {
         Ok(self.accessor(index)?.count.0)
     }
 
-    /// Vectors of `N` components; integers become numbers as the accessor says. `expected` elements, if that is known.
+    /// Vectors of `N` floats. Integers are converted, normalised if the accessor says so. An error unless there are `expected`
+    /// elements, if that is given.
     pub fn vectors<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -51,7 +52,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Vectors of `N` whole numbers: indices of vertices or joints.
+    /// Vectors of `N` unsigned integers: indices of vertices or joints.
     pub fn integers<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -69,7 +70,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Whether the vectors have four components, not three: colors come with and without opacity.
+    /// Whether the elements are VEC4, not VEC3: colors come with and without alpha.
     pub fn is_vec4(&self, index: Index<Accessor>) -> Result<bool, InputError> {
         Ok(matches!(self.accessor(index)?.type_, Checked::Valid(Type::Vec4)))
     }
@@ -125,7 +126,7 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
-    /// All elements, each of `N` components of `S` bytes.
+    /// Reads all elements, each of `N` components of `S` bytes.
     fn read<const N: usize, const S: usize, T: Copy + Default>(
         &self,
         accessor: &Accessor,
@@ -144,7 +145,7 @@ impl<'a> Accessors<'a> {
                 let (bytes, stride) = self.strided(view, offset, accessor.count, N * S).ok_or_else(outside)?;
                 bytes.chunks(stride).take(accessor.count.0 as usize).map(element).collect()
             }
-            // All zero. So many zeros have a use only beside as many other numbers.
+            // Without a buffer view all elements are zero. A count above the file's bytes has no legitimate use.
             None if accessor.count.0 <= self.document.buffers.total_bytes => {
                 vec![[T::default(); N]; accessor.count.0 as usize]
             }
@@ -171,7 +172,7 @@ impl<'a> Accessors<'a> {
         Ok(elements)
     }
 
-    /// The bytes of `count` elements from `offset` on in a view, and their distance; `None` if they are not all there.
+    /// Bytes of `count` elements from `offset` on in a buffer view, and their stride; `None` if they exceed the view.
     fn strided(
         &self,
         view: Index<buffer::View>,
@@ -198,7 +199,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// A component as a number: itself, or from -1 or 0 to 1 if it is normalised (glTF 2.0, 3.11).
+/// Conversion of an integer component to float, scaled to at most 1 if it is normalised (glTF 2.0, 3.11).
 fn scaled<const S: usize, T: Into<f32>>(
     normalized: bool,
     decode: impl Fn([u8; S]) -> T,

@@ -1,4 +1,4 @@
-//! A scene out of its parts: what never moves becomes triangles at once, the rest is kept to be posed.
+//! Assembles a scene: static meshes become triangles in world space, animated ones are kept in local space to be posed.
 
 use super::accessors::Accessors;
 use super::container::Container;
@@ -87,14 +87,14 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     })
 }
 
-/// A node of the scene with a mesh.
+/// An instance of a mesh: a node of the scene that refers to it.
 struct Placed {
     node: u32,
     mesh: usize,
     skin: Option<usize>,
 }
 
-/// All nodes with meshes, by mesh.
+/// All mesh instances of the scene, sorted by mesh.
 fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError> {
     let root = document.root;
     let mut placed = Vec::new();
@@ -110,7 +110,7 @@ fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError
     Ok(placed)
 }
 
-/// The skins that are used, and where each of the file's is among them.
+/// Skins in use, and a map from the file's skin indices to theirs.
 fn used_skins(
     document: &Document,
     accessors: &Accessors,
@@ -127,7 +127,7 @@ fn used_skins(
     Ok((skins, places))
 }
 
-/// Refuses more triangles than there may be, before any is made. A primitive counts as one at least.
+/// Checks the number of triangles against the limit before any is built. A primitive counts as one triangle at least.
 fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Placed]) -> Result<(), InputError> {
     let mut total = 0u64;
     for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
@@ -140,22 +140,22 @@ fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Place
     document.limits.check_triangles(document.subject, total)
 }
 
-/// Where meshes go.
+/// Destination of meshes while the scene is assembled.
 struct Stage<'a> {
     animated: Animated,
-    /// All nodes and joints at time 0.
+    /// Animation state at time 0.
     state: AnimationState,
     still: Triangles,
     dropped: u64,
-    /// Nodes that move.
+    /// Flags of nodes whose world transform is animated.
     moving: &'a [bool],
-    /// Nodes whose morph targets move.
+    /// Flags of nodes whose morph target weights are animated.
     morphed: &'a [bool],
     skin_of: &'a HashMap<usize, u32>,
 }
 
 impl Stage<'_> {
-    /// Reads a mesh and adds it wherever it is used.
+    /// Reads a mesh, and adds it for each of its instances.
     fn add_mesh(
         &mut self,
         primitives: &Primitives,

@@ -1,4 +1,4 @@
-//! Which extensions are understood.
+//! Supported extensions.
 
 use super::warnings::Warnings;
 use super::{InputError, printable};
@@ -19,10 +19,10 @@ const SUPPORTED: [&str; 12] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions that are named; no honest file uses as many.
+/// Largest number of extensions named in warnings, which bounds the output for hostile files.
 const MOST_NAMED: usize = 50;
 
-/// Refuses what a file cannot be read without.
+/// Refuses a file that requires an unsupported extension.
 pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), InputError> {
     let Some(missing) = required.iter().find(|name| !SUPPORTED.contains(&name.as_str())) else { return Ok(()) };
     let remedy = match missing.as_str() {
@@ -41,7 +41,7 @@ pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), I
     ))
 }
 
-/// Names what a file uses and is left out.
+/// Warns of each unsupported extension in use.
 pub(super) fn warn_of_unsupported(used: &[String], warnings: &mut Warnings) {
     let unsupported: BTreeSet<&str> =
         used.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();

@@ -1,4 +1,4 @@
-//! Images of materials.
+//! Textures of materials: collects those in use, and decodes their images.
 
 use super::container::Container;
 use super::{Document, InputError, buffers, named};
@@ -12,13 +12,14 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 
-/// The textures that materials turn out to use, each pair of image and sampler once.
+/// Textures in use, each pair of image and sampler once.
 pub(super) struct Textures<'a> {
     document: &'a Document<'a>,
     uses: Vec<TextureUse>,
     indices: HashMap<(usize, Option<usize>), u32>,
 }
 
+/// Image and sampler of a texture.
 struct TextureUse {
     image: usize,
     wrap: [Wrap; 2],
@@ -37,7 +38,7 @@ impl<'a> Textures<'a> {
         Self { document, uses: Vec::new(), indices: HashMap::new() }
     }
 
-    /// Notes that a texture of the file is used.
+    /// Registers a texture of the file as used.
     pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<TextureRef, InputError> {
         let root = self.document.root;
         let texture = self.document.look_up(&root.textures, index, "texture")?;
@@ -64,7 +65,7 @@ impl<'a> Textures<'a> {
         Ok(TextureRef { texture })
     }
 
-    /// Reads and decodes the used images, sizes checked first.
+    /// Reads and decodes the images in use. Sizes are checked against the limits before any image is decoded.
     pub fn load(self, file: &Container) -> Result<Vec<Texture>, InputError> {
         let mut total_bytes = self.document.buffers.total_bytes;
         let mut texels = 0u64;
@@ -138,7 +139,7 @@ impl<'a> Textures<'a> {
         let undecodable = |e| self.undecodable(index, &e);
         let reader = ImageReader::with_format(Cursor::new(&*encoded.bytes), encoded.format);
         let mut decoder = reader.into_decoder().map_err(undecodable)?;
-        // The largest form: four components of 16 bits, as much again while decoding.
+        // The largest format has four components of 16 bits; the decoder needs as much again.
         let mut limits = Limits::default();
         limits.max_alloc = Some(encoded.texels.saturating_mul(16).max(1 << 20));
         decoder.set_limits(limits).map_err(undecodable)?;

@@ -109,7 +109,7 @@ fn factors_out_of_range_are_brought_into_it() {
     assert_eq!((material.metallic, material.roughness, material.opacity, material.ior), (1.0, 0.0, 1.0, 1.0));
     assert_eq!(material.base_color, [1.0, 0.5, 0.0]);
     assert!(material.emissive[0] == 0.0 && material.emissive[1].is_finite() && material.emissive[2] == 2.0);
-    assert_eq!(warnings, ["factors of materials out of their range are brought into it: material 0 (odd)"]);
+    assert_eq!(warnings, ["factors of materials out of their range are clamped: material 0 (odd)"]);
 }
 
 #[test]

@@ -133,9 +133,9 @@ fn bad_files_are_refused_in_one_line_that_says_where() {
     }
     let whole: [(&[u8], &str); 8] = [
         (b"", "no column names"),
-        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" where the column names belong"),
-        (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
-        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
+        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" instead of the column names"),
+        (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is missing"),
+        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is missing"),
         (b"# screen_px: 0x768\n", "line 1: screen_px is \"0x768\""),
         (b"# screen_cm: 38x-1\n", "line 1: screen_cm is"),
         (b"# distance_cm: inf\n", "line 1: distance_cm is"),
