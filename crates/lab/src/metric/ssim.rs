@@ -6,15 +6,15 @@ use blazediff_ssim::{Plane, SsimOptions, ssim};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Side of the window.
+/// Side of the window in pixels.
 const WINDOW: usize = 11;
 
-/// Rows of the map computed at a time. The crate shrinks images whose shorter side passes 384 pixels, as the authors' script
-/// does; strips stay below, so that every figure is at full resolution, and strips run in parallel.
+/// Rows of the map per strip. The crate downsamples images whose shorter side exceeds 384 pixels, as the authors' script does. Strips
+/// stay below, so that SSIM is computed at full resolution, and run in parallel.
 const STRIP_ROWS: usize = 128;
 
-/// SSIM at every pixel whose window lies inside the image: a map smaller by 10 pixels a side, pixel (0, 0) of which belongs to
-/// (5, 5). `None` for images smaller than the window.
+/// SSIM at every pixel whose window lies inside the image: a map that is 10 pixels smaller in width and height, whose pixel (0, 0) is
+/// the image's (5, 5). `None` for images smaller than the window.
 ///
 /// # Panics
 /// If the sizes differ.
