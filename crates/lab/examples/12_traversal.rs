@@ -1,7 +1,7 @@
-//! What does it cost to find out what a ray hits? Build times, rates on the CPU (`obvhs` beside it) and on the GPU, from 2.6
-//! thousand to 2.6 million triangles.
+//! Cost of ray traversal: build times, and rays per second on the CPU (compared with `obvhs`) and on the GPU, for 2.6 thousand to
+//! 2.6 million triangles.
 //!
-//! `cargo run --release -p afterimage-lab --example 12_traversal`; numbers of triangles may follow.
+//! `cargo run --release -p afterimage-lab --example 12_traversal`; takes numbers of triangles as optional arguments.
 
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Headless;
@@ -17,7 +17,7 @@ use std::f32::consts::TAU;
 
 const SIZE: [u32; 2] = [640, 360];
 
-/// A grid of `n` by `m` quadrilaterals over a surface, parameters from 0 to 1.
+/// A grid of `n` by `m` quadrilaterals over a parametric surface, parameters in 0 to 1.
 fn surface(triangles: &mut Triangles, n: usize, m: usize, at: impl Fn(f32, f32) -> Vec3) {
     let at = |i: usize, j: usize| at(i as f32 / n as f32, j as f32 / m as f32);
     for i in 0..n {
@@ -27,7 +27,7 @@ fn surface(triangles: &mut Triangles, n: usize, m: usize, at: impl Fn(f32, f32) 
     }
 }
 
-/// A paved yard of 20 m with walls of rough stone and 24 columns.
+/// A paved courtyard of 20 m with walls of rough stone and 24 columns.
 fn courtyard(count: usize) -> Triangles {
     let mut triangles = Triangles::default();
     let rough = |x: f32, y: f32| 0.03 * ((37.0 * x).sin() * (41.0 * y).cos() + (113.0 * x + 71.0 * y).sin());
@@ -51,7 +51,7 @@ fn courtyard(count: usize) -> Triangles {
     triangles
 }
 
-/// Million rays per second: of CPU time where the device is a program, else of wall time.
+/// Million rays per second: of CPU time for software devices, else of wall time.
 fn gpu_mrays(
     gpu: &Headless,
     heap: &Heap,

@@ -1,4 +1,4 @@
-//! glTF scenes: what is read of them, how they are posed, and everything that can be wrong with a file.
+//! glTF scenes: supported features, animation, and damaged files.
 
 #[path = "../../common/sound_scene.rs"]
 mod sound_scene;
@@ -25,7 +25,7 @@ fn open(path: &Path) -> Result<Scene, InputError> {
     Scene::open(path.to_str().unwrap(), &SceneLimits::default())
 }
 
-/// The error of opening a file: one line, with a remedy, that names the file and holds the words.
+/// Checks the error of opening a file: one line with a remedy that names the file and contains the words.
 #[track_caller]
 fn assert_refused(path: &Path, words: &[&str]) {
     let error = match open(path) {

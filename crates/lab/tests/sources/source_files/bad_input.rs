@@ -1,4 +1,4 @@
-//! What can be wrong with an input, and that the message names the file and the way out.
+//! Invalid inputs: the error names the file and a remedy.
 
 use super::{ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, write_frame};
 use afterimage_lab::error::InputError;
@@ -83,7 +83,7 @@ fn a_sequence_needs_vectors_for_the_way_it_is_played() {
     assert_says(&e, &["frame_0001.exr", "has changed"]);
 }
 
-/// Every shorter version of a file is refused from its header, tables and last chunk alone.
+/// Every truncation of a file is detected from its header, tables and last chunk alone.
 #[test]
 fn every_truncation_is_noticed_before_decoding() {
     let folder = folder_of(1, [40, 40], ALL);
@@ -118,7 +118,7 @@ fn missing_color_lists_what_is_there() {
     );
 }
 
-/// Puts `value` in place of the data of attribute `name` of type `kind`.
+/// Overwrites the data of attribute `name` of type `kind` with `value`.
 fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
     let key = format!("{name}\0{kind}\0");
     let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
@@ -186,7 +186,7 @@ fn subsampled_channels_are_refused() {
     let zeros = || FlatSamples::F32(vec![0.0; 64]);
     save(&path, vec![AnyChannel::new("Y", zeros())], (8, 8));
     let mut bytes = std::fs::read(&path).unwrap();
-    // Of the channel list: name, zero, type, flags, then the sampling in x and y.
+    // The channel list: name, zero, type, flags, then the sampling in x and y.
     let key = b"chlist\0";
     let at = bytes.windows(key.len()).position(|w| w == key).unwrap() + key.len() + 4 + 2 + 8;
     bytes[at..at + 8].copy_from_slice(&[2, 0, 0, 0, 2, 0, 0, 0]);
@@ -284,7 +284,7 @@ fn truncated_png_and_jpeg_are_refused() {
         let path = folder.path().join(name);
         DynamicImage::ImageRgb8(noisy.clone()).save(&path).unwrap();
         let whole = std::fs::read(&path).unwrap();
-        // A PNG ends with an empty chunk of 12 bytes that holds nothing, a JPEG with a marker of 2.
+        // A PNG ends with an empty chunk of 12 bytes, a JPEG with a marker of 2.
         for length in (0..whole.len() - 13).step_by(7).chain([whole.len() - 14]) {
             std::fs::write(&path, &whole[..length]).unwrap();
             assert_says(&refused(&path), &[name]);
