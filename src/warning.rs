@@ -65,7 +65,10 @@ impl fmt::Display for Warning {
                 write!(f, "color of {pixels} pixels is NaN or infinite: they show their history, or black")
             }
             Self::BadMotion { pixels } => {
-                write!(f, "motion of {pixels} pixels is NaN, infinite or beyond 65536 pixels: their history is rejected")
+                write!(
+                    f,
+                    "motion of {pixels} pixels is NaN, infinite or beyond 65536 pixels: their history is rejected"
+                )
             }
             Self::BadDepth { pixels } => {
                 write!(f, "depth of {pixels} pixels is NaN or not positive: their history is rejected")

@@ -115,7 +115,15 @@ impl Smr {
 
     /// Output color for a candidate without noise.
     #[inline(always)]
-    fn matched(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, candidate: Vec3, lod: f32, source: &Source) -> Matched {
+    fn matched(
+        &self,
+        view: &SurfaceHistory<'_>,
+        x: u32,
+        y: u32,
+        candidate: Vec3,
+        lod: f32,
+        source: &Source,
+    ) -> Matched {
         let history = view.resample(source);
         if matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]).share == 0.0 {
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
@@ -123,7 +131,8 @@ impl Smr {
         // Point samples alias at their own scale: compare one level coarser.
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
-        let [matched, level, next_level] = mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
+        let [matched, level, next_level] =
+            mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
         let radius = 0.75 * approx::exp2(lod);
         let (compared, reach) = if self.params.blocks {
             (self.around(view, x, y, candidate, radius), 2.0 * radius)
@@ -178,7 +187,8 @@ impl Smr {
         let candidates = view.past.candidates.expect("noisy candidates have a mip chain");
         let [compared, coarser] = candidates.read_candidates([x as f32, y as f32], compared_lod);
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
-        let [matched, level, next_level] = mip_chain.read(source.at, compared_lod, history.smooth).map(|c| view.expose(c));
+        let [matched, level, next_level] =
+            mip_chain.read(source.at, compared_lod, history.smooth).map(|c| view.expose(c));
         let around = Noise { samples: noise.samples, variance: compared.w * noise.samples };
         let evidence = Evidence {
             candidate,

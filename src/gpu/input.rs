@@ -66,7 +66,12 @@ pub(crate) fn check_texture(
     }
     if texture.sample_count() != 1 {
         let samples = texture.sample_count();
-        return Err(refuse(input, texture, format!("with {samples} samples"), "one sample per pixel; resolve it first"));
+        return Err(refuse(
+            input,
+            texture,
+            format!("with {samples} samples"),
+            "one sample per pixel; resolve it first",
+        ));
     }
     if !texture.usage().contains(usage) {
         let expected = if usage == TextureUsages::STORAGE_BINDING {

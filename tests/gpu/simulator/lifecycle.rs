@@ -1,4 +1,4 @@
-//! Several frames in one submission, lost gazes, formats, refusals.
+//! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
 use afterimage::gpu::Timestamps;
