@@ -14,7 +14,7 @@ use crate::settings::{Method, Settings};
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 4] = [Self::None, Self::Taa, Self::Smr, Self::Wrs];
+    pub const ALL: [Self; 4] = [Self::None, Self::Taa, Self::Wrs, Self::Smr];
 
     /// Short name, in lower case: `smr`.
     pub fn name(self) -> &'static str {

@@ -1,20 +1,16 @@
 //! Methods and their settings.
 
 use afterimage::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
+use std::sync::LazyLock;
 
-/// Values of `--method`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// Values of `--method`: the library's methods, and the upper bound of any reuse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodName {
-    /// The foveated frame alone
-    None,
-    /// Temporal antialiasing of the foveated frame
-    Taa,
-    /// Scale-matched reservoir
-    Smr,
-    /// Weighted reservoirs: A-Chao with Bernoulli bias
-    Wrs,
-    /// Best level of detail ever shown; stills only
+    /// A method of the post-process.
+    Post(Method),
+    /// Best level of detail ever shown; stills only.
     Oracle,
 }
 
@@ -22,12 +18,25 @@ impl MethodName {
     /// Name on the command line, and name of the output folder.
     pub fn name(self) -> &'static str {
         match self {
-            Self::None => "none",
-            Self::Taa => "taa",
-            Self::Smr => "smr",
-            Self::Wrs => "wrs",
+            Self::Post(method) => method.name(),
             Self::Oracle => "oracle",
         }
+    }
+}
+
+impl ValueEnum for MethodName {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<MethodName>> =
+            LazyLock::new(|| Method::ALL.map(MethodName::Post).into_iter().chain([MethodName::Oracle]).collect());
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let help = match self {
+            Self::Post(method) => method.summary(),
+            Self::Oracle => "best level of detail ever shown; stills only",
+        };
+        Some(PossibleValue::new(self.name()).help(help))
     }
 }
 

@@ -67,21 +67,29 @@ enum PassKind {
     Foveate(Filter),
 }
 
+impl PassSpec {
+    fn of_method(method: Method) -> Self {
+        let settings = Settings { method, ..Settings::paper() };
+        let bytes_per_pixel = settings.traffic_bytes_per_pixel([true, true, false]);
+        Self { name: method.name(), bytes_per_pixel, kind: PassKind::Post(method) }
+    }
+}
+
 /// The passes, in the order in which each frame times them. The others are compared with the first.
-const PASSES: [PassSpec; 8] = [
-    PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy },
-    PassSpec { name: "none", bytes_per_pixel: 16, kind: PassKind::Post(Method::None) },
-    PassSpec { name: "wrs", bytes_per_pixel: 48, kind: PassKind::Post(Method::Wrs) },
-    PassSpec { name: "taa", bytes_per_pixel: 40, kind: PassKind::Post(Method::Taa) },
-    PassSpec { name: "smr", bytes_per_pixel: 48, kind: PassKind::Post(Method::Smr) },
-    PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
-    PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
-    PassSpec { name: "block", bytes_per_pixel: 25, kind: PassKind::Foveate(Filter::Block) },
-];
+fn all_passes() -> Vec<PassSpec> {
+    let mut passes = vec![PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy }];
+    passes.extend(Method::ALL.map(PassSpec::of_method));
+    passes.extend([
+        PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
+        PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
+        PassSpec { name: "block", bytes_per_pixel: 25, kind: PassKind::Foveate(Filter::Block) },
+    ]);
+    passes
+}
 
 /// A pass, created on the device.
 enum CreatedPass {
-    Post(DeviceRun),
+    Post(Box<DeviceRun>),
     Foveate { simulator: GpuSimulator, output: Texture },
 }
 
@@ -91,11 +99,11 @@ impl CreatedPass {
         Ok(match kind {
             PassKind::Copy => {
                 let source = SHADERS.compose("copy_pass").source;
-                Self::Post(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?)
+                Self::Post(Box::new(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?))
             }
             PassKind::Post(method) => {
                 desc.settings.method = method;
-                Self::Post(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?)
+                Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
@@ -111,14 +119,15 @@ impl CreatedPass {
 
 /// Times the passes at `size` for `frames` frames.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let is_known = |name: &&String| PASSES.iter().any(|p| p.name == **name);
+    let all = all_passes();
+    let is_known = |name: &&String| all.iter().any(|p| p.name == **name);
     if let Some(name) = args.only.iter().find(|name| !is_known(name)) {
-        let names: Vec<_> = PASSES.iter().map(|p| p.name).collect();
+        let names: Vec<_> = all.iter().map(|p| p.name).collect();
         return Err(Failure::Input(format!("--only {name}: expected one or more of {}", names.join(","))));
     }
     let chosen =
         |pass: &&PassSpec| pass.name == "copy" || args.only.is_empty() || args.only.iter().any(|o| o == pass.name);
-    let passes: Vec<&PassSpec> = PASSES.iter().filter(chosen).collect();
+    let passes: Vec<&PassSpec> = all.iter().filter(chosen).collect();
     let gpu = Headless::find(true).ok_or_else(|| Failure::Input(format!("bench: {NO_ADAPTER}")))?;
     let clock = PassClock::new(&gpu);
     let mut inputs = inputs(&gpu, size)?;

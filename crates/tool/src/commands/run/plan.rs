@@ -22,7 +22,9 @@ pub struct Plan {
 /// Plans a run on an input.
 pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    if args.guided && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Smr)) {
+    if args.guided
+        && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Post(Method::Smr)))
+    {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
     let fps = args.input.fps(info);
@@ -33,7 +35,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
         if methods.iter().any(|m| m.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
-        methods.push((method.name(), lane_kind(args, method, info.still)?));
+        methods.push((method.name(), run_kind(args, method, info.still)?));
     }
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
     Ok(Plan {
@@ -71,13 +73,10 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
 }
 
 /// Pipeline stage of a method with these options. The oracle needs a still input.
-pub fn lane_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
+pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
     let method = match method {
-        MethodName::None => Method::None,
-        MethodName::Taa => Method::Taa,
-        MethodName::Smr => Method::Smr,
-        MethodName::Wrs => Method::Wrs,
+        MethodName::Post(method) => method,
         MethodName::Oracle if sampling.is_some() => {
             let text = "--method oracle: needs simulated foveation; leave out --sampling";
             return Err(Failure::Input(text.into()));

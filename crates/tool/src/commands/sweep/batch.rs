@@ -6,6 +6,7 @@ use crate::args::{FilterName, MethodName};
 use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
+use afterimage::Method;
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.
@@ -14,34 +15,34 @@ const MAX_POINTS: usize = 24;
 const MAX_PIXELS: u64 = 24_000_000;
 
 /// Options that affect only some methods, and not the input frames.
-const OF_METHODS: &[(&str, &[MethodName])] = &[
-    ("wrs-sampler", &[MethodName::Wrs]),
-    ("wrs-bias", &[MethodName::Wrs]),
-    ("gate-divisor", &[MethodName::Wrs]),
-    ("gate-offset", &[MethodName::Wrs]),
-    ("gate-metric", &[MethodName::Wrs]),
-    ("no-gate", &[MethodName::Wrs]),
-    ("smr-accumulate", &[MethodName::Smr]),
-    ("smr-tolerance", &[MethodName::Smr]),
-    ("no-relight", &[MethodName::Smr]),
-    ("depth-relative", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
-    ("depth-slope", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
-    ("no-flush", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
-    ("without", &[MethodName::Taa, MethodName::Wrs, MethodName::Smr]),
+const OF_METHODS: &[(&str, &[Method])] = &[
+    ("wrs-sampler", &[Method::Wrs]),
+    ("wrs-bias", &[Method::Wrs]),
+    ("gate-divisor", &[Method::Wrs]),
+    ("gate-offset", &[Method::Wrs]),
+    ("gate-metric", &[Method::Wrs]),
+    ("no-gate", &[Method::Wrs]),
+    ("smr-accumulate", &[Method::Smr]),
+    ("smr-tolerance", &[Method::Smr]),
+    ("no-relight", &[Method::Smr]),
+    ("depth-relative", &[Method::Taa, Method::Wrs, Method::Smr]),
+    ("depth-slope", &[Method::Taa, Method::Wrs, Method::Smr]),
+    ("no-flush", &[Method::Taa, Method::Wrs, Method::Smr]),
+    ("without", &[Method::Taa, Method::Wrs, Method::Smr]),
 ];
 
 /// Whether an option affects a method; `without` affects the methods that have the part.
 pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     #[cfg(feature = "ablation")]
     if let ("without", Some(part)) = (option, afterimage_lab::pipeline::ablation::Part::find(value)) {
-        return part.methods.iter().any(|m| format!("{m:?}").to_lowercase() == method);
+        return part.methods.iter().any(|m| m.name() == method);
     }
     #[cfg(not(feature = "ablation"))]
     let _ = value;
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, methods)) => methods.iter().any(|m| m.name() == method),
         // Only the history of smr guides samples.
-        None => option != "guided" || method == MethodName::Smr.name(),
+        None => option != "guided" || method == Method::Smr.name(),
     }
 }
 
@@ -91,7 +92,7 @@ impl Subject {
 
 /// Whether the result depends on the seed.
 pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
-    method == MethodName::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
+    method == Method::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
 }
 
 /// Groups points into batches. The order does not depend on finished points.

@@ -47,7 +47,7 @@ pub fn check(subject: &Subject) -> Result<(), Failure> {
         check_frames(&subject.args, frames)?;
     }
     // Assume a still input for the oracle: opening the input checks that later.
-    plan::lane_kind(&subject.args, subject.method, true).map(|_| ())
+    plan::run_kind(&subject.args, subject.method, true).map(|_| ())
 }
 
 fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
@@ -69,7 +69,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     let plan = plan::plan(args, source.info(), backend)?;
     let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
-        methods.push((subject.method.name(), plan::lane_kind(&subject.args, subject.method, source.info().still)?));
+        methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info().still)?));
     }
     let clip = Clip { methods, debug: vec![], ..plan.clip };
     check_frames(args, clip.gaze.len() as u64)?;

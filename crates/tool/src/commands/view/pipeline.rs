@@ -3,7 +3,7 @@
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
-use afterimage::{ContextDesc, Gaze, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
@@ -46,7 +46,7 @@ impl ViewPipeline {
         settings: &dyn Fn(Shows) -> Settings,
     ) -> Result<Self, Failure> {
         let mut pipeline = Self {
-            inputs: DeviceInputs::new(gpu, &desc(&geometry, settings(Shows::None)), FORMATS)?,
+            inputs: DeviceInputs::new(gpu, &desc(&geometry, settings(Shows::Post(Method::None))), FORMATS)?,
             runs: vec![],
             previous_from_current: None,
             cut: false,
@@ -60,7 +60,7 @@ impl ViewPipeline {
 
     /// Applies changes of the state to methods and foveation. Resets all history.
     pub fn adapt(&mut self, state: &State, settings: &dyn Fn(Shows) -> Settings) -> Result<(), Failure> {
-        self.inputs.set_foveation(&desc(&self.geometry, settings(Shows::None)))?;
+        self.inputs.set_foveation(&desc(&self.geometry, settings(Shows::Post(Method::None))))?;
         let sides = state.shown_sides();
         self.runs.truncate(sides.len());
         for (i, &side) in sides.iter().enumerate() {

@@ -5,7 +5,7 @@ use super::state::{Shows, State};
 use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::failure::Failure;
-use afterimage::{Settings, ViewGeometry};
+use afterimage::{Method, Settings, ViewGeometry};
 use afterimage_lab::source::SourceInfo;
 
 /// Options, and properties of the input.
@@ -34,8 +34,8 @@ impl Setup {
         let track = gaze.resolve(&geometry, fps, input::frames(args.frames, info))?.px;
         let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
         let state = setup.state();
-        for shows in [Shows::None, Shows::Taa, Shows::Wrs, Shows::Smr] {
-            setup.settings(&state, shows).validate()?;
+        for method in Method::ALL {
+            setup.settings(&state, Shows::Post(method)).validate()?;
         }
         Ok(setup)
     }

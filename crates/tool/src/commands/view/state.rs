@@ -3,44 +3,44 @@
 use crate::args::{DebugName, FilterName};
 use afterimage::Method;
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use std::sync::LazyLock;
 use winit::keyboard::KeyCode;
 
-/// Method, or the reference, that a side of the picture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// What a side of the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// The foveated frame alone
-    None,
-    /// Temporal antialiasing of the foveated frame
-    Taa,
-    /// Weighted reservoirs: A-Chao with Bernoulli bias
-    Wrs,
-    /// Scale-matched reservoir
-    Smr,
-    /// The full-rate frame
+    /// A method of the post-process.
+    Post(Method),
+    /// The full-rate frame.
     Reference,
 }
 
 impl Shows {
     /// Name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Taa => "taa",
-            Self::Wrs => "wrs",
-            Self::Smr => "smr",
-            Self::Reference => "reference",
-        }
+        self.method().map_or("reference", Method::name)
     }
 
     /// The method; `None`: the full-rate frame is shown.
     pub fn method(self) -> Option<Method> {
         match self {
-            Self::None => Some(Method::None),
-            Self::Taa => Some(Method::Taa),
-            Self::Wrs => Some(Method::Wrs),
-            Self::Smr => Some(Method::Smr),
+            Self::Post(method) => Some(method),
             Self::Reference => None,
         }
+    }
+}
+
+impl ValueEnum for Shows {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<Shows>> =
+            LazyLock::new(|| Method::ALL.map(Shows::Post).into_iter().chain([Shows::Reference]).collect());
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let help = self.method().map_or("the full-rate frame", Method::summary);
+        Some(PossibleValue::new(self.name()).help(help))
     }
 }
 
@@ -201,17 +201,26 @@ fn next<T: ValueEnum + PartialEq + Clone>(value: T) -> T {
 /// Factor per key press on the fovea's diameter; larger steps are hard to compare by eye.
 const FOVEA_STEP: f32 = 1.25;
 
+/// Action of a digit key: the methods in the order of `--method`, then the reference.
+fn shown(side: Side, digit: usize) -> Option<Action> {
+    Shows::value_variants().get(digit - 1).map(|&shows| Action::Show(side, shows))
+}
+
 /// The action of a key.
 pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
     let side = if shift { Side::Right } else { Side::Left };
     Some(match key {
         KeyCode::KeyL if control && shift => Action::LoseDevice,
         _ if control => return None,
-        KeyCode::Digit1 => Action::Show(side, Shows::None),
-        KeyCode::Digit2 => Action::Show(side, Shows::Taa),
-        KeyCode::Digit3 => Action::Show(side, Shows::Wrs),
-        KeyCode::Digit4 => Action::Show(side, Shows::Smr),
-        KeyCode::Digit5 => Action::Show(side, Shows::Reference),
+        KeyCode::Digit1 => shown(side, 1)?,
+        KeyCode::Digit2 => shown(side, 2)?,
+        KeyCode::Digit3 => shown(side, 3)?,
+        KeyCode::Digit4 => shown(side, 4)?,
+        KeyCode::Digit5 => shown(side, 5)?,
+        KeyCode::Digit6 => shown(side, 6)?,
+        KeyCode::Digit7 => shown(side, 7)?,
+        KeyCode::Digit8 => shown(side, 8)?,
+        KeyCode::Digit9 => shown(side, 9)?,
         KeyCode::Tab => Action::Split,
         KeyCode::KeyF => Action::Filter,
         KeyCode::Minus | KeyCode::NumpadSubtract | KeyCode::ArrowDown => Action::Fovea(1.0 / FOVEA_STEP),
@@ -236,7 +245,7 @@ pub(super) mod tests {
 
     pub fn state() -> State {
         State {
-            sides: [Shows::Smr, Shows::Reference],
+            sides: [Shows::Post(Method::Smr), Shows::Reference],
             is_split: false,
             divider: 0.5,
             filter: FilterName::Mip,
@@ -260,9 +269,13 @@ pub(super) mod tests {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::Digit4, false), Effect::Nothing, "smr is shown already");
         assert_eq!(press(&mut state, KeyCode::Digit3, false), Effect::Update);
-        assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Reference], false));
+        assert_eq!((state.sides, state.is_split), ([Shows::Post(Method::Wrs), Shows::Reference], false));
         assert_eq!(press(&mut state, KeyCode::Digit2, true), Effect::Update);
-        assert_eq!((state.sides, state.is_split), ([Shows::Wrs, Shows::Taa], true), "what is chosen is shown");
+        assert_eq!(
+            (state.sides, state.is_split),
+            ([Shows::Post(Method::Wrs), Shows::Post(Method::Taa)], true),
+            "what is chosen is shown"
+        );
         assert_eq!(state.shown_sides(), Side::BOTH);
         press(&mut state, KeyCode::Tab, false);
         assert_eq!(state.shown_sides(), [Side::Left]);
@@ -272,7 +285,16 @@ pub(super) mod tests {
     fn clicks_go_through_all_values_and_round() {
         let mut state = state();
         let shown: Vec<_> = (0..5).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
-        assert_eq!(shown, [Shows::Reference, Shows::None, Shows::Taa, Shows::Wrs, Shows::Smr]);
+        assert_eq!(
+            shown,
+            [
+                Shows::Reference,
+                Shows::Post(Method::None),
+                Shows::Post(Method::Taa),
+                Shows::Post(Method::Wrs),
+                Shows::Post(Method::Smr)
+            ]
+        );
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
         let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
