@@ -5,7 +5,7 @@ use super::words::{Kind, pieces};
 use std::collections::BTreeSet;
 
 /// Folders of a package. A path that begins with one of them is relative to a package or to the workspace.
-const ROOTS: [&str; 8] = ["crates", "docs", "examples", "fixtures", "fuzz", "shaders", "src", "tests"];
+const ROOTS: [&str; 7] = ["crates", "docs", "examples", "fixtures", "shaders", "src", "tests"];
 
 /// Pages that name files of the past.
 const HISTORY: &str = "CHANGELOG.md";
