@@ -1,61 +1,74 @@
-//! What motion vectors and depth values mean, as types, and the one internal form they are brought to.
+//! Conventions of motion vectors and depth values, and their conversion to internal conventions.
 //!
-//! Inside, a motion vector is `previous - current` in pixels with y down: a pixel `p` was at `p + motion` in the previous
-//! frame. Depth is a **disparity** 1/z, with z the distance along the view axis: 0 is infinitely far, planes are linear in
-//! screen space, and every perspective depth buffer is an affine function of it.
+//! Internally, a motion vector is `previous - current` in pixels with y down: a pixel `p` was at `p + motion` in the previous frame.
+//! Depth is a **disparity** 1/z, with z the distance along the view axis: 0 is infinitely far, planes are linear in screen space, and
+//! every perspective depth buffer is an affine function of it.
 
 use crate::error::SettingsError;
 use crate::kernel::depth::DisparityMap;
 
-/// Unit of motion vectors.
+/// Unit of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MotionUnit {
     /// Pixels of the frame.
     #[default]
     Pixels,
-    /// Texture coordinates: 1 is the whole width or height.
+    /// Texture coordinates: 1 is the full width or height.
     Uv,
-    /// Normalised device coordinates: 2 is the whole width or height.
+    /// Normalised device coordinates: 2 is the full width or height.
     Ndc,
 }
 
-/// Which difference a motion vector is.
+/// Sign of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MotionDirection {
-    /// Where the surface point was in the previous frame, minus where it is now.
+    /// Position of the surface point in the previous frame minus its position in this frame.
     #[default]
     PreviousMinusCurrent,
-    /// Where it is now, minus where it was.
+    /// Position of the surface point in this frame minus its position in the previous frame.
     CurrentMinusPrevious,
 }
 
-/// Direction of the vertical axis of motion vectors.
+/// Direction of the vertical axis of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum YAxis {
-    /// Downwards, as rows are stored.
+    /// Downwards: towards later rows of the image.
     #[default]
     Down,
     /// Upwards, as in normalised device coordinates.
     Up,
 }
 
-/// What a motion vector means. The default is the internal form.
+/// Convention of motion vectors. Default: previous minus current position in pixels, y down.
+///
+/// A wrong convention shows as history that is rejected or smeared in motion, while a still view looks right.
+///
+/// ```
+/// use afterimage::{ContextDesc, MotionConvention, MotionDirection, MotionUnit, YAxis};
+///
+/// // An engine whose vectors are current minus previous position in normalised device coordinates.
+/// let mut desc = ContextDesc::new([1920, 1080]);
+/// desc.motion =
+///     MotionConvention { unit: MotionUnit::Ndc, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionConvention {
-    /// Unit.
+    /// Unit. Default: pixels.
     pub unit: MotionUnit,
-    /// Sign.
+    /// Sign. Default: previous minus current.
     pub direction: MotionDirection,
-    /// Vertical axis.
+    /// Vertical axis. Default: down.
     pub y_axis: YAxis,
 }
 
 impl MotionConvention {
-    /// Blender's `Vector.X`, `Vector.Y`: previous minus current in pixels, y up.
+    /// Convention of Blender's vector pass (`Vector.X`, `Vector.Y`): previous minus current in pixels, y up.
     pub const BLENDER: Self =
         Self { unit: MotionUnit::Pixels, direction: MotionDirection::PreviousMinusCurrent, y_axis: YAxis::Up };
 
-    /// Factors that bring a vector of this convention to the internal form, for a frame of `size_px`.
+    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`.
+    #[doc(hidden)]
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
         let [w, h] = size_px.map(|s| s as f32);
         let [sx, sy] = match self.unit {
@@ -75,40 +88,53 @@ impl MotionConvention {
     }
 }
 
-/// What a depth value means. Distances are along the view axis, in any one unit.
+/// Convention of depth values. Default: [`Linear`](Self::Linear).
+///
+/// Distances are along the view axis, in any unit that also [`ViewFrame::previous_from_current`](crate::ViewFrame) uses.
+///
+/// ```
+/// use afterimage::{ContextDesc, DepthConvention};
+///
+/// // A reversed-z depth buffer with an infinite far plane.
+/// let mut desc = ContextDesc::new([1920, 1080]);
+/// desc.depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
+/// desc.depth.validate()?;
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum DepthConvention {
-    /// The distance itself; infinite (or huge) where there is nothing.
+    /// Distance along the view axis; infinite, or above 1e30, where there is no surface.
     #[default]
     Linear,
-    /// Perspective, 0 at `near` and 1 at `far`.
+    /// Perspective depth buffer: 0 at `near`, 1 at `far`.
     Forward {
-        /// Distance of the near plane.
+        /// Distance of the near plane, above 0 and finite.
         near: f32,
-        /// Distance of the far plane; `f32::INFINITY` for none.
+        /// Distance of the far plane, above `near`; `f32::INFINITY` for an infinite projection.
         far: f32,
     },
-    /// Perspective, 1 at `near` and 0 at `far`.
+    /// Reversed perspective depth buffer: 1 at `near`, 0 at `far`.
     Reversed {
-        /// Distance of the near plane.
+        /// Distance of the near plane, above 0 and finite.
         near: f32,
-        /// Distance of the far plane; `f32::INFINITY` for none.
+        /// Distance of the far plane, above `near`; `f32::INFINITY` for an infinite projection.
         far: f32,
     },
-    /// Orthographic, 0 at `near` and 1 at `far`, linear in between.
+    /// Orthographic depth buffer: 0 at `near`, 1 at `far`, linear in distance.
     Orthographic {
-        /// Distance of the near plane.
+        /// Distance of the near plane, finite; may be negative.
         near: f32,
-        /// Distance of the far plane.
+        /// Distance of the far plane, finite, above `near` and above 0.
         far: f32,
     },
 }
 
 impl DepthConvention {
-    /// Checks the planes.
+    /// Checks the distances of the planes.
     ///
     /// # Errors
-    /// If near is not above zero (orthographic: not finite), or far not above near.
+    /// [`SettingsError`] if a plane is outside the range that its variant documents.
     pub fn validate(self) -> Result<(), SettingsError> {
         let refuse = |found: String, expected: &str| {
             Err(SettingsError { setting: "depth convention", found, expected: expected.into() })
@@ -132,7 +158,8 @@ impl DepthConvention {
         }
     }
 
-    /// How a stored value becomes a disparity. Perspective buffers are affine in it: `(1 - d) / near + d / far`.
+    /// Map from a stored value to a disparity. For perspective buffers it is affine: `(1 - d) / near + d / far`.
+    #[doc(hidden)]
     pub fn disparity_map(self) -> DisparityMap {
         let (a, b, invert, clamp) = match self {
             Self::Linear => (1.0, 0.0, true, false),

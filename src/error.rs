@@ -1,20 +1,26 @@
-//! Errors, and how they read: what was wrong, what was expected, what to do.
+//! Errors. Each reads as one line: what is wrong, what was expected, and what to do about it.
 
 use thiserror::Error;
 
-/// A setting outside its range, or two that contradict each other.
+/// A setting that is out of range, or contradicts another one.
+///
+/// ```
+/// let error = afterimage::ViewGeometry::flat([640, 360], 200.0).unwrap_err();
+/// assert_eq!(error.setting, "hfov_deg");
+/// assert_eq!(error.to_string(), "hfov_deg is 200: expected a horizontal field of view above 0 and below 180 degrees");
+/// ```
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{setting} is {found}: expected {expected}")]
 pub struct SettingsError {
-    /// Name of the setting, as in [`Settings`](crate::Settings).
+    /// Name of the setting or argument.
     pub setting: &'static str,
-    /// The value that was refused.
+    /// Rejected value.
     pub found: String,
-    /// The accepted range, with its unit.
+    /// Accepted range, with its unit.
     pub expected: String,
 }
 
-/// Refuses a number outside `range`, NaN included.
+/// Rejects a number outside `range`, NaN included.
 pub(crate) fn check(
     setting: &'static str,
     value: f32,
@@ -33,113 +39,143 @@ pub(crate) fn check(
     }
 }
 
-/// A context that cannot be made.
+/// A context that cannot be created.
+///
+/// ```
+/// use afterimage::ContextDesc;
+///
+/// # #[cfg(feature = "gpu")]
+/// # {
+/// use afterimage::CreateError;
+/// use afterimage::gpu::Afterimage;
+///
+/// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+/// let desc = ContextDesc::new([640, 360]);
+/// // A swapchain's format is rarely one that a compute shader may write.
+/// let error = Afterimage::new(&device, &desc, wgpu::TextureFormat::Bgra8UnormSrgb).unwrap_err();
+/// assert!(matches!(error, CreateError::OutputFormat { .. }));
+/// # }
+/// ```
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum CreateError {
-    /// A setting or fact out of range.
+    /// A setting or another part of the description is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// A device limit is too low.
     #[error(
-        "the device's {limit} is {found}: expected at least {needed}; request the device with it, see required_limits()"
+        "the device's {limit} is {found}: expected at least {needed}; request the device with Afterimage::required_limits()"
     )]
     Limit {
         /// Name in `wgpu::Limits`.
         limit: &'static str,
-        /// The device's.
+        /// Limit of the device.
         found: u32,
-        /// What is needed.
+        /// Limit that the context needs.
         needed: u32,
     },
-    /// The output format cannot be written by a compute shader.
+    /// The output format is not supported. Render to a supported format, and draw that to the screen.
     #[cfg(feature = "gpu")]
-    #[error("output format {found:?}: expected one of {expected}")]
+    #[error("output format is {found:?}: expected one of {expected}")]
     OutputFormat {
-        /// What was asked for.
+        /// Requested format.
         found: wgpu::TextureFormat,
-        /// What is accepted.
+        /// Supported formats.
         expected: &'static str,
     },
 }
 
-/// A frame that cannot be processed. Nothing was changed: the history is as it was before the call.
+/// A frame that cannot be processed. The call that returned it changed nothing: history is as before.
+///
+/// ```
+/// use afterimage::FrameError;
+///
+/// # #[cfg(feature = "gpu")]
+/// # {
+/// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+/// # let desc = afterimage::ContextDesc::new([640, 360]);
+/// # let mut post = afterimage::gpu::Afterimage::new(&device, &desc, wgpu::TextureFormat::Rgba16Float).unwrap();
+/// // A minimised window.
+/// assert!(matches!(post.resize(&device, [0, 0]), Err(FrameError::Extent { .. })));
+/// assert_eq!(post.desc().size_px, [640, 360]);
+/// # }
+/// ```
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// A pixel buffer that does not fill its image.
-    #[error("{found} pixels given for an image of {}x{}: expected {expected}", size[0], size[1])]
+    /// The number of pixels does not match the image's size.
+    #[error("image of {}x{} has {found} pixels: expected {expected}", size[0], size[1])]
     PixelCount {
-        /// Width and height asked for.
+        /// Width and height of the image.
         size: [u32; 2],
-        /// Width x height.
+        /// Width times height.
         expected: usize,
-        /// Pixels given.
+        /// Number of pixels given.
         found: usize,
     },
-    /// An input of another size than the context's.
-    #[error("{input} of view {view} is {}x{}: expected {}x{}, the size the context was made for; resize the context or the input", found[0], found[1], expected[0], expected[1])]
+    /// An input's size is not the context's.
+    #[error("{input} of view {view} is {}x{}: expected {}x{}, the context's size; resize the context or the input", found[0], found[1], expected[0], expected[1])]
     Size {
-        /// Which input.
+        /// Name of the input.
         input: &'static str,
         /// Index of the view.
         view: usize,
-        /// Its size.
+        /// Size of the input, in pixels.
         found: [u32; 2],
-        /// The context's size.
+        /// Size of the context's views, in pixels.
         expected: [u32; 2],
     },
-    /// More or fewer views than the context was made for.
-    #[error("{found} views given: expected {expected}, as the context was made for")]
+    /// The frame has more or fewer views, or images of an input, than the context has views.
+    #[error("{found} views given: expected {expected}, the context's view_count")]
     ViewCount {
-        /// Views in the frame.
+        /// Number of views or images in the frame.
         found: usize,
-        /// Views of the context.
+        /// Number of views of the context.
         expected: usize,
     },
-    /// A context or frame without a single pixel.
-    #[error("size is {}x{}: expected at least 1x1 pixels and at most {max} a side; skip frames while the window is minimised", size[0], size[1])]
+    /// The size of a context is 0 or too large.
+    #[error("size is {}x{}: expected at least 1x1 and at most {max} pixels a side; skip frames while the window is minimised", size[0], size[1])]
     Extent {
-        /// The size asked for.
+        /// Requested size, in pixels.
         size: [u32; 2],
-        /// Largest side accepted.
+        /// Largest side, in pixels.
         max: u32,
     },
-    /// A texture that cannot be bound as what it is given for.
+    /// A texture has the wrong dimension, number of layers or samples, format or usage.
     #[error("{input} is a texture of format {format}, {problem}: expected {expected}")]
     Texture {
-        /// Which input.
+        /// Name of the input or output.
         input: &'static str,
-        /// Its format.
+        /// Format of the texture.
         format: String,
-        /// What is wrong with it.
+        /// What is wrong.
         problem: String,
-        /// What is accepted.
+        /// Supported textures.
         expected: &'static str,
     },
-    /// A buffer that cannot be bound as what it is given for.
+    /// A buffer is too small or lacks a usage.
     #[error("{input} is a buffer {problem}: expected {expected}")]
     Buffer {
-        /// Which input.
+        /// Name of the buffer.
         input: &'static str,
-        /// What is wrong with it.
+        /// What is wrong.
         problem: String,
-        /// What is accepted.
+        /// Supported buffers.
         expected: &'static str,
     },
-    /// Nothing that was asked of the device is done any more.
-    #[error("the graphics device was lost: make a new device and a new context on it, which starts afresh")]
+    /// The graphics device was lost; it executes nothing any more.
+    #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
     DeviceLost,
-    /// A number of the frame's description is not usable.
+    /// A value of the frame's description is invalid.
     #[error("{what} of view {view} is {found}: expected {expected}")]
     Value {
-        /// Which number.
+        /// Name of the value.
         what: &'static str,
         /// Index of the view.
         view: usize,
-        /// Its value.
+        /// Rejected value.
         found: String,
-        /// What is accepted.
+        /// Accepted values.
         expected: &'static str,
     },
 }

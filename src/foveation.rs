@@ -1,41 +1,61 @@
-//! What the renderer's foveation does, and simulators of it.
-//!
-//! Two independent questions: **where** the frame is how coarse (a level of detail by eccentricity) and **how** coarse looks (the
-//! filter). A level of detail `l` means blocks of 2^l pixels a side. The post-process is told both by [`Foveation`]; with the
-//! feature `lab` the same description turns a full-rate frame into what such a renderer would have delivered.
+//! Description of a renderer's foveation: level of detail by eccentricity, and the filter by which coarse regions are shaded. A level
+//! of detail `l` means blocks of 2^l pixels a side.
 
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
 
-/// How coarse looks.
+/// Filter by which a renderer shades coarse regions. Default: [`Mip`](Self::Mip). Example: [`Foveation`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Filter {
-    /// Box mip levels of linear light, trilinear between levels: a renderer that shades fewer pixels and upscales.
+    /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels and upscale.
     #[default]
     Mip,
-    /// Gaussian blur that grows linearly with eccentricity.
+    /// Gaussian blur whose width grows linearly with eccentricity.
     Gauss,
-    /// One point sample a block, constant over it: coarse shading hardware. Blends between regions become steps of powers of
+    /// One point sample a block: coarse shading hardware (variable rate shading). Blends between regions become steps by powers of
     /// two.
     Block,
-    /// Full rate everywhere.
+    /// Full rate everywhere; no foveation.
     Off,
 }
 
-/// Regions and rates of a foveated frame. Angles are true visual angles.
+/// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual angles.
+///
+/// Set it as your renderer foveates: it tells the post-process the level of detail of each pixel
+/// ([`Settings::foveation`](crate::Settings::foveation)). The simulators ([`simulator`](crate::simulator)) foveate a full-rate frame by
+/// the same description.
+///
+/// ```
+/// use afterimage::{Filter, Foveation};
+///
+/// // Variable rate shading: full rate to 10 degrees, 2x2 blocks to 25 degrees, 4x4 blocks beyond.
+/// let foveation = Foveation {
+///     filter: Filter::Block,
+///     fovea_deg: 10.0,
+///     mid_deg: 25.0,
+///     rate_mid: 2,
+///     rate_far: 4,
+///     ..Foveation::default()
+/// };
+/// foveation.validate()?;
+/// assert_eq!((foveation.lod(0.0), foveation.lod(30.0)), (0.0, 2.0));
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foveation {
-    /// How coarse looks.
+    /// Filter of coarse regions. Default [`Filter::Mip`].
     pub filter: Filter,
-    /// Diameter of the full-rate region in degrees. Default 5.
+    /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees. Default 15.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
     pub mid_deg: f32,
-    /// Width in degrees of the linear blend outside each radius. Default 1.
+    /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
-    /// Block edge in the middle region in pixels, a power of two. Default 8.
+    /// Block edge in the middle region in pixels: a power of two, at most [`MAX_RATE`](Self::MAX_RATE). Default 8.
     pub rate_mid: u32,
-    /// Block edge beyond in pixels, a power of two, at least `rate_mid`. Default 16.
+    /// Block edge in the periphery, outside the middle region, in pixels: a power of two from `rate_mid` to
+    /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
 }
 
@@ -46,13 +66,13 @@ impl Default for Foveation {
 }
 
 impl Foveation {
-    /// Largest block edge.
+    /// Largest block edge, in pixels.
     pub const MAX_RATE: u32 = 256;
 
-    /// Checks ranges and order.
+    /// Checks the range of every field.
     ///
     /// # Errors
-    /// Names the first field that is out of range or contradicts another.
+    /// [`SettingsError`] for the first field that is out of range or contradicts another.
     pub fn validate(&self) -> Result<(), SettingsError> {
         check("fovea", self.fovea_deg, 0.0..=180.0, "degrees")?;
         check("mid", self.mid_deg, 0.0..=180.0, "degrees")?;
@@ -79,7 +99,7 @@ impl Foveation {
         Ok(())
     }
 
-    /// Mip levels above the full-rate one that the filter may read.
+    /// Coarsest level of detail: log2 of `rate_far`.
     pub fn max_level(&self) -> u32 {
         self.rate_far.ilog2()
     }
@@ -110,7 +130,8 @@ impl Foveation {
         0.5 * (self.rate_far - 1) as f32
     }
 
-    /// Level of detail at eccentricity `e_deg`, before the filter's own quantisation.
+    /// Level of detail at eccentricity `e_deg`: log2 of the block edge in pixels, 0 at full rate. Continuous;
+    /// [`Filter::Block`] rounds it to whole levels by block.
     pub fn lod(&self, e_deg: f32) -> f32 {
         let (fovea, mid) = (self.fovea_radius_deg(), self.mid_radius_deg());
         match self.filter {
@@ -122,7 +143,7 @@ impl Foveation {
         }
     }
 
-    /// How coarse the middle region is, and beyond: levels of detail, or the largest standard deviations of a blur in pixels.
+    /// Coarseness of the middle region and of the periphery: levels of detail, or largest standard deviations of a blur in pixels.
     #[cfg(feature = "gpu")]
     pub(crate) fn coarseness(&self) -> [f32; 2] {
         match self.filter {

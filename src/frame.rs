@@ -1,4 +1,4 @@
-//! Descriptions that both executors share: of a context, of a frame and of its views.
+//! Descriptions of a context, of a frame and of its views, for both executors.
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
@@ -6,24 +6,24 @@ use crate::geometry::ViewGeometry;
 use crate::settings::Settings;
 use std::fmt::Debug;
 
-/// Position that one eye looks at.
+/// Gaze: position in a view that the eye looks at. Default: [`Lost`](Self::Lost). Example: [`ViewFrame`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Gaze {
-    /// At this position of its view: pixels, (0, 0) is the centre of the top-left pixel, y down. May lie outside the view.
+    /// Known position. May lie outside the view. A position that is not finite counts as [`Lost`](Self::Lost).
     At {
-        /// Position in pixels.
+        /// Position in pixels: (0, 0) is the centre of the top-left pixel, y down.
         px: [f32; 2],
     },
-    /// Not known in this frame (blink, lost tracking): the last known position is held; before the first one, the middle of
-    /// the view.
+    /// Unknown in this frame (blink, lost tracking): the last known position is used; before the first one, the middle of the view.
     #[default]
     Lost,
 }
 
 impl Gaze {
-    /// The position to use: this one if it is known and finite, else `held`, else the middle of a view of `size_px`. Limited to
-    /// a million pixels either way, so that angles stay finite.
+    /// Position to use: this one if it is known and finite, else `held`, else the middle of a view of `size_px`. Clamped to +-1e6
+    /// pixels, so that angles stay finite.
+    #[doc(hidden)]
     pub fn resolve(self, held: Option<[f32; 2]>, size_px: [u32; 2]) -> [f32; 2] {
         let middle = size_px.map(|s| 0.5 * s as f32 - 0.5);
         match self {
@@ -33,9 +33,9 @@ impl Gaze {
     }
 }
 
-/// One view of one frame: a screen, or an eye of a headset.
+/// Description of a view in a frame: geometry, gaze and camera motion of a screen or of one eye of a headset.
 ///
-/// Make it with [`new`](Self::new) and `..`, so that a field that comes later breaks nothing:
+/// Create it with [`new`](Self::new) and `..`, so that later versions can add fields:
 ///
 /// ```
 /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
@@ -47,28 +47,28 @@ impl Gaze {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewFrame {
-    /// Rays through its pixels.
+    /// Rays through the pixels.
     pub geometry: ViewGeometry,
-    /// Position that its eye looks at.
+    /// Gaze position.
     pub gaze: Gaze,
-    /// Camera motion: takes a point from this frame's view space (x right, y down, z forward) to the previous frame's. Row-major,
-    /// for column vectors; perspective views only. `None`: distances are expected to stay as they are, and history on surfaces that
-    /// the camera approaches or leaves fast is rejected.
+    /// Camera motion: the matrix that transforms a point from this frame's view space (x right, y down, z forward) to the previous
+    /// frame's. Row-major, for column vectors; perspective views only. `None`: the depth test expects unchanged distances, so that
+    /// history is rejected on surfaces that the camera approaches or leaves fast.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
 }
 
 impl ViewFrame {
-    /// A view whose camera motion is not known.
+    /// A view of unknown camera motion.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
         Self { geometry, gaze, previous_from_current: None }
     }
 
-    /// Third row of [`previous_from_current`](Self::previous_from_current): it gives the previous distance.
+    /// Third row of [`previous_from_current`](Self::previous_from_current), which gives the previous distance.
     pub(crate) fn depth_row(&self) -> [f32; 4] {
         self.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2])
     }
 
-    /// Checks what does not depend on images.
+    /// Checks all fields against the context's description.
     pub(crate) fn check(&self, view: usize, desc: &ContextDesc) -> Result<(), FrameError> {
         let found = self.geometry.size_px();
         if found != desc.size_px {
@@ -95,47 +95,47 @@ impl ViewFrame {
     }
 }
 
-/// Whether history survives into this frame.
+/// Reset of history by a frame. Default: [`None`](Self::None). `examples/02_engine.rs` uses it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reset {
-    /// All history is valid.
+    /// History is valid.
     #[default]
     None,
-    /// No history is valid, after a cut, a teleport or a pause. This frame starts afresh.
+    /// No history is valid: after a cut, a teleport or a pause. The frame is processed like the first one.
     All,
 }
 
-/// Exposure of this frame's colors against the previous frame's, for engines that multiply an exposure into the colors that they
-/// hand over. Stored colors are scaled by the ratio.
+/// Change of exposure between the previous frame and this one, for renderers whose colors are multiplied by an exposure. Stored
+/// colors are scaled by the ratio. Default: [`Same`](Self::Same). `examples/02_engine.rs` uses it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Exposure {
-    /// Unchanged: the same surface in the same light has the same numbers.
+    /// Unchanged exposure.
     #[default]
     Same,
-    /// This frame's exposure over the previous frame's.
+    /// Changed exposure.
     Changed {
-        /// Above 0 and finite.
+        /// This frame's exposure divided by the previous frame's: above 0 and finite.
         ratio: f32,
     },
 }
 
 impl Exposure {
-    /// Refuses a ratio that is not above 0 and finite.
+    /// Rejects a ratio that is not above 0 and finite.
     pub(crate) fn check(self) -> Result<(), FrameError> {
         match self {
             Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => Err(FrameError::Value {
                 what: "exposure ratio",
                 view: 0,
                 found: ratio.to_string(),
-                expected: "this frame's exposure over the previous frame's: above 0 and finite",
+                expected: "a number above 0 and finite: this frame's exposure divided by the previous frame's",
             }),
             _ => Ok(()),
         }
     }
 
-    /// The factor on stored colors, if there is one. Limited to where halves can follow ([`expose`](crate::kernel::wrs::expose)).
+    /// Factor on stored colors; `None` if unchanged. Clamped to the range of [`expose`](crate::kernel::wrs::expose).
     pub(crate) fn factor(self) -> Option<f32> {
         const LIMIT: f32 = (1_u64 << 40) as f32;
         match self {
@@ -145,52 +145,63 @@ impl Exposure {
     }
 }
 
-/// An executor of the post-process, by the images that it reads.
+/// Executor of the post-process: types of its input images.
 ///
-/// Implemented by [`gpu::Afterimage`](crate::gpu::Afterimage), whose images are textures with one array layer a view, and by
-/// [`cpu::CpuAfterimage`](crate::cpu::CpuAfterimage), whose images are slices with one [`Image`](crate::Image) a view.
+/// Implemented by `gpu::Afterimage`, whose inputs are textures with one array layer a view, and by `cpu::CpuAfterimage`, whose inputs
+/// are slices with one `Image` a view. It only makes [`Frame`] generic; there is no need to implement or to name it.
 pub trait Executor {
-    /// Images of colors.
+    /// Images with three channels (color).
     type Colors<'a>: Copy + Debug;
-    /// Images of numbers.
+    /// Images with one channel.
     type Scalars<'a>: Copy + Debug;
-    /// Images of pairs of numbers.
+    /// Images with two channels.
     type Vectors<'a>: Copy + Debug;
 }
 
-/// One frame: images of the size that the context was made for, and what the renderer knows about them.
+/// A frame: its input images, all of the context's size, and descriptions of its views.
 ///
-/// [`gpu::Frame`](crate::gpu::Frame) and [`cpu::Frame`](crate::cpu::Frame) are this type for either executor. Make it with
-/// [`new`](Self::new) and `..`, so that a field that comes later breaks nothing.
+/// `gpu::Frame` and `cpu::Frame` are this type for either executor. Create it with [`new`](Self::new) and `..`, so that later versions
+/// can add fields:
+///
+/// ```
+/// # #[cfg(feature = "gpu")]
+/// # fn example(color: &wgpu::Texture, depth: &wgpu::Texture, motion: &wgpu::Texture, views: &[afterimage::ViewFrame]) {
+/// use afterimage::Reset;
+/// use afterimage::gpu::Frame;
+///
+/// let after_a_cut = Frame { depth: Some(depth), motion: Some(motion), reset: Reset::All, ..Frame::new(color, views, 0) };
+/// # let _ = after_a_cut;
+/// # }
+/// ```
 pub struct Frame<'a, E: Executor> {
-    /// The foveated frame: linear color in Rec. 709 primaries, scene-referred. Pixels that are NaN or infinite are dropped and
-    /// counted. On a GPU any float format.
+    /// Foveated frame: linear scene-referred color in Rec. 709 primaries, before tone mapping. Pixels that are NaN or infinite show
+    /// their history, or black, and are counted. On a GPU any float format.
     pub color: E::Colors<'a>,
-    /// Depth in the context's convention; on a GPU a depth format or `R32Float`. `None` switches the depth test off.
+    /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
-    /// Motion vectors in the context's convention; on a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves.
+    /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: no motion.
     pub motion: Option<E::Vectors<'a>>,
-    /// Confidence in history, 0 to 1: 0 for what moves without vectors (video panels, particles, reflections). About 1 minus FSR2's
-    /// reactive mask. On a GPU any float or normalised format. `None`: 1 everywhere.
+    /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for what changes without motion vectors (video panels,
+    /// particles, reflections). About 1 minus FSR2's reactive mask. On a GPU any float or normalised format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels; on a GPU any float format. `None`: computed from the
-    /// gaze as [`Settings::foveation`] says. Its `rate_far` must be the coarsest in either case: history is not matched at coarser
-    /// levels.
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`: computed from gaze
+    /// and [`Settings::foveation`]. With this input, too, `foveation.rate_far` must be the coarsest block edge: history is not matched
+    /// at coarser levels.
     pub lod: Option<E::Scalars<'a>>,
-    /// Noise of the color: the standard error of its luma, linear, and the number of samples that it is a mean of, at its level of
-    /// detail; on a GPU `Rg16Float`, `Rg32Float` or wider. Given where, and only where, [`Settings::noisy`] is set.
+    /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at its level of
+    /// detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set, otherwise `None`.
     pub noise: Option<E::Vectors<'a>>,
-    /// One entry a view.
+    /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
-    /// Frame counter. Random numbers follow it: the same index and seed give the same bytes.
+    /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
     pub index: u64,
-    /// Whether history still holds.
+    /// Reset of history.
     pub reset: Reset,
-    /// Exposure of this frame's colors against the previous frame's.
+    /// Change of exposure since the previous frame.
     pub exposure: Exposure,
 }
 
-// Not derived: that would ask the executor itself to be `Copy`.
+// Not derived: a derived impl would require the executor itself to be `Copy`.
 impl<E: Executor> Clone for Frame<'_, E> {
     fn clone(&self) -> Self {
         *self
@@ -217,7 +228,7 @@ impl<E: Executor> Debug for Frame<'_, E> {
 }
 
 impl<'a, E: Executor> Frame<'a, E> {
-    /// A frame that continues the previous one, without optional inputs.
+    /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
     pub fn new(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
         Self {
             color,
@@ -233,7 +244,7 @@ impl<'a, E: Executor> Frame<'a, E> {
         }
     }
 
-    /// Checks what does not depend on images.
+    /// Checks all fields but the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         let (found, expected) = (self.views.len(), desc.view_count as usize);
         if found != expected {
@@ -246,20 +257,21 @@ impl<'a, E: Executor> Frame<'a, E> {
         self.exposure.check()
     }
 
-    /// Refuses noise where none is expected, and the other way round.
+    /// Rejects a missing noise input if the settings require one, and an unexpected one.
     fn check_noise(&self, settings: &Settings) -> Result<(), FrameError> {
         let (found, expected) = match (settings.noisy, self.noise.is_some()) {
-            (true, false) => ("None", "images, as Settings::noisy is set"),
-            (false, true) => ("given", "None, or Settings::noisy set"),
+            (true, false) => ("None", "a noise input, because Settings::noisy is set"),
+            (false, true) => ("given", "None; or set Settings::noisy"),
             _ => return Ok(()),
         };
         Err(FrameError::Value { what: "noise", view: 0, found: found.into(), expected })
     }
 }
 
-/// Description of a context: facts that hold from its creation on, and tunables, which can be changed later.
+/// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can be changed later
+/// (`resize` and `set_settings` of either executor).
 ///
-/// Make it with [`new`](Self::new) and change fields, or with `..`, so that a field that comes later breaks nothing:
+/// Create it with [`new`](Self::new) and change fields, so that later versions can add fields:
 ///
 /// ```
 /// use afterimage::{ContextDesc, DepthConvention, MotionConvention};
@@ -273,13 +285,13 @@ impl<'a, E: Executor> Frame<'a, E> {
 pub struct ContextDesc {
     /// Width and height of each view in pixels, 1 to [`MAX_SIDE`](Self::MAX_SIDE) each.
     pub size_px: [u32; 2],
-    /// Number of views: 2 for stereo, at most 4 on a GPU.
+    /// Number of views: 1 for a screen, 2 for stereo; at most 4 on a GPU. Default 1.
     pub view_count: u32,
-    /// Convention of motion vectors.
+    /// Convention of motion vectors. Default: previous minus current position in pixels, y down.
     pub motion: MotionConvention,
-    /// Convention of depth values.
+    /// Convention of depth values. Default: linear distance.
     pub depth: DepthConvention,
-    /// Tunables.
+    /// Method, foveation and tunables. Default: [`Settings::steady`].
     pub settings: Settings,
 }
 
@@ -287,8 +299,7 @@ impl ContextDesc {
     /// Largest accepted side of a view, in pixels.
     pub const MAX_SIDE: u32 = 16384;
 
-    /// One view of `size_px` with default settings and the default conventions: motion as previous minus current in pixels with y
-    /// down, depth as linear distance.
+    /// One view of `size_px` with default conventions and settings.
     pub fn new(size_px: [u32; 2]) -> Self {
         Self {
             size_px,
@@ -315,7 +326,7 @@ impl ContextDesc {
     }
 }
 
-/// Refuses sizes without a pixel and sizes beyond [`ContextDesc::MAX_SIDE`].
+/// Rejects sizes with a side of 0 or beyond [`ContextDesc::MAX_SIDE`].
 pub(crate) fn check_size(size: [u32; 2]) -> Result<(), FrameError> {
     let max = ContextDesc::MAX_SIDE;
     if size.iter().all(|s| (1..=max).contains(s)) { Ok(()) } else { Err(FrameError::Extent { size, max }) }

@@ -1,4 +1,4 @@
-//! View geometry: from a pixel to the ray through it, and the angle between two such rays.
+//! View geometry: rays through pixels, and angles between them.
 
 use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
@@ -6,10 +6,25 @@ use crate::image::Image;
 use crate::kernel::acuity;
 use glam::Vec2;
 
-/// A flat view: how pixels map to rays from the eye. Symmetric or off-axis (one eye of a headset).
+/// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a headset).
 ///
-/// Rays have x to the right, y **down** and z forward with length 1, so `ray.x` and `ray.y` are tangents of view angles.
-/// They are affine in pixel coordinates: `ray.xy = px * scale + offset`.
+/// View space has x to the right, y **down** and z forward. Rays have z = 1, so that their x and y are tangents of view angles, affine
+/// in pixel coordinates. Pixel centres have integer coordinates.
+///
+/// ```
+/// use afterimage::ViewGeometry;
+///
+/// // A window with a horizontal field of view of 70 degrees.
+/// let window = ViewGeometry::flat([1920, 1080], 70.0)?;
+/// let middle = [959.5, 539.5];
+/// assert!((window.eccentricity_deg([1919.5, 539.5], middle) - 35.0).abs() < 0.01);
+///
+/// // The left eye of a headset sees more to its left; where does it see a point 0.6 m ahead, 32 mm to its right?
+/// let left_eye = ViewGeometry::off_axis([1440, 1600], [-1.2, 0.9], [-1.1, 1.1])?;
+/// let px = left_eye.project([0.032, 0.0, 0.6]).expect("in front of the eye");
+/// assert!(px[0] > 720.0);
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewGeometry {
     size_px: [u32; 2],
@@ -18,10 +33,10 @@ pub struct ViewGeometry {
 }
 
 impl ViewGeometry {
-    /// A view of `size_px` with the horizontal field of view `hfov_deg`, square pixels and the axis in the middle.
+    /// A symmetric view of `size_px` with a horizontal field of view of `hfov_deg` degrees and square pixels.
     ///
     /// # Errors
-    /// If the field of view is not in (0, 180) degrees.
+    /// [`SettingsError`] unless the field of view is above 0 and below 180 degrees.
     pub fn flat(size_px: [u32; 2], hfov_deg: f32) -> Result<Self, SettingsError> {
         if !(hfov_deg > 0.0 && hfov_deg < 180.0) {
             return Err(SettingsError {
@@ -35,11 +50,11 @@ impl ViewGeometry {
         Self::off_axis(size_px, [-half_width, half_width], [-half_height, half_height])
     }
 
-    /// A view that spans the given tangents: `tan_x` from the left to the right edge, `tan_y` from the top to the bottom
-    /// edge (y down, so the top is usually negative).
+    /// A view of `size_px` from the tangents of the angles at its edges: `tan_x` left and right, `tan_y` top and bottom. y is down, so
+    /// that the top is usually negative.
     ///
     /// # Errors
-    /// If a range is empty, reversed or not finite.
+    /// [`SettingsError`] if a range is empty, reversed or not finite.
     pub fn off_axis(size_px: [u32; 2], tan_x: [f32; 2], tan_y: [f32; 2]) -> Result<Self, SettingsError> {
         let span = |name, t: [f32; 2]| {
             if t[0].is_finite() && t[1].is_finite() && t[0] < t[1] {
@@ -63,13 +78,14 @@ impl ViewGeometry {
         self.size_px
     }
 
-    /// The ray through `px`, with z = 1; pixel centres are integers.
+    /// Ray through the position `px` in pixels, with z = 1.
     #[inline]
     pub fn ray(&self, px: [f32; 2]) -> [f32; 3] {
         (Vec2::from(px) * self.scale + self.offset).extend(1.0).to_array()
     }
 
-    /// The pixel where a direction (x right, y down, z forward) meets the view plane. `None` unless z > 0.
+    /// Position in pixels of a point or direction in view space (x right, y down, z forward). May lie outside the view. `None` unless
+    /// z > 0.
     pub fn project(&self, direction: [f32; 3]) -> Option<[f32; 2]> {
         let [x, y, z] = direction;
         (z > 0.0).then(|| {
@@ -78,7 +94,8 @@ impl ViewGeometry {
         })
     }
 
-    /// Slope of the rays in x and y per pixel, and the ray through pixel (0, 0).
+    /// Scale and offset of rays: `ray.xy = px * scale + offset`.
+    #[doc(hidden)]
     pub fn scale_offset(&self) -> ([f32; 2], [f32; 2]) {
         (self.scale.to_array(), self.offset.to_array())
     }
@@ -90,13 +107,13 @@ impl ViewGeometry {
         (right.atan() - left.atan()).to_degrees()
     }
 
-    /// True visual angle in degrees between the rays through two pixels.
+    /// Eccentricity: true visual angle in degrees between the rays through `px` and `gaze_px`.
     pub fn eccentricity_deg(&self, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
         acuity::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
     }
 
+    /// Eccentricity of every pixel in degrees, for a gaze position in pixels. Needs the feature `cpu`.
     #[cfg(feature = "cpu")]
-    /// Eccentricity of every pixel in degrees for a gaze position in pixels.
     pub fn eccentricity_map(&self, gaze_px: [f32; 2]) -> Image<f32> {
         Image::from_fn_parallel(self.size_px, |[x, y]| self.eccentricity_deg([x as f32, y as f32], gaze_px))
     }

@@ -1,9 +1,19 @@
-//! A row-major image in memory: what the CPU executor, the simulators and the sources hand to each other.
+//! Images in memory.
 
 use crate::error::FrameError;
 use rayon::prelude::*;
 
-/// Pixels of one type, row after row, first row at the top. Pixel centres lie at integer coordinates.
+/// An image in memory: pixels row after row, the first row at the top. Pixel centres have integer coordinates.
+///
+/// ```
+/// use afterimage::Image;
+///
+/// let ramp = Image::from_fn([4, 2], |[x, y]| x + 10 * y);
+/// assert_eq!(ramp.at(3, 1), 13);
+/// assert_eq!(ramp.row(1), [10, 11, 12, 13]);
+/// let doubled: Image<f32> = ramp.map(|v| 2.0 * v as f32);
+/// assert_eq!(doubled.pixels()[5], 22.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image<T> {
     size: [u32; 2],
@@ -11,12 +21,12 @@ pub struct Image<T> {
 }
 
 impl<T: Copy> Image<T> {
-    /// An image of `size` (width, height) with every pixel set to `fill`.
+    /// An image of `size` (width and height in pixels) with every pixel set to `fill`.
     pub fn filled(size: [u32; 2], fill: T) -> Self {
         Self { size, pixels: vec![fill; size[0] as usize * size[1] as usize] }
     }
 
-    /// Wraps `pixels`, which must hold exactly width x height elements.
+    /// An image of `pixels`, row after row: exactly width x height elements.
     ///
     /// # Errors
     /// [`FrameError::PixelCount`] if the length does not match the size.
@@ -35,7 +45,7 @@ impl<T: Copy> Image<T> {
         Self { size, pixels }
     }
 
-    /// As [`from_fn`](Self::from_fn), rows in parallel.
+    /// An image whose pixel (x, y) is `f([x, y])`, with rows computed in parallel.
     pub fn from_fn_parallel(size: [u32; 2], f: impl Fn([u32; 2]) -> T + Sync) -> Self
     where
         T: Default + Send,
@@ -74,7 +84,7 @@ impl<T: Copy> Image<T> {
         &mut self.pixels
     }
 
-    /// One row.
+    /// Pixels of row `y`.
     ///
     /// # Panics
     /// If `y` is not below the height.
@@ -93,7 +103,7 @@ impl<T: Copy> Image<T> {
         self.pixels[y * self.size[0] as usize + x]
     }
 
-    /// The same image with every pixel mapped.
+    /// An image of the same size with `f` applied to every pixel.
     pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Image<U> {
         Image { size: self.size, pixels: self.pixels.iter().copied().map(f).collect() }
     }

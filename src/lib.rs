@@ -1,12 +1,14 @@
-//! Temporal post-process for foveated rendering: what the eye has already paid for is not thrown away.
+//! Temporal post-process for foveated rendering: keeps the detail that the renderer shaded at earlier gaze positions.
 //!
-//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it: it keeps the sharpest sample
-//! of every surface point, follows it along the motion vectors, and shows it while it explains what the renderer delivers
-//! ([`Method::Smr`](settings::Method::Smr)). To compare: weighted reservoirs (Cantory et al., MIG 2025) and temporal antialiasing.
+//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it, before tone mapping: it stores the
+//! sharpest sample of every surface point, follows it along the motion vectors, and shows it as long as it explains the foveated frame
+//! ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et al., MIG 2025; [`Method::Wrs`]) and temporal
+//! antialiasing ([`Method::Taa`]).
 //!
-//! ```
-//! use afterimage::{Foveation, Gaze, ViewFrame, ViewGeometry};
-//! use afterimage::gpu::{Afterimage, Frame, GpuDesc};
+//! # Example
+//!
+#![cfg_attr(feature = "gpu", doc = "```")]
+#![cfg_attr(not(feature = "gpu"), doc = "```ignore")]
 //! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 //! # let texture = |usage| device.create_texture(&wgpu::TextureDescriptor {
 //! #     label: None,
@@ -22,40 +24,54 @@
 //! # let output = texture(wgpu::TextureUsages::STORAGE_BINDING);
 //! # let mut encoder = device.create_command_encoder(&Default::default());
 //! # let (size, gaze_px, index) = ([640, 360], [200.0, 180.0], 0);
+//! use afterimage::gpu::{Afterimage, Frame};
+//! use afterimage::{ContextDesc, Foveation, Gaze, ViewFrame, ViewGeometry};
 //!
-//! let mut desc = GpuDesc::new(size, output.format());
-//! // As your renderer foveates.
+//! // Once: a context, with the foveation of your renderer.
+//! let mut desc = ContextDesc::new(size);
 //! desc.settings.foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-//! let mut post = Afterimage::new(&device, &desc)?;
+//! let mut post = Afterimage::new(&device, &desc, output.format())?;
 //!
-//! // Every frame, after the foveated frame is rendered: its textures, one gaze a view, your encoder.
-//! let views = [ViewFrame {
-//!     geometry: ViewGeometry::flat(size, 70.0)?,
-//!     gaze: Gaze::At { px: gaze_px },
-//!     previous_from_current: None,
-//! }];
-//! post.record(&device, &mut encoder, &Frame::new(&color, &output, &views, index))?;
+//! // Every frame, after the renderer has drawn the foveated frame into the texture `color`.
+//! let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: gaze_px })];
+//! post.record(&device, &mut encoder, &Frame::new(&color, &views, index), &output)?;
 //! queue.submit([encoder.finish()]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Without a GPU the same in memory: [`cpu::CpuAfterimage`].
+//! Add depth and motion vectors as soon as the camera or the scene moves: fields `depth` and `motion` of [`Frame`], in your renderer's
+//! [`DepthConvention`] and [`MotionConvention`].
 //!
-//! Where to look:
+//! # Where to look
 //!
-//! - [`settings`]: what can be tuned, what more and less of it does.
-//! - [`frame`], [`convention`], [`geometry`]: what the caller says about a frame, and in which conventions.
-//! - [`stats`], [`warning`]: what a frame came to, and what was odd about it.
-//! - [`gpu`] and [`cpu`]: the two executors of the same passes, equal bit for bit on software Vulkan. [`kernel`]: the mathematics
-//!   they share, one function a formula.
-//! - With the feature `lab`: `scene` (glTF and built-in scenes), `trace` (path tracing), `source` (stills, EXR sequences, analytic scenes), `foveation` (simulators), `scanpath`
-//!   (recorded and synthetic eyes), `pipeline` (all of it, frame by frame), `metric`, `report`, and `sweep` (what
-//!   accuracy costs in time).
+//! - [`ContextDesc`]: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`] and all tunables.
+//! - [`Frame`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
+//! - [`FrameStats`], [`Warning`], [`DebugView`]: what happened in a frame, as counters, messages and images.
+//! - [`CreateError`], [`FrameError`], [`SettingsError`]: what can go wrong.
+//! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
+//! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`), stereo
+//!   (`03_stereo.rs`) and a window (`06_window.rs`).
 //!
-//! Results do not depend on the number of threads: same seed, same frames, same bytes.
+//! # Executors
+//!
+//! Two executors run the same passes; their results are equal bit for bit on software Vulkan.
+//!
+#![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
+#![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
+//!   (feature `gpu`, on by default) records compute passes into your wgpu command encoder. The application chooses wgpu's backends.
+#![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
+#![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
+//!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
+//!
+//! # Determinism
+//!
+//! Random numbers are a hash of [`Settings::seed`], view, frame index and pixel. The same seed and the same frames give the same bytes,
+//! whatever the number of threads or the size of workgroups. Different GPUs and drivers may round differently.
+//!
+//! The crate `afterimage-lab` has research tools around this one: scenes, a path tracer, foveation along scanpaths, and metrics.
 
 #[cfg(not(any(feature = "cpu", feature = "gpu")))]
-compile_error!("afterimage without an executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");
+compile_error!("afterimage has no executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");
 
 mod convention;
 #[cfg(feature = "cpu")]
@@ -68,7 +84,7 @@ mod geometry;
 pub mod gpu;
 #[cfg(feature = "cpu")]
 mod image;
-// For this workspace's other crates and for research; promised to nobody.
+// For this workspace's other crates and for research; not part of the stable API.
 #[doc(hidden)]
 pub mod kernel;
 mod method;

@@ -1,67 +1,89 @@
-//! Tunables of the post-process, with units, ranges and what more and less does.
+//! Settings of the post-process.
 
 use crate::error::{SettingsError, check};
 use crate::foveation::Foveation;
 
-/// Method of the post-process: what it does with history.
+/// Method: how history is stored and combined with the foveated frame. Default: [`Smr`](Self::Smr).
+///
+/// ```
+/// use afterimage::{Method, Settings};
+///
+/// let settings = Settings { method: Method::Taa, ..Settings::default() };
+/// assert_eq!(settings.method.name(), "taa");
+/// assert_eq!(Method::from_name("smr"), Some(Method::Smr));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Method {
-    /// The foveated frame as it came; non-finite pixels are black. Keeps no history.
+    /// No method: the foveated frame unchanged, except that non-finite pixels are black. No history.
     None,
-    /// Temporal antialiasing, which knows nothing of gaze: the rival.
+    /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
-    /// Scale-matched reservoirs: the sharpest sample of each surface point, shown while it explains the renderer's frame.
+    /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated frame.
     #[default]
     Smr,
-    /// Weighted reservoirs (Cantory et al., MIG 2025).
+    /// Weighted reservoirs (Cantory et al., MIG 2025): a random sample of each surface point, weighted by retinal acuity.
     Wrs,
 }
 
-/// How a reservoir picks between its sample and the candidate. Both follow the same law; only the use of chance differs.
+/// Sampler of [`Method::Wrs`]: rule by which a reservoir chooses between its sample and the candidate. Both give the same probability
+/// to each candidate. Default: [`AChao`](Self::AChao). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Sampler {
-    /// A-Chao, the paper's choice: a fresh draw each frame against the ratio of weight sums.
+    /// A-Chao, as in the paper: each frame draws anew against the ratio of weight sums.
     #[default]
     AChao,
-    /// A-ES, for comparison: each candidate draws a key once. Costs 8 more bytes of memory and traffic a pixel.
+    /// A-ES, for comparison: each candidate draws a key once. Needs 8 more bytes of memory and of memory traffic a pixel.
     AEs,
 }
 
-/// How history is forgotten, so that new candidates keep a chance.
+/// Bias of [`Method::Wrs`]: decay of history's weight, without which new candidates would hardly ever be taken. Default:
+/// [`Bernoulli`](Self::Bernoulli). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Bias {
-    /// Bernoulli survival (eq. 5), the paper's choice: weight sums grow like a square root instead of linearly.
+    /// Bernoulli survival (eq. 5 of the paper): weight sums grow like a square root instead of linearly.
     #[default]
     Bernoulli,
-    /// Weight sums lose a constant share each frame. More `lambda` forgets sooner.
+    /// Exponential decay: weight sums are multiplied by `exp(-lambda)` each frame.
     Exponential {
-        /// Per frame, >= 0; the factor is `exp(-lambda)`.
+        /// Decay rate per frame, 0 to 80. More adapts sooner, and keeps less detail.
         lambda: f32,
     },
-    /// Never forgets: after n frames a candidate has a chance of 1/n. For comparison; ghosts under change.
+    /// No decay, for comparison: the n-th candidate is taken with a probability of 1/n. Ghosts when something changes.
     None,
 }
 
-/// What the gate compares.
+/// Color difference that a [`Gate`] measures. Default: [`DeltaE94`](Self::DeltaE94). Example: [`Gate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GateMetric {
-    /// Delta E 94 of the whole color.
+    /// Delta E 94: lightness, chroma and hue.
     #[default]
     DeltaE94,
-    /// L\* alone: blind to changes of hue.
+    /// Difference of L\* alone: does not see changes of hue.
     Lightness,
 }
 
-/// The luminance gate of eq. 7: history whose color differs from the candidate's loses weight.
+/// Color gate of [`Method::Wrs`] (eq. 7 of the paper): history loses weight in proportion to its color difference from the candidate.
+///
+/// ```
+/// use afterimage::{Gate, Settings};
+///
+/// // Follows changes of light sooner than the default.
+/// let settings = Settings { gate: Some(Gate { divisor: 30.0, ..Gate::default() }), ..Settings::paper() };
+/// settings.validate()?;
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gate {
-    /// What is compared.
+    /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
-    /// Difference above the offset at which all weight is lost, in Delta E, > 0. Less follows changes of light sooner and
+    /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. Less follows changes of light sooner and
     /// keeps less detail, because a sharp sample differs from the blurred candidate of the same surface. Default 100.
     pub divisor: f32,
-    /// Difference that costs nothing, in Delta E, >= 0. Default 0.
+    /// Difference up to which history loses no weight, in Delta E: 0 to 1e6. Default 0.
     pub offset: f32,
 }
 
@@ -71,15 +93,25 @@ impl Default for Gate {
     }
 }
 
-/// The depth test that empties reservoirs at occlusions and disocclusions.
+/// Depth test: rejects history at occlusions and disocclusions. Applies to frames with a depth input.
+///
+/// ```
+/// use afterimage::{DepthTest, Settings};
+///
+/// // Tolerates more depth noise than the default.
+/// let test = DepthTest { relative: 0.05, ..DepthTest::default() };
+/// let settings = Settings { depth_test: Some(test), ..Settings::default() };
+/// settings.validate()?;
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTest {
-    /// Relative difference of distance that still is the same surface, in (0, 1). Less flushes on vector and depth noise, more
-    /// lets things at similar distance bleed into each other. Default 0.02.
+    /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where motion or depth is
+    /// imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
     pub relative: f32,
-    /// Pixels that reprojection may be off along each axis, >= 0: the tolerance grows by the surface's own slope over that
-    /// distance, so that grazing planes do not flush. Default 1: half for rounding to the nearest texel, half for the
-    /// position of the depth sample within its pixel.
+    /// Reprojection error in pixels along each axis that the test tolerates: 0 to 64. The tolerance grows by the surface's slope over
+    /// that distance, so that history on grazing planes is not rejected. Default 1: half for rounding to the nearest texel, half for
+    /// the position of the depth sample within its pixel.
     pub slope_px: f32,
 }
 
@@ -89,16 +121,25 @@ impl Default for DepthTest {
     }
 }
 
-/// Tunables of the scale-matched reservoir.
+/// Settings of [`Method::Smr`], scale-matched reservoirs.
+///
+/// ```
+/// use afterimage::{Settings, Smr};
+///
+/// // Averages coarse regions over fewer frames than the default.
+/// let settings = Settings { smr: Smr { accumulate: 0.8, ..Smr::default() }, ..Settings::default() };
+/// settings.validate()?;
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smr {
-    /// Share of equally coarse history in what is shown, in \[0, 0.98\]. More calms the crawling of coarse blocks under motion and
-    /// lags behind light. Default 0.9.
+    /// Share of equally coarse history in the output: 0 to 0.98. More reduces the flicker of coarse regions in motion, and follows
+    /// changes of light later. Default 0.9.
     pub accumulate: f32,
-    /// Factor on the differences of candidate and history that are tolerated, in \[0.1, 10\]. More keeps detail through noise and
-    /// imprecise vectors, less lets go of it sooner. Default 1.
+    /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. More keeps detail in spite of noise and imprecise
+    /// motion vectors; less rejects outdated history sooner. Default 1.
     pub tolerance: f32,
-    /// Whether history follows changes of light by its gain. Default true.
+    /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
 }
 
@@ -108,28 +149,45 @@ impl Default for Smr {
     }
 }
 
-/// All tunables. The default is [`Settings::steady`], which measures best on real frames.
+/// Settings of a context: method, foveation and tunables. They can be changed between frames (`set_settings` of either executor).
+///
+/// The default is [`Settings::steady`], which measures best on real frames. Other presets are [`responsive`](Self::responsive),
+/// [`traced`](Self::traced) and [`paper`](Self::paper).
+///
+/// ```
+/// use afterimage::{Bias, ContextDesc, Sampler, Settings};
+///
+/// let mut desc = ContextDesc::new([1920, 1080]);
+/// desc.settings = Settings { seed: 7, ..Settings::responsive() };
+///
+/// // A variant of the paper's method.
+/// let bias = Bias::Exponential { lambda: 0.1 };
+/// let variant = Settings { sampler: Sampler::AEs, bias, ..Settings::paper() };
+/// variant.validate()?;
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// What is done with history.
+    /// Method: how history is stored and combined with the frame. Default [`Method::Smr`].
     pub method: Method,
-    /// How the renderer foveates: where its frame is how coarse. Candidates inside the fovea have weight 1.
+    /// Foveation of the renderer: level of detail by eccentricity. Set it as your renderer foveates.
     pub foveation: Foveation,
-    /// Tunables of [`Method::Smr`].
+    /// Settings of [`Method::Smr`].
     pub smr: Smr,
-    /// Sampler of [`Method::Wrs`].
+    /// Sampler of [`Method::Wrs`]. Default [`Sampler::AChao`].
     pub sampler: Sampler,
-    /// How history is forgotten.
+    /// Decay of history's weight in [`Method::Wrs`]. Default [`Bias::Bernoulli`].
     pub bias: Bias,
-    /// Color gate; `None` never looks at color: keeps more detail and ghosts under changing light.
+    /// Color gate of [`Method::Wrs`]; `None` compares no colors, which keeps more detail and ghosts under changing light. Default on.
     pub gate: Option<Gate>,
-    /// Depth test; `None` never looks at depth.
+    /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
-    /// Frames are noisy, path-traced with few samples, and say how noisy ([`Frame::noise`](crate::gpu::Frame::noise)): noise is no
-    /// change then. wrs weighs a candidate by its samples; smr averages equally fine history where the eye looks, too, and compares
-    /// means of 8x8 samples. smr keeps 8 more bytes a pixel for it, and a chain of the candidates. Default false.
+    /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
+    /// ([`Frame::noise`](crate::Frame::noise)), so that noise does not pass for a change. wrs weights a candidate by its number of
+    /// samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8 more bytes a pixel and a mip chain
+    /// of the candidates. Default false.
     pub noisy: bool,
-    /// Seed of the random numbers. Same seed, same frames: same bytes.
+    /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
 }
 
@@ -150,33 +208,34 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The paper's method (Cantory et al., MIG 2025), literally: weighted reservoirs, A-Chao, Bernoulli survival, Delta E 94 gate.
-    /// Looks like the foveated frame with single sharp pixels strewn in, more of them the longer the eye stayed. The cheapest.
+    /// The paper's method (Cantory et al., MIG 2025) as published: weighted reservoirs, A-Chao, Bernoulli survival, Delta E 94 gate.
+    /// Looks like the foveated frame with scattered sharp pixels, more of them the longer the eye stayed. The cheapest preset.
     pub fn paper() -> Self {
         Self { method: Method::Wrs, ..Self::default() }
     }
 
-    /// smr for calm: sharp where the eye has been, coarse blocks averaged over time, so that they do not crawl.
+    /// smr for a steady image: sharp where the eye has been, coarse regions averaged over time, so that they do not flicker. The
+    /// default.
     pub fn steady() -> Self {
         Self { method: Method::Smr, smr: Smr::default(), ..Self::default() }
     }
 
-    /// smr that lets go of history sooner where it no longer fits, and averages less: moving things and changes of light flicker less,
-    /// and less detail outlives a moving camera (2 dB of what was retained on Sponza). Costs the same.
+    /// smr that rejects outdated history sooner and averages over fewer frames: moving objects and changes of light flicker less, but
+    /// less detail survives a moving camera (2 dB of what was retained on Sponza). The same cost as [`steady`](Self::steady).
     pub fn responsive() -> Self {
         Self { method: Method::Smr, smr: Smr { accumulate: 0.7, tolerance: 0.6, ..Smr::default() }, ..Self::default() }
     }
 
-    /// smr for frames that are path-traced with few samples: noise is averaged away, over twice as many frames as coarse blocks are by
-    /// [`steady`](Self::steady). Every frame brings its noise.
+    /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as [`steady`](Self::steady).
+    /// Each frame must have a noise input ([`Frame::noise`](crate::Frame::noise)).
     pub fn traced() -> Self {
         Self { noisy: true, smr: Smr { accumulate: 0.95, ..Smr::default() }, ..Self::steady() }
     }
 
-    /// Checks every range.
+    /// Checks the range of every setting.
     ///
     /// # Errors
-    /// Names the first setting outside its range.
+    /// [`SettingsError`] for the first setting that is out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.foveation.validate()?;
         check("smr.accumulate", self.smr.accumulate, 0.0..=0.98, "")?;

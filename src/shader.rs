@@ -1,17 +1,17 @@
-//! Shaders as text: WGSL modules, put together by their `//#use` lines, each once.
+//! Composition of WGSL shaders from modules.
 //!
-//! Every file under `shaders/` is valid WGSL syntax of its own; what it needs of other files it names in comment lines
-//! `//#use name` at its top. `lib/` holds functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` and
-//! `foveation/` hold bindings, overrides and one entry point a file.
+//! Every file under `shaders/` is a module and valid WGSL syntax. Comment lines `//#use name` at its top name the modules that it uses.
+//! `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` and `foveation/` contain bindings,
+//! overrides and one entry point a file.
 
 /// One WGSL file.
 #[derive(Debug)]
 pub struct Module {
-    /// As `//#use` lines name it.
+    /// Name in `//#use` lines.
     pub name: &'static str,
-    /// As errors name it.
+    /// Path of the file, for error messages.
     pub path: &'static str,
-    /// Its text.
+    /// WGSL text.
     pub text: &'static str,
 }
 
@@ -66,13 +66,13 @@ pub static MODULES: &[Module] = &[
 /// This crate's shaders.
 pub static SHADERS: Composer = Composer::new(&[MODULES]);
 
-/// Puts shaders together from the modules of one or more crates.
+/// Composer of shaders from the modules of one or more crates.
 #[derive(Clone, Copy, Debug)]
 pub struct Composer {
     tables: &'static [&'static [Module]],
 }
 
-/// A shader put together, and where each of its lines comes from.
+/// A composed shader, with the origin of each line.
 #[derive(Clone, Debug)]
 pub struct Composed {
     /// The whole text.
@@ -81,7 +81,7 @@ pub struct Composed {
 }
 
 impl Composed {
-    /// File and line (from 1) that line `line` (from 1) of the whole text comes from.
+    /// File and line of line `line` of the composed text; lines count from 1.
     pub fn origin(&self, line: u32) -> Option<(&'static str, u32)> {
         self.origins.get(line.checked_sub(1)? as usize).copied()
     }
@@ -106,16 +106,15 @@ impl Composer {
         self.tables.iter().flat_map(|table| table.iter()).map(|m| m.name)
     }
 
-    /// The module `name` with everything that it uses, used modules first, each once.
+    /// The module `name` after all modules that it uses, each once.
     ///
     /// # Panics
-    /// If a name is unknown or modules use each other in a circle: both are mistakes in this project, and tests compose
-    /// every module.
+    /// If a name is unknown or modules use each other in a cycle. Tests compose every module.
     pub fn compose(&self, name: &str) -> Composed {
         self.compose_with(&[name], "")
     }
 
-    /// The modules `names` with everything that they use, and `extra` WGSL after them.
+    /// The modules `names` after all modules that they use, followed by `extra` WGSL.
     ///
     /// # Panics
     /// As for [`compose`](Self::compose).
@@ -135,7 +134,7 @@ impl Composer {
         if done.contains(&module.name) {
             return;
         }
-        assert!(!open.contains(&module.name), "shader modules use each other in a circle: {open:?}");
+        assert!(!open.contains(&module.name), "shader modules use each other in a cycle: {open:?}");
         open.push(module.name);
         for used in module.text.lines().map_while(|l| l.strip_prefix("//#use ")) {
             self.add(used.trim(), composed, done, open);

@@ -1,38 +1,53 @@
-//! Counts of a frame, by either executor.
+//! Counters of a frame.
 
 use crate::kernel::reproject::Verdict;
 use crate::warning::Warning;
 
-/// Bytes of the counters that [`Frame::counters`](crate::gpu::Frame::counters) of the GPU executor adds up: words of 32 bits, little
-/// endian, for [`FrameStats::from_counters`].
+/// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32 bits, which
+/// [`FrameStats::from_counters`] reads. `examples/02_engine.rs` uses it.
 pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
 
-/// Counts of one frame over all views.
+/// Pixel counters of one frame, over all views.
+///
+/// The CPU executor returns them; from a GPU they are read back, if the frame had a buffer for them:
+///
+/// ```
+/// use afterimage::{COUNTERS_BYTES, FrameStats, Verdict};
+///
+/// // Bytes of `Target::counters`, read back; here a frame of 100 pixels, all with valid history.
+/// let mut bytes = vec![0; COUNTERS_BYTES as usize];
+/// let valid = 4 * (4 + Verdict::Valid as usize);
+/// bytes[valid..valid + 4].copy_from_slice(&100_u32.to_le_bytes());
+///
+/// let stats = FrameStats::from_counters(&bytes).expect("COUNTERS_BYTES bytes");
+/// assert_eq!((stats.pixels, stats.valid(), stats.rejected()), (100, 100, 0));
+/// assert_eq!(stats.verdicts[Verdict::Valid as usize], 100);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
-    /// Pixels processed.
+    /// All pixels.
     pub pixels: u64,
     /// Pixels whose color was NaN or infinite.
     pub nonfinite: u64,
-    /// Pixels whose depth, if given, was NaN or a distance that is not positive.
+    /// Pixels whose depth was NaN or a distance that is not positive; 0 without a depth input.
     pub bad_depth: u64,
-    /// Pixels whose trust, if given, was NaN or infinite.
+    /// Pixels whose trust was NaN or infinite; 0 without a trust input.
     pub bad_trust: u64,
-    /// Pixels with a valid history whose sample the candidate replaced.
+    /// Pixels with valid history whose sample the candidate replaced.
     pub replaced: u64,
-    /// Pixels by what became of their history, indexed by [`Verdict`].
+    /// Pixels by verdict on their history; index with a [`Verdict`] as `usize`.
     pub verdicts: [u64; Verdict::COUNT],
 }
 
 impl FrameStats {
-    /// What a GPU counted: the first [`COUNTERS_BYTES`] of the counters, read back. `None` if there are fewer.
+    /// Counters from the bytes that a GPU wrote. Reads the first [`COUNTERS_BYTES`] bytes; `None` if there are fewer.
     pub fn from_counters(bytes: &[u8]) -> Option<Self> {
         let words: Vec<u64> = bytes
             .get(..COUNTERS_BYTES as usize)?
             .chunks_exact(4)
             .map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
             .collect();
-        // In the order of shaders/pass/wrs_pass.wgsl. Each pixel has one verdict.
+        // In the order of the COUNT_* constants in shaders/pass/inputs.wgsl. Each pixel has one verdict.
         let mut stats = Self {
             nonfinite: words[0],
             bad_depth: words[1],
@@ -50,12 +65,12 @@ impl FrameStats {
         Verdict::REJECTED.iter().map(|&v| self.verdicts[v as usize]).sum()
     }
 
-    /// Pixels that kept their history, to combine it with the candidate.
+    /// Pixels whose history was valid.
     pub fn valid(&self) -> u64 {
         self.verdicts[Verdict::Valid as usize]
     }
 
-    /// What only the pixels know to be odd.
+    /// Warnings about pixels: unusable colors, motion vectors, depths and trust values.
     pub fn warnings(&self) -> impl Iterator<Item = Warning> + use<> {
         let bad_motion = self.verdicts[Verdict::BadMotion as usize];
         let list = [

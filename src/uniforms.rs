@@ -1,17 +1,17 @@
-//! Constants of a view that the passes of both executors read.
+//! Constants of a view for the passes of both executors.
 
 use crate::frame::ViewFrame;
 use crate::kernel::rng::{self, Purpose};
 use crate::settings::{Sampler, Settings};
 
-/// `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`, which a test compares.
+/// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 pub struct ViewUniforms {
-    /// Slope of rays in x and y per pixel.
+    /// Change of a ray's x and y per pixel.
     pub ray_scale: [f32; 2],
-    /// Ray through pixel (0, 0), without its z of 1.
+    /// x and y of the ray through pixel (0, 0); its z is 1.
     pub ray_offset: [f32; 2],
     /// Ray through the gaze; the last element is unused.
     pub gaze_ray: [f32; 4],
@@ -24,7 +24,7 @@ pub struct ViewUniforms {
 }
 
 impl ViewUniforms {
-    /// Constants of view `index` of frame `frame`, whose eye looks at `gaze_px`.
+    /// Constants of view `index` of frame `frame` for a gaze at `gaze_px`.
     pub fn new(view: &ViewFrame, gaze_px: [f32; 2], settings: &Settings, index: usize, frame: u64) -> Self {
         let (ray_scale, ray_offset) = view.geometry.scale_offset();
         let purpose = match settings.sampler {

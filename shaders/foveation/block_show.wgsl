@@ -1,21 +1,21 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// The frame as coarse shading hardware shows it: one point sample a block. Its twin on the CPU is src/simulator/block.rs. One
+// Block filter: the frame as coarse shading hardware renders it, one point sample a block. CPU twin: src/simulator/block.rs. One
 // invocation a pixel; z is the view.
 //
-// 1 read and 1 write a pixel, 2 with levels of detail; up to one eccentricity a level. All pixels of a block read the same texel, under
-// 1 byte a pixel; it writes 8, and 4 more with levels of detail.
+// 1 read and 1 write a pixel, 2 writes with levels of detail; up to one eccentricity a level. All pixels of a block read the same
+// texel: under 1 byte a pixel read, 8 written, and 4 more with levels of detail.
 
 override WRITE_LOD: u32 = 0u;
 
 @group(0) @binding(1) var full: texture_2d_array<f32>;
-// Mip 0 is level 1. Mips may be larger than their levels.
+// Mip 0 is level 1. A mip may be larger than its level.
 @group(0) @binding(2) var levels: texture_2d_array<f32>;
 @group(0) @binding(3) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(4) var lod_out: texture_storage_2d_array<r32float, write>;
 
-// Level of the coarsest aligned block around the pixel whose centre is far enough out.
+// Level of the coarsest aligned block around the pixel whose centre's level of detail is at least the block's level.
 fn level_at(px: vec2<u32>, view: u32) -> u32 {
     var level = frame.coarsest;
     for (; level > 0u; level--) {

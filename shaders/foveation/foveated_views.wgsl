@@ -1,8 +1,8 @@
 //#use acuity
 //#use view_uniforms
-// Uniforms of the simulators, and the angle that decides how coarse a pixel is.
+// Uniforms of the foveation simulators, and eccentricity.
 
-// src/simulator/gpu/uniforms.rs: FoveationUniforms, which explains them
+// src/simulator/gpu/uniforms.rs: FoveationUniforms, which documents the fields
 struct FoveationUniforms {
     size: vec2<u32>,
     coarsest: u32,
@@ -16,7 +16,7 @@ struct FoveationUniforms {
 
 @group(0) @binding(0) var<uniform> frame: FoveationUniforms;
 
-// Angle in degrees between the gaze and the ray through a position in pixels.
+// Eccentricity: angle in degrees between the gaze and the ray through a position in pixels.
 fn eccentricity_at(px: vec2<f32>, view: u32) -> f32 {
     let ray = vec3<f32>(px * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
     return eccentricity_deg(ray, frame.views[view].gaze_ray.xyz);

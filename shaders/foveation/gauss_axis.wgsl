@@ -1,13 +1,14 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// Gaussian blur along one axis, with the width of the pixel it writes; run along x, then along y. Its twin on the CPU is
-// src/simulator/gaussian.rs: blur_axis. One invocation a pixel; z is the view.
+// Gaussian blur along one axis, of the width at the written pixel; dispatched for x, then for y. CPU twin: blur_axis in
+// src/simulator/gaussian.rs. One invocation a pixel; z is the view.
 //
-// 2 gauss_radius + 1 reads a pixel, 47 at 7.5 pixels; 1 write, 2 with levels of detail. With a frame of 8 bytes a pixel and 16 bytes
-// between the axes, both together read 8 + 16 and write 16 + 8, and 4 more with levels of detail.
+// 2 gauss_radius + 1 reads a pixel, 47 for a standard deviation of 7.5 pixels; 1 write, 2 with levels of detail. With a frame of 8
+// bytes a pixel and an intermediate texture of 16, both axes together read 8 + 16 and write 16 + 8 bytes a pixel, and 4 more with
+// levels of detail.
 
-// 0: along x; 1: along y.
+// Axis: 0 for x, 1 for y.
 override AXIS: u32 = 0u;
 override WRITE_LOD: u32 = 0u;
 
@@ -15,7 +16,7 @@ override WRITE_LOD: u32 = 0u;
 @group(0) @binding(2) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(3) var lod_out: texture_storage_2d_array<r32float, write>;
 
-// Borders are continued by their last pixel.
+// Pixel at an offset along the axis, clamped to the border.
 fn tap(px: vec2<u32>, offset: i32, view: u32) -> vec3<f32> {
     var at = vec2<i32>(px);
     if AXIS == 0u {
@@ -40,7 +41,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
     }
     if lod <= 0.0 {
-        // Bit for bit, both times.
+        // Full rate: a copy, bit for bit, along both axes.
         textureStore(color_out, px, view, vec4<f32>(textureLoad(color_in, px, view, 0).xyz, 1.0));
         return;
     }

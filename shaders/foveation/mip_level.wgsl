@@ -1,12 +1,12 @@
 //#use foveate
 //#use sanitize
-// The next mip level: means of 2x2 texels, non-finite ones black. At odd borders a missing texel is replaced by its neighbour. Its
-// twin on the CPU is src/simulator/mip.rs: halve. One invocation a texel of the coarser level; z is the view.
+// Next mip level: means of 2x2 texels; non-finite texels count as black. At odd borders a missing texel is replaced by its neighbour.
+// CPU twin: halve in src/simulator/mip.rs. One invocation a texel of the coarser level; z is the view.
 //
 // 4 reads and 1 write a texel. With a frame of 8 bytes a pixel and levels of 16 bytes a texel, all levels together read 8 + 4 + 1 +
 // ... = 13.3 bytes a pixel and write 4 + 1 + ... = 5.3.
 
-// Of the finer level; its texture may be larger.
+// Size of the finer level; its texture may be larger.
 @group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
 @group(0) @binding(1) var fine: texture_2d_array<f32>;
 @group(0) @binding(2) var coarse: texture_storage_2d_array<rgba32float, write>;

@@ -1,16 +1,16 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// The frame as a renderer shows it that shades fewer pixels and upscales: a blend of the two mip levels around each pixel's level of
-// detail. Its twin on the CPU is src/simulator/mip.rs: Pyramid::trilinear. One invocation a pixel; z is the view.
+// Mip filter: the frame as a renderer delivers it that shades fewer pixels and upscales. Trilinear: a blend of the two mip levels
+// around each pixel's level of detail. CPU twin: Pyramid::trilinear in src/simulator/mip.rs. One invocation a pixel; z is the view.
 //
-// 9 reads a pixel at most: the pixel itself, 4 texels of each level; 1 write, 2 with levels of detail. Most of the picture reads the
-// two coarsest levels, under 1 byte a pixel; it writes 8, and 4 more with levels of detail.
+// At most 9 reads a pixel (the pixel itself, 4 texels of each level); 1 write, 2 with levels of detail. Most pixels read the two
+// coarsest levels: under 1 byte a pixel read, 8 written, and 4 more with levels of detail.
 
 override WRITE_LOD: u32 = 0u;
 
 @group(0) @binding(1) var full: texture_2d_array<f32>;
-// Mip 0 is level 1. Mips may be larger than their levels.
+// Mip 0 is level 1. A mip may be larger than its level.
 @group(0) @binding(2) var levels: texture_2d_array<f32>;
 @group(0) @binding(3) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(4) var lod_out: texture_storage_2d_array<r32float, write>;

@@ -1,5 +1,5 @@
 //#use approx
-// Twin of src/kernel/acuity.rs: Watson 2014; constants are explained there.
+// Twin of src/kernel/acuity.rs, which explains the constants (Watson 2014).
 
 const A_K: f32 = 0.9851;
 const R_2_DEG: f32 = 1.058;

@@ -1,4 +1,4 @@
-// Twin of src/kernel/approx.rs: Cephes' polynomials; accuracies are stated there.
+// Twin of src/kernel/approx.rs, which states the accuracies (polynomials of Cephes).
 
 const TAN_PI_8: f32 = 0.41421356;
 const PI: f32 = 3.14159265358979323846;

@@ -4,13 +4,14 @@
 const LAB_EPSILON: f32 = 216.0f / 24389.0f;
 const LAB_KAPPA: f32 = 24389.0f / 27.0f;
 
-// color::cbrt: a guess from the bits, then two Halley steps.
+// color::cbrt: initial guess from the bits, then two Halley steps.
 fn cbrt(x: f32) -> f32 {
     let size = abs(x);
     if size < 1e-30 {
         return 0.0;
     }
-    // Software Vulkan computes the rest for 0, too, where the cube of the guess is denormal: that alone would double the pass's time.
+    // Software Vulkan runs the loop for 0, too, where the cube of the guess is denormal. Arithmetic on denormals alone would double
+    // the time of the pass.
     let a = select(size, 1.0, size < 1e-30);
     var r = bitcast<f32>(bitcast<u32>(a) / 3u + 0x2a514067u);
     for (var i = 0u; i < 2u; i++) {
@@ -20,7 +21,7 @@ fn cbrt(x: f32) -> f32 {
     return select(r, -r, x < 0.0);
 }
 
-// color::fifth_root: a guess from the bits, then three Newton steps.
+// color::fifth_root: initial guess from the bits, then three Newton steps.
 fn fifth_root(x: f32) -> f32 {
     if x < 1e-25 {
         return 0.0;

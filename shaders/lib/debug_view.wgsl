@@ -1,7 +1,7 @@
 //#use color
 //#use reproject
 //#use sanitize
-// Twin of src/kernel/debug_view.rs: the decision at a pixel, as a color.
+// Twin of src/kernel/debug_view.rs: the decision at a pixel as a color.
 
 // debug_view::DebugView
 const VIEW_QUALITY: u32 = 1u;
@@ -22,12 +22,12 @@ struct PixelTrace {
     motion: vec2<f32>,
 }
 
-const NO_NUMBER = vec3<f32>(0.0, 1.0, 0.0);
+const NONFINITE = vec3<f32>(0.0, 1.0, 0.0);
 
 // debug_view::heat, sRGB-encoded
 fn heat(value: f32) -> vec3<f32> {
     if !is_finite(value) {
-        return NO_NUMBER;
+        return NONFINITE;
     }
     var stops = array<vec3<f32>, 6>(
         vec3<f32>(0.0, 0.0, 0.0),
@@ -59,7 +59,7 @@ fn verdict_color(verdict: u32) -> vec3<f32> {
 // debug_view::motion_color, sRGB-encoded
 fn motion_color(motion: vec2<f32>) -> vec3<f32> {
     if !(is_finite(motion.x) && is_finite(motion.y)) {
-        return NO_NUMBER;
+        return NONFINITE;
     }
     let x = clamp(-motion.x / 16.0, -1.0, 1.0);
     let y = clamp(-motion.y / 16.0, -1.0, 1.0);

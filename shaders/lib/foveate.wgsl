@@ -1,5 +1,5 @@
 //#use approx
-// Twin of src/kernel/foveate.rs; constants are explained there.
+// Twin of src/kernel/foveate.rs, which explains the constants.
 
 const SHARPEST_BLUR_PX: f32 = 0.125;
 const SAMPLE_LEVEL_BIAS: u32 = 2u;

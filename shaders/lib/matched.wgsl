@@ -1,4 +1,4 @@
-// Twin of src/kernel/matched.rs; constants are explained there.
+// Twin of src/kernel/matched.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
 const COARSER_WIDTH: f32 = 0.25;
@@ -112,7 +112,7 @@ struct Matched {
 
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
-    let want = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
+    let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
@@ -131,16 +131,16 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
             contrast *= sqrt((gains.x + gains.y + gains.z) * (1.0f / 3.0f));
         }
     }
-    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * want.finer);
+    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer);
     let scale = select(1.0, 4.0, p.blocks);
     let fit = 1.0 - smooth_step(tolerance * (GATE_FROM * scale + contrast) + e.noise, tolerance * (GATE_WIDTH * scale), d);
-    let believed = fit * e.trust;
-    let share = believed * want.share;
+    let acceptance = fit * e.trust;
+    let share = acceptance * reuse.share;
     let history = k * e.history;
     let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;
-    if want.finer > 0.0 {
-        lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - want.finer * believed), e.lod);
+    if reuse.finer > 0.0 {
+        lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance), e.lod);
     } else if p.noisy {
         lod = e.lod + max(e.history_lod - e.lod, 0.0) * share;
     }

@@ -1,12 +1,12 @@
 //#use matched
 //#use pack
 //#use sanitize
-// Twin of src/kernel/noise.rs; constants are explained there.
+// Twin of src/kernel/noise.rs, which explains the constants.
 
 const NOISY_LEVELS: f32 = 3.0;
-const COMPARED: f32 = 64.0;
+const COMPARED_CANDIDATES: f32 = 64.0;
 const SIGMAS: f32 = 3.0;
-const SURE: vec2<f32> = vec2<f32>(0.5, 1.0);
+const CONFIDENCE_FALLOFF: vec2<f32> = vec2<f32>(0.5, 1.0);
 const COARSER_FRAMES: f32 = 4.0;
 const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
@@ -18,9 +18,9 @@ struct Noise {
 }
 
 // noise::candidate_noise
-fn candidate_noise(told: vec2<f32>) -> Noise {
-    let error = min(positive(told.x), MAX_ERROR);
-    let samples = clamp(positive(told.y), 1.0, MAX_SAMPLES);
+fn candidate_noise(input: vec2<f32>) -> Noise {
+    let error = min(positive(input.x), MAX_ERROR);
+    let samples = clamp(positive(input.y), 1.0, MAX_SAMPLES);
     return Noise(samples, min((error * error) * samples, MAX_HALF));
 }
 
@@ -86,19 +86,19 @@ fn root_slope(around: f32) -> f32 {
 
 // noise::noise_difference
 fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
-    let of_one = pooled_variance(history, candidate);
-    let numbers = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
-    return (SIGMAS * root_slope(around)) * sqrt(of_one * numbers * (1.0 / COMPARED));
+    let sample_variance = pooled_variance(history, candidate);
+    let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
+    return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES));
 }
 
 // noise::noise_confidence
 fn noise_confidence(history: Noise, around: f32) -> f32 {
-    let off = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
-    return 1.0 - smooth_step(SURE.x, SURE.y, off);
+    let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
+    return 1.0 - smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
 }
 
-// noise::coarser_worth
-fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
+// noise::discount_coarser
+fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
     let limited = min(history.samples, COARSER_FRAMES * candidate.samples);
     let t = clamp(levels / COARSER_WIDTH, 0.0, 1.0);
     return Noise(history.samples + (limited - history.samples) * t, history.variance);

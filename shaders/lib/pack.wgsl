@@ -1,5 +1,5 @@
 //#use sanitize
-// Twin of src/kernel/pack.rs: one reservoir in three words; the layout is tabled there.
+// Twin of src/kernel/pack.rs: storage of a reservoir in three words, whose layout is documented there.
 
 const MAX_W_SUM: f32 = 0x1p100;
 const MAX_AGE: u32 = 255u;

@@ -13,7 +13,7 @@ const VERDICT_DISOCCLUDED: u32 = 5u;
 const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
 
-// `at` is (0, 0) unless the verdict is VERDICT_VALID.
+// Position in the previous frame; `at` is (0, 0) unless the verdict is VERDICT_VALID.
 struct Reprojection {
     verdict: u32,
     at: vec2<u32>,

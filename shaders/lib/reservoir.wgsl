@@ -1,6 +1,6 @@
 //#use approx
 //#use sanitize
-// Twin of src/kernel/reservoir.rs (the paper: Cantory et al., MIG 2025).
+// Twin of src/kernel/reservoir.rs (equations and algorithms: Cantory et al., MIG 2025).
 
 // f32::MIN
 const LOWEST: f32 = -0x1.fffffep127;
@@ -23,7 +23,7 @@ fn update(reservoir: ptr<function, Reservoir>, candidate_weight: f32, draw: f32)
     return draw * w_sum < w;
 }
 
-// reservoir::combine (Alg. 2, strict on the second)
+// reservoir::combine (Alg. 2, with a strict comparison for the second)
 fn combine(first: Reservoir, second: Reservoir, draw: f32) -> Combined {
     let w1 = weight(first.w_sum);
     let w2 = weight(second.w_sum);

@@ -12,7 +12,7 @@ fn pcg4d(input: vec4<u32>) -> vec4<u32> {
     return pcg4d_mix(v);
 }
 
-// rng::mix, which WGSL's own `mix` forbids as a name.
+// rng::mix; another name, because `mix` is a builtin of WGSL.
 fn pcg4d_mix(input: vec4<u32>) -> vec4<u32> {
     var v = input;
     v.x += v.y * v.w;
@@ -22,7 +22,7 @@ fn pcg4d_mix(input: vec4<u32>) -> vec4<u32> {
     return v;
 }
 
-// rng::stream_key; 64-bit numbers are (low word, high word).
+// rng::stream_key; 64-bit numbers are pairs of low and high word.
 fn stream_key(seed: vec2<u32>, view: u32, purpose: u32, frame: vec2<u32>) -> u32 {
     return pcg4d(vec4<u32>(seed.x, seed.y, frame.y, (purpose << 16u) ^ view)).x;
 }

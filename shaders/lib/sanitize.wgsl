@@ -1,4 +1,4 @@
-// Twin of src/kernel/sanitize.rs. By bits throughout: WGSL may assume that NaN and infinity do not exist.
+// Twin of src/kernel/sanitize.rs. Numbers are tested by their bits, because WGSL may assume that NaN and infinity do not exist.
 
 const MAX_HALF: f32 = 65504.0;
 
@@ -20,7 +20,7 @@ fn color(c: vec3<f32>) -> Sanitized {
     return Sanitized(vec3<f32>(0.0), false);
 }
 
-// sanitize::trust: positive floats are in the order of their bits, infinity last and NaNs beyond it.
+// sanitize::trust. The bits of positive floats are ordered as the floats, infinity last and NaN beyond it.
 fn trust(t: f32) -> f32 {
     let bits = bitcast<u32>(t);
     if bits >= 0x3f800000u && bits <= 0x7f800000u {
@@ -29,7 +29,7 @@ fn trust(t: f32) -> f32 {
     return select(0.0, t, bits >= 0x00800000u && bits < 0x3f800000u);
 }
 
-// sanitize::weight: kept from the smallest normal float to the largest finite one.
+// sanitize::weight: unchanged from the smallest normal float to the largest finite one, otherwise 0.
 fn weight(w: f32) -> f32 {
     let bits = bitcast<u32>(w);
     return select(0.0, w, bits >= 0x00800000u && bits < 0x7f800000u);

@@ -1,11 +1,11 @@
 //#use pack
-// Twin of src/kernel/surface.rs; the layout is explained there.
+// Twin of src/kernel/surface.rs, which documents the layout.
 
 const EMPTY_LOD: u32 = 63u;
 const LOD_STEPS: f32 = 7.0;
 const MAX_LOD: f32 = 62.0f / LOD_STEPS;
 
-// Negative `lod`: nothing is stored.
+// A negative `lod` marks an empty texel.
 struct Surface {
     color: vec3<f32>,
     lod: f32,

@@ -1,5 +1,5 @@
 //#use matched
-// Twin of src/kernel/taa.rs; constants are explained there.
+// Twin of src/kernel/taa.rs, which explains the constants.
 
 const ALPHA_STILL: f32 = 0.1;
 const ALPHA_RESAMPLED: f32 = 0.4;

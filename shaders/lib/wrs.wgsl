@@ -1,7 +1,7 @@
 //#use color
 //#use reservoir
 //#use sanitize
-// Twin of src/kernel/wrs.rs: gate, forget, combine.
+// Twin of src/kernel/wrs.rs: gate, bias, combine.
 
 // wrs::SamplerCode
 const SAMPLER_A_CHAO: u32 = 0u;
@@ -40,8 +40,8 @@ struct Decision {
     survival: f32,
 }
 
-// wrs::believe
-fn believe(past: Past, history_trust: f32, sampler_code: u32) -> Past {
+// wrs::scale_by_trust
+fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     let share = trust(history_trust);
     var log_key = past.log_key;
     if sampler_code == SAMPLER_A_ES {
@@ -87,7 +87,7 @@ fn step(candidate: vec3<f32>, candidate_w: f32, past: Past, params: WrsParams, d
     } else if params.bias_code == BIAS_BERNOULLI {
         bias = bernoulli_survival(past.w_sum, candidate_w);
     }
-    // Products below the normal range count as 0 by the rule of weights, whether the device flushes them or not.
+    // Denormal products become 0, whether or not the device flushes denormals.
     let survival = weight(bias * gate_value);
     let kept = weight(past.w_sum * survival);
     let w_sum = kept + candidate_w;

@@ -1,8 +1,8 @@
 //#use noise
 //#use surface
-// The first level of the chain of noisy candidates: means of 2x2 pixels, at odd borders of those that exist, without broken ones. Its
-// twin on the CPU is Chain::build_candidates in src/cpu/chain.rs; chain_pass makes the other levels. One invocation a texel of the
-// level; z is the view.
+// First level of the mip chain of noisy candidates: means of 2x2 pixels without non-finite ones; at odd borders a missing pixel is
+// replaced by its neighbour. CPU twin: MipChain::build_candidates in src/cpu/mip_chain.rs. mip_chain_pass computes the other levels.
+// One invocation a texel of the level; z is the view.
 //
 // 4 reads of 12 bytes and 1 write of 8 a texel: 12 bytes a pixel read, 2 written.
 
@@ -14,8 +14,8 @@
 fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
     let px = min(at, size - 1u);
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    let told = candidate_noise(textureLoad(noise_in, px, view, 0).xy);
-    return candidate_texel(candidate.color, candidate.usable, told);
+    let noise = candidate_noise(textureLoad(noise_in, px, view, 0).xy);
+    return candidate_texel(candidate.color, candidate.usable, noise);
 }
 
 @compute @workgroup_size(64, 1)

@@ -5,9 +5,9 @@
 //#use reproject
 //#use sanitize
 //#use view_uniforms
-// Inputs of a pixel in the internal form, its counts and its output: shared by all methods. Twin on the CPU: src/cpu/inputs.rs.
+// Inputs of a pixel in internal conventions, its counters and its output; shared by all methods. CPU twin: src/cpu/inputs.rs.
 
-// Inputs that the frame has, and switches. Constants of a pipeline; switched off means not compiled.
+// Which inputs the frame has, and which features are on. Constants of a pipeline: what is off is not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 override HAS_TRUST: u32 = 1u;
@@ -15,10 +15,10 @@ override HAS_EXPOSURE: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;
-// 0, or a VIEW_* code: draw what would be decided, and store nothing.
+// 0, or a VIEW_* code: draw a debug view of the decision, and store nothing.
 override VIEW: u32 = 0u;
 
-// src/gpu/uniforms.rs: FrameUniforms, which explains them
+// src/gpu/uniforms.rs: FrameUniforms, which documents the fields
 struct FrameUniforms {
     size: vec2<u32>,
     reset: u32,
@@ -54,7 +54,7 @@ struct FrameUniforms {
 @group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
 @group(0) @binding(7) var noise_in: texture_2d_array<f32>;
 
-// Words of the counters; src/stats.rs reads them.
+// Layout of the counters; FrameStats::from_counters in src/stats.rs reads them.
 const COUNT_NONFINITE: u32 = 0u;
 const COUNT_BAD_DEPTH: u32 = 1u;
 const COUNT_BAD_TRUST: u32 = 2u;
@@ -62,14 +62,14 @@ const COUNT_REPLACED: u32 = 3u;
 const COUNT_VERDICTS: u32 = 4u;
 const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
 
-// A workgroup's counts, so that few atomics leave it.
+// Counts of a workgroup: one global atomic a counter and workgroup instead of one a pixel.
 var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
 fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
     return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
-// Motion, previous minus current, in pixels, y down.
+// Motion vector: previous minus current position in pixels, y down.
 fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     if HAS_MOTION == 0u {
         return vec2<f32>(0.0);
@@ -77,7 +77,7 @@ fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     return textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
 }
 
-// Noise of the candidate; valid only where NOISY is set.
+// Noise of the candidate; valid only if NOISY is set.
 fn noise_at(px: vec2<u32>, view: u32) -> Noise {
     return candidate_noise(textureLoad(noise_in, px, view, 0).xy);
 }
@@ -90,8 +90,8 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     return disparity(textureLoad(depth_in, px, view, 0).x, map);
 }
 
-// depth::slope with its reader: change of the surface's disparity from pixel to pixel; 0 unless `needed`. A loop with zero iterations for
-// most pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
+// depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. A loop with zero iterations for most pixels: software
+// Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
 fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
     var total = 0.0;
     var before = INVALID_DISPARITY;
@@ -113,20 +113,21 @@ fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
     return total;
 }
 
-// Expected disparity of the pixel's surface in the previous frame.
+// Disparity that the pixel's surface had in the previous frame.
 fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
     let row = frame.views[view].depth_row;
     let stretch = row.x * ray.x + row.y * ray.y + row.z;
     return previous_disparity(disparity_now, stretch, row.w);
 }
 
-// Depth test: whether the disparity `stored` is that of the surface `expected` at this pixel. True without a depth test.
+// Depth test: whether the `stored` disparity belongs to this pixel's surface, which had the disparity `expected`. True without a depth
+// test.
 fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
     if DEPTH_TEST == 0u {
         return true;
     }
     let plain = same_surface(expected, stored, frame.depth_relative, 0.0);
-    // The four taps of the slope are read by few pixels.
+    // Few pixels need the four taps of the slope.
     let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now, !plain);
     return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }
@@ -151,8 +152,8 @@ fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdi
     count_if(true, COUNT_VERDICTS + verdict);
 }
 
-// Writes the shown color, or the debug view of the decision.
-fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
+// Writes the output color, or the debug view of the decision.
+fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
     if VIEW != 0u {
         textureStore(color_out, px, view, vec4<f32>(view_color(VIEW, traced), 1.0));
     } else {
@@ -160,7 +161,7 @@ fn show(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
     }
 }
 
-// Adds a workgroup's counts to the frame's. All of its invocations must call it.
+// Adds a workgroup's counts to the frame's. All invocations of the workgroup must call it (it has a barrier).
 fn add_counts(invocation: u32) {
     if COUNT != 0u {
         workgroupBarrier();

@@ -1,15 +1,16 @@
 //#use matched
 //#use noise
 //#use surface
-// The next level of the chain of remembered surfaces, or of noisy candidates: means of 2x2 texels, at odd borders of those that exist.
-// Its twin on the CPU is Chain::fill in src/cpu/chain.rs. One invocation a texel of the coarser level; z is the view.
+// Next level of the mip chain of stored surfaces or of noisy candidates: means of 2x2 texels; at odd borders a missing texel is
+// replaced by its neighbour. CPU twin: MipChain::fill in src/cpu/mip_chain.rs. One invocation a texel of the coarser level; z is the
+// view.
 //
 // 4 reads and 1 write of 8 bytes a texel; all levels from the second on together read 2.7 bytes a pixel and write 0.7.
 
-// 1: texels are those of candidates.
+// 1: a mip chain of candidates; 0: of surfaces.
 override CANDIDATES: u32 = 0u;
 
-// Of the finer level; its texture may be larger.
+// Size of the finer level; its texture may be larger.
 @group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
 @group(0) @binding(1) var fine: texture_2d_array<f32>;
 @group(0) @binding(2) var coarse: texture_storage_2d_array<rgba16float, write>;

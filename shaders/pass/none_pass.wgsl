@@ -1,13 +1,13 @@
 //#use inputs
-// No method: shows the sanitized candidate. Twin on the CPU: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
+// No method: outputs the sanitized candidate. CPU twin: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
 
 fn pixel(px: vec2<u32>, view: u32) {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    // Never a constant: compilers fold colors of constants with other roundings.
+    // Not a constant, although frame.reset is always set: compilers would fold the debug view's color with other roundings.
     let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
     count_if(!candidate.usable, COUNT_NONFINITE);
     count_if(true, COUNT_VERDICTS + verdict);
-    show(px, view, candidate.color, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
+    write_output(px, view, candidate.color, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
 }
 
 @compute @workgroup_size(64, 1)

@@ -1,10 +1,10 @@
 //#use foveate
 //#use matched
 //#use surface_history
-// The scale-matched reservoir. Its twin on the CPU is src/cpu/smr_pass.rs, which counts what it reads; docs/method.md has the
-// equations. One invocation a block of 2x2 pixels, so that the next level of what it stores needs no second pass; z is the view.
+// Scale-matched reservoirs. CPU twin: src/cpu/smr_pass.rs, which lists the reads and writes; docs/method.md has the equations. One
+// invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is the view.
 
-// What a frame's level of detail follows; FILTER_OFF is full rate everywhere.
+// Filters of the foveation: src/foveation.rs. FILTER_OFF is full rate everywhere.
 const FILTER_MIP: u32 = 0u;
 const FILTER_GAUSS: u32 = 1u;
 const FILTER_BLOCK: u32 = 2u;
@@ -38,18 +38,18 @@ fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
     );
 }
 
-// Whether a neighbour moves as the pixel does.
+// Whether a neighbour in the 2x2 block moves as the pixel does.
 fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
     if HAS_MOTION == 0u {
         return true;
     }
-    // Within the block of 2x2 pixels; beyond the border the pixel itself.
+    // At an odd border the pixel is its own neighbour.
     let across = min(px ^ vec2<u32>(1u), frame.size - 1u);
     return moves_alike(own, motion_at(vec2<u32>(across.x, px.y), view))
         || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
 }
 
-// Four texels of a level, and how far from the lower two a position is.
+// Four texels of a level around a position, and the position's fractions between them.
 struct Texels {
     low: vec2<u32>,
     high: vec2<u32>,
@@ -81,7 +81,7 @@ struct Matching {
     next_level: vec3<f32>,
 }
 
-// The past at a level of detail around a position, and at the whole levels around that. `smooth_color` is its level 0 there.
+// History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color` is its level 0 there.
 fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = textureNumLevels(past_mips);
     let limited = min(lod, f32(last));
@@ -108,13 +108,13 @@ fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
 }
 
 struct Around {
-    // Color and variance at a level of detail.
+    // Color and variance at the level of detail.
     compared: vec4<f32>,
-    // At the next whole level.
+    // Color and variance at the next whole level.
     coarser: vec4<f32>,
 }
 
-// Noisy candidates at a level of detail from 1 on around a position.
+// Mean of noisy candidates around a position, at level of detail `lod` of at least 1.
 fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
     let last = textureNumLevels(candidate_mips);
     let limited = min(lod, f32(last));
@@ -125,14 +125,14 @@ fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
     return Around(first + (second - first) * (limited - whole), second);
 }
 
-// Of a broken pixel nothing is known, least of all that it is black: `own` stands in.
+// Candidate at an offset from a pixel; `own` if it is not finite, because a non-finite pixel must not count as black.
 fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
     let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
     let near = color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz);
     return select(own, near.color, near.usable);
 }
 
-// Mean of four candidates on the diagonals of one that is usable; black where that is not needed, by a loop without rounds.
+// Mean of the four candidates at diagonal offsets of `radius` pixels; black unless `needed`, by a loop with zero iterations.
 fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
@@ -148,7 +148,7 @@ fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, need
 }
 
 fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
-    // A point sample is noise at its own scale: compare one level coarser.
+    // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
@@ -192,11 +192,11 @@ fn params_with(accumulate: f32) -> SmrParams {
 }
 
 struct Averaged {
-    made: Matched,
+    result: Matched,
     noise: Noise,
 }
 
-// The same for a noisy candidate, and the noise of what is made.
+// Output color for a noisy candidate, and its noise.
 fn averaged_pixel(
     px: vec2<u32>,
     view: u32,
@@ -210,10 +210,10 @@ fn averaged_pixel(
     let shown = exposed(history.sharp);
     let own = Noise(noise.samples, past_noise.variance);
     let confidence = vec2<f32>(noise_confidence(past_noise, luma(shown)), noise_confidence(own, luma(shown)));
-    let worth = coarser_worth(past_noise, noise, history.lod - lod);
-    let params = params_with(history_share(worth, noise, frame.smr_accumulate));
-    let want = reuse_weight(lod, history.lod, params.accumulate, true, confidence);
-    if want.share == 0.0 {
+    let discounted = discount_coarser(past_noise, noise, history.lod - lod);
+    let params = params_with(history_share(discounted, noise, frame.smr_accumulate));
+    let reuse = reuse_weight(lod, history.lod, params.accumulate, true, confidence);
+    if reuse.share == 0.0 {
         return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
     }
     let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
@@ -234,27 +234,27 @@ fn averaged_pixel(
         noise_difference(past_noise, noise_around, luma(matched)),
         confidence,
     );
-    let made = decide(evidence, params);
-    let believed = made.fit * source.trust;
-    return Averaged(made, noise_after(past_noise, noise_around, made.share, want.finer * believed));
+    let result = decide(evidence, params);
+    let acceptance = result.fit * source.trust;
+    return Averaged(result, noise_after(past_noise, noise_around, result.share, reuse.finer * acceptance));
 }
 
-// Shows a pixel, stores it and gives what was stored.
+// Outputs and stores a pixel; returns the stored words.
 fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
     let ray = ray_at(px, view);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
     let lod = candidate_lod(px, view, ray);
-    let keep = is_coherent(px, view, motion);
+    let coherent_motion = is_coherent(px, view, motion);
     var source = source_of(px, view, ray, motion, disparity_now);
-    if source.verdict == VERDICT_VALID && !keep {
+    if source.verdict == VERDICT_VALID && !coherent_motion {
         source.verdict = VERDICT_DISOCCLUDED;
     }
     let valid = source.verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
 
-    var made = Matched(candidate.color, select(-1.0, lod, candidate.usable), 0.0, 1.0);
+    var result = Matched(candidate.color, select(-1.0, lod, candidate.usable), 0.0, 1.0);
     var noise = Noise(1.0, 0.0);
     if NOISY != 0u {
         noise = noise_at(px, view);
@@ -262,31 +262,31 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     if valid {
         let history = resample(source, view, NOISY != 0u || lod > 0.0 || !candidate.usable);
         if !candidate.usable {
-            made = Matched(exposed(history.sharp), history.lod, 1.0, 1.0);
+            result = Matched(exposed(history.sharp), history.lod, 1.0, 1.0);
             if NOISY != 0u {
                 noise = past_noise_of(source, view);
             }
         } else if NOISY != 0u {
             let averaged = averaged_pixel(px, view, candidate.color, noise, lod, source, history);
-            made = averaged.made;
+            result = averaged.result;
             noise = averaged.noise;
         } else if lod > 0.0 && reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0)).share > 0.0 {
-            made = matched_pixel(px, view, candidate.color, lod, source, history);
+            result = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
-    // Gains, and the lobes of the resampling, reach beyond what halves hold.
-    made.color = min(made.color, vec3<f32>(MAX_HALF));
-    count_if(valid && made.share == 0.0, COUNT_REPLACED);
-    let sharpness = exp2(-max(made.lod, 0.0));
-    show(
+    // Gains and the overshoot of Catmull-Rom may exceed the largest half.
+    result.color = min(result.color, vec3<f32>(MAX_HALF));
+    count_if(valid && result.share == 0.0, COUNT_REPLACED);
+    let sharpness = exp2(-max(result.lod, 0.0));
+    write_output(
         px,
         view,
-        made.color,
-        PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, made.share, made.fit, made.share == 0.0, motion),
+        result.color,
+        PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
-    // Colors of a moving silhouette mix two surfaces: shown, but not kept.
-    let stored_lod = select(MAX_LOD, made.lod, keep || made.lod < 0.0);
-    let words = pack_surface(Surface(made.color, stored_lod, disparity_now));
+    // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace them.
+    let stored_lod = select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0);
+    let words = pack_surface(Surface(result.color, stored_lod, disparity_now));
     if VIEW == 0u {
         textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
         if NOISY != 0u {
@@ -308,10 +308,10 @@ fn main(
         var texels_1 = vec4<f32>(0.0);
         var texels_2 = vec4<f32>(0.0);
         var texels_3 = vec4<f32>(0.0);
-        // One by one: four copies of the work would take four times as long to compile.
+        // A loop, because four copies of the code would take four times as long to compile.
         for (var i = 0u; i < 4u; i++) {
             let px = first + vec2<u32>(i & 1u, i >> 1u);
-            // Beyond an odd border the neighbour counts twice.
+            // At an odd border the neighbour counts twice.
             let column = select(0u, i & 1u, px.x < frame.size.x);
             let row = select(0u, i >> 1u, px.y < frame.size.y);
             var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);

@@ -1,8 +1,8 @@
 //#use inputs
 //#use resample
 //#use wrs
-// What is remembered of a pixel's surface, where it was: shared by the methods that store surfaces. Its twin on the CPU is
-// src/cpu/remembered.rs.
+// Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa). CPU twin:
+// src/cpu/surface_history.rs.
 
 @group(0) @binding(8) var lod_in: texture_2d_array<f32>;
 @group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
@@ -13,7 +13,7 @@
 @group(0) @binding(14) var candidate_mips: texture_2d_array<f32>;
 @group(0) @binding(15) var next_noise: texture_storage_2d_array<r32uint, write>;
 
-// Where a pixel's surface was. All but the verdict only means something if that is VERDICT_VALID.
+// Previous position of a pixel's surface. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct Source {
     verdict: u32,
     texel: vec2<i32>,
@@ -47,10 +47,10 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
     if stored.lod < 0.0 {
         return no_source(VERDICT_EMPTY);
     }
-    var believed = 1.0;
+    var confidence = 1.0;
     if HAS_TRUST != 0u {
-        believed = trust(textureLoad(trust_in, px, view, 0).x);
-        if believed == 0.0 {
+        confidence = trust(textureLoad(trust_in, px, view, 0).x);
+        if confidence == 0.0 {
             return no_source(VERDICT_DISTRUSTED);
         }
     }
@@ -60,15 +60,15 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
     }
     let at = vec2<f32>(px) + motion;
     let whole = floor(at);
-    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, reprojected.at, expected, believed);
+    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, reprojected.at, expected, confidence);
 }
 
 fn component(v: vec4<f32>, i: u32) -> f32 {
     return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
 }
 
-// What is stored around a position. A position on a texel reads that one. A loop without rounds for those that want nothing, because
-// software Vulkan runs the body of an `if` for all pixels.
+// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loop has zero
+// iterations: software Vulkan runs the body of an `if` for all pixels.
 fn resample(source: Source, view: u32, needed: bool) -> Resampled {
     let between = needed && !(source.fraction.x == 0.0 && source.fraction.y == 0.0);
     let sharp_x = catmull_rom(source.fraction.x);
@@ -88,11 +88,11 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
         let smooth_w = component(smooth_x, at.x) * component(smooth_y, at.y);
         gathered = gather(gathered, s, same, sharp, smooth_w);
     }
-    // Nothing was gathered on a texel, and the nearest one is taken.
+    // Without taps this is the nearest texel.
     return resolve(gathered, source.nearest);
 }
 
-// A stored color under this frame's exposure.
+// Stored color scaled to this frame's exposure.
 fn exposed(stored: vec3<f32>) -> vec3<f32> {
     if HAS_EXPOSURE == 0u {
         return stored;
@@ -100,7 +100,7 @@ fn exposed(stored: vec3<f32>) -> vec3<f32> {
     return expose(stored, frame.exposure);
 }
 
-// Noise of the nearest texel under this frame's exposure.
+// Noise of the nearest texel, scaled to this frame's exposure.
 fn past_noise_of(source: Source, view: u32) -> Noise {
     let stored = unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x);
     if HAS_EXPOSURE == 0u {

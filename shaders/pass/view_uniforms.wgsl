@@ -1,6 +1,6 @@
-// Constants of a view, which all passes share that look where the eye looks.
+// Uniforms of a view, shared by the passes of the methods and of the simulators.
 
-// src/uniforms.rs: ViewUniforms, which explains them
+// src/uniforms.rs: ViewUniforms, which documents the fields
 struct ViewUniforms {
     ray_scale: vec2<f32>,
     ray_offset: vec2<f32>,

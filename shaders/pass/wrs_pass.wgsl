@@ -2,10 +2,10 @@
 //#use pack
 //#use rng
 //#use wrs
-// The fused pass of weighted reservoirs: sanitize, reproject, reject, expose, gate, bias, combine, store and show. Twin on the CPU:
-// src/cpu/wrs_pass.rs. One invocation a pixel; z is the view.
+// Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU twin:
+// src/cpu/wrs_pass.rs, which lists the reads and writes. One invocation a pixel; z is the view.
 
-// Switches of the settings. Constants of a pipeline; switched off means not compiled.
+// Settings as constants of a pipeline: what is off is not compiled.
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
@@ -17,7 +17,7 @@ override GATE: u32 = 1u;
 @group(0) @binding(12) var next_weights: texture_storage_2d_array<r32uint, write>;
 @group(0) @binding(13) var next_keys: texture_storage_2d_array<r32float, write>;
 
-// History of a pixel; all but the verdict is valid only if that is VERDICT_VALID.
+// History of a pixel. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct History {
     verdict: u32,
     past: Past,
@@ -28,7 +28,7 @@ fn no_history(verdict: u32) -> History {
     return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u);
 }
 
-// The reservoir that a pixel continues and the age of its sample, or the reason of its rejection.
+// Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
 fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> History {
     if frame.reset != 0u {
         return no_history(VERDICT_RESET);
@@ -47,7 +47,7 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
         past.log_key = textureLoad(past_keys, source.at, view, 0).x;
     }
     if HAS_TRUST != 0u {
-        past = believe(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);
+        past = scale_by_trust(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);
         if past.w_sum == 0.0 {
             return no_history(VERDICT_DISTRUSTED);
         }
@@ -91,7 +91,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     let survival = select(0.0, decision.survival, valid);
     let quality = decision.w_sum * (1.0 / 16.0);
     let traced = PixelTrace(history.verdict, candidate_w, quality, age, survival, decision.gate, decision.take, motion);
-    show(px, view, shown, traced);
+    write_output(px, view, shown, traced);
     if VIEW != 0u {
         return;
     }
@@ -110,7 +110,7 @@ fn main(
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
-        // The view from the workgroup, not the invocation: uniform, so that its constants are loaded once.
+        // View index from the workgroup id, which is uniform: the view's constants are loaded once.
         pixel(id.xy, group.z);
     }
     add_counts(invocation);

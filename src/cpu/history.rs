@@ -1,31 +1,31 @@
-//! The state between frames: one type owns both halves of the ping-pong and swaps them itself.
+//! State between frames: the previous and the current frame's buffers, which swap after each frame.
 
 use super::mip_chain::MipChain;
 use crate::frame::{ContextDesc, ViewFrame};
 use crate::method::HistoryLayout;
 use glam::Vec4;
 
-/// What is remembered of all views, this frame's and the last one's. What a method does not use is empty.
+/// History of all views: buffers of the previous and the current frame. Buffers that a method does not use are empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
     layout: HistoryLayout,
     view_len: usize,
     previous: Plane,
     current: Plane,
-    /// Of this frame's candidates, view by view, where they are noisy.
+    /// Mip chains of this frame's candidates, one a view; empty unless candidates are noisy.
     candidates: Vec<MipChain>,
     filled: bool,
     held_gaze: Vec<Option<[f32; 2]>>,
 }
 
-/// All views, view after view.
+/// Buffers of one frame: all views, view after view.
 #[derive(Clone, Debug, PartialEq)]
 struct Plane {
     reservoirs: Vec<[u32; 3]>,
     log_keys: Vec<f32>,
     surfaces: Vec<[u32; 2]>,
     noise: Vec<u32>,
-    chains: Vec<MipChain>,
+    mip_chains: Vec<MipChain>,
 }
 
 impl Plane {
@@ -39,7 +39,7 @@ impl Plane {
             log_keys: vec![0.0; when(keyed)],
             surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. }))],
             noise: vec![0; when(noisy)],
-            chains: chains(size_px, view_count, layout),
+            mip_chains: mip_chains(size_px, view_count, layout),
         }
     }
 
@@ -48,12 +48,12 @@ impl Plane {
             + size_of_val(&self.log_keys[..])
             + size_of_val(&self.surfaces[..])
             + size_of_val(&self.noise[..])
-            + self.chains.iter().map(MipChain::memory_bytes).sum::<usize>()
+            + self.mip_chains.iter().map(MipChain::memory_bytes).sum::<usize>()
     }
 }
 
-/// One for each view, of as many levels as the layout has.
-fn chains(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Vec<MipChain> {
+/// One mip chain a view, if the layout has any.
+fn mip_chains(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Vec<MipChain> {
     match layout {
         HistoryLayout::Surfaces { levels: levels @ 1.., .. } => {
             vec![MipChain::new(size_px, levels); view_count as usize]
@@ -71,7 +71,7 @@ impl History {
             previous: Plane::new(size_px, view_count, layout),
             current: Plane::new(size_px, view_count, layout),
             candidates: match layout {
-                HistoryLayout::Surfaces { noisy: true, .. } => chains(size_px, view_count, layout),
+                HistoryLayout::Surfaces { noisy: true, .. } => mip_chains(size_px, view_count, layout),
                 _ => vec![],
             },
             filled: false,
@@ -88,25 +88,25 @@ impl History {
         self.held_gaze.fill(None);
     }
 
-    /// Makes what was written the past.
+    /// Makes the written frame the previous one.
     pub(super) fn swap(&mut self) {
         std::mem::swap(&mut self.previous, &mut self.current);
         self.filled = true;
     }
 
-    /// Whether there is a past at all.
+    /// Whether a frame was processed since the last reset.
     pub fn is_filled(&self) -> bool {
         self.filled
     }
 
-    /// Position that the eye of a view is taken to look at; held if its gaze is lost next.
-    pub(super) fn look(&mut self, index: usize, view: &ViewFrame) -> [f32; 2] {
+    /// Resolves the gaze of a view to a position in pixels, and holds it for frames in which the gaze is lost.
+    pub(super) fn resolve_gaze(&mut self, index: usize, view: &ViewFrame) -> [f32; 2] {
         let px = view.gaze.resolve(self.held_gaze[index], view.geometry.size_px());
         self.held_gaze[index] = Some(px);
         px
     }
 
-    /// The past reservoirs of `view` to read, and the rows to write.
+    /// Previous reservoirs of `view`, and the current ones and their log keys to write.
     pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, &mut [[u32; 3]], &mut [f32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let keys = if self.previous.log_keys.is_empty() { 0..0 } else { range.clone() };
@@ -117,46 +117,46 @@ impl History {
         (past, &mut self.current.reservoirs[range], &mut self.current.log_keys[keys])
     }
 
-    /// The past surfaces of `view` to read, and the rows to write: surfaces, and their noise where there is any.
+    /// Previous surfaces of `view`, and the current ones and their noise (empty without noise) to write.
     pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, &mut [[u32; 2]], &mut [u32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let noise = if self.previous.noise.is_empty() { 0..0 } else { range.clone() };
         let past = PastSurfaces {
             words: &self.previous.surfaces[range.clone()],
             noise: &self.previous.noise[noise.clone()],
-            chain: self.previous.chains.get(view),
+            mip_chain: self.previous.mip_chains.get(view),
             candidates: self.candidates.get(view),
         };
         (past, &mut self.current.surfaces[range], &mut self.current.noise[noise])
     }
 
-    /// Builds the chain of the candidates of `view`, if there is one.
+    /// Fills the mip chain of the candidates of `view`, if there is one.
     pub(super) fn build_candidates(&mut self, view: usize, texel: impl Fn(u32, u32) -> Vec4 + Sync) {
-        if let Some(chain) = self.candidates.get_mut(view) {
-            chain.build_candidates(texel);
+        if let Some(mip_chain) = self.candidates.get_mut(view) {
+            mip_chain.build_candidates(texel);
         }
     }
 
-    /// Builds the coarser levels of what was written of `view`.
-    pub(super) fn build_chain(&mut self, view: usize) {
+    /// Fills the mip chain of the current surfaces of `view`, if there is one.
+    pub(super) fn build_mip_chain(&mut self, view: usize) {
         let range = view * self.view_len..(view + 1) * self.view_len;
-        if let Some(chain) = self.current.chains.get_mut(view) {
-            chain.build(&self.current.surfaces[range]);
+        if let Some(mip_chain) = self.current.mip_chains.get_mut(view) {
+            mip_chain.build(&self.current.surfaces[range]);
         }
     }
 
-    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty but for wrs.
+    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty except for wrs.
     pub fn words(&self) -> &[[u32; 3]] {
         &self.previous.reservoirs
     }
 
-    /// Packed surfaces of the last processed frame, view after view ([`surface`](crate::kernel::surface)); empty but for taa and
+    /// Packed surfaces of the last processed frame, view after view ([`surface`](crate::kernel::surface)); empty except for taa and
     /// smr.
     pub fn surfaces(&self) -> &[[u32; 2]] {
         &self.previous.surfaces
     }
 
-    /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty but for smr with
+    /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty except for smr with
     /// [`Settings::noisy`](crate::Settings::noisy).
     pub fn noise(&self) -> &[u32] {
         &self.previous.noise
@@ -175,18 +175,18 @@ impl History {
     }
 }
 
-/// Last frame's reservoirs of one view.
+/// Previous frame's reservoirs of one view.
 #[derive(Clone, Copy)]
 pub(super) struct PastView<'a> {
     pub words: &'a [[u32; 3]],
     pub log_keys: &'a [f32],
 }
 
-/// Last frame's surfaces of one view, and what of this frame's candidates they are held against.
+/// Previous frame's surfaces of one view with their mip chain, and the mip chain of this frame's candidates to compare them with.
 #[derive(Clone, Copy)]
 pub(super) struct PastSurfaces<'a> {
     pub words: &'a [[u32; 2]],
     pub noise: &'a [u32],
-    pub chain: Option<&'a MipChain>,
+    pub mip_chain: Option<&'a MipChain>,
     pub candidates: Option<&'a MipChain>,
 }

@@ -1,4 +1,4 @@
-//! Inputs of the pixels of one view, in the internal form: shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
+//! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
 use super::Frame;
 use crate::frame::{ContextDesc, Reset};
@@ -13,7 +13,7 @@ use crate::stats::FrameStats;
 use crate::uniforms::ViewUniforms;
 use glam::{Vec2, Vec3};
 
-/// One view of one frame.
+/// Inputs and constants of one view of a frame.
 pub(super) struct Inputs<'a> {
     pub color: &'a Image<[f32; 3]>,
     pub lod: Option<&'a Image<f32>>,
@@ -24,9 +24,9 @@ pub(super) struct Inputs<'a> {
     pub size: [u32; 2],
     pub uniforms: ViewUniforms,
     gaze_ray: Vec3,
-    /// Factor on stored colors.
+    /// Factor on stored colors; `None` if exposure is unchanged.
     pub exposure: Option<f32>,
-    /// There is no history.
+    /// Whether there is no history.
     pub reset: bool,
     motion_scale: [f32; 2],
     disparity_map: DisparityMap,
@@ -34,7 +34,7 @@ pub(super) struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// View `index` of `frame`, whose eye looks at `gaze_px`; `has_history`: a frame was processed before.
+    /// Inputs of view `index` of `frame` for a gaze at `gaze_px`. `has_history`: whether a frame was processed before.
     pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, gaze_px: [f32; 2], has_history: bool) -> Self {
         let uniforms = ViewUniforms::new(&frame.views[index], gaze_px, &desc.settings, index, frame.index);
         let [x, y, z, _] = uniforms.gaze_ray;
@@ -61,7 +61,7 @@ impl<'a> Inputs<'a> {
         self.motion.is_some()
     }
 
-    /// The candidate, and whether it may be used.
+    /// Sanitized candidate, and whether it is usable.
     #[inline(always)]
     pub fn candidate(&self, x: u32, y: u32) -> (Vec3, bool) {
         sanitize::color(Vec3::from(self.color.at(x as usize, y as usize)))
@@ -93,32 +93,33 @@ impl<'a> Inputs<'a> {
         })
     }
 
-    /// The candidate's noise, if it has any.
+    /// Noise of the candidate; `None` without a noise input.
     #[inline(always)]
     pub fn noise(&self, x: u32, y: u32) -> Option<Noise> {
         self.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
     }
 
-    /// As given, if it is.
+    /// Trust mask, not sanitized; `None` without a trust input.
     #[inline(always)]
     pub fn trust(&self, x: u32, y: u32) -> Option<f32> {
         self.trust.map(|t| t.at(x as usize, y as usize))
     }
 
-    /// Whether depths are compared.
+    /// Whether there is a depth test.
     #[inline(always)]
     pub fn tests_depth(&self) -> bool {
         self.depth_test.is_some()
     }
 
-    /// Disparity that the surface of a pixel had in the previous frame.
+    /// Disparity that the pixel's surface had in the previous frame.
     #[inline(always)]
     pub fn previous_disparity(&self, ray: Vec3, disparity: f32) -> f32 {
         let [m20, m21, m22, shift] = self.uniforms.depth_row;
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
     }
 
-    /// Whether pixel (x, y), `expected` at a disparity, is the surface that was `stored` with one. True without a depth test.
+    /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which had the disparity `expected`. True
+    /// without a depth test.
     #[inline(always)]
     pub fn same_surface(&self, x: u32, y: u32, expected: f32, stored: f32) -> bool {
         let Some(test) = self.depth_test else {
@@ -128,13 +129,13 @@ impl<'a> Inputs<'a> {
             || depth::same_surface(expected, stored, test.relative, test.slope_px * self.slope(x, y))
     }
 
-    /// Read only where the plain test fails: few pixels pay for the four taps.
+    /// Slope of disparity at a pixel. Needed only where the plain test fails, so that few pixels pay for the four taps.
     #[cold]
     fn slope(&self, x: u32, y: u32) -> f32 {
         depth::slope(x, y, self.size, |x, y| self.disparity(x, y))
     }
 
-    /// Counts a pixel.
+    /// Counts a pixel's unusable inputs, and the verdict on its history.
     #[inline(always)]
     pub fn count(&self, x: u32, y: u32, usable: bool, disparity: f32, verdict: Verdict, stats: &mut FrameStats) {
         stats.pixels += 1;

@@ -1,5 +1,5 @@
-//! Coarser levels of remembered surfaces, made of what was stored, and of noisy candidates, by the means of 2x2 texels that the
-//! foveation's mip levels are made of too.
+//! Mip chains of stored surfaces and of noisy candidates: means of 2x2 texels, as in the foveation's mip levels, so that a level of
+//! history compares with a candidate of the same level.
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
@@ -9,8 +9,8 @@ use crate::kernel::surface::{mip_texel, round_mip};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Levels 1 to n of one view; level l at index l - 1. Texels are halves: of surfaces colors times coverage, and coverage; of candidates
-/// colors, and the variance of a pixel's luma.
+/// Levels 1 to n of one view; level l at index l - 1. Texels are rounded to halves. For surfaces: color times coverage, and coverage;
+/// for candidates: color, and the variance of a pixel's luma.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MipChain {
     size: [u32; 2],
@@ -18,13 +18,13 @@ pub(super) struct MipChain {
 }
 
 impl MipChain {
-    /// `count` levels of a view of `size` pixels.
+    /// An empty mip chain of `count` levels of a view of `size` pixels.
     pub fn new(size: [u32; 2], count: u32) -> Self {
         let levels = (1..=count).map(|l| Image::filled(size.map(|s| level_len(s, l)), [0.0; 4])).collect();
         Self { size, levels }
     }
 
-    /// Bytes, at four floats a texel.
+    /// Bytes held: four floats a texel.
     pub fn memory_bytes(&self) -> usize {
         self.levels.iter().map(|l| size_of_val(l.pixels())).sum()
     }
@@ -64,7 +64,7 @@ impl MipChain {
         }
     }
 
-    /// Four texels of a level around a position, and where between them it lies.
+    /// Four texels of a level around a position, and the position's fractions between them.
     fn around(&self, at: [f32; 2], level: u32) -> ([Vec4; 4], [f32; 2]) {
         let image = &self.levels[level as usize - 1];
         let (w, h) = (image.width() as u32, image.height() as u32);
@@ -85,7 +85,7 @@ impl MipChain {
         candidate_bilinear([a, b], [c, d], fraction)
     }
 
-    /// Color and variance of candidates at a level of detail from 1 on around a position in pixels, and at the next whole level.
+    /// Color and variance of candidates at a position in pixels: at level of detail `lod` of at least 1, and at the next whole level.
     pub fn read_candidates(&self, at: [f32; 2], lod: f32) -> [Vec4; 2] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);
@@ -95,8 +95,7 @@ impl MipChain {
         [first + (second - first) * (lod - whole), second]
     }
 
-    /// The view at a level of detail around a position in pixels, and at the whole levels around that. `smooth` is its level 0
-    /// there.
+    /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth` is its level 0 there.
     pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 3] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);

@@ -1,6 +1,6 @@
-//! The CPU executor: the post-process on images in memory, for machines without a GPU, and the oracle of the GPU's passes.
+//! CPU executor: the post-process on images in memory, for machines without a GPU and as the reference of the GPU executor.
 //!
-//! A pass is a loop over pixels plus calls into the kernel. Rows run in parallel; the result does not depend on the number of threads.
+//! Rows of pixels are processed in parallel; the result does not depend on the number of threads.
 
 mod history;
 mod inputs;
@@ -23,10 +23,21 @@ use crate::method::HistoryLayout;
 use crate::settings::{Method, Settings};
 use crate::stats::FrameStats;
 
-/// One frame, with one image a view: `Frame::new(&[&left, &right], &views, index)`.
+/// A frame whose inputs are slices with one image a view; fields are at [`Frame`](crate::Frame).
+///
+/// ```
+/// # use afterimage::{Image, ViewFrame};
+/// # fn example(left: &Image<[f32; 3]>, right: &Image<[f32; 3]>, views: &[ViewFrame], index: u64) {
+/// use afterimage::cpu::Frame;
+///
+/// let colors = [left, right];
+/// let frame = Frame::new(&colors, views, index);
+/// # let _ = frame;
+/// # }
+/// ```
 pub type Frame<'a> = crate::Frame<'a, CpuAfterimage>;
 
-/// The post-process on the CPU. Owns its settings and its history.
+/// The post-process on the CPU: a context with its settings and history.
 ///
 /// ```
 /// use afterimage::cpu::{CpuAfterimage, Frame};
@@ -52,7 +63,7 @@ impl Executor for CpuAfterimage {
     type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
 }
 
-/// A frame on its way through a method's pass.
+/// Arguments of a method's pass.
 struct Pass<'a, 'f> {
     desc: &'a ContextDesc,
     history: &'a mut History,
@@ -62,27 +73,27 @@ struct Pass<'a, 'f> {
 }
 
 impl CpuAfterimage {
-    /// A context with an empty history.
+    /// A context without history.
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting or the depth convention is out of range, or the size is empty or beyond
-    /// [`ContextDesc::MAX_SIDE`].
+    /// [`SettingsError`] if the description is out of range: a setting, the depth convention, the size or the number of views.
     pub fn new(desc: &ContextDesc) -> Result<Self, SettingsError> {
         desc.validate()?;
         Ok(Self { desc: *desc, history: History::new(desc) })
     }
 
-    /// The description, with the settings in force.
+    /// Description of the context, with its current size and settings.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
     }
 
-    /// Changes the tunables from the next frame on. History survives, unless the method, what it keeps or the number of its mip levels
-    /// changes: [`noisy`](Settings::noisy), [`sampler`](Settings::sampler), and of smr `rate_far` and `filter` of the
-    /// [`foveation`](Settings::foveation).
+    /// Changes the settings from the next frame on.
+    ///
+    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
+    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting is out of range; then the old ones stay.
+    /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         let same_method = settings.method == self.desc.settings.method;
@@ -95,10 +106,10 @@ impl CpuAfterimage {
         Ok(())
     }
 
-    /// Changes the size of the views. History starts afresh, even if the size is the same.
+    /// Changes the size of the views, and discards history even if the size is the same.
     ///
     /// # Errors
-    /// [`FrameError::Extent`]; then nothing changes.
+    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
@@ -106,18 +117,19 @@ impl CpuAfterimage {
         Ok(())
     }
 
-    /// Empties the history: the next frame starts afresh.
+    /// Discards history and held gaze positions: the next frame is processed like the first one. [`Reset::All`](crate::Reset::All) does
+    /// the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.history.forget();
     }
 
-    /// The state between frames, for tests and the lab.
+    /// History, for tests and the lab.
     #[doc(hidden)]
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Overwrites the history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known state.
+    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known state.
     ///
     /// # Panics
     /// If `words` has another length than the history's.
@@ -126,20 +138,22 @@ impl CpuAfterimage {
         self.history.restore(words);
     }
 
-    /// Bytes held between frames. Mip chains are floats here and halves on a GPU.
+    /// Size in bytes of the buffers that the context holds between frames. Larger than on a GPU, because mip chains are floats here and
+    /// halves there.
     pub fn memory_bytes(&self) -> usize {
         self.history.memory_bytes()
     }
 
-    /// Processes one frame into `output`, one image of the context's size a view.
+    /// Processes one frame into `output`: linear colors, one image of the context's size a view.
     ///
     /// # Errors
-    /// [`FrameError`] if sizes, counts or numbers do not fit the context; then nothing is written and no state has moved.
+    /// [`FrameError`] if a size, a number of images or a value does not fit the context; then nothing is written and history is
+    /// unchanged.
     pub fn process(&mut self, frame: &Frame<'_>, output: &mut [Image<[f32; 3]>]) -> Result<FrameStats, FrameError> {
         self.run(frame, output, None)
     }
 
-    /// As [`process`](Self::process), and writes the decision at each pixel to `traces`, one image a view.
+    /// Processes one frame as [`process`](Self::process) does, and writes the decision at each pixel to `traces`, one image a view.
     ///
     /// # Errors
     /// As for `process`.
@@ -190,7 +204,7 @@ impl CpuAfterimage {
         self.check_sizes("traces", traces.map(|t| t.iter().map(Image::size)))
     }
 
-    /// Refuses images, if there are any, that are not one of the context's size a view.
+    /// Checks that an input, if given, has one image of the context's size for each view.
     fn check_sizes(
         &self,
         input: &'static str,

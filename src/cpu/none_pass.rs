@@ -1,4 +1,4 @@
-//! No method: shows the sanitized candidate.
+//! No method: outputs the sanitized candidate.
 
 use super::Pass;
 use crate::image::Image;

@@ -1,4 +1,5 @@
-//! What is remembered of a pixel's surface, where it was: shared by the methods that store surfaces.
+//! Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa). Twin:
+//! `shaders/pass/surface_history.wgsl`.
 
 use super::history::PastSurfaces;
 use super::inputs::Inputs;
@@ -13,27 +14,28 @@ use crate::kernel::surface::{Surface, unpack_surface};
 use crate::kernel::wrs::expose;
 use glam::Vec3;
 
-/// One view of one frame and its past.
+/// Inputs and history of one view of a frame.
 pub(super) struct SurfaceHistory<'a> {
     pub inputs: Inputs<'a>,
     pub past: PastSurfaces<'a>,
 }
 
-/// Where a pixel's surface was.
+/// Previous position of a pixel's surface, and its history there.
 #[derive(Clone, Copy)]
 pub(super) struct Source {
-    /// Whole texel at or before the position, and what is left.
+    /// Whole part of the position.
     pub texel: [i32; 2],
+    /// Fractional part of the position, each in \[0, 1).
     pub fraction: [f32; 2],
     /// Position in pixels.
     pub at: [f32; 2],
-    /// The nearest texel.
+    /// Nearest stored texel.
     pub nearest: Surface,
-    /// Where that is stored.
+    /// Index of `nearest` in the stored view.
     pub index: usize,
-    /// Disparity that the surface had.
+    /// Disparity that the surface had in the previous frame.
     pub expected: f32,
-    /// How far it may be believed, above 0 and at most 1.
+    /// Confidence in history: above 0 and at most 1.
     pub trust: f32,
 }
 
@@ -44,7 +46,7 @@ impl SurfaceHistory<'_> {
         unpack_surface(self.past.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
     }
 
-    /// Where the surface of pixel (x, y) was, or why it has no past.
+    /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history.
     #[inline(always)]
     pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
         let inputs = &self.inputs;
@@ -78,8 +80,7 @@ impl SurfaceHistory<'_> {
         })
     }
 
-    /// What is stored around a position: twelve texels, without the corners, whose weights are next to nothing. A position on a
-    /// texel reads that one.
+    /// History resampled at a position; a position exactly on a texel reads that texel.
     #[inline(always)]
     pub fn resample(&self, source: &Source) -> Resampled {
         let [fx, fy] = source.fraction;
@@ -99,14 +100,14 @@ impl SurfaceHistory<'_> {
         resample::resolve(gathered, source.nearest)
     }
 
-    /// Noise of the nearest texel under this frame's exposure.
+    /// Noise of the nearest texel, scaled to this frame's exposure.
     #[inline(always)]
     pub fn noise(&self, source: &Source) -> Noise {
         let stored = unpack_noise(self.past.noise[source.index]);
         self.inputs.exposure.map_or(stored, |ratio| expose_noise(stored, ratio))
     }
 
-    /// A stored color under this frame's exposure.
+    /// Stored color scaled to this frame's exposure.
     #[inline(always)]
     pub fn expose(&self, color: Vec3) -> Vec3 {
         self.inputs.exposure.map_or(color, |ratio| expose(color, ratio))

@@ -1,4 +1,4 @@
-//! The loop over pixels of the methods that remember surfaces.
+//! Loop over pixels for the methods that store surfaces (smr, taa).
 
 use super::Pass;
 use super::inputs::Inputs;
@@ -12,17 +12,18 @@ use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// What becomes of a pixel.
+/// Result of a pixel.
 pub(super) struct Pixel {
-    pub shown: Vec3,
-    /// What is stored.
+    /// Color for the frame's output.
+    pub output: Vec3,
+    /// Packed surface to store.
     pub surface: [u32; 2],
-    /// How noisy that is, where it matters.
+    /// Packed noise of the surface; stored only for noisy candidates.
     pub noise: u32,
     pub trace: PixelTrace,
 }
 
-/// What is stored, shown and traced of a row of pixels.
+/// Results of a row of pixels.
 struct Row<'a> {
     surfaces: &'a mut [[u32; 2]],
     noise: Option<&'a mut [u32]>,
@@ -38,14 +39,14 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let width = desc.size_px[0] as usize;
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let gaze_px = history.look(i, &frame.views[i]);
+        let gaze_px = history.resolve_gaze(i, &frame.views[i]);
         let inputs = Inputs::new(desc, frame, i, gaze_px, has_history);
         history.build_candidates(i, |x, y| {
             let (color, usable) = inputs.candidate(x, y);
-            candidate_texel(color, usable, inputs.noise(x, y).expect("a frame is refused that lacks its noise"))
+            candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))
         });
         let (past, surfaces, noise) = history.split_surfaces(i);
-        let at = SurfaceHistory { inputs, past };
+        let view = SurfaceHistory { inputs, past };
         let mut noise = noise.chunks_mut(width);
         let mut trace_rows = traces.as_mut().map(|t| t[i].pixels_mut().chunks_mut(width));
         let mut rows: Vec<_> = surfaces
@@ -61,24 +62,24 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let row = |(y, row): (usize, &mut Row<'_>)| {
             let mut stats = FrameStats::default();
             for x in 0..width {
-                let made = if settings.method == Method::Taa {
-                    taa_pass::pixel(&at, x as u32, y as u32, &mut stats)
+                let pixel = if settings.method == Method::Taa {
+                    taa_pass::pixel(&view, x as u32, y as u32, &mut stats)
                 } else {
-                    smr.pixel(&at, x as u32, y as u32, &mut stats)
+                    smr.pixel(&view, x as u32, y as u32, &mut stats)
                 };
-                row.out[x] = made.shown.to_array();
-                row.surfaces[x] = made.surface;
+                row.out[x] = pixel.output.to_array();
+                row.surfaces[x] = pixel.surface;
                 if let Some(noise) = &mut row.noise {
-                    noise[x] = made.noise;
+                    noise[x] = pixel.noise;
                 }
                 if let Some(trace) = &mut row.trace {
-                    trace[x] = made.trace;
+                    trace[x] = pixel.trace;
                 }
             }
             stats
         };
         stats = stats.add(rows.par_iter_mut().enumerate().map(row).reduce(FrameStats::default, FrameStats::add));
-        history.build_chain(i);
+        history.build_mip_chain(i);
     }
     stats
 }

@@ -1,7 +1,8 @@
-//! The fused pass of weighted reservoirs: scrub, reproject, flush, expose, gate, bias, combine, store and show.
+//! Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. Twin:
+//! `shaders/pass/wrs_pass.wgsl`.
 //!
-//! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test is close), and
-//! writes one reservoir and one color: 48 bytes with half-float color and motion.
+//! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test needs the slope), and writes
+//! one reservoir and one color. Memory traffic: 48 bytes a pixel with color and motion as halves.
 
 use super::Pass;
 use super::history::PastView;
@@ -22,7 +23,7 @@ use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Constants of one view of one frame.
+/// Inputs, history and constants of one view of a frame.
 struct ViewPass<'a> {
     inputs: Inputs<'a>,
     past: PastView<'a>,
@@ -45,7 +46,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let gaze_px = history.look(i, &frame.views[i]);
+        let gaze_px = history.resolve_gaze(i, &frame.views[i]);
         let (past, words, log_keys) = history.split(i);
         let pass = ViewPass {
             inputs: Inputs::new(desc, frame, i, gaze_px, has_history),
@@ -146,7 +147,7 @@ impl ViewPass<'_> {
         acuity::candidate_weight(self.inputs.eccentricity_deg(ray), self.fovea_radius_deg, self.inv_density_at_fovea)
     }
 
-    /// The reservoir that pixel (x, y) continues and the age of its sample, or why it may not.
+    /// Reservoir of the pixel's surface in the previous frame and age of its sample, or the verdict that rejects it.
     #[inline(always)]
     fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<(Past, u32), Verdict> {
         let inputs = &self.inputs;
@@ -162,7 +163,7 @@ impl ViewPass<'_> {
         let log_key = self.past.log_keys.get(at).copied().unwrap_or(f32::MIN);
         let mut past = Past { color: stored.color, w_sum: stored.w_sum, log_key };
         if let Some(trust) = inputs.trust(x, y) {
-            past = wrs::believe(past, trust, self.params.sampler);
+            past = wrs::scale_by_trust(past, trust, self.params.sampler);
             if past.w_sum == 0.0 {
                 return Err(Verdict::Distrusted);
             }

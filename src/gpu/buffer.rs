@@ -1,9 +1,9 @@
-//! Buffers that are made with what they hold.
+//! Buffers with initial contents.
 
 use wgpu::{Buffer, BufferUsages, BufferViewMut, Device};
 
-/// A buffer that holds `bytes`, whose length is a multiple of 4; of 4 bytes at least. Not by wgpu's `create_buffer_init`, which panics on
-/// a lost device (H77).
+/// A buffer that contains `bytes`, whose length must be a multiple of 4; at least 4 bytes large. Not wgpu's `create_buffer_init`, which
+/// panics on a lost device (H77).
 pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -> Buffer {
     let bytes = if bytes.is_empty() { &[0; 4] } else { bytes };
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -18,9 +18,9 @@ pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -
     buffer
 }
 
-/// What mapping gives: a view with wgpu 29; with wgpu 30 a result, an error on a lost device.
+/// Result of mapping a buffer: a view in wgpu 29, a `Result` in wgpu 30, which is an error on a lost device.
 trait Mapped {
-    /// Whether there is something to write to.
+    /// Writes `bytes`; returns whether the buffer is mapped.
     fn fill(self, bytes: &[u8]) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! The one builder of compute pipelines: a shader, its bindings, and a pipeline for each set of values of its overrides.
+//! Builder of compute pipelines: a shader, its bindings, and a pipeline for each set of override values.
 
 use crate::method::Overrides;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use wgpu::{
     ShaderSource, ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureViewDimension,
 };
 
-/// Width of a workgroup: rows of 64 invocations. Also in the shaders.
+/// Width of a workgroup in invocations; its height is 1. Equal to `@workgroup_size` in the shaders.
 pub const WORKGROUP_WIDTH: u32 = 64;
 
 /// A compute shader with the entry point `main` and one bind group.
@@ -20,12 +20,12 @@ pub struct ComputeShader {
     bindings: BindGroupLayout,
     layout: PipelineLayout,
     module: ShaderModule,
-    /// By values of overrides. Made at their first use.
+    /// Pipelines by override values, compiled at their first use.
     pipelines: Mutex<HashMap<Overrides, ComputePipeline>>,
 }
 
 impl ComputeShader {
-    /// A shader whose bindings have `types`, from 0 on.
+    /// A shader with bindings of `types`, numbered from 0.
     pub fn new(device: &Device, label: &'static str, source: String, types: &[BindingType]) -> Self {
         let module = device.create_shader_module(ShaderModuleDescriptor {
             label: Some(label),
@@ -45,7 +45,7 @@ impl ComputeShader {
         Self { label, bindings, layout, module, pipelines: Mutex::default() }
     }
 
-    /// A bind group of `resources`, from binding 0 on.
+    /// A bind group of `resources`, numbered from binding 0.
     pub fn group<'a>(&self, device: &Device, resources: impl IntoIterator<Item = BindingResource<'a>>) -> BindGroup {
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
@@ -56,31 +56,31 @@ impl ComputeShader {
         })
     }
 
-    /// The pipeline of these values of overrides, made at its first use.
+    /// The pipeline for a set of override values, compiled at its first use.
     pub fn pipeline(&self, device: &Device, overrides: &[(&'static str, u32)]) -> ComputePipeline {
-        // A thread that panicked while it made a pipeline has inserted none.
+        // A poisoned lock is harmless: a thread that panicked here inserted nothing.
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(made) = pipelines.get(overrides) {
-            return made.clone();
+        if let Some(pipeline) = pipelines.get(overrides) {
+            return pipeline.clone();
         }
         let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
-        let made = device.create_compute_pipeline(&ComputePipelineDescriptor {
+        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(self.label),
             layout: Some(&self.layout),
             module: &self.module,
             entry_point: Some("main"),
             compilation_options: PipelineCompilationOptions {
                 constants: &constants,
-                // The post-process has workgroup memory for counting alone, and zeroing it costs a barrier.
+                // Workgroup memory is used for counters only, and zeroing it costs a barrier.
                 zero_initialize_workgroup_memory: !overrides.contains(&("COUNT", 0)),
             },
             cache: None,
         });
-        pipelines.insert(overrides.to_vec(), made.clone());
-        made
+        pipelines.insert(overrides.to_vec(), pipeline.clone());
+        pipeline
     }
 
-    /// Dispatches an invocation for each of `size` texels of each of `layers` layers, in rows of workgroups.
+    /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.
     pub fn dispatch(
         &self,
         device: &Device,
@@ -96,12 +96,12 @@ impl ComputeShader {
     }
 }
 
-/// Type of a uniform buffer.
+/// Binding type of a uniform buffer.
 pub fn uniform() -> BindingType {
     BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None }
 }
 
-/// Type of a storage buffer.
+/// Binding type of a storage buffer.
 pub fn storage_buffer(read_only: bool) -> BindingType {
     BindingType::Buffer {
         ty: BufferBindingType::Storage { read_only },
@@ -110,12 +110,12 @@ pub fn storage_buffer(read_only: bool) -> BindingType {
     }
 }
 
-/// Type of an array of float textures to read.
+/// Binding type of a 2D array texture of floats to read.
 pub fn float_texture() -> BindingType {
     sampled(TextureSampleType::Float { filterable: false })
 }
 
-/// Type of an array of textures of words to read.
+/// Binding type of a 2D array texture of unsigned integers to read.
 pub fn uint_texture() -> BindingType {
     sampled(TextureSampleType::Uint)
 }
@@ -124,7 +124,7 @@ fn sampled(sample_type: TextureSampleType) -> BindingType {
     BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2Array, multisampled: false }
 }
 
-/// Type of an array of textures to write.
+/// Binding type of a 2D array texture to write.
 pub fn storage_texture(format: TextureFormat) -> BindingType {
     BindingType::StorageTexture {
         access: StorageTextureAccess::WriteOnly,

@@ -1,15 +1,18 @@
-//! What the caller hands over for one frame, and what it hears back at once.
+//! Inputs and outputs of one frame on a GPU.
 
 use super::{Afterimage, MAX_VIEWS};
 use crate::frame::{Gaze, ViewFrame};
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
-/// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), one sample a
-/// pixel, and the usage `TEXTURE_BINDING`.
+/// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
+///
+/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), one sample a pixel, and the
+/// usage `TEXTURE_BINDING`.
 pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 
-/// Where [`record`](Afterimage::record) writes. A texture alone makes one: `(&output).into()`.
+/// Outputs of [`record`](Afterimage::record): a texture, and optionally counters and timestamps. `record` also accepts the texture
+/// alone.
 ///
 /// ```
 /// # fn example<'a>(output: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
@@ -21,18 +24,19 @@ pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
-    /// The frame that the user sees: the context's size, layers and output format, usage `STORAGE_BINDING`. Alpha is 1.
+    /// Output frame: a texture of the context's size, layers and output format, with the usage `STORAGE_BINDING`. Color is linear, as
+    /// the input's; alpha is 1.
     pub output: &'a Texture,
-    /// Counters, if the caller wants to know what became of the pixels: at least [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages
-    /// `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read them back). [`FrameStats::from_counters`](crate::FrameStats::from_counters)
-    /// reads the bytes. `None`: nothing is counted, which costs nothing.
+    /// Buffer for pixel counters, which [`FrameStats::from_counters`](crate::FrameStats::from_counters) reads: at least
+    /// [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back). `None`: nothing is
+    /// counted, at no cost.
     pub counters: Option<&'a Buffer>,
-    /// Timestamps of the pass, if the caller wants to time it. Needs `Features::TIMESTAMP_QUERY`.
+    /// Timestamp queries around the passes. Needs `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,
 }
 
 impl<'a> Target<'a> {
-    /// Without counters and timestamps.
+    /// An output texture without counters and timestamps.
     pub fn new(output: &'a Texture) -> Self {
         Self { output, counters: None, timestamps: None }
     }
@@ -44,19 +48,28 @@ impl<'a> From<&'a Texture> for Target<'a> {
     }
 }
 
-/// Two queries of a set of the caller's that the device writes its clock to.
+/// Timestamp queries around the passes of a frame.
+///
+/// ```
+/// # fn example<'a>(output: &'a wgpu::Texture, queries: &'a wgpu::QuerySet) {
+/// use afterimage::gpu::{Target, Timestamps};
+///
+/// let target = Target { timestamps: Some(Timestamps { queries, begin: 0, end: 1 }), ..Target::new(output) };
+/// # let _ = target;
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Timestamps<'a> {
-    /// A set of `QueryType::Timestamp`.
+    /// Query set of `QueryType::Timestamp`.
     pub queries: &'a QuerySet,
-    /// Index of the query written when the pass begins.
+    /// Index of the query written when the passes begin.
     pub begin: u32,
-    /// Index of the query written when it ends.
+    /// Index of the query written when the passes end.
     pub end: u32,
 }
 
 impl<'a> Timestamps<'a> {
-    /// As a pass descriptor takes them.
+    /// Timestamps for a pass descriptor.
     pub(crate) fn writes(self) -> wgpu::ComputePassTimestampWrites<'a> {
         wgpu::ComputePassTimestampWrites {
             query_set: self.queries,
@@ -66,20 +79,20 @@ impl<'a> Timestamps<'a> {
     }
 }
 
-/// Warnings that are known as soon as a frame is recorded. Free to ignore; those that only the pixels know are in
-/// [`FrameStats::warnings`](crate::FrameStats::warnings).
+/// Result of recording a frame: warnings about its description, which may be ignored. Warnings about pixels are in
+/// [`FrameStats::warnings`](crate::FrameStats::warnings). Example: [`Afterimage::record_view`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recorded {
     gaze: [Option<Warning>; MAX_VIEWS],
 }
 
 impl Recorded {
-    /// Warnings about the frame's description, view by view.
+    /// Warnings about the gaze, view by view.
     pub fn warnings(&self) -> impl Iterator<Item = Warning> + use<> {
         self.gaze.into_iter().flatten()
     }
 
-    /// Notes the gaze of view `view`; `held` is the position from before.
+    /// Notes a warning about the gaze of view `view`, if any. `held`: last known position.
     pub(super) fn note_gaze(&mut self, view: usize, frame: &ViewFrame, held: Option<[f32; 2]>) {
         let size = frame.geometry.size_px().map(|s| s as f32);
         self.gaze[view] = match frame.gaze {

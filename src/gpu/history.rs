@@ -1,4 +1,5 @@
-//! The state between frames: two sets of textures, one the past, one to be written.
+//! State between frames: two sets of textures, the previous frame's to read and the current one's to write, which swap after each
+//! frame.
 
 use super::mip_chain::{self, CandidatePass, Candidates, MipChainPass, MipLevel};
 use crate::frame::ContextDesc;
@@ -9,19 +10,19 @@ use wgpu::{
     TextureViewDescriptor, TextureViewDimension,
 };
 
-/// One frame's textures.
+/// Textures of one frame.
 #[derive(Debug)]
 pub(super) struct Planes {
     pub textures: Vec<Texture>,
-    /// To read: all levels.
+    /// Views of all levels, to read.
     pub views: Vec<TextureView>,
-    /// To write: the first level.
+    /// Views of the first level, to write.
     pub targets: Vec<TextureView>,
     /// Dispatches that fill the other levels.
     pub mip_levels: Vec<MipLevel>,
 }
 
-/// Both frames' textures, and what else is remembered.
+/// Textures of the previous and the current frame, and held gaze positions.
 #[derive(Debug)]
 pub(super) struct History {
     layout: HistoryLayout,
@@ -33,7 +34,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// `mip_chain` fills coarser levels of surfaces and `candidates` those of candidates, where the layout has them.
+    /// Empty history. `mip_chain` and `candidates` fill the mip chains of surfaces and of candidates, if the layout has them.
     pub fn new(
         device: &Device,
         desc: &ContextDesc,
@@ -70,7 +71,7 @@ impl History {
         Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, held_gaze }
     }
 
-    /// Where the coarser levels of noisy candidates are.
+    /// Mip chain of noisy candidates.
     pub fn candidates(&self) -> Option<&Candidates> {
         self.candidates.as_ref()
     }
@@ -79,22 +80,23 @@ impl History {
         self.layout
     }
 
-    /// Forgets everything: the next frame starts afresh.
+    /// Discards history and held gaze positions: the next frame starts without history.
     pub fn forget(&mut self) {
         self.filled = false;
         self.held_gaze.fill(None);
     }
 
+    /// Whether a frame was recorded since the last reset.
     pub fn is_filled(&self) -> bool {
         self.filled
     }
 
-    /// The past to read and the set to write.
+    /// The previous frame's textures to read, and the current one's to write.
     pub fn split(&self) -> (&Planes, &Planes) {
         (&self.sets[self.past], &self.sets[1 - self.past])
     }
 
-    /// Makes what was written the past.
+    /// Makes the written frame the previous one.
     pub fn swap(&mut self) {
         self.past = 1 - self.past;
         self.filled = true;
@@ -114,9 +116,9 @@ fn bytes(texture: &Texture) -> u64 {
     texel * all_levels * u64::from(texture.depth_or_array_layers())
 }
 
-/// Room for levels 1 to `count` of a chain.
+/// Texture for levels 1 to `count` of a mip chain.
 pub(super) fn mip_chain_texture(device: &Device, desc: &ContextDesc, count: u32) -> Texture {
-    // A texture's levels halve and round down, the chain's round up: padded, they agree.
+    // Mip sizes of a texture round down, levels of the mip chain round up. With padding they agree.
     let multiple = 1 << (count - 1);
     let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
     texture(device, desc, mip_chain::FORMAT, size, count)
@@ -138,12 +140,12 @@ fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u3
     })
 }
 
-/// All layers of a texture's first level as an array, mono frames too: shaders know only arrays.
+/// View of all layers of a texture's first level as a 2D array. Textures with one layer, too, because the shaders bind arrays.
 pub fn array_view(texture: &Texture) -> TextureView {
     levels_view(texture, 0, Some(1))
 }
 
-/// The same of `count` levels from `first` on, or of all that follow.
+/// View of all layers as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first` on.
 pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };

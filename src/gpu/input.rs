@@ -1,4 +1,4 @@
-//! Checks of a frame, before anything is recorded.
+//! Validation of a frame before anything is recorded.
 
 use super::{Frame, Target};
 use crate::error::FrameError;
@@ -6,7 +6,7 @@ use crate::frame::ContextDesc;
 use crate::stats::COUNTERS_BYTES;
 use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
-/// Checks a frame and its target against what the context was made for.
+/// Checks a frame and its target against the context's description.
 pub(super) fn check(
     desc: &ContextDesc,
     output_format: TextureFormat,
@@ -39,12 +39,12 @@ pub(super) fn check(
             "output",
             target.output,
             "not the context's".into(),
-            "the output format that the context was made for",
+            "the output format given to Afterimage::new; or create a context for this one",
         ))
     }
 }
 
-/// Size, layers, samples, usage.
+/// Checks size, layers, samples and usage of a texture.
 pub(crate) fn check_texture(
     desc: &ContextDesc,
     input: &'static str,
@@ -61,12 +61,17 @@ pub(crate) fn check_texture(
             input,
             texture,
             format!("with {layers} layers"),
-            "a 2D texture with one array layer a view",
+            "a 2D texture with one array layer for each view of the context",
         ));
     }
     if texture.sample_count() != 1 {
         let samples = texture.sample_count();
-        return Err(refuse(input, texture, format!("with {samples} samples"), "one sample a pixel; resolve it first"));
+        return Err(refuse(
+            input,
+            texture,
+            format!("with {samples} samples"),
+            "one sample per pixel; resolve it first",
+        ));
     }
     if !texture.usage().contains(usage) {
         let expected = if usage == TextureUsages::STORAGE_BINDING {
@@ -74,16 +79,16 @@ pub(crate) fn check_texture(
         } else {
             "the usage TEXTURE_BINDING"
         };
-        return Err(refuse(input, texture, "without the usage it needs".into(), expected));
+        return Err(refuse(input, texture, "without a required usage".into(), expected));
     }
     Ok(())
 }
 
-/// Room, and what clearing and adding need.
+/// Checks size and usages of the counters' buffer.
 fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
     let refuse = |problem, expected| Err(FrameError::Buffer { input: "counters", problem, expected });
     if buffer.size() < COUNTERS_BYTES {
-        return refuse(format!("of {} bytes", buffer.size()), "at least COUNTERS_BYTES");
+        return refuse(format!("of {} bytes", buffer.size()), "at least afterimage::COUNTERS_BYTES");
     }
     if !buffer.usage().contains(BufferUsages::STORAGE | BufferUsages::COPY_DST) {
         return refuse(format!("with the usages {:?}", buffer.usage()), "the usages STORAGE and COPY_DST");
@@ -91,7 +96,7 @@ fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
     Ok(())
 }
 
-/// Float or depth, with enough channels.
+/// Checks that a texture can be read as floats or depth, with at least `channels` channels.
 pub(crate) fn check_readable(input: &'static str, texture: &Texture, channels: u8) -> Result<(), FrameError> {
     let format = texture.format();
     let aspect = format.has_depth_aspect().then_some(TextureAspect::DepthOnly);
@@ -107,7 +112,7 @@ pub(crate) fn check_readable(input: &'static str, texture: &Texture, channels: u
         2 => "Rg16Float, Rg32Float or wider",
         _ => "a float or normalised format with red, green and blue, such as Rgba16Float",
     };
-    Err(refuse(input, texture, "not readable as what it is for".into(), expected))
+    Err(refuse(input, texture, "which this input cannot have".into(), expected))
 }
 
 fn refuse(input: &'static str, texture: &Texture, problem: String, expected: &'static str) -> FrameError {

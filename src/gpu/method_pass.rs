@@ -1,8 +1,8 @@
-//! The pass of a method: its bindings, and its pipelines, specialised to what a frame brings and what the settings ask for.
+//! Pass of a method: its bindings, and its pipelines, specialised to the inputs of a frame and to the settings.
 //!
-//! Bindings are first those that all methods share, in the order of `shaders/pass/inputs.wgsl`, then the history's, in the order of
-//! the method's pass. Absent inputs are switched off by `override` constants and bound to stand-ins, which no specialised shader
-//! reads.
+//! The first bindings are shared by all methods, in the order of `shaders/pass/inputs.wgsl`; the history's follow, in the order of the
+//! method's shader. Absent inputs are switched off by `override` constants and bound to placeholders, which a specialised shader does
+//! not read.
 
 use super::Frame;
 use super::buffer::filled;
@@ -19,7 +19,7 @@ use wgpu::{
     TextureFormat, TextureUsages, TextureView,
 };
 
-/// The pass, and stand-ins: 1x1 textures and a buffer.
+/// The pass, with placeholders for absent inputs: 1x1 textures and a buffer.
 #[derive(Debug)]
 pub(super) struct MethodPass {
     shader: ComputeShader,
@@ -32,7 +32,7 @@ pub(super) struct MethodPass {
 }
 
 impl MethodPass {
-    /// The pass of the text `source`, which writes `output`.
+    /// The pass of the WGSL text `source`, for outputs of format `output`.
     pub fn new(device: &Device, settings: &Settings, output: TextureFormat, source: &str) -> Self {
         let history = settings.history_layout();
         let no_counters = device.create_buffer(&wgpu::BufferDescriptor {
@@ -52,13 +52,13 @@ impl MethodPass {
         }
     }
 
-    /// The method that it was made for.
+    /// Method of the pass.
     pub fn method(&self) -> Method {
         self.method
     }
 
     /// Records the pass.
-    #[allow(clippy::too_many_arguments, reason = "each is a different thing")]
+    #[allow(clippy::too_many_arguments, reason = "a struct for one call would only move the list")]
     pub fn record(
         &self,
         device: &Device,
@@ -76,7 +76,7 @@ impl MethodPass {
         self.shader.dispatch(device, pass, &overrides, &group, blocks, frame.views.len() as u32);
     }
 
-    /// The bindings of one frame. Uniforms get a buffer of their own, so that several frames in one submission see theirs.
+    /// Bind group of one frame. Each frame has its own buffer of uniforms, so that one submission can contain several frames.
     fn group(
         &self,
         device: &Device,
@@ -100,7 +100,7 @@ impl MethodPass {
         let candidates = history.candidates().map_or(&self.no_float, |c| &c.view);
         let past_or = |i: usize, absent| past.get(i).unwrap_or(absent);
         let next_or = |i: usize| next.get(i).unwrap_or(&self.no_out[i]);
-        let kept = match self.history {
+        let history_views = match self.history {
             HistoryLayout::Nothing => vec![],
             HistoryLayout::Reservoirs { .. } => vec![
                 past_or(0, &self.no_word),
@@ -129,12 +129,12 @@ impl MethodPass {
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
-            .chain(kept.into_iter().map(BindingResource::TextureView));
+            .chain(history_views.into_iter().map(BindingResource::TextureView));
         self.shader.group(device, resources)
     }
 }
 
-/// Values of a pass's overrides: first those of `shaders/pass/inputs.wgsl`, then the method's own.
+/// Override values of a pass: those of `shaders/pass/inputs.wgsl`, then the method's own.
 fn overrides(settings: &Settings, frame: &Frame<'_>, count: bool, view: Option<DebugView>) -> Overrides {
     let flag = u32::from;
     let mut list = vec![
@@ -151,7 +151,7 @@ fn overrides(settings: &Settings, frame: &Frame<'_>, count: bool, view: Option<D
     list
 }
 
-/// A shader that writes `output`: the texel format of a storage texture is part of the text in WGSL.
+/// Shader text for outputs of format `output`: in WGSL the texel format of a storage texture is part of its type.
 fn writing(source: &str, output: TextureFormat) -> String {
     let texel = super::output::texel(output).expect("the output format was checked");
     source.replace(
@@ -160,7 +160,7 @@ fn writing(source: &str, output: TextureFormat) -> String {
     )
 }
 
-/// Formats of what a pass writes for the next frame.
+/// Formats of the history textures that a pass writes.
 fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
         HistoryLayout::Surfaces { .. } => [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint],

@@ -1,4 +1,4 @@
-//! Mip chains: coarser levels of stored surfaces or of noisy candidates, each made from the next finer one.
+//! Mip chains of stored surfaces and of noisy candidates.
 
 use super::Frame;
 use super::buffer::filled;
@@ -12,7 +12,7 @@ use wgpu::{BindGroup, BindingResource, BufferUsages, ComputePass, Device, Textur
 /// Format of the levels.
 pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// What the levels are of.
+/// Content of a mip chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MipChainKind {
     /// Stored surfaces.
@@ -21,14 +21,14 @@ pub(super) enum MipChainKind {
     Candidates,
 }
 
-/// The pass that makes a level.
+/// Pass that fills a level of a mip chain from the next finer one.
 #[derive(Debug)]
 pub(super) struct MipChainPass {
     shader: ComputeShader,
     kind: MipChainKind,
 }
 
-/// One level to be made.
+/// Dispatch that fills one level.
 #[derive(Debug)]
 pub(super) struct MipLevel {
     group: BindGroup,
@@ -46,7 +46,7 @@ impl MipChainPass {
     pub fn levels(&self, device: &Device, texture: &Texture, size_px: [u32; 2]) -> Vec<MipLevel> {
         (1..texture.mip_level_count())
             .map(|coarse| {
-                // Level 0 of the texture is level 1 of the chain.
+                // Mip 0 of the texture is level 1 of the mip chain.
                 let fine_size = size_px.map(|s| level_len(s, coarse));
                 let [width, height] = size_px.map(|s| level_len(s, coarse + 1));
                 let bytes = bytemuck::bytes_of(&fine_size);
@@ -66,7 +66,7 @@ impl MipChainPass {
             .collect()
     }
 
-    /// Records them.
+    /// Records the dispatches of `levels`.
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, levels: &[MipLevel]) {
         let is_candidates = u32::from(self.kind == MipChainKind::Candidates);
         pass.set_pipeline(&self.shader.pipeline(device, &[("CANDIDATES", is_candidates)]));
@@ -78,18 +78,18 @@ impl MipChainPass {
     }
 }
 
-/// The passes that make the mip chain of a frame's noisy candidates.
+/// Passes that fill the mip chain of a frame's noisy candidates.
 #[derive(Debug)]
 pub(super) struct CandidatePass {
     first: ComputeShader,
     rest: MipChainPass,
 }
 
-/// The mip chain of a frame's noisy candidates.
+/// Mip chain of a frame's noisy candidates.
 #[derive(Debug)]
 pub(super) struct Candidates {
     pub texture: Texture,
-    /// To read: all levels.
+    /// View of all levels, to read.
     pub view: TextureView,
     target: TextureView,
     levels: Vec<MipLevel>,
@@ -105,7 +105,7 @@ impl CandidatePass {
         }
     }
 
-    /// Room for `count` levels of each view.
+    /// An empty mip chain of `count` levels for each view.
     pub fn levels(&self, device: &Device, desc: &ContextDesc, count: u32) -> Candidates {
         let texture = mip_chain_texture(device, desc, count);
         Candidates {
@@ -116,7 +116,7 @@ impl CandidatePass {
         }
     }
 
-    /// Records all levels of a frame; nothing without noise.
+    /// Records all levels of a frame's candidates; nothing for a frame without noise.
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, frame: &Frame<'_>, candidates: &Candidates) {
         let Some(noise) = frame.noise else { return };
         let size_px = [frame.color.width(), frame.color.height()];

@@ -1,10 +1,13 @@
-//! The wgpu executor: the post-process as a compute pass, recorded into the caller's command encoder.
+//! GPU executor: the post-process as compute passes in the caller's wgpu command encoder.
 //!
-//! The caller owns device, queue, encoder, every input and output texture, and submission; [`Afterimage`] owns its history and
+//! The caller owns device, queue, encoder, submission, and every input and output texture. [`Afterimage`] owns its history and
 //! pipelines. [`Afterimage::record`] never submits, polls, maps or waits.
+//!
+//! No device features are needed, and no limits beyond WebGPU's defaults except for frames larger than 8192 pixels
+//! ([`Afterimage::required_limits`]). Any number of contexts can share a device.
 
 mod buffer;
-// For this workspace's other crates: the one builder of compute pipelines.
+// For this workspace's other crates.
 #[doc(hidden)]
 pub mod compute;
 mod frame;
@@ -39,7 +42,12 @@ use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
 use uniforms::FrameUniforms;
 use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat};
 
-/// The post-process on a GPU. The example on the [first page](crate) shows a frame.
+/// The post-process on a GPU: a context with its settings, history and pipelines.
+///
+/// The [crate's first page](crate) has an example. `examples/02_engine.rs` is an engine's loop with resize, cuts, pauses, lost gaze and
+/// changes of exposure; `examples/03_stereo.rs` has two views.
+///
+/// Several frames can be recorded into one encoder; they are processed in that order.
 #[derive(Debug)]
 pub struct Afterimage {
     desc: ContextDesc,
@@ -80,26 +88,26 @@ impl Passes {
     }
 }
 
-/// A frame before any pixel is looked at.
+/// Uniforms of a frame, and what else follows from its description.
 struct Prepared {
     uniforms: FrameUniforms,
-    /// Positions that the eyes are taken to look at; held from then on.
+    /// Resolved gaze positions, which are held for frames in which the gaze is lost.
     gaze_px: Vec<[f32; 2]>,
     recorded: Recorded,
 }
 
 impl Afterimage {
-    /// A context with an empty history, for outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Compiles the
-    /// shader; pipelines are made at the first frame that needs them.
+    /// A context without history, for outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules;
+    /// pipelines are compiled at the first frame that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if a setting or fact is out of range, or the device cannot do it.
+    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
         let shader = desc.settings.method.entry().shader;
         Self::with_shader(device, desc, output_format, &SHADERS.compose(shader).source)
     }
 
-    /// With another text of the method's pass: for tests, which plant errors in it, and for benches.
+    /// A context with another shader for the method's pass: for tests that plant errors, and for benchmarks.
     #[doc(hidden)]
     pub fn with_shader(
         device: &Device,
@@ -112,22 +120,32 @@ impl Afterimage {
         Ok(Self { desc: *desc, output_format, history: passes.history(device, desc), passes })
     }
 
-    /// Limits that a device must have for a context: the defaults of WebGPU, or more for large frames. No features are needed.
+    /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
+    ///
+    /// ```
+    /// use afterimage::ContextDesc;
+    /// use afterimage::gpu::Afterimage;
+    ///
+    /// let desc = ContextDesc::new([1920, 1080]);
+    /// let device = wgpu::DeviceDescriptor { required_limits: Afterimage::required_limits(&desc), ..Default::default() };
+    /// assert_eq!(device.required_limits, wgpu::Limits::default());
+    /// ```
     pub fn required_limits(desc: &ContextDesc) -> Limits {
         output::required_limits(desc)
     }
 
-    /// The description, with the settings in force.
+    /// Description of the context, with its current size and settings.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
     }
 
-    /// Changes the tunables from the next frame on. History survives, unless the method, what it keeps or the number of its mip levels
-    /// changes: [`noisy`](Settings::noisy), [`sampler`](Settings::sampler), and of smr `rate_far` and `filter` of the
-    /// [`foveation`](Settings::foveation).
+    /// Changes the settings from the next frame on.
+    ///
+    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
+    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting is out of range; then the old ones stay.
+    /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         let same_method = settings.method == self.passes.method.method();
@@ -143,10 +161,10 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Changes the size of the views. History starts afresh, even if the size is the same.
+    /// Changes the size of the views, and discards history even if the size is the same.
     ///
     /// # Errors
-    /// [`FrameError::Extent`]; then nothing changes.
+    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
@@ -154,30 +172,32 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Empties the history: the next frame starts afresh.
+    /// Discards history and held gaze positions: the next frame is processed like the first one. [`Reset::All`](crate::Reset::All) does
+    /// the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.history.forget();
     }
 
-    /// Bytes of textures held between frames.
+    /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
         self.history.memory_bytes()
     }
 
-    /// History of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`. Of wrs the packed reservoirs
-    /// ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys (`R32Float`). Of taa and
-    /// smr the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`), and of smr their mip chain (`Rgba16Float`), and where
-    /// candidates are noisy the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
+    /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
+    ///
+    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the
+    /// keys (`R32Float`). For taa and smr the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip
+    /// chain (`Rgba16Float`), and for noisy candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
     #[doc(hidden)]
     pub fn history_textures(&self) -> &[Texture] {
         &self.history.split().0.textures
     }
 
-    /// Records one frame into `encoder`, which writes `target`: an output texture, or more ([`Target`]). Recoverable problems are
-    /// returned as warnings, which may be ignored.
+    /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output texture, or a
+    /// [`Target`]) and the history. Recoverable problems are returned as warnings, which may be ignored.
     ///
     /// # Errors
-    /// [`FrameError`] if a texture, buffer or number does not fit the context; then nothing was recorded and no state has moved.
+    /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded and history is unchanged.
     pub fn record<'a>(
         &mut self,
         device: &Device,
@@ -198,8 +218,24 @@ impl Afterimage {
         Ok(prepared.recorded)
     }
 
-    /// Records a picture of what [`record`](Self::record) of the same frame would decide, in linear light, into the target's output.
-    /// Counters, if given, count what `record` would. No state moves: call it before `record`, with another output.
+    /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear color, into the
+    /// target's output. Counters, if any, are those of `record`. History is unchanged: call it before `record`, with another output.
+    ///
+    /// ```no_run
+    /// # fn example(
+    /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
+    /// #     frame: &afterimage::gpu::Frame<'_>, debug_output: &wgpu::Texture, output: &wgpu::Texture,
+    /// # ) -> Result<(), afterimage::FrameError> {
+    /// use afterimage::DebugView;
+    ///
+    /// post.record_view(device, encoder, frame, debug_output, DebugView::Rejection)?;
+    /// let recorded = post.record(device, encoder, frame, output)?;
+    /// for warning in recorded.warnings() {
+    ///     eprintln!("{warning}");
+    /// }
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// As for `record`.

@@ -1,11 +1,11 @@
-//! What a device must be able to do for a context, and the formats that the passes write.
+//! Requirements of a context: output formats and device limits.
 
 use super::MAX_VIEWS;
 use crate::error::{CreateError, SettingsError};
 use crate::frame::ContextDesc;
 use wgpu::{Limits, TextureFormat};
 
-/// Name in WGSL of an output format.
+/// WGSL name of an output format.
 pub(crate) fn texel(format: TextureFormat) -> Result<&'static str, CreateError> {
     match format {
         TextureFormat::Rgba16Float => Ok("rgba16float"),
@@ -15,7 +15,7 @@ pub(crate) fn texel(format: TextureFormat) -> Result<&'static str, CreateError> 
     }
 }
 
-/// Checks a description, the device's limits included.
+/// Checks a description, an output format and the device's limits.
 pub(crate) fn validate(desc: &ContextDesc, output: TextureFormat, limits: &Limits) -> Result<(), CreateError> {
     desc.validate()?;
     texel(output)?;

@@ -1,4 +1,4 @@
-//! Uniforms of a frame, as shaders read them. Order, offsets and sizes are checked against the WGSL by a test.
+//! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
 use super::Frame;
 use crate::frame::{ContextDesc, Reset};
@@ -6,7 +6,7 @@ use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
 pub use crate::uniforms::ViewUniforms;
 use bytemuck::{Pod, Zeroable};
 
-/// Most views that one frame may have.
+/// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
 pub const MAX_VIEWS: usize = 4;
 
 /// `FrameUniforms` in `shaders/pass/inputs.wgsl`.
@@ -15,19 +15,19 @@ pub const MAX_VIEWS: usize = 4;
 pub struct FrameUniforms {
     /// Width and height of a view in pixels.
     pub size: [u32; 2],
-    /// 1: there is no history.
+    /// 1 if there is no history, otherwise 0.
     pub reset: u32,
     /// Low word of the frame counter.
     pub frame_low: u32,
     /// Radius of the fovea in degrees.
     pub fovea_radius_deg: f32,
-    /// Scale of candidate weights outside it.
+    /// Scale of candidate weights outside the fovea.
     pub inv_density_at_fovea: f32,
     /// Factor of the exponential bias.
     pub exponential_survival: f32,
-    /// Color difference that costs nothing.
+    /// Color difference up to which the gate value is 1, in Delta E.
     pub gate_offset: f32,
-    /// One over the difference at which the gate is shut.
+    /// Inverse of the difference, above the offset, at which the gate value is 0.
     pub inv_gate_divisor: f32,
     /// Relative tolerance of the depth test.
     pub depth_relative: f32,
@@ -35,7 +35,7 @@ pub struct FrameUniforms {
     pub depth_slope_px: f32,
     /// `DisparityMap::a`.
     pub disparity_a: f32,
-    /// Factors that bring motion to the internal form.
+    /// Factors that convert motion to internal conventions.
     pub motion_scale: [f32; 2],
     /// `DisparityMap::b`.
     pub disparity_b: f32,
@@ -47,9 +47,9 @@ pub struct FrameUniforms {
     pub mid_radius_deg: f32,
     /// Width of the blend outside each radius in degrees.
     pub blend_deg: f32,
-    /// Level of detail in the middle region; for a blur its largest standard deviation there, in pixels.
+    /// Level of detail in the middle region; for a Gaussian blur its standard deviation at the region's edge, in pixels.
     pub coarse_mid: f32,
-    /// Level of detail, or standard deviation, beyond the middle region.
+    /// Level of detail in the periphery; for a Gaussian blur its largest standard deviation, in pixels.
     pub coarse_far: f32,
     /// `SmrParams::accumulate`.
     pub smr_accumulate: f32,
@@ -62,7 +62,7 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame whose eyes look at `gaze_px`. `has_history`: a frame was recorded before.
+    /// Uniforms of a frame with gaze positions `gaze_px`. `has_history`: whether a frame was recorded before.
     pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, gaze_px: &[[f32; 2]], has_history: bool) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));

@@ -1,4 +1,4 @@
-//! Where the eye is sharp: eccentricity and the candidate weight from retinal ganglion cell density.
+//! Visual acuity: eccentricity, and the candidate weight from the density of retinal ganglion cells.
 
 use super::approx;
 use glam::Vec3;
@@ -16,14 +16,14 @@ const R_M_DEG: f32 = 41.03;
 
 /// True visual angle in degrees, in \[0, 180\], between two rays of any non-zero length.
 ///
-/// atan2 of cross and dot: `acos(dot)` reads 0 below 0.006 degrees in f32. Error below 1e-6 rad.
+/// atan2 of cross and dot product: `acos(dot)` is 0 below 0.006 degrees in f32. Error below 1e-6 rad.
 #[inline]
 pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
     let cx = ray.y * gaze.z - ray.z * gaze.y;
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let cross = (cx * cx + cy * cy + cz * cz).sqrt();
-    // The term that may be constant first: compilers may move a constant that comes last.
+    // z first: the product of z is often a constant, and compilers may move a constant that comes last.
     let dot = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
     approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)
 }
@@ -33,7 +33,7 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
 pub fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg / R_2_DEG;
     let far = approx::exp(-e_deg / R_E_DEG);
-    // As a quotient: compilers reorder a sum of two products with constants.
+    // A quotient, because compilers reorder a sum of two products with constants.
     (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg / R_M_DEG)
 }
 

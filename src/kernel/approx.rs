@@ -1,7 +1,8 @@
-//! Elementary functions from exact operations only, so that CPU and GPU agree bit for bit. Accuracies are tested.
+//! Elementary functions built from exactly rounded operations, so that CPU and GPU agree bit for bit. Tests check the stated
+//! accuracies.
 //!
 //! Shader compilers may still reorder sums: Mesa turns `(product + x) + constant` into `(x + constant) + product`. Horner's form
-//! leaves it nothing to reorder.
+//! has no sum that it can reorder.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -40,7 +41,7 @@ pub fn atan2_upper(y: f32, x: f32) -> f32 {
 pub fn exp(x: f32) -> f32 {
     let x = x.clamp(-87.0, 88.0);
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
-    // ln 2 in two parts, so that the product with n loses nothing.
+    // ln 2 in two parts, so that the product with n is exact.
     let r = (x - n * 0.693_359_4) - n * -2.121_944_4e-4;
     let p =
         ((((1.987_569_2e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r + 1.666_666_5e-1) * r + 0.5;
@@ -94,7 +95,7 @@ pub fn ln(x: f32) -> f32 {
     m + tail + e * 0.693_359_4
 }
 
-/// (sin, cos) of `x` turns, that is of 2 pi x, for |x| up to 2^20. Absolute error below 2e-7; exact at the quarters.
+/// (sin, cos) of `x` turns, that is of 2 pi x, for |x| up to 2^20. Absolute error below 2e-7; exact at quarter turns.
 ///
 /// Cephes' polynomials after an exact reduction to an eighth of a turn; 2 pi is in the coefficients.
 #[inline]

@@ -8,9 +8,9 @@ const LAB_EPSILON: f32 = 216.0 / 24389.0;
 /// Slope of that line times 116 (CIE 15: (29/3)^3).
 const LAB_KAPPA: f32 = 24389.0 / 27.0;
 
-/// Cube root, odd in `x`. At most 2 ulp off for |x| in \[1e-30, 1e30\]; exact at 0 and +-1.
+/// Cube root; negative for negative `x`. Error at most 2 ulp for |x| in \[1e-30, 1e30\]; exact at 0 and +-1.
 ///
-/// A first guess from the bits (a third of the exponent), then two Halley steps in correction form.
+/// Initial guess from the bits (a third of the exponent), then two Halley steps in correction form.
 #[inline]
 pub fn cbrt(x: f32) -> f32 {
     let a = x.abs();
@@ -39,7 +39,8 @@ fn fifth_root(x: f32) -> f32 {
     r
 }
 
-/// sRGB encoding of one linear channel (IEC 61966-2-1). Error below 6e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
+/// sRGB encoding of one linear channel (IEC 61966-2-1). Relative error below 6e-7 in \[0, 1\]. Values above 1 follow the same curve;
+/// negative ones its mirror image.
 ///
 /// `x^(1/2.4) = c * sqrt(sqrt(c))` with `c = cbrt(x)`.
 #[inline]
@@ -54,7 +55,8 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear < 0.0 { -encoded } else { encoded }
 }
 
-/// Linear value of one sRGB-encoded channel. Error below 7e-7 of the result in \[0, 1\], goes on above 1, odd below 0.
+/// Linear value of one sRGB-encoded channel. Relative error below 7e-7 in \[0, 1\]. Values above 1 follow the same curve; negative
+/// ones its mirror image.
 ///
 /// `x^2.4 = x^2 * fifth_root(x)^2`.
 #[inline]
@@ -70,7 +72,7 @@ pub fn srgb_decode(encoded: f32) -> f32 {
     if encoded < 0.0 { -linear } else { linear }
 }
 
-/// Rec. 709 luma or luminance weights of (R, G, B), for encoded or linear values.
+/// Rec. 709 weighted sum of (R, G, B): luminance of a linear color, luma of an encoded one.
 #[inline]
 pub fn luma(c: Vec3) -> f32 {
     0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z
@@ -81,12 +83,12 @@ fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON { cbrt(t) } else { (LAB_KAPPA * t + 16.0) / 116.0 }
 }
 
-/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* passes 100 for
-/// colors above white and falls below 0 for negative ones; always finite for finite input.
+/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* exceeds 100 for
+/// colors above white and is negative for negative ones; always finite for finite input.
 #[inline]
 pub fn lab(linear: Vec3) -> Vec3 {
     let c = linear.clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF));
-    // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each over the white point's
+    // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each divided by the white point's
     // X, Y or Z, so that it sums to 1.
     let fx = lab_f(0.433_887_35 * c.x + 0.376_224 * c.y + 0.189_888_65 * c.z);
     let fy = lab_f(0.212_639 * c.x + 0.715_168_7 * c.y + 0.072_192_3 * c.z);
@@ -95,14 +97,14 @@ pub fn lab(linear: Vec3) -> Vec3 {
 }
 
 /// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colors; `reference` sets the weights, so
-/// the function is not symmetric. At least 0, exactly 0 for equal colors, and beyond 100 for strong ones.
+/// the function is not symmetric. At least 0, exactly 0 for equal colors; may exceed 100.
 #[inline]
 pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
     let d = reference - sample;
     let c1 = (reference.y * reference.y + reference.z * reference.z).sqrt();
     let c2 = (sample.y * sample.y + sample.z * sample.z).sqrt();
     let dc = c1 - c2;
-    // Negative in half of all same-hue pairs, by rounding.
+    // Rounding makes this negative for half of all pairs of the same hue.
     let dh2 = (d.y * d.y + d.z * d.z - dc * dc).max(0.0);
     let sc = 1.0 + 0.045 * c1;
     let sh = 1.0 + 0.015 * c1;

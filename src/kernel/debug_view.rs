@@ -1,49 +1,74 @@
-//! Decisions at a pixel, drawn as colors. Ramps and codes are defined sRGB-encoded, as they look on screen, and returned as linear light.
+//! Debug views: the decision at a pixel as a color. Ramps and codes are defined sRGB-encoded, as they look on screen; views are
+//! returned as linear light.
 
 use super::color::srgb_decode;
 use super::reproject::Verdict;
 use super::sanitize::is_finite;
 use glam::Vec3;
 
-/// A picture of the decisions of a frame: [`record_view`](crate::gpu::Afterimage::record_view) draws it.
+/// Debug view: an image of one quantity of the decision at each pixel. `gpu::Afterimage::record_view` draws it and has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 #[non_exhaustive]
 pub enum DebugView {
-    /// Quality of what is stored, by the method's measure: black 0, white 1. Of wrs the weight sum over 16; of smr the sharpness, where
-    /// full rate is 1 and each level of detail halves it. taa has none: black.
+    /// Quality of the stored sample: black 0, white 1. For wrs the weight sum divided by 16; for smr the sharpness, which is 1 at full
+    /// rate and halves with each level of detail. Black for the other methods.
     Quality = 1,
-    /// Frames since the shown sample was shaded: black 0, white 255 or more, by square root. Only wrs stores it; black otherwise.
+    /// Frames since the shown sample was shaded: black 0, white 255 or more, on a square-root scale. wrs only; black for the other
+    /// methods.
     Age = 2,
-    /// Share of the history's weight that survived; of smr and taa history's share in what is shown: black none, white all.
+    /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr and taa its share in
+    /// the output color.
     Survival = 3,
     /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow empty, red
     /// disoccluded, cyan distrusted.
     Rejection = 4,
-    /// Gate value; of smr how well history explains the candidate: white open, black shut. taa has none: white.
+    /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well history explains the
+    /// candidate. White for the other methods.
     Gate = 5,
-    /// Motion: red right, cyan left, bright fast; grey none, 16 pixels are full color, green NaN or infinite.
+    /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels; grey is no
+    /// motion, green NaN or infinite.
     Motion = 6,
 }
 
-/// Decision at a pixel, from which debug views are drawn. [`process_traced`](crate::cpu::CpuAfterimage::process_traced) writes it.
+/// Decision at a pixel, from which debug views are drawn. `cpu::CpuAfterimage::process_traced` writes it:
+///
+/// ```
+/// # #[cfg(feature = "cpu")]
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+/// use afterimage::{ContextDesc, Gaze, Image, Verdict, ViewFrame, ViewGeometry};
+///
+/// let size = [8, 8];
+/// let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
+/// let color = Image::filled(size, [0.5; 3]);
+/// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::Lost)];
+/// let mut output = [Image::filled(size, [0.0; 3])];
+/// let mut traces = [Image::filled(size, PixelTrace::default())];
+/// post.process_traced(&Frame::new(&[&color], &views, 0), &mut output, &mut traces)?;
+/// assert_eq!(traces[0].at(0, 0).verdict, Verdict::Reset);
+/// # Ok(())
+/// # }
+/// # #[cfg(not(feature = "cpu"))]
+/// # fn main() {}
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
     /// Verdict on the history.
     pub verdict: Verdict,
     /// Weight of the candidate, in \[0, 1\].
     pub weight: f32,
-    /// Quality of what is stored, by the method's measure ([`DebugView::Quality`]); 1 is good.
+    /// Quality of the stored sample ([`DebugView::Quality`]); 1 is full quality.
     pub quality: f32,
-    /// Frames since the shown sample was shaded, up to 255.
+    /// Frames since the shown sample was shaded, up to 255 ([`DebugView::Age`]).
     pub age: u32,
-    /// Share of the history's weight that survived, in \[0, 1\]; 0 without history.
+    /// History's share, in \[0, 1\] ([`DebugView::Survival`]); 0 without history.
     pub survival: f32,
-    /// Gate value in \[0, 1\]; 1: candidate and history look alike.
+    /// Agreement of candidate and history, in \[0, 1\] ([`DebugView::Gate`]); 1 if they look alike.
     pub gate: f32,
     /// Whether the candidate replaced the history.
     pub take: bool,
-    /// Motion as it was read: previous minus current, in pixels, y down.
+    /// Motion vector: previous minus current position in pixels, y down.
     pub motion: [f32; 2],
 }
 
@@ -63,10 +88,10 @@ impl Default for PixelTrace {
     }
 }
 
-/// Color of NaN and infinity, which no ramp holds.
-const NO_NUMBER: Vec3 = Vec3::new(0.0, 1.0, 0.0);
+/// Color of NaN and infinity: pure green, which no ramp contains.
+const NONFINITE: Vec3 = Vec3::new(0.0, 1.0, 0.0);
 
-/// Stops of a ramp from black over violet and orange to white, of steadily rising lightness.
+/// Stops of the heat ramp: black, violet, orange, white, with steadily rising lightness.
 const STOPS: [Vec3; 6] = [
     Vec3::new(0.0, 0.0, 0.0),
     Vec3::new(0.23, 0.04, 0.42),
@@ -76,12 +101,11 @@ const STOPS: [Vec3; 6] = [
     Vec3::new(1.0, 1.0, 0.95),
 ];
 
-/// Color of a value in \[0, 1\], sRGB-encoded: from black over violet and orange to white. Pure green for what is NaN or
-/// infinite.
+/// Heat-ramp color of a value in \[0, 1\], sRGB-encoded: black, violet, orange, white. Pure green for NaN and infinity.
 #[inline]
 pub fn heat(value: f32) -> Vec3 {
     if !is_finite(value) {
-        return NO_NUMBER;
+        return NONFINITE;
     }
     let position = 5.0 * value.clamp(0.0, 1.0);
     let i = (position as usize).min(4);
@@ -103,11 +127,12 @@ pub fn verdict_color(verdict: Verdict) -> Vec3 {
     }
 }
 
-/// Color of a motion vector in pixels, sRGB-encoded; as the surface moves, current minus previous.
+/// Color of a motion vector (previous minus current position, in pixels), sRGB-encoded. The hue shows the direction in which the
+/// surface moves.
 #[inline]
 pub fn motion_color(motion: [f32; 2]) -> Vec3 {
     if !(is_finite(motion[0]) && is_finite(motion[1])) {
-        return NO_NUMBER;
+        return NONFINITE;
     }
     let x = (-motion[0] / 16.0).clamp(-1.0, 1.0);
     let y = (-motion[1] / 16.0).clamp(-1.0, 1.0);
@@ -116,7 +141,7 @@ pub fn motion_color(motion: [f32; 2]) -> Vec3 {
     color.clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// Linear color of a pixel in a view.
+/// Linear color of a pixel in a debug view.
 #[inline]
 pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {

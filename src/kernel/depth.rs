@@ -1,7 +1,8 @@
-//! Is this the same surface? Depth as disparity 1/z: affine in every perspective depth buffer, linear over planes, 0 for the
-//! sky.
+//! Depth test: whether stored history belongs to the surface of a pixel.
+//!
+//! Depth is compared as disparity 1/z: affine in every perspective depth buffer, linear over planes, 0 for the sky.
 
-/// Turns a stored depth value into a disparity: `a * stored + b`, or its inverse.
+/// Map from a stored depth value to a disparity: `a * stored + b`, or its inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisparityMap {
     /// Factor of the stored value.
@@ -10,15 +11,15 @@ pub struct DisparityMap {
     pub b: f32,
     /// The stored value, after factor and offset, is a distance.
     pub invert: bool,
-    /// Clamp the stored value to \[0, 1\] first (depth buffers; not distances).
+    /// Clamp the stored value to \[0, 1\] first: for depth buffers, not for distances.
     pub clamp: bool,
 }
 
-/// Stands for "no usable depth": never the same surface as anything.
+/// Disparity of a pixel without usable depth: fails every depth test.
 pub const INVALID_DISPARITY: f32 = -1.0;
 
-/// Disparity of a stored depth value: >= 0, 0 where there is nothing, or [`INVALID_DISPARITY`] for NaN and for distances
-/// that are not positive.
+/// Disparity of a stored depth value, at least 0; 0 for infinite distance. [`INVALID_DISPARITY`] for NaN and for distances that are
+/// not positive.
 #[inline]
 pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     let is_nan = stored.to_bits() & 0x7fff_ffff > 0x7f80_0000;
@@ -30,7 +31,7 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     if !map.invert {
         return if v > 0.0 { v } else { 0.0 };
     }
-    // Neither 1/0 nor 1/inf is left to the device.
+    // Devices may differ on 1/0 and 1/inf.
     if v < 1e-30 {
         INVALID_DISPARITY
     } else if v > 1e30 {
@@ -40,10 +41,9 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     }
 }
 
-/// Row of the current-to-previous view transform that gives the previous distance, folded with the ray of a pixel:
-/// `z_previous = z * stretch + shift`.
-///
-/// `stretch = m20 * ray.x + m21 * ray.y + m22`, `shift = m23`.
+/// Disparity that the surface of a pixel had in the previous frame's view, from `z_previous = z * stretch + shift`; with `m` the
+/// current-to-previous view transform, `stretch = m20 * ray.x + m21 * ray.y + m22` and `shift = m23`. [`INVALID_DISPARITY`] if the
+/// point was behind the previous camera.
 #[inline]
 pub fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     if disparity < 0.0 {
@@ -67,9 +67,8 @@ pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bo
     (expected - stored).abs() <= relative * expected.max(stored) + slope
 }
 
-/// How much the surface at pixel (`x`, `y`) of an image of `size` changes its disparity from pixel to pixel, both axes together.
-/// `at` reads a disparity; its invalid ones are ignored. Planes give the same everywhere. WGSL has no readers: there it is a loop
-/// in the pass.
+/// Slope of the surface at pixel (`x`, `y`) of an image of `size`: change of disparity a pixel, summed over both axes. Constant on a
+/// plane. `at` reads a disparity; invalid ones are ignored. WGSL has no closures: there the pass has a loop instead.
 #[inline]
 pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f32 {
     let tap = |inside: bool, x: u32, y: u32| {
@@ -83,9 +82,9 @@ pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f3
     one_sided_slope(center, left, right) + one_sided_slope(center, up, down)
 }
 
-/// Change of disparity over one pixel along an axis, from both neighbours: the smaller one-sided difference, so that a
-/// silhouette on one side does not count as slope, and 0 where the pixel is higher or lower than both, as a wire is. A
-/// neighbour that is missing or invalid is ignored.
+/// Change of disparity over one pixel along an axis: the smaller of the two one-sided differences, so that a silhouette on one side
+/// does not count as slope. 0 where the pixel is nearer or farther than both neighbours, as a thin wire is. A neighbour that is
+/// missing or invalid is ignored.
 #[inline]
 pub fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = center - before;

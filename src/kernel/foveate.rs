@@ -1,15 +1,14 @@
-//! How coarse a foveated frame is where, and the arithmetic of the filters that make it look so: mip levels, Gaussian taps,
-//! blocks.
+//! Foveation: level of detail by eccentricity, and the arithmetic of the foveation filters (mip levels, Gaussian taps, blocks).
 
 use super::approx;
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
-/// Standard deviation in pixels below which a blur is none: the weight of the next pixel is e^-32, far below the last bit of
+/// Standard deviation in pixels below which nothing is blurred: the weight of the next pixel is e^-32, far below the last bit of
 /// any color.
 const SHARPEST_BLUR_PX: f32 = 0.125;
-/// Textures are filtered for the shading rate, but not quite: the sample of a block of level l sees level l - 2, as a renderer's
-/// anisotropic filter with its usual bias does. What remains is aliasing, which is the point of blocks.
+/// Mip bias of block samples: the sample of a block of level l reads level l - 2. Renderers filter textures for a finer level than the
+/// shading rate (anisotropic filtering, mip bias), so that block samples alias; the filter reproduces that.
 const SAMPLE_LEVEL_BIAS: u32 = 2;
 
 /// 0 up to `start`, 1 from `start + width` on, linear in between (a step for width 0).
@@ -38,9 +37,9 @@ pub fn region_lod(
     lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg) + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
 }
 
-/// Level of detail of a blur that is 0 up to `start_deg` and whose standard deviation grows linearly from there, to
-/// `sigma_at_end` pixels at `end_deg`, up to `largest_sigma`: `2^lod = 1 + 2 sigma`, so that block edges and blurs of one level
-/// look equally coarse. Error below 1e-6.
+/// Level of detail of a blur at eccentricity `e_deg`. Its standard deviation sigma is 0 up to `start_deg`, grows linearly to
+/// `sigma_at_end` pixels at `end_deg` and beyond, and is limited to `largest_sigma`. `2^lod = 1 + 2 sigma`, so that blocks and blurs
+/// of one level look equally coarse. Error below 1e-6.
 #[inline]
 pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest_sigma: f32) -> f32 {
     let slope = sigma_at_end / (end_deg - start_deg).max(1e-3);
@@ -54,20 +53,20 @@ pub fn blur_sigma_px(lod: f32) -> f32 {
     0.5 * (approx::exp2(lod) - 1.0)
 }
 
-/// One tap of a Gaussian whose centre has weight 1, and what the next one follows from.
+/// Tap of a Gaussian whose centre has weight 1, with the state of the recurrence that gives the next tap.
 #[derive(Clone, Copy, Debug)]
 pub struct GaussTap {
-    /// Of this tap.
+    /// Weight of this tap.
     pub weight: f32,
-    /// Of the next tap over this one.
+    /// Weight of the next tap divided by this one's.
     pub ratio: f32,
-    /// Of the next ratio over this one; constant.
+    /// Next ratio divided by this one; constant.
     pub ratio_step: f32,
 }
 
-/// The tap in the middle of a Gaussian of standard deviation `sigma_px`.
+/// Centre tap of a Gaussian of standard deviation `sigma_px`.
 ///
-/// Weights by forward differences of their logarithm, two products a tap instead of an exponential (Turkowski, "Incremental
+/// Weights follow from forward differences of their logarithm: two products a tap instead of an exponential (Turkowski, "Incremental
 /// Computation of the Gaussian", GPU Gems 3, 2007). Error of a weight below `1e-7 (1 + sigma_px^2)`: 6e-6 at 7.5 pixels.
 #[inline]
 pub fn gauss_center(sigma_px: f32) -> GaussTap {
@@ -76,32 +75,32 @@ pub fn gauss_center(sigma_px: f32) -> GaussTap {
     GaussTap { weight: 1.0, ratio, ratio_step: ratio * ratio }
 }
 
-/// The tap one pixel further out.
+/// Tap one pixel further out.
 #[inline]
 pub fn gauss_next(tap: GaussTap) -> GaussTap {
     GaussTap { weight: tap.weight * tap.ratio, ratio: tap.ratio * tap.ratio_step, ratio_step: tap.ratio_step }
 }
 
-/// Taps to each side that a Gaussian is cut to: 3 standard deviations.
+/// Number of taps on each side of a Gaussian's centre: it is cut at 3 standard deviations.
 #[inline]
 pub fn gauss_radius(sigma_px: f32) -> u32 {
     if sigma_px < SHARPEST_BLUR_PX { 0 } else { (3.0 * sigma_px) as u32 + 1 }
 }
 
-/// Texels a side of mip `level`, for `len` pixels: as many blocks of 2^level as it takes to cover them.
+/// Texels a side of mip `level`, for `len` pixels: `len / 2^level`, rounded up.
 #[inline]
 pub fn level_len(len: u32, level: u32) -> u32 {
     (len + (1 << level) - 1) >> level
 }
 
-/// Where the pixel coordinate `px` lies in texels of mip `level`; centres are integers in both. Exact up to 2^15 pixels and level 8.
+/// Pixel coordinate `px` in texels of mip `level`; centres are integers in both. Exact up to 2^15 pixels and level 8.
 #[inline]
 pub fn level_coordinate(px: f32, level: u32) -> f32 {
     let texels_per_px = f32::from_bits((127 - level) << 23);
     (px + 0.5) * texels_per_px - 0.5
 }
 
-/// Whole part and fraction of a coordinate along `len` texels, kept between the first and the last.
+/// Whole part and fraction of a coordinate along `len` texels, clamped to the centres of the first and the last.
 #[inline]
 pub fn split(v: f32, len: u32) -> (u32, f32) {
     let v = v.clamp(0.0, (len - 1) as f32);
@@ -109,13 +108,13 @@ pub fn split(v: f32, len: u32) -> (u32, f32) {
     (whole as u32, v - whole)
 }
 
-/// `a` for `t` = 0, `b` for 1.
+/// Linear interpolation: `a` for `t` = 0, `b` for 1.
 #[inline]
 pub fn blend(a: Vec3, b: Vec3, t: f32) -> Vec3 {
     a + (b - a) * t
 }
 
-/// Blend of four texels, rows first: `top` and `bottom` are left and right texel.
+/// Bilinear interpolation of four texels; `top` and `bottom` are left and right texel.
 #[inline]
 pub fn bilinear(top: [Vec3; 2], bottom: [Vec3; 2], fraction: [f32; 2]) -> Vec3 {
     blend(blend(top[0], top[1], fraction[0]), blend(bottom[0], bottom[1], fraction[0]), fraction[1])
@@ -127,21 +126,21 @@ pub fn mean_of_four(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Vec3 {
     (a + b + c + d) * 0.25
 }
 
-/// Pixel coordinate of the centre of block number `block` of 2^level pixels along `len`; kept inside for blocks that the border
-/// cuts. Exact.
+/// Pixel coordinate of the centre of block number `block` of 2^level pixels along `len`; clamped to the last pixel for blocks that
+/// the border cuts. Exact.
 #[inline]
 pub fn block_center_px(block: u32, level: u32, len: u32) -> f32 {
     let edge_px = (1_u32 << level) as f32;
     ((block as f32 + 0.5) * edge_px - 0.5).min((len - 1) as f32)
 }
 
-/// Mip level that the sample of a block of `level` sees.
+/// Mip level that the sample of a block of `level` reads.
 #[inline]
 pub fn block_sample_level(level: u32) -> u32 {
     level.max(SAMPLE_LEVEL_BIAS) - SAMPLE_LEVEL_BIAS
 }
 
-/// Texel of that level, along one axis, that block number `block` shows.
+/// Texel of [`block_sample_level`], along one axis, that block number `block` reads.
 #[inline]
 pub fn block_sample(block: u32, level: u32, len: u32) -> u32 {
     block_center_px(block, level, len) as u32 >> block_sample_level(level)

@@ -1,8 +1,8 @@
-//! Noise of candidates: a path-traced pixel is the mean of a few random samples. How many they are decides how much history counts,
-//! and how much they scatter decides which difference from history is no change.
+//! Noise of candidates. A path-traced pixel is the mean of a few random samples: their number sets the weight of history, their
+//! variance the difference from history that noise explains.
 //!
-//! History is weighted by numbers of samples alone. Weights that followed the samples' own scatter would favour pixels that
-//! happened to miss a lamp, whose samples are dark and alike, and the mean would come out too dark.
+//! History is weighted by numbers of samples alone. Weighting by the samples' own variance would favour pixels whose samples all
+//! missed a lamp (dark, and of low variance), and the mean would be biased towards black.
 
 use super::matched::{COARSER_WIDTH, DARK, smooth_step};
 use super::pack::{half_bits, half_value};
@@ -12,66 +12,66 @@ use glam::{Vec3, Vec4};
 /// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an eighth of the
 /// noise.
 pub const NOISY_LEVELS: f32 = 3.0;
-/// Samples in such a mean.
-const COMPARED: f32 = 64.0;
-/// Standard deviations of noise that are no change.
+/// Number of candidates in such a mean.
+const COMPARED_CANDIDATES: f32 = 64.0;
+/// Standard deviations up to which a difference is attributed to noise.
 const SIGMAS: f32 = 3.0;
-/// Noise up to which confidence in a color is 1, and over how much more it falls to 0, as differences: below what the
-/// eye just sees.
-const SURE: [f32; 2] = [0.5, 1.0];
-/// Frames that a coarser history counts for at the most.
+/// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of `root_difference`. Both are
+/// below the just noticeable difference.
+const CONFIDENCE_FALLOFF: [f32; 2] = [0.5, 1.0];
+/// Limit on the samples of a coarser history, in frames.
 const COARSER_FRAMES: f32 = 4.0;
-/// Largest standard error that is told apart, linear: its square is still a half.
+/// Largest standard error, linear; larger ones are clamped to it. Its square fits into a half.
 const MAX_ERROR: f32 = 255.0;
-/// Largest number of samples, a half that is still exact to a thousandth.
+/// Largest number of samples; larger ones are clamped to it. A half stores it to a thousandth.
 const MAX_SAMPLES: f32 = 32768.0;
-/// Alpha of a texel of which nothing is known.
+/// Alpha of a texel without usable candidates.
 const UNKNOWN: f32 = -1.0;
 
-/// Samples and variance of a color.
+/// Noise of a color: number of samples, and variance of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Samples it is a mean of, at least 1 (0 for a history that holds none).
+    /// Samples that the color is a mean of, at least 1; 0 for empty history.
     pub samples: f32,
     /// Variance of one sample's luma, linear.
     pub variance: f32,
 }
 
-/// A candidate's noise as told: the standard error of its luma, linear, and the number of samples. What is NaN or below 0 counts as an
-/// error of 0, and as one sample.
+/// Noise of a candidate from the frame's input: standard error of its luma, linear, and number of samples. NaN or negative numbers
+/// count as an error of 0, and as one sample.
 #[inline]
-pub fn candidate_noise(told: [f32; 2]) -> Noise {
-    let error = positive(told[0]).min(MAX_ERROR);
-    let samples = positive(told[1]).clamp(1.0, MAX_SAMPLES);
+pub fn candidate_noise(input: [f32; 2]) -> Noise {
+    let error = positive(input[0]).min(MAX_ERROR);
+    let samples = positive(input[1]).clamp(1.0, MAX_SAMPLES);
     Noise { samples, variance: ((error * error) * samples).min(MAX_HALF) }
 }
 
-/// `x` if it is above 0, infinity included, else 0; by bits, because shading languages may assume that NaN does not exist.
+/// `x` if it is positive, infinity included, else 0. By bits, because shading languages may assume that NaN does not exist.
 #[inline]
 fn positive(x: f32) -> f32 {
     if x.to_bits() <= 0x7f80_0000 { x } else { 0.0 }
 }
 
-/// One word.
+/// Packs a noise into one word of two halves: samples low, variance high.
 #[inline]
 pub fn pack_noise(n: Noise) -> u32 {
     half_bits(n.samples) | half_bits(n.variance) << 16
 }
 
-/// What a word holds. Whatever it holds, the result is finite and not negative.
+/// Unpacks a noise. The result is finite and not negative for any word.
 #[inline]
 pub fn unpack_noise(word: u32) -> Noise {
     Noise { samples: half_value(word & 0x7fff), variance: half_value((word >> 16) & 0x7fff) }
 }
 
-/// Texel of level 0 of the candidates' chain: color, and variance of the pixel's luma; alpha below 0 where the candidate must not be
-/// used.
+/// Texel of level 0 of the candidates' mip chain: color, and variance of the pixel's luma. A negative alpha marks an unusable
+/// candidate.
 #[inline]
 pub fn candidate_texel(color: Vec3, usable: bool, n: Noise) -> Vec4 {
     if usable { color.extend(n.variance / n.samples) } else { Vec3::ZERO.extend(UNKNOWN) }
 }
 
-/// Mean of those of four texels of the candidates' chain of which something is known.
+/// Mean of four texels of the candidates' mip chain, without unusable ones.
 #[inline]
 pub fn candidate_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     let known = |t: Vec4| if t.w >= 0.0 { 1.0 } else { 0.0 };
@@ -83,7 +83,7 @@ pub fn candidate_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     (((a * wa + b * wb) + c * wc) + d * wd) * (1.0 / weight)
 }
 
-/// Color and variance between four texels of the candidates' chain, rows first; of those of which something is known.
+/// Bilinear interpolation of color and variance of four texels of the candidates' mip chain, without unusable ones.
 #[inline]
 pub fn candidate_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec4 {
     let [fx, fy] = fraction;
@@ -96,58 +96,61 @@ pub fn candidate_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2])
     sum * (1.0 / (((wa + wb) + wc) + wd).max(1e-3))
 }
 
-/// Share of a history of as coarse samples in the mean of both: as many as it holds, at most `most`.
+/// Share of an equally coarse history in the mean of history and candidate, by numbers of samples; at most `most`.
 #[inline]
 pub fn history_share(history: Noise, candidate: Noise, most: f32) -> f32 {
     (history.samples / (history.samples + candidate.samples)).min(most)
 }
 
-/// Variance of one sample's luma as history and candidate know it together; the candidate's from around it.
+/// Pooled variance of one sample's luma, from history and from the candidate's neighbourhood.
 #[inline]
 pub fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     let all = history.samples + candidate.samples;
     (history.samples * history.variance + candidate.samples * candidate.variance) / all
 }
 
-/// How many of [`root_difference`](super::matched::root_difference)'s units a linear unit is around a luma: the derivative of 100 times its
-/// square root, kept finite.
+/// Derivative of [`root_difference`](super::matched::root_difference) by linear luma, at a luma: that of 100 times its square root,
+/// limited for dark colors.
 #[inline]
 pub fn root_slope(luma: f32) -> f32 {
     50.0 / (luma.max(0.0) + DARK).sqrt()
 }
 
-/// Difference of a compared mean of candidates and one of history that noise alone makes, in
-/// [`root_difference`](super::matched::root_difference)'s units around a luma: three standard deviations.
+/// Difference of the compared means of candidates and of history that noise alone can make: three standard deviations at a luma, in
+/// units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
-    let of_one = pooled_variance(history, candidate);
-    let numbers = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
-    (SIGMAS * root_slope(luma)) * (of_one * numbers * (1.0 / COMPARED)).sqrt()
+    let sample_variance = pooled_variance(history, candidate);
+    let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
+    (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
 }
 
-/// How far what history holds around a luma is free of noise, in \[0, 1\]: only then is a finer sample the better one.
+/// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer sample replace a
+/// coarser one.
 #[inline]
 pub fn noise_confidence(history: Noise, luma: f32) -> f32 {
-    let off = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
-    1.0 - smooth_step(SURE[0], SURE[1], off)
+    let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
+    1.0 - smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
 }
 
-/// What a history is worth whose samples are coarser by `levels` of detail: it is blurred, so soon outweighed.
+/// Noise of a history that is coarser than the candidate by `levels` of detail, with its number of samples limited to a few frames:
+/// such history is blurred, and new samples should soon outweigh it.
 #[inline]
-pub fn coarser_worth(history: Noise, candidate: Noise, levels: f32) -> Noise {
+pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
     let limited = history.samples.min(COARSER_FRAMES * candidate.samples);
     let t = (levels / COARSER_WIDTH).clamp(0.0, 1.0);
     Noise { samples: history.samples + (limited - history.samples) * t, variance: history.variance }
 }
 
-/// Difference of a single candidate and a sample as noisy that noise alone makes.
+/// Difference of a candidate and a sample of equal noise that noise alone can make: three standard deviations at a luma, in units of
+/// [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
 }
 
-/// What is known of the shown color: `share` is the history's in it, `finer` how far it was shown as the better sample, in which
-/// case the candidate added nothing.
+/// Noise of the output color. `share`: history's share in it; `finer`: degree to which history replaced the candidate as the finer
+/// sample, in which case the candidate's samples do not count.
 #[inline]
 pub fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Noise {
     // A mean with weights 1 - share and share of n and N samples has the weight of n / (1 - share) samples.
@@ -157,7 +160,7 @@ pub fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> 
     Noise { samples, variance: variance.clamp(0.0, MAX_HALF) }
 }
 
-/// A stored noise under this frame's exposure.
+/// Stored noise scaled to this frame's exposure; `ratio` is this frame's exposure divided by the previous frame's.
 #[inline]
 pub fn expose_noise(stored: Noise, ratio: f32) -> Noise {
     Noise { samples: stored.samples, variance: (stored.variance * ratio * ratio).min(MAX_HALF) }

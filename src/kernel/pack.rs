@@ -1,4 +1,4 @@
-//! Storage of one reservoir in three words, by integer arithmetic, so that rounding is the same on every device.
+//! Storage of a reservoir in three words, by integer arithmetic, so that rounding is the same on every device.
 //!
 //! | word | low 16 bits | high 16 bits |
 //! |---|---|---|
@@ -6,25 +6,25 @@
 //! | 1 | blue, half | disparity, [`disparity_code`] |
 //! | 2 | bits 0-7: age in frames, stays at 255 | bits 8-31: weight sum, the upper 24 bits of its float |
 //!
-//! All zero is an empty reservoir. With 16 significant bits the weight sum of a stream of constant weight w under Bernoulli
-//! survival stops growing between 256 w and 363 w, so a replacement probability never falls below 1/364 a frame; a half
-//! float would stop at 63 w, and at 33 w if the arithmetic were half, too.
+//! All zeros are an empty reservoir. The weight sum keeps 16 significant bits: for a stream of constant weight w under Bernoulli
+//! survival it stops growing between 256 w and 363 w, so that the probability of replacement never falls below 1/364 a frame. A half
+//! would stop at 63 w, and at 33 w with half arithmetic.
 
 use super::sanitize::{self, MAX_HALF};
 use glam::Vec3;
 
-/// Largest weight sum that is stored: 2^100, exact in the stored bits.
+/// Largest stored weight sum: 2^100, exact in the stored bits.
 pub const MAX_W_SUM: f32 = f32::from_bits((127 + 100) << 23);
 
-/// Largest age that is stored, in frames.
+/// Largest stored age, in frames.
 pub const MAX_AGE: u32 = 255;
 
-/// What is remembered of a pixel.
+/// Contents of a stored reservoir.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stored {
     /// The sample: linear color.
     pub color: Vec3,
-    /// Disparity of its surface in the frame it was stored; negative: unknown.
+    /// Disparity of the sample's surface in the frame that stored it; negative: unknown.
     pub disparity: f32,
     /// Weight sum of the reservoir; 0: empty.
     pub w_sum: f32,
@@ -32,8 +32,7 @@ pub struct Stored {
     pub age: u32,
 }
 
-/// Bits of the half-float nearest to `x` (ties to even), clamped to +-65504. Results below the half's normal range are exact to
-/// its denormal grid.
+/// Bits of the half nearest to `x` (ties to even), clamped to +-65504. Denormal halves are rounded correctly, too.
 #[inline]
 pub fn half_bits(x: f32) -> u32 {
     let sign = (x.to_bits() >> 16) & 0x8000;
@@ -42,7 +41,7 @@ pub fn half_bits(x: f32) -> u32 {
         return sign | 0x7bff;
     }
     if a < 113 << 23 {
-        // Adding 0.5 shifts the mantissa to the denormals' grid and rounds it.
+        // Adding 0.5 shifts the mantissa to the grid of denormal halves and rounds it.
         return sign | ((f32::from_bits(a) + 0.5).to_bits() - 0.5_f32.to_bits());
     }
     let odd = (a >> 13) & 1;
@@ -50,13 +49,13 @@ pub fn half_bits(x: f32) -> u32 {
     sign | rounded.min(0x7bff)
 }
 
-/// Value of a finite half-float from the low 16 bits of `bits`.
+/// Value of the finite half in the low 16 bits of `bits`.
 #[inline]
 pub fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fff) << 13;
     let sign = (bits & 0x8000) << 16;
     let value = if bits & 0x7c00 == 0 {
-        // Never touches a 32-bit denormal, which devices may flush.
+        // No 32-bit denormal occurs; devices may flush those to zero.
         f32::from_bits(magnitude + (113 << 23)) - f32::from_bits(113 << 23)
     } else {
         f32::from_bits(magnitude + (112 << 23))
@@ -64,14 +63,14 @@ pub fn half_value(bits: u32) -> f32 {
     f32::from_bits(value.to_bits() | sign)
 }
 
-/// 16-bit code of a disparity: 6 bits of exponent (2^-32 to 2^32) and 10 of mantissa, so at most 2^-11 of the value off.
-/// Smaller ones become 0, the sky; 0xffff stands for an unknown one.
+/// 16-bit code of a disparity: 6 bits of exponent (2^-32 to 2^32) and 10 of mantissa, a relative error of at most 2^-11. Smaller
+/// disparities become 0, the sky; negative ones (unknown) 0xffff.
 #[inline]
 pub fn disparity_code(disparity: f32) -> u32 {
     if disparity < 0.0 {
         return 0xffff;
     }
-    // Without the sign of -0.
+    // Clears the sign of -0.
     let bits = disparity.to_bits() & 0x7fff_ffff;
     if bits < 95 << 23 {
         return 0;
@@ -80,7 +79,7 @@ pub fn disparity_code(disparity: f32) -> u32 {
     rounded.saturating_sub(95 << 10).clamp(1, 0xfffe)
 }
 
-/// Disparity of a code; -1 for the unknown one.
+/// Disparity of a 16-bit code; -1 for 0xffff, the unknown disparity.
 #[inline]
 pub fn disparity_value(code: u32) -> f32 {
     match code {
@@ -93,7 +92,7 @@ pub fn disparity_value(code: u32) -> f32 {
 /// Packs a reservoir. The color must be finite.
 #[inline]
 pub fn pack(s: Stored) -> [u32; 3] {
-    // Not clamp(), which leaves the sign of -0 to the device.
+    // Not clamp(): devices differ on the sign of clamp(-0).
     let w_sum = if s.w_sum > 0.0 { s.w_sum.min(MAX_W_SUM) } else { 0.0 };
     let w = w_sum.to_bits();
     let w_upper = w + 0x7f + ((w >> 8) & 1);
@@ -104,7 +103,7 @@ pub fn pack(s: Stored) -> [u32; 3] {
     ]
 }
 
-/// Unpacks a reservoir. Whatever the words hold, the result is finite; a corrupt color or weight sum makes it empty.
+/// Unpacks a reservoir. The result is finite for any words; a corrupt color or weight sum gives an empty reservoir.
 #[inline]
 pub fn unpack(words: [u32; 3]) -> Stored {
     let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;

@@ -1,41 +1,44 @@
-//! Reprojection: where a pixel was in the previous frame, and verdicts on its history.
+//! Reprojection: a pixel's position in the previous frame, and verdicts on its history.
 
 use super::sanitize::is_finite;
 
-/// Largest motion in pixels; beyond it a vector is invalid.
+/// Largest valid component of a motion vector, in pixels.
 pub const MAX_MOTION_PX: f32 = 65536.0;
 
-/// Verdict on a pixel's history: valid, or the reason why it is missing or rejected. The discriminants are the codes of debug views.
+/// Verdict on a pixel's history: valid, or the reason why it is missing or rejected.
+///
+/// [`FrameStats::verdicts`](crate::FrameStats::verdicts) counts pixels by verdict, with the discriminant as index (an example is at
+/// [`FrameStats`](crate::FrameStats)); [`DebugView::Rejection`](crate::DebugView::Rejection) draws them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 #[non_exhaustive]
 pub enum Verdict {
     /// History is valid: it belongs to this surface.
     Valid = 0,
-    /// All history was reset: first frame, cut, resize.
+    /// There is no history: first frame, [`Reset::All`](crate::Reset::All), resize.
     Reset = 1,
-    /// The motion vector is NaN, infinite or longer than 65536 pixels.
+    /// The motion vector is NaN, infinite, or has a component beyond 65536 pixels.
     BadMotion = 2,
     /// The surface point was outside the previous frame.
     OffScreen = 3,
-    /// Nothing usable was stored there.
+    /// Nothing usable was stored at the previous position.
     Empty = 4,
-    /// Another surface was there: the depth differs.
+    /// Disocclusion: another surface was at the previous position (depth differs), or motion vectors of two surfaces are mixed.
     Disoccluded = 5,
-    /// The frame's trust mask is 0 here.
+    /// The frame's trust mask is 0 at this pixel.
     Distrusted = 6,
 }
 
 impl Verdict {
-    /// Number of verdicts; codes are below it.
+    /// Number of verdicts; every discriminant is below it.
     pub const COUNT: usize = 7;
 
-    /// Verdicts that reject a history that may have existed.
+    /// Verdicts that reject existing history.
     pub const REJECTED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }
 
-/// The texel that holds the history of pixel (`x`, `y`): nearest to where it was. A position is inside the previous frame
-/// from half a pixel before the first centre to just under half a pixel after the last.
+/// Texel of the previous frame nearest to the previous position of pixel (`x`, `y`). A position is inside the previous frame from
+/// half a pixel before the first centre (inclusive) to half a pixel after the last (exclusive).
 ///
 /// # Errors
 /// [`Verdict::BadMotion`] or [`Verdict::OffScreen`].

@@ -1,12 +1,13 @@
-//! Reading remembered surfaces between texels.
+//! Resampling of stored surfaces at positions between texels.
 
 use super::surface::Surface;
 use glam::Vec3;
 
-/// Relative difference of disparity within which texels are read together: wide enough for slopes, narrow enough for silhouettes.
+/// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough for
+/// silhouettes.
 pub const TAP_RELATIVE: f32 = 0.1;
 
-/// Texels that are read: four by four without the corners, whose weights are next to nothing.
+/// Number of taps: 4x4 texels without the corners, whose weights are close to 0.
 pub const TAPS: u32 = 12;
 
 /// Column and row, 0 to 3, of tap number `tap`.
@@ -15,38 +16,38 @@ pub fn tap_at(tap: u32) -> [u32; 2] {
     [((tap + 2) & 3) + u32::from(tap >= 10) - u32::from(tap < 2), (tap + 2) >> 2]
 }
 
-/// Catmull-Rom weights of the four texels around a position that lies `t` in \[0, 1) after the second. At t = 0 the second has
-/// weight exactly 1 and the others exactly 0.
+/// Catmull-Rom weights of four texels around a position at distance `t` in \[0, 1) after the second. At t = 0 the second weight is
+/// exactly 1 and the others are exactly 0.
 #[inline]
 pub fn catmull_rom(t: f32) -> [f32; 4] {
     let t2 = t * t;
     [((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t2 + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t, (0.5 * t - 0.5) * t2]
 }
 
-/// Bilinear weights of the same four texels.
+/// Linear weights of four texels around a position at distance `t` in \[0, 1) after the second.
 #[inline]
 pub fn linear_weights(t: f32) -> [f32; 4] {
     [0.0, 1.0 - t, t, 0.0]
 }
 
-/// What is read around a position, as it is gathered.
+/// Sums over the taps around a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gathered {
-    /// Colors by Catmull-Rom weights, and their sum.
+    /// Colors times Catmull-Rom weights.
     pub sharp: Vec3,
-    /// Sum of those weights.
+    /// Catmull-Rom weights.
     pub sharp_sum: f32,
-    /// Colors by bilinear weights.
+    /// Colors times bilinear weights.
     pub smooth: Vec3,
-    /// Sum of those weights.
+    /// Bilinear weights.
     pub smooth_sum: f32,
-    /// Levels of detail by bilinear weights.
+    /// Levels of detail times bilinear weights.
     pub lod: f32,
-    /// Texels that show another surface.
+    /// Number of taps on other surfaces.
     pub missing: u32,
 }
 
-/// Adds a texel with its two weights, if it shows the `same` surface; else counts it as missing.
+/// Adds a tap with its Catmull-Rom and bilinear weights if it is on the `same` surface; otherwise counts it as missing.
 #[inline]
 pub fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) -> Gathered {
     if !same {
@@ -62,19 +63,19 @@ pub fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) ->
     }
 }
 
-/// What was read.
+/// History resampled at a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resampled {
-    /// At full sharpness.
+    /// Color by Catmull-Rom weights.
     pub sharp: Vec3,
-    /// Bilinear.
+    /// Color by bilinear weights.
     pub smooth: Vec3,
     /// Level of detail.
     pub lod: f32,
 }
 
-/// The reading: Catmull-Rom where every texel shows the surface, bilinear over those that do elsewhere, and the `nearest` texel where
-/// those have next to no weight.
+/// Result of the sums: Catmull-Rom where all taps are on the surface, bilinear over those that are elsewhere, and the `nearest` texel
+/// where their weights are close to 0.
 #[inline]
 pub fn resolve(g: Gathered, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {

@@ -1,17 +1,17 @@
-//! Non-finite numbers, found by their bits: shading languages may assume that NaN does not exist.
+//! Sanitizing of inputs. Non-finite numbers are found by their bits, because shading languages may assume that NaN does not exist.
 
 use glam::Vec3;
 
-/// Largest finite half-float. Colors are kept within it.
+/// Largest finite half. Colors are clamped to it.
 pub const MAX_HALF: f32 = 65504.0;
 
-/// Neither NaN nor infinite.
+/// Whether a number is neither NaN nor infinite.
 #[inline]
 pub fn is_finite(x: f32) -> bool {
     x.to_bits() & 0x7f80_0000 != 0x7f80_0000
 }
 
-/// A color clamped to +-65504, and whether it may be used: false, and black, if any component is NaN or infinite.
+/// Color clamped to +-65504, and whether it is usable; black and `false` if any component is NaN or infinite.
 #[inline]
 pub fn color(c: Vec3) -> (Vec3, bool) {
     if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
@@ -22,10 +22,10 @@ pub fn color(c: Vec3) -> (Vec3, bool) {
     }
 }
 
-/// A trust: at least 0 and at most 1. What is NaN, below 0 or so small that hardware may flush it to zero counts as 0.
+/// Trust clamped to \[0, 1\]. NaN, negative numbers and denormals (which devices may flush to zero) count as 0.
 #[inline]
 pub fn trust(t: f32) -> f32 {
-    // Positive floats are in the order of their bits, infinity last and NaNs beyond it.
+    // The bits of positive floats are ordered as the floats, infinity last and NaN beyond it.
     match t.to_bits() {
         0x0080_0000..0x3f80_0000 => t,
         0x3f80_0000..=0x7f80_0000 => 1.0,
@@ -33,7 +33,7 @@ pub fn trust(t: f32) -> f32 {
     }
 }
 
-/// A weight or weight sum: what is NaN, infinite, negative or so small that hardware may flush it to zero counts as 0.
+/// Weight or weight sum. NaN, infinity, negative numbers and denormals (which devices may flush to zero) count as 0.
 #[inline]
 pub fn weight(w: f32) -> f32 {
     if is_finite(w) && w >= f32::MIN_POSITIVE { w } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Storage of one surface sample in two words, by integer arithmetic, so that rounding is the same on every device.
+//! Storage of a surface sample in two words, by integer arithmetic, so that rounding is the same on every device.
 //!
 //! | word | bits | |
 //! |---|---|---|
@@ -9,38 +9,38 @@
 //! | 1 | 14-15 | level of detail, high 2 bits |
 //! | 1 | 16-31 | disparity, [`disparity_code`] |
 //!
-//! What is read was stored: packing what was unpacked changes nothing.
+//! Packing an unpacked sample gives the same words.
 
 use super::pack::{disparity_code, disparity_value, half_bits, half_value};
 use glam::{Vec3, Vec4};
 
-/// Code of the level of detail that stands for "nothing is stored".
+/// Code of the level of detail of an empty texel.
 const EMPTY: u32 = 63;
 
-/// Levels of detail are stored in steps of one over this.
+/// Stored steps a level of detail.
 const LOD_STEPS: f32 = 7.0;
 
-/// Largest level of detail that is stored.
+/// Largest stored level of detail.
 pub const MAX_LOD: f32 = 62.0 / LOD_STEPS;
 
-/// What is remembered of a surface point.
+/// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Linear color, at least 0.
     pub color: Vec3,
-    /// Level of detail it was shaded at: log2 of the block edge in pixels. Negative: nothing is stored.
+    /// Level of detail that the sample was shaded at: log2 of the block edge in pixels. Negative: the texel is empty.
     pub lod: f32,
-    /// Disparity in the frame it was stored; negative: unknown.
+    /// Disparity in the frame that stored it; negative: unknown.
     pub disparity: f32,
 }
 
 impl Surface {
-    /// Nothing.
+    /// Empty texel.
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0 };
 }
 
-/// A half-float without sign and without the last bit of its mantissa: 5 bits of exponent, 9 of mantissa. Rounded by way of
-/// the half, so at most 1.5 * 2^-10 of the value off. Negative values become 0.
+/// 14-bit float: a half without sign and without the last bit of its mantissa, that is 5 bits of exponent and 9 of mantissa. Rounded
+/// twice (first to a half), so the relative error is at most 1.5 * 2^-10. Negative values become 0.
 #[inline]
 pub fn half14_bits(x: f32) -> u32 {
     let positive = if x > 0.0 { x } else { 0.0 };
@@ -48,7 +48,7 @@ pub fn half14_bits(x: f32) -> u32 {
     ((h + ((h >> 1) & 1)) >> 1).min(0x3dff)
 }
 
-/// Value of the low 14 bits of `bits`.
+/// Value of the 14-bit float in the low bits of `bits`.
 #[inline]
 pub fn half14_value(bits: u32) -> f32 {
     half_value((bits & 0x3fff) << 1)
@@ -64,7 +64,7 @@ pub fn pack_surface(s: Surface) -> [u32; 2] {
     ]
 }
 
-/// Unpacks a sample. Whatever the words hold, the result is finite.
+/// Unpacks a sample. The result is finite for any words.
 #[inline]
 pub fn unpack_surface(words: [u32; 2]) -> Surface {
     let lod = words[0] >> 28 | ((words[1] >> 14) & 3) << 4;
@@ -79,14 +79,14 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
     }
 }
 
-/// Texel of level 0 of the chain of coarser levels: the color and a coverage of 1, or nothing.
+/// Texel of level 0 of the mip chain: the color and a coverage of 1; zeros for an empty texel.
 #[inline]
 pub fn mip_texel(words: [u32; 2]) -> Vec4 {
     let s = unpack_surface(words);
     if s.lod < 0.0 { Vec4::ZERO } else { s.color.extend(1.0) }
 }
 
-/// A texel of the chain as it is stored: halves, rounded here, so that devices cannot round otherwise.
+/// Rounds a texel of the mip chain to halves before it is stored, so that rounding is the same on every device.
 #[inline]
 pub fn round_mip(v: Vec4) -> Vec4 {
     let round = |x: f32| half_value(half_bits(x));

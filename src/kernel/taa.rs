@@ -1,13 +1,14 @@
-//! One pixel of temporal antialiasing, the rival that knows nothing of gaze: an exponential mean along the motion, kept within
-//! what the neighbourhood of the candidate allows (Salvi 2016, "An excursion in temporal supersampling"; Karis 2014).
+//! One pixel of temporal antialiasing, the gaze-unaware baseline: exponential mean along the motion, with history clipped to the color
+//! distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis 2014).
 
 use super::matched::roots;
 use glam::Vec3;
 
-/// Weight of the candidate where history lies on texels, and where it had to be resampled: each resampling blurs.
+/// Weight of the candidate where history lies exactly on a texel, and midway between texels: higher there, because each resampling
+/// blurs.
 const ALPHA: [f32; 2] = [0.1, 0.4];
-/// Half width of the neighbourhood's box in standard deviations. Narrower ones clip the detail of earlier frames away, because a
-/// foveated neighbourhood is smooth.
+/// Half width of the clipping box in standard deviations. A foveated neighbourhood is smooth, so that narrower boxes would clip the
+/// detail of earlier frames.
 const BOX_SIGMAS: f32 = 2.0;
 
 /// YCoCg of the square roots of a linear color.
@@ -19,14 +20,14 @@ pub fn to_ycocg(c: Vec3) -> Vec3 {
     Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
 }
 
-/// Back to square roots, at least 0.
+/// Square roots of RGB from YCoCg, at least 0.
 #[inline]
 pub fn roots_of_ycocg(y: Vec3) -> Vec3 {
     let outer = y.x - y.z;
     Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0))
 }
 
-/// Pulls `history` towards `mean` until it lies in the box of half width `extent` around it.
+/// Clips `history` along the line to `mean` to the box of half width `extent` around `mean`.
 #[inline]
 pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     let d = history - mean;
@@ -37,7 +38,7 @@ pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     if inside < 1.0 { mean + d * inside } else { history }
 }
 
-/// Weight of the candidate for history read `fraction` (each in \[0, 1)) between texels and believed as far as `trust`.
+/// Weight of the candidate, for history resampled at `fraction` (each in \[0, 1)) between texels; at least `1 - trust`.
 #[inline]
 pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
     let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
@@ -46,7 +47,8 @@ pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
     resampled.max(1.0 - trust)
 }
 
-/// What is shown: `sum` and `squares` are of nine neighbours in YCoCg.
+/// Output color: candidate blended with clipped history. `sum` and `squares`: sums over the 3x3 neighbourhood in YCoCg of colors and
+/// of their squares.
 #[inline]
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);

@@ -1,10 +1,10 @@
-//! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, forget, combine.
+//! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, bias, combine.
 
 use super::sanitize::{self, MAX_HALF};
 use super::{color, reservoir};
 use glam::Vec3;
 
-/// How a reservoir picks between its sample and the candidate.
+/// Sampler: rule by which a reservoir chooses between its sample and the candidate. Code of `Sampler` in shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum SamplerCode {
@@ -14,23 +14,23 @@ pub enum SamplerCode {
     AEs = 1,
 }
 
-/// How history is forgotten.
+/// Bias: decay of the history's weight sum. Code of `Bias` in shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum BiasCode {
-    /// Not at all.
+    /// No decay.
     None = 0,
-    /// A constant factor a frame.
+    /// Constant factor a frame.
     Exponential = 1,
     /// Bernoulli survival, eq. 5.
     Bernoulli = 2,
 }
 
-/// What the gate compares.
+/// Color difference of the gate. Code of `GateMetric` in shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum GateCode {
-    /// Nothing: always open.
+    /// No gate.
     Off = 0,
     /// Delta E 94.
     DeltaE94 = 1,
@@ -38,7 +38,7 @@ pub enum GateCode {
     Lightness = 2,
 }
 
-/// Constants of a frame.
+/// Parameters of wrs, from `Settings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrsParams {
     /// Sampler.
@@ -49,32 +49,32 @@ pub struct WrsParams {
     pub exponential_survival: f32,
     /// Gate metric.
     pub gate: GateCode,
-    /// Color difference below which the gate stays open, in Delta E.
+    /// Color difference up to which the gate value is 1, in Delta E.
     pub gate_offset: f32,
-    /// One over the difference, above the offset, at which the gate is shut.
+    /// Inverse of the difference, above the offset, at which the gate value is 0.
     pub inv_gate_divisor: f32,
 }
 
-/// The history side of a pixel.
+/// Reservoir of a pixel's history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past {
-    /// Its sample.
+    /// Color of the sample.
     pub color: Vec3,
-    /// Its weight sum; 0: there is none.
+    /// Weight sum; 0: there is no history.
     pub w_sum: f32,
-    /// Log key of its sample (A-ES only).
+    /// Log key of the sample (A-ES only).
     pub log_key: f32,
 }
 
 impl Past {
-    /// None at all.
+    /// No history.
     pub const EMPTY: Self = Self { color: Vec3::ZERO, w_sum: 0.0, log_key: f32::MIN };
 }
 
-/// What was decided.
+/// Result of [`step`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// The candidate becomes the sample.
+    /// Whether the candidate becomes the sample.
     pub take: bool,
     /// Weight sum after the frame.
     pub w_sum: f32,
@@ -86,10 +86,10 @@ pub struct Decision {
     pub survival: f32,
 }
 
-/// The history as far as it is trusted: all its weights times `trust` ([`sanitize::trust`]), before gate and bias. Nothing is left
-/// of it (a sum of 0) at a trust of 0.
+/// Reservoir with all weights multiplied by the history confidence `trust` ([`sanitize::trust`]), before gate and bias. Empty (a
+/// weight sum of 0) for a trust of 0.
 #[inline]
-pub fn believe(past: Past, trust: f32, sampler: SamplerCode) -> Past {
+pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     let share = sanitize::trust(trust);
     let log_key = match sampler {
         SamplerCode::AChao => past.log_key,
@@ -98,23 +98,23 @@ pub fn believe(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
 }
 
-/// A stored color under this frame's exposure: times `ratio`, kept within halves. `ratio` from 2^-40 to 2^40, beyond which
-/// every half leaves the halves, so that no product leaves the normal floats.
+/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` from 2^-40 to 2^40: beyond that every half
+/// over- or underflows, and within it no product over- or underflows as a float.
 #[inline]
 pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
     (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
 }
 
-/// `1 - |dL|` of eq. 7: 1 up to `offset`, 0 from `offset + 1 / inv_divisor` on. `difference` in Delta E.
+/// Gate value `1 - |dL|` of eq. 7: 1 up to `offset`, 0 from `offset + 1 / inv_divisor` on. `difference` in Delta E.
 #[inline]
 pub fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     1.0 - ((difference - offset) * inv_divisor).clamp(0.0, 1.0)
 }
 
-/// Color difference that the gate sees. The candidate is the reference color.
+/// Color difference for the gate, in Delta E; the candidate is the reference color.
 #[inline]
 pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
-    // Equal colors are the common case of a still view, and must give exactly 0.
+    // Equal colors are the common case in a still view, and must give exactly 0.
     if code == GateCode::Off || candidate == sample {
         return 0.0;
     }
@@ -123,8 +123,8 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
-/// One frame of one pixel: eq. 7, then Alg. 2 with the candidate as second reservoir. `weight` is 0 for a candidate that must
-/// not be used; such a one says nothing about change either, so the gate stays open.
+/// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. A `weight` of 0 marks an unusable
+/// candidate; it says nothing about a change of color either, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;
@@ -138,7 +138,7 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
         BiasCode::Exponential => params.exponential_survival,
         BiasCode::Bernoulli => reservoir::bernoulli_survival(past.w_sum, weight),
     };
-    // Products may fall below the normal range, where some devices flush to zero: by the rule of weights, both do.
+    // Products may be denormal, which some devices flush to zero: sanitizing as weights makes all of them 0.
     let survival = sanitize::weight(bias * gate_value);
     let kept = sanitize::weight(past.w_sum * survival);
     let w_sum = kept + weight;

@@ -1,6 +1,7 @@
-//! The methods: what each is called, keeps between frames, reads, and runs on either executor.
+//! Methods: name, history layout and passes of each.
 //!
-//! To add one: a variant of [`Method`], a file here with its [`Entry`], its pass in `cpu/` and in `shaders/pass/`, its tests.
+//! To add one, write a variant of [`Method`], a file here with its [`Entry`] and its arm in [`Method::entry`], its passes in `cpu/` and
+//! in `shaders/pass/`, and tests.
 
 mod none;
 mod smr;
@@ -16,17 +17,17 @@ impl Method {
     /// All methods.
     pub const ALL: [Self; 4] = [Self::None, Self::Taa, Self::Wrs, Self::Smr];
 
-    /// Short name, in lower case: `smr`.
+    /// Short name in lower case, such as `smr`.
     pub fn name(self) -> &'static str {
         self.entry().name
     }
 
-    /// One line that says what it does.
+    /// Description in one line.
     pub fn summary(self) -> &'static str {
         self.entry().summary
     }
 
-    /// The method of a short name.
+    /// Method of a short name; `None` for unknown names.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
@@ -41,22 +42,23 @@ impl Method {
     }
 }
 
-/// A row of the table of methods.
+/// Entry in the table of methods.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub name: &'static str,
     pub summary: &'static str,
-    /// What it keeps between frames.
+    /// Layout of its history.
     pub history: fn(&Settings) -> HistoryLayout,
-    /// Bytes of history and noise that its pass reads and writes a pixel.
+    /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
     /// Shader of its pass: a module of `shaders/pass/`.
     #[cfg(feature = "gpu")]
     pub shader: &'static str,
-    /// Side of the square of pixels that an invocation of the shader takes.
+    /// Edge in pixels of the block that an invocation of the shader processes.
     #[cfg(feature = "gpu")]
     pub block_px: u32,
-    /// Values of the shader's own overrides, besides those of `shaders/pass/inputs.wgsl`; `true` if the frame brings levels of detail.
+    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says whether the frame has
+    /// a level-of-detail input.
     #[cfg(feature = "gpu")]
     pub overrides: fn(&Settings, bool) -> Overrides,
 }
@@ -65,34 +67,34 @@ pub(crate) struct Entry {
 #[cfg(feature = "gpu")]
 pub(crate) type Overrides = Vec<(&'static str, u32)>;
 
-/// What is kept between frames.
+/// Layout of history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HistoryLayout {
-    /// Nothing.
+    /// No history.
     Nothing,
     /// Packed reservoirs ([`pack`](crate::kernel::pack)), and keys for A-ES.
     Reservoirs {
         /// Whether there are keys.
         keys: bool,
     },
-    /// Packed surfaces ([`surface`](crate::kernel::surface)), and a mip chain of them.
+    /// Packed surfaces ([`surface`](crate::kernel::surface)), and their mip chain.
     Surfaces {
-        /// Mip levels beyond the full-rate one.
+        /// Number of mip levels above the full-rate one.
         levels: u32,
-        /// Whether there is noise ([`noise`](crate::kernel::noise)), and a mip chain of the candidates.
+        /// Whether there are packed noise ([`noise`](crate::kernel::noise)) and a mip chain of the candidates.
         noisy: bool,
     },
 }
 
 impl Settings {
-    /// What the method keeps between frames.
+    /// Layout of the method's history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
         (self.method.entry().history)(self)
     }
 
-    /// Bytes that the pass reads and writes a pixel, for which of depth, motion and trust are given, stored as engines store them:
-    /// color and output as halves (8 each), motion as halves (4), depth (4), trust (1). The depth test's extra taps are not counted:
-    /// they are neighbours', and few.
+    /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and trust inputs.
+    /// Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth (4), trust (1). Taps that
+    /// neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
         let (color, output) = (8, 8);
         if self.method == Method::None {

@@ -1,4 +1,4 @@
-//! No method: the foveated frame, sanitized.
+//! No method: the sanitized foveated frame.
 
 use super::{Entry, HistoryLayout};
 

@@ -13,7 +13,7 @@ pub(super) static ENTRY: Entry = Entry {
     history_traffic_bytes,
     #[cfg(feature = "gpu")]
     shader: "smr_pass",
-    // So that the next mip level of what the pass stores needs no second pass.
+    // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
     #[cfg(feature = "gpu")]
     block_px: 2,
     #[cfg(feature = "gpu")]
@@ -27,7 +27,7 @@ pub(super) static ENTRY: Entry = Entry {
 };
 
 fn history(settings: &Settings) -> HistoryLayout {
-    // Two levels beyond the candidate's: one for its contrast, one to blend with; blocks are compared one level coarser.
+    // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level coarser.
     let shift = match settings.foveation.filter {
         _ if settings.noisy => 2 + NOISY_LEVELS as u32,
         Filter::Block => 3,
@@ -37,15 +37,16 @@ fn history(settings: &Settings) -> HistoryLayout {
 }
 
 fn history_traffic_bytes(settings: &Settings) -> u32 {
-    // The mip chain, a third of the pixels at 8 bytes: read once by the pass, written, and read again but for its first level.
+    // Surfaces: 8 bytes read, 8 written. Their mip chain has a third of the texels, 8 bytes each: read by the pass, written, and read
+    // again to fill its coarser levels.
     let surfaces = 2 * 8 + 8;
-    // The candidates' mip chain reads color and noise, and is written, read for its own levels and read by the pass like the other
-    // one; noise itself, and 4 bytes of it stored.
+    // The candidates' mip chain: color (8) and noise (4) are read to fill it, and it has the traffic of the surfaces' one (8). The pass
+    // reads noise (4), and reads and writes the stored noise (4 each).
     let noise = if settings.noisy { (8 + 4 + 8) + 4 + 2 * 4 } else { 0 };
     surfaces + noise
 }
 
-/// The filter as the pass sees it. Noise is more than what point samples alias.
+/// Filter that the pass assumes. Noisy blocks are treated as mip levels, because noise exceeds their aliasing.
 fn filter(settings: &Settings) -> Filter {
     match settings.foveation.filter {
         Filter::Block if settings.noisy => Filter::Mip,
@@ -53,12 +54,12 @@ fn filter(settings: &Settings) -> Filter {
     }
 }
 
-/// The kernel's form of smr's tunables.
+/// Parameters of the kernel from smr's settings.
 pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
         accumulate: settings.smr.accumulate,
-        // Coarse history is only a mean, so a stricter fit costs little, but the noise of point samples needs the mean.
+        // Rejecting coarse history costs little detail, so it must fit more strictly; except blocks, whose aliasing needs averaging.
         accumulate_tolerance: if blocks { 1.0 } else { 0.5 },
         tolerance: settings.smr.tolerance,
         blocks,

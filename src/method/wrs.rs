@@ -26,17 +26,17 @@ pub(super) static ENTRY: Entry = Entry {
     },
 };
 
-/// Whether reservoirs need a key besides their weight sum.
+/// Whether reservoirs have keys.
 fn has_keys(settings: &Settings) -> bool {
     settings.sampler == Sampler::AEs
 }
 
-/// `1 / cell_density(fovea radius)`, the scale of candidate weights outside the fovea.
+/// Scale of candidate weights outside the fovea: `1 / cell_density(fovea radius)`.
 pub(crate) fn inv_density_at_fovea(settings: &Settings) -> f32 {
     1.0 / acuity::cell_density(settings.foveation.fovea_radius_deg())
 }
 
-/// The kernel's form of wrs' tunables.
+/// Parameters of the kernel from wrs' settings.
 pub(crate) fn wrs_params(settings: &Settings) -> WrsParams {
     let (bias, exponential_survival) = match settings.bias {
         Bias::Bernoulli => (BiasCode::Bernoulli, 1.0),

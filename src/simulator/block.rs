@@ -1,5 +1,5 @@
-//! One point sample a block, as coarse shading does: blocks of powers of two on a fixed grid, nested, each decided by the
-//! eccentricity of its own centre.
+//! Block filter: one point sample a block, as coarse shading hardware renders it. Blocks have power-of-two edges on a fixed, nested
+//! grid; the eccentricity of its centre decides whether a block is used.
 
 use super::Pyramid;
 use crate::foveation::Foveation;
@@ -8,11 +8,12 @@ use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// Level of the coarsest aligned block around each pixel whose centre is far enough out; whole numbers.
+/// Level of detail of each pixel, a whole number: level of the coarsest aligned block around it whose centre's level of detail is at
+/// least the block's level.
 pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
     let size = geometry.size_px();
     let coarsest = foveation.max_level();
-    let wants: Vec<Image<bool>> = (1..=coarsest)
+    let is_used: Vec<Image<bool>> = (1..=coarsest)
         .map(|level| {
             let blocks = size.map(|s| foveate::level_len(s, level));
             Image::from_fn_parallel(blocks, |block| {
@@ -22,12 +23,13 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
         })
         .collect();
     Image::from_fn_parallel(size, |[x, y]| {
-        let level = (1..=coarsest).rev().find(|&l| wants[l as usize - 1].at((x >> l) as usize, (y >> l) as usize));
+        let level = (1..=coarsest).rev().find(|&l| is_used[l as usize - 1].at((x >> l) as usize, (y >> l) as usize));
         level.unwrap_or(0) as f32
     })
 }
 
-/// Every pixel shows the sample of its block; non-finite samples are black, so that one bad pixel does not fill a block.
+/// Foveated frame: every pixel has the sample of its block. Non-finite samples become black, so that one non-finite pixel does not
+/// fill a block.
 pub fn render(pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
     let size = lods.size();
     Image::from_fn_parallel(size, |px| {

@@ -1,4 +1,4 @@
-//! The simulators for images in memory.
+//! Simulators for images in memory.
 
 use super::{Pyramid, block, gaussian};
 use crate::foveation::{Filter, Foveation};
@@ -6,7 +6,11 @@ use crate::geometry::ViewGeometry;
 use crate::image::Image;
 
 impl Foveation {
-    /// Level of detail of every pixel, given their eccentricities for the same gaze.
+    /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. `ecc_deg`: eccentricities of the pixels
+    /// for the same gaze, from [`ViewGeometry::eccentricity_map`]. Needs the feature `cpu`. Example: `simulator::Pyramid`.
+    ///
+    /// # Panics
+    /// If `ecc_deg` is smaller than the view.
     pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], ecc_deg: &Image<f32>) -> Image<f32> {
         if self.filter == Filter::Block {
             return block::lod_map(self, geometry, gaze_px);
@@ -14,7 +18,11 @@ impl Foveation {
         Image::from_fn_parallel(geometry.size_px(), |[x, y]| self.lod(ecc_deg.at(x as usize, y as usize)))
     }
 
-    /// The frame as it looks with the given level of detail at each pixel. Pixels of level 0 are copied bit for bit.
+    /// Foveated frame, from the mip levels of a full-rate frame (levels 0 to [`max_level`](Self::max_level)) and the level of detail of
+    /// each pixel. Pixels of level 0 are copied bit for bit. Needs the feature `cpu`.
+    ///
+    /// # Panics
+    /// If the pyramid has too few levels.
     pub fn render(&self, pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
         match self.filter {
             Filter::Off => pyramid.level(0).clone(),

@@ -1,17 +1,17 @@
-//! Gaussian blur that grows with eccentricity. Two one-dimensional passes, each with the width of the pixel it writes: exact
-//! where the width is constant, and close to it where it changes slowly.
+//! Gaussian filter: blur that grows with eccentricity. Two one-dimensional passes, each with the width at the pixel that it writes:
+//! exact where the width is constant, a good approximation where it changes slowly.
 
 use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// The frame blurred by the width that belongs to each pixel's level of detail. Borders are continued by their last pixel; pixels of
-/// level 0 are copied bit for bit, and others take non-finite ones for black.
+/// Foveated frame: `full` blurred by the width of each pixel's level of detail. Borders are clamped. Pixels of level 0 are copied bit
+/// for bit; for others non-finite pixels count as black.
 pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
     blur_axis(&blur_axis(full, lods, 0), lods, 1)
 }
 
-/// One pass, along x (0) or y (1).
+/// Blurs along one axis: x (0) or y (1).
 fn blur_axis(image: &Image<[f32; 3]>, lods: &Image<f32>, axis: usize) -> Image<[f32; 3]> {
     let last = i64::from(image.size()[axis]) - 1;
     Image::from_fn_parallel(image.size(), |px| {

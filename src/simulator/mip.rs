@@ -1,19 +1,36 @@
-//! Box mip levels in linear light, right for odd sizes, and their bilinear and trilinear reading.
+//! Mip filter: mip levels of linear light, for any size, with bilinear and trilinear lookup.
 
 use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// A full-rate frame and its coarser levels. Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to
-/// `(i + 1) * 2^l - 1`, as far as they exist.
+/// Mip levels of a full-rate frame: level 0 is the frame, a texel of each next level the mean of 2x2. Needs the feature `cpu`.
+///
+/// Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to `(i + 1) * 2^l - 1`, as far as they exist.
+///
+/// ```
+/// use afterimage::simulator::Pyramid;
+/// use afterimage::{Foveation, Image, ViewGeometry};
+///
+/// let (size, gaze_px) = ([64, 36], [32.0, 18.0]);
+/// let geometry = ViewGeometry::flat(size, 70.0)?;
+/// let foveation = Foveation::default();
+/// let full = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
+///
+/// let lods = foveation.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+/// let foveated = foveation.render(&Pyramid::new(full, foveation.max_level()), &lods);
+/// assert_eq!(foveated.at(33, 18), [1.0; 3]);
+/// assert_eq!(foveated.at(0, 0), [0.5; 3]);
+/// # Ok::<(), afterimage::SettingsError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Pyramid {
     levels: Vec<Image<[f32; 3]>>,
 }
 
 impl Pyramid {
-    /// Builds levels 0 to `max_level`. Non-finite pixels count as black in coarser levels, so that one of them does not blacken
-    /// or poison a whole block.
+    /// Computes levels 0 to `max_level` of `full`. Non-finite pixels count as black in coarser levels, so that one of them does not
+    /// make a whole block non-finite.
     pub fn new(full: Image<[f32; 3]>, max_level: u32) -> Self {
         let mut levels = vec![full];
         for _ in 0..max_level {
@@ -23,15 +40,16 @@ impl Pyramid {
         Self { levels }
     }
 
-    /// One level; 0 is the full-rate frame.
+    /// Image of a level; 0 is the full-rate frame.
     ///
     /// # Panics
-    /// If the level was not built.
+    /// If `level` is above the `max_level` of [`new`](Self::new).
     pub fn level(&self, level: usize) -> &Image<[f32; 3]> {
         &self.levels[level]
     }
 
-    /// Bilinear reading of `level` at full-rate position `px` (pixel centres are integers), clamped at the borders.
+    /// Bilinear lookup in `level` at position `px` in pixels of level 0, clamped at the borders.
+    #[doc(hidden)]
     pub fn bilinear(&self, px: [f32; 2], level: usize) -> Vec3 {
         let image = &self.levels[level];
         let axis = |i: usize| {
@@ -44,8 +62,11 @@ impl Pyramid {
         foveate::bilinear(row(y0), row(y1), [fx, fy])
     }
 
-    /// Linear blend of the two levels around `lod`, each read bilinearly. Level 0 is returned bit for bit; blended with level 1, its
-    /// non-finite pixels count as black.
+    /// Trilinear lookup at the pixel `px` and level of detail `lod`: linear blend of bilinear lookups in the two levels around `lod`.
+    /// Level 0 is returned bit for bit; in a blend with level 1 its non-finite pixels count as black.
+    ///
+    /// # Panics
+    /// If `px` is outside the frame, for a `lod` below 1.
     pub fn trilinear(&self, px: [f32; 2], lod: f32) -> [f32; 3] {
         let (level, fraction) = foveate::split(lod, self.levels.len() as u32);
         let level = level as usize;
@@ -65,8 +86,8 @@ impl Pyramid {
     }
 }
 
-/// The next level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which leaves the mean of those
-/// that exist.
+/// Next mip level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which gives the mean of the
+/// existing ones.
 fn halve(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     let size = image.size();
     let texel = |x: u32, y: u32| {

@@ -1,7 +1,7 @@
-//! Simulators of foveation: of a full-rate frame they make what a foveating renderer would have delivered.
+//! Simulators of foveation: turn a full-rate frame into the frame that a foveating renderer would have delivered.
 //!
-//! One [`Foveation`](crate::Foveation) describes renderer and simulator. [`GpuSimulator`] foveates textures; for images in memory
-//! (feature `cpu`) there are the methods `lod_map` and `render` of `Foveation` and their [`Pyramid`].
+//! [`Foveation`](crate::Foveation) describes the foveation of renderers and of simulators. `GpuSimulator` foveates textures. For images
+//! in memory (feature `cpu`) there are `Foveation::lod_map` and `Foveation::render`, with a `Pyramid` of mip levels.
 
 #[cfg(feature = "cpu")]
 mod block;

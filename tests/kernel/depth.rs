@@ -28,6 +28,7 @@ fn stored(convention: Depth, z: f64) -> f64 {
         }
         Depth::Reversed { near, far } => 1.0 - stored(Depth::Forward { near, far }, z),
         Depth::Orthographic { near, far } => (z - f64::from(near)) / f64::from(far - near),
+        other => panic!("{other:?}: a convention that this test does not know"),
     }
 }
 

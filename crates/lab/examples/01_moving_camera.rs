@@ -1,4 +1,4 @@
-//! How do I hand over motion and depth in my engine's conventions, and tell of cuts?
+//! Pass motion vectors and depth in an engine's conventions, and signal camera cuts.
 //!
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     for index in 0..30 {
         let frame = source.frame(index)?;
-        // What that engine's G-buffer would hold.
+        // Contents of that engine's G-buffer.
         let scale = desc.motion.to_internal(size);
         let motion = frame.motion.ok_or("no motion")?.map(|v| [v[0] / scale[0], v[1] / scale[1]]);
         let depth = frame.depth.ok_or("no depth")?.map(|z| near / z);
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             previous_from_current: frame.previous_from_current,
             ..ViewFrame::new(*source.view(), Gaze::At { px: [160.0, 90.0] })
         }];
-        // A cut at frame 20: nothing of the frames before is true any more.
+        // A camera cut at frame 20: no history is valid.
         let reset = if index == 20 { Reset::All } else { Reset::None };
         // One image a view.
         let (color, depth, motion) = ([&frame.color], [&depth], [&motion]);

@@ -1,4 +1,4 @@
-//! How do I hand over motion, depth and camera of a moving view on a GPU, and see that the conventions are right?
+//! Pass motion vectors, depth and camera of a moving view on a GPU, and verify the conventions.
 //!
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         depth: DepthConvention::Reversed { near, far: f32::INFINITY },
         ..ContextDesc::new(size)
     };
-    // The commonest mistake: the vectors point the other way.
+    // The most common mistake: motion vectors of the opposite sign.
     let wrong = MotionConvention { direction: MotionDirection::PreviousMinusCurrent, ..right.motion };
     let wrong = ContextDesc { motion: wrong, ..right };
 
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("motion {name}");
         for index in 0..20 {
             let frame = source.frame(index)?;
-            // What that engine's G-buffer would hold.
+            // Contents of that engine's G-buffer.
             let scale = right.motion.to_internal(size);
             gpu.write_rgb(&color, 0, &frame.color);
             gpu.write(&depth, 0, &frame.depth.ok_or("no depth")?.map(|z| near / z));

@@ -1,4 +1,4 @@
-//! How do I follow a recorded scanpath over frames of my own, and score the result?
+//! Follow a recorded scanpath over your own frames, and score the result.
 //!
 //! `cargo run --release -p afterimage-lab --example 03_scanpath [INPUT [SCANPATH.csv]]`
 

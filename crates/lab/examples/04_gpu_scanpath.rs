@@ -1,4 +1,4 @@
-//! What does a moving eye see? A recorded scanpath over a still on a GPU: the foveated frame, and what the post-process makes of it.
+//! A recorded scanpath over a still on a GPU: the foveated frame, and the output of the post-process.
 //!
 //! `cargo run -p afterimage-lab --example 04_gpu_scanpath [INPUT [SCANPATH.csv]]`; writes `out/04_gpu_scanpath.png`
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = read_csv(&scanpath)?;
     let gaze = FrameGaze::new(&path, &geometry, GazeMap::default_for(path.screen()), 0.0, 60.0)?;
 
-    // Without the gate, which on a still can only lose detail.
+    // Without the gate: on a still it can only lose detail.
     let none = Settings { method: Method::None, ..Settings::default() };
     let lanes = [none, Settings::default()].map(RunKind::PostProcess);
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         last = Some(step);
     }
 
-    // Foveated above, enhanced below; the eye's last place is a black and white square.
+    // Foveated above, output below; a black and white square marks the last gaze.
     let step = last.ok_or("no frame")?;
     let [width, height] = info.size;
     let both = Image::from_fn([width, 2 * height], |[x, y]| {

@@ -1,4 +1,4 @@
-//! How do I run where there may be no GPU? A GPU if there is one, else the CPU: the same picture.
+//! Fall back to the CPU where there is no GPU. Both give the same image.
 //!
 //! `cargo run -p afterimage-lab --example 05_cpu_fallback`; writes `out/05_cpu_fallback.png`
 
@@ -15,7 +15,7 @@ use wgpu::{Texture, TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// The post-process, wherever it runs.
+/// The post-process on the GPU or the CPU.
 enum Post {
     Gpu { gpu: Arc<Headless>, post: Box<Afterimage>, color: Texture, output: Texture },
     Cpu(Box<CpuAfterimage>),
@@ -56,12 +56,12 @@ impl Post {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Software adapters do not count: the CPU executor needs no driver.
+    // Skip software adapters: the CPU executor needs no driver.
     let gpu = Headless::find(false);
     println!("chosen: {}", gpu.as_ref().map_or("the CPU", |g| &g.info.name));
     let settings = Settings::default();
     let mut chosen = Post::new(gpu, settings)?;
-    // To compare: the other one, if there is any adapter at all.
+    // For comparison, also run on the other one if there is any adapter.
     let mut other = match &chosen {
         Post::Cpu(_) => Headless::find(true).map(|any| Post::new(Some(any), settings)).transpose()?,
         Post::Gpu { .. } => Some(Post::new(None, settings)?),

@@ -1,4 +1,4 @@
-//! Why is my picture soft, or smeared? Six views of what was decided at each pixel, drawn on the GPU.
+//! Why is the image soft or smeared? Six debug views of the decisions at each pixel, drawn on the GPU.
 //!
 //! `cargo run -p afterimage-lab --example 06_debug_views`; writes `out/06_debug_views.png`
 
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }];
         let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
         if index == 19 {
-            // Before the frame itself is recorded, which moves the history on.
+            // Before the frame itself is recorded, because that advances the history.
             for view in VIEWS {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 post.record_view(&gpu.device, &mut encoder, &frame, &output, view)?;
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    // Three by two.
+    // A contact sheet of three by two views.
     let [w, h] = size;
     let sheet = Image::from_fn([3 * w, 2 * h], |[x, y]| {
         pictures[(y / h * 3 + x / w) as usize].at((x % w) as usize, (y % h) as usize)

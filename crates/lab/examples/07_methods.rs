@@ -1,5 +1,5 @@
-//! Which method, and which preset, on my clip? All of them on the same foveated frames, with the figures that the documents quote:
-//! PSNR, SSIM, what was retained, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
+//! Compares all methods and presets on a clip, on the same foveated frames, with the metrics that the documents quote: PSNR, SSIM,
+//! retention, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
 //!
 //! `cargo run --release -p afterimage-lab --example 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
 
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let shown = encode(&shown.image, 0.0);
             let mse = scorers[i].push(&reference, &shown, &step.tracked, &step.ecc_deg).mse;
             let gain = 10.0 * (*foveated.get_or_insert(mse) / mse).log10();
-            // The first two frames have next to no past.
+            // Skip the first two frames, which have almost no history.
             if index > 1 {
                 worst[i] = gain.min(worst[i]);
             }

@@ -1,8 +1,8 @@
-//! What does each part of the reservoir method buy? The gate, the bias, the sampler, one by one, on one clip.
+//! Ablation of the reservoir method on one clip: the gate, the bias and the sampler, one by one.
 //!
 //! `cargo run --release -p afterimage-lab --example 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
 //!
-//! Prints PSNR over none at several lengths of the clip: whole picture, and where the eye has already seen sharp.
+//! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate earlier).
 
 use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;

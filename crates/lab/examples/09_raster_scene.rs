@@ -1,7 +1,7 @@
-//! A scene rendered, foveated and enhanced: how much of what the eye has seen comes back, and what a rasterised frame is made of.
+//! Rasterises, foveates and enhances a scene: prints retention, and writes the images of a rasterised frame.
 //!
 //! `cargo run --release -p afterimage-lab --example 09_raster_scene [SCENE [FRAMES [OUT.png]]]`; SCENE is a .gltf or .glb file, or
-//! builtin:NAME (default builtin:cubes). Needs an adapter; a software one will do.
+//! builtin:NAME (default builtin:cubes). Needs an adapter; a software one is enough.
 
 use afterimage::kernel::color::srgb_encode;
 use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sheet = vec![];
     for index in 0..frames {
         let frame = source.frame(index)?;
-        // The eye wanders over the frame, from left to right and back.
+        // The gaze moves over the frame from left to right and back.
         let t = 0.5 - 0.5 * (index as f32 * 0.15).cos();
         let gaze = [(0.2 + 0.6 * t) * info.size[0] as f32, 0.5 * info.size[1] as f32];
         let step = pipeline.step(index, &frame, Some(gaze))?;
@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Images of one size, the first on the left.
+/// Images of one size side by side, the first on the left.
 fn beside(images: &[Image<[f32; 3]>]) -> Image<[f32; 3]> {
     let [w, h] = images[0].size();
     Image::from_fn([w * images.len() as u32, h], |[x, y]| images[(x / w) as usize].at((x % w) as usize, y as usize))

@@ -1,4 +1,4 @@
-//! How do I path-trace a scene, foveated, and what does that save?
+//! Path-traces a foveated scene, and prints the savings.
 //!
 //!     cargo run --release -p afterimage-lab --example 10_path_trace
 
@@ -13,7 +13,7 @@ use afterimage_lab::trace::world::World;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::open("builtin:mirror-room", &SceneLimits::default())?;
     let world = World::new(&scene);
-    // A GPU, a software one too; without any the CPU, which follows the same paths.
+    // A GPU, hardware or software; without one the CPU, which traces the same paths.
     let backend = Headless::find_roomy(true).map_or(Backend::Cpu, Backend::Gpu);
     let tracer = Tracer::new(&backend, &world, TraceSettings::default())?;
     let effects: Vec<_> = tracer.effects(&world).iter().map(|e| e.name()).collect();

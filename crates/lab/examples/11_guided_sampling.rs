@@ -1,4 +1,4 @@
-//! What do samples gain that go where a history lacks them? Frames added up, with and without a guide, at as many samples.
+//! Error of accumulated frames with samples guided to pixels that lack history, against unguided sampling at equal sample counts.
 //!
 //!     cargo run --release -p afterimage-lab --example 11_guided_sampling
 
@@ -21,13 +21,13 @@ const SIZE: [u32; 2] = [64, 36];
 const FRAMES: u64 = 16;
 const SAMPLES: u32 = 4;
 const REFERENCE_SAMPLES: u32 = 512;
-/// Independent runs, over which errors are averaged.
+/// Number of independent runs to average errors over.
 const RUNS: u64 = 4;
 
 struct Stage {
     world: World,
     tracer: Tracer,
-    /// What the camera sees in each frame.
+    /// View of each frame.
     views: Vec<View>,
 }
 
@@ -42,7 +42,7 @@ impl Stage {
         Ok(Self { world, tracer, views: (0..FRAMES).map(view).collect() })
     }
 
-    /// All frames of a run added up; and where the last one sees what the one before did not.
+    /// Mean of all frames of a run; and the mask of disocclusions in the last frame.
     fn accumulate(&self, guided: bool, run: u64) -> Result<(Film, Image<bool>), Box<dyn std::error::Error>> {
         let mut film = Film::new(SIZE);
         let mut uncovered = Image::filled(SIZE, true);
@@ -75,8 +75,8 @@ impl Stage {
     }
 }
 
-/// What the pixels' surfaces had a frame ago, by the nearest pixel; nothing if that was another surface. Of a camera that glides
-/// sideways, so that distances stay.
+/// Values reprojected from the previous frame by the nearest pixel; the default at disocclusions. For a camera that moves sideways,
+/// so that depth is constant.
 fn reprojected(moments: &Image<Moments>, before: &Image<f32>, seen: &Surfaces) -> Image<Moments> {
     Image::from_fn(SIZE, |[x, y]| {
         let [dx, dy] = seen.motion.at(x as usize, y as usize);
@@ -90,7 +90,7 @@ fn reprojected(moments: &Image<Moments>, before: &Image<f32>, seen: &Surfaces) -
     })
 }
 
-/// Mean squared error of luma as a screen shows it, x / (1 + x), over the pixels of `of`; the reference's own noise taken off.
+/// Mean squared error of tone-mapped luma, x / (1 + x), over the pixels in `of`, minus the variance of the reference.
 fn error(film: &Film, reference: &Film, of: impl Fn(usize) -> bool) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for (_, (a, b)) in film.moments.pixels().iter().zip(reference.moments.pixels()).enumerate().filter(|p| of(p.0)) {

@@ -1,25 +1,25 @@
-//! Wall and CPU time of a piece of work.
+//! Wall and CPU time measurement, and quartiles of a sample.
 
 use std::time::Instant;
 
-/// Started before the work, read after it.
+/// A timer of wall and CPU time since [`Stopwatch::start`].
 pub struct Stopwatch {
     wall: Instant,
     cpu_ms: Option<f64>,
 }
 
 impl Stopwatch {
-    /// Starts now.
+    /// A timer that starts now.
     pub fn start() -> Self {
         Self { wall: Instant::now(), cpu_ms: process_cpu_ms() }
     }
 
-    /// Milliseconds that have passed.
+    /// Elapsed wall time in milliseconds.
     pub fn wall_ms(&self) -> f64 {
         self.wall.elapsed().as_secs_f64() * 1e3
     }
 
-    /// Milliseconds that the process's threads have worked, all together; `None` where the system does not tell.
+    /// CPU time in milliseconds, summed over all threads of the process; `None` where the system does not provide it.
     pub fn cpu_ms(&self) -> Option<f64> {
         Some(process_cpu_ms()? - self.cpu_ms?)
     }
@@ -36,19 +36,19 @@ fn process_cpu_ms() -> Option<f64> {
     None
 }
 
-/// Median and quartiles of a sample; `None` of an empty one.
+/// Median and quartiles of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Quartiles {
-    /// Half lie below.
+    /// Median.
     pub median: f64,
-    /// A quarter lies below.
+    /// First quartile.
     pub p25: f64,
-    /// Three quarters lie below.
+    /// Third quartile.
     pub p75: f64,
 }
 
 impl Quartiles {
-    /// Of `values`, in any order, interpolated between neighbours.
+    /// Quartiles of `values` in any order, linearly interpolated between neighbours; `None` for an empty slice.
     pub fn of(values: &[f64]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);

@@ -1,54 +1,55 @@
-//! Frames in memory: what sources hand out, what methods are given.
+//! Frames in memory: the output of sources and the input of methods.
 
 use afterimage::Image;
 
-/// One full-rate frame with what a temporal method needs to know about it.
+/// A full-rate frame with the auxiliary images of a temporal method.
 #[derive(Clone, Debug)]
 pub struct SourceFrame {
     /// Linear Rec. 709 color, scene-referred. Non-finite pixels of the input are black here and counted below.
     pub color: Image<[f32; 3]>,
-    /// Distance along the view axis; `f32::INFINITY` (or 1e10) where there is nothing. `None`: not known.
+    /// Depth along the view axis; `f32::INFINITY` (or 1e10) for the background. `None`: not known.
     pub depth: Option<Image<f32>>,
-    /// Pixels, y down, previous minus current: `p` was at `p + motion`. `None`: nothing moves.
+    /// Motion vectors in pixels, y down, previous minus current: `p` was at `p + motion`. `None`: nothing moves.
     pub motion: Option<Image<[f32; 2]>>,
-    /// How far the past of each pixel may be believed (1 as usual, 0 not at all), where the source knows what moves without vectors.
+    /// History confidence of each pixel, about 1 - FSR2's reactive mask: 1 reuses history as usual, 0 rejects it. `Some` where the
+    /// source knows content that moves without motion vectors.
     pub trust: Option<Image<f32>>,
-    /// Takes a point from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column
-    /// vectors. `None`: the camera did not move, or its motion is not known.
+    /// Matrix from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column vectors.
+    /// `None`: the camera did not move, or its motion is not known.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
-    /// Nothing of the previous frame is valid here.
+    /// Camera cut: no history is valid.
     pub cut: bool,
     /// Color pixels of the input that were NaN or infinite.
     pub nonfinite: u64,
 }
 
-/// A frame sampled by a plan and filled in.
+/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel.
 #[derive(Clone, Debug)]
 pub struct FoveatedFrame {
     /// Linear radiance.
     pub color: Image<[f32; 3]>,
-    /// Level of detail, log2 of the distance of samples in pixels.
+    /// Level of detail: log2 of the sample spacing in pixels.
     pub lod: Image<f32>,
-    /// Standard error of the color's luma, linear, and the samples that it is a mean of, at its level of detail.
+    /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
     pub noise: Image<[f32; 2]>,
-    /// Samples of each ring.
+    /// Number of samples in each ring.
     pub samples: Vec<u64>,
-    /// Rays of all kinds.
+    /// Number of rays of all kinds.
     pub rays: u64,
-    /// Samples that were not finite and count as black.
+    /// Number of samples that were not finite and count as black.
     pub nonfinite: u64,
 }
 
-/// What is known of a frame before it is traced, at every pixel.
+/// Per-pixel guide for adaptive sampling, known before the frame is traced.
 ///
-/// A number that makes no sense (NaN, below 0; an infinite deviation) says that nothing is known: no samples are held, the
-/// deviation is the mean of the ring's known ones.
+/// An invalid number (NaN, negative, or an infinite deviation) counts as unknown: 0 samples in the history, and the mean of the
+/// ring's valid deviations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
-    /// Samples that the history holds of the surface seen now; 0: nothing, as behind what has moved away. Infinity: enough.
+    /// Number of samples that the history holds of the visible surface. 0: none, as at a disocclusion. Infinity: no more needed.
     pub known: Image<f32>,
-    /// Standard deviation of one sample's luma. In any unit that is the same everywhere: errors in it are what gets small. 0:
-    /// nothing to be gained.
+    /// Standard deviation of one sample's luma, in any unit common to all pixels: sampling minimizes the error in that unit. 0: more
+    /// samples gain nothing.
     pub deviation: Image<f32>,
 }
 

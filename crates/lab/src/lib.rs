@@ -1,10 +1,10 @@
-//! Everything to see, test and price [`afterimage`]: where frames come from, where the eye looks, how good the result is.
+//! Frame sources, renderers, scanpaths and metrics to test and measure [`afterimage`].
 //!
-//! - [`source`]: stills, EXR sequences, analytic scenes, rendered scenes; all hand out [`frame::SourceFrame`]s.
-//! - [`scene`]: glTF and built-in scenes. [`raster`]: render passes of them. [`trace`]: path tracing, foveated or not.
-//! - [`scanpath`]: recorded and synthetic eyes.
-//! - [`pipeline`]: a frame through foveation and methods. [`metric`]: how good what they show is.
-//! - [`device`]: a device without a window.
+//! - [`source`]: stills, EXR sequences, analytic scenes and rendered scenes, all as streams of [`frame::SourceFrame`]s.
+//! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at full rate.
+//! - [`scanpath`]: recorded and synthetic gaze.
+//! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
+//! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
 pub mod clock;
 pub mod device;

@@ -1,4 +1,4 @@
-//! Images as files people can open: 8-bit PNG, written whole or not at all.
+//! 8-bit PNG output, written atomically.
 
 use crate::whole_file::write_whole;
 use afterimage::Image;
@@ -14,10 +14,10 @@ pub fn to_rgb8(encoded: &Image<[f32; 3]>) -> RgbImage {
     RgbImage::from_raw(width, height, pixels.into_flattened()).expect("three bytes a pixel")
 }
 
-/// Writes a PNG, whole or not at all. Fast compression: frames are many.
+/// Writes a PNG atomically. Compression is fast rather than small, because clips have many frames.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write_png(path: &Path, picture: &RgbImage) -> io::Result<()> {
     write_whole(path, |file| {
         PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive)

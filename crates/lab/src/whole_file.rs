@@ -1,15 +1,15 @@
-//! Files that are written whole or not at all.
+//! Atomic file writes: a file is written completely or not at all.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes `path` with what `fill` puts into it: under a temporary name beside it, which is then changed. A reader never sees
-/// half a file, and an old one stays if anything fails.
+/// Writes `path` with the contents that `fill` produces: into a temporary file in the same folder, which is then renamed. Readers
+/// never see a partial file, and an existing file stays intact if anything fails.
 ///
 /// # Errors
-/// Those of the file system and of `fill`; the temporary file is then removed.
+/// Errors of the file system and of `fill`; the temporary file is then removed.
 pub fn write_whole(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     let temporary = temporary_name(path)?;
     let write = || {
@@ -19,12 +19,12 @@ pub fn write_whole(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::R
         fs::rename(&temporary, path)
     };
     write().inspect_err(|_| {
-        // The first error is the one worth telling.
+        // Report the first error, not that of the clean-up.
         let _ = fs::remove_file(&temporary);
     })
 }
 
-/// A name beside `path` that no other write of this machine uses.
+/// A path in the folder of `path` that no other process or call uses.
 fn temporary_name(path: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let name =

@@ -1,7 +1,7 @@
 //! Errors of the tool: one line of text, and an exit code that separates bad input from failed work.
 
 use afterimage::{CreateError, FrameError, SettingsError};
-use afterimage_lab::error::InputError;
+use afterimage_lab::error::{Bound, InputError};
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -48,7 +48,23 @@ impl Failure {
 
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
-        Self::Input(error.to_string())
+        Self::Input(with_option(&error))
+    }
+}
+
+/// The line of `error`, with the option of this tool that it calls for. The library does not know the options.
+fn with_option(error: &InputError) -> String {
+    match error {
+        // These remedies end with "or raise the limit".
+        InputError::Limit { exceeded, .. } if exceeded.bound == Bound::Pixels => {
+            let megapixels = exceeded.needed_megapixels().map_or("N".to_owned(), |n| n.to_string());
+            format!("{error} with --max-megapixels {megapixels}")
+        }
+        // The subject of a camera that does not exist is "camera NAME".
+        InputError::Request(message) if message.subject.starts_with("camera ") => format!("--{error}"),
+        // These remedies end with the CPU as a way out.
+        InputError::Device(_) => format!("{error} (--backend cpu)"),
+        _ => error.to_string(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The coarser levels of a frame on the device.
+//! Mip levels of a full-rate frame on the GPU.
 
 use super::texture;
 use crate::frame::ContextDesc;
@@ -10,24 +10,24 @@ use wgpu::{
     TextureViewDimension,
 };
 
-/// Full floats: level l is a mean of means, l roundings deep, and the CPU keeps as many bits.
+/// 32-bit floats, as on the CPU: level l is a mean of means, rounded l times.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
-/// Levels 1 and up, as mips 0 and up of one texture. Mips of a texture round sizes down, levels round them up, so the texture is as
-/// large as a frame whose sides the coarsest level divides.
+/// Levels from 1 on, as mips from 0 on of one texture. Mip sizes of a texture round down, levels round up; the texture is padded to
+/// sides that the coarsest level divides, so that they agree.
 #[derive(Debug)]
 pub(super) struct MipChain {
-    /// All mips, for reading.
+    /// View of all mips, to read.
     pub levels: TextureView,
     mips: Vec<TextureView>,
-    /// Sizes of the levels that each is made of, in pixels or texels, and the buffers that tell the shader.
+    /// For each mip the size of the next finer level, and a uniform buffer that contains it.
     fine: Vec<([u32; 2], Buffer)>,
     view_count: u32,
     shader: ComputeShader,
 }
 
 impl MipChain {
-    /// Levels 1 to `coarsest`; with none, a texture that is bound and not read.
+    /// A mip chain of levels 1 to `coarsest`. For a `coarsest` of 0 its texture is a placeholder, which is bound but not read.
     pub fn new(device: &Device, desc: &ContextDesc, coarsest: u32, source: String) -> Self {
         let mip_count = coarsest.max(1);
         let base = desc.size_px.map(|s| s.next_multiple_of(1 << mip_count) / 2);
@@ -57,7 +57,7 @@ impl MipChain {
         }
     }
 
-    /// Makes all levels of `full`, each from the one before.
+    /// Records the dispatches that fill all levels from the full-rate frame `full`.
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, full: &TextureView) {
         let mut finer = full;
         for (mip, (fine_size, buffer)) in self.mips.iter().zip(&self.fine) {

@@ -1,8 +1,5 @@
-//! The simulators on a GPU: recorded into the caller's command encoder. Twins of [`Foveation::render`] and [`Foveation::lod_map`],
-//! bit-equal to them on software Vulkan.
-//!
-//! [`Foveation::render`]: crate::Foveation::render
-//! [`Foveation::lod_map`]: crate::Foveation::lod_map
+//! Simulators on a GPU, recorded into the caller's command encoder. Twins of `Foveation::render` and `Foveation::lod_map`, bit-equal to
+//! them on software Vulkan.
 
 mod mip_chain;
 // For the tests, which compare struct layouts.
@@ -23,37 +20,37 @@ use wgpu::{
     TextureUsages, TextureView,
 };
 
-/// One frame. All textures have the size of the context, one array layer a view (mono frames are plain 2D textures), and one sample a
-/// pixel.
+/// Inputs and outputs of a simulated frame. Example: [`GpuSimulator`].
+///
+/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), and one sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct SimulatorFrame<'a> {
-    /// The frame at full rate: linear color, any float format, usage `TEXTURE_BINDING`.
+    /// Input: the frame at full rate. Linear color, any float format, usage `TEXTURE_BINDING`.
     pub full: &'a Texture,
-    /// The foveated frame: the context's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied bit for bit if `full` has
-    /// the same format.
+    /// Output: the foveated frame. The simulator's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied bit for bit if
+    /// `full` has the same format.
     pub output: &'a Texture,
-    /// Where to write each pixel's level of detail (log2 of the block edge in pixels), for
-    /// [`Frame::lod`](crate::gpu::Frame::lod): `R32Float`, usage `STORAGE_BINDING`. `None`: nowhere.
+    /// Output: level of detail of each pixel (log2 of the block edge in pixels), for [`Frame::lod`](crate::Frame::lod). `R32Float`,
+    /// usage `STORAGE_BINDING`. `None`: not written.
     pub lod: Option<&'a Texture>,
-    /// One entry a view; its geometry and gaze matter here.
+    /// Descriptions of the views, one for each view of the context; only geometry and gaze are used.
     pub views: &'a [ViewFrame],
-    /// Where the device writes when the passes begin and end, if the caller wants to time them. Needs
-    /// `Features::TIMESTAMP_QUERY`.
+    /// Timestamp queries around the passes. Needs `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,
 }
 
 impl<'a> SimulatorFrame<'a> {
-    /// A frame without optional outputs.
+    /// A frame without levels of detail and timestamps.
     pub fn new(full: &'a Texture, output: &'a Texture, views: &'a [ViewFrame]) -> Self {
         Self { full, output, lod: None, views, timestamps: None }
     }
 }
 
-/// A foveation simulator on a GPU: of a full-rate frame it makes what a foveating renderer would have delivered.
+/// A foveation simulator on a GPU: turns a full-rate frame into the frame that a foveating renderer would have delivered.
 ///
-/// The caller owns device, queue, encoder, every input and output texture, and submission, as with
-/// [`Afterimage`](crate::gpu::Afterimage). Kept on the device: for the mip levels of [`Filter::Mip`] 5.4 bytes a pixel, of
-/// [`Filter::Block`] 5; between the axes of [`Filter::Gauss`] 16.
+/// The caller owns device, queue, encoder, submission, and every input and output texture, as with
+/// [`Afterimage`](crate::gpu::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and 5 for
+/// [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
 ///
 /// ```no_run
 /// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
@@ -73,11 +70,11 @@ pub struct GpuSimulator {
     output_format: TextureFormat,
     steps: Steps,
     held_gaze: Vec<Option<[f32; 2]>>,
-    /// Bound where no levels of detail are asked for; not written.
+    /// Placeholder for frames without levels of detail; not written.
     no_lod: TextureView,
 }
 
-/// Passes of a filter, and what lies between them.
+/// Passes of a filter, and their intermediate textures.
 #[derive(Debug)]
 enum Steps {
     Levels { mip_chain: MipChain, show: ComputeShader },
@@ -85,16 +82,17 @@ enum Steps {
 }
 
 impl GpuSimulator {
-    /// A simulator of `desc.settings.foveation` for frames of `desc`, of which size and number of views matter here, and outputs of
-    /// `output_format`. Compiles shaders; pipelines are made at the first frame that needs them.
+    /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`, and outputs of
+    /// `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules; pipelines are compiled at the first frame
+    /// that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if a setting or fact is out of range, or the device cannot do it.
+    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
         Self::with_shaders(device, desc, output_format, |name| SHADERS.compose(name).source)
     }
 
-    /// With shaders from elsewhere: tests plant errors in them.
+    /// A simulator with other shaders, for tests that plant errors.
     #[doc(hidden)]
     pub fn with_shaders(
         device: &Device,
@@ -104,7 +102,7 @@ impl GpuSimulator {
     ) -> Result<Self, CreateError> {
         validate(desc, output_format, &device.limits())?;
         let texel = texel(output_format)?;
-        // The texel format of a storage texture is part of the text in WGSL.
+        // In WGSL the texel format of a storage texture is part of its type.
         let writing = |name, texel| source(name).replace("rgba16float", texel);
         let foveation = desc.settings.foveation;
         let output = storage_texture(output_format);
@@ -119,7 +117,7 @@ impl GpuSimulator {
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
             Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
-            // Blocks of one pixel.
+            // Off: blocks of one pixel.
             Filter::Off => levels(0, "block_show"),
             Filter::Gauss => {
                 let format = TextureFormat::Rgba32Float;
@@ -145,15 +143,16 @@ impl GpuSimulator {
         })
     }
 
-    /// The description that it was made for.
+    /// Description that the simulator was created with.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
     }
 
-    /// Records one frame into `encoder`. A lost gaze is held, as by the post-process.
+    /// Records one frame into `encoder`. For a lost gaze the last known position is used, as by the post-process.
     ///
     /// # Errors
-    /// If a texture or number does not fit the context; then nothing was recorded and no state has moved.
+    /// [`FrameError`] if a texture or value does not fit the description; then nothing was recorded and held gaze positions are
+    /// unchanged.
     pub fn record(
         &mut self,
         device: &Device,
@@ -203,7 +202,7 @@ impl GpuSimulator {
         check_texture(desc, "the full-rate frame", frame.full, TextureUsages::TEXTURE_BINDING)?;
         check_readable("the full-rate frame", frame.full, 3)?;
         let written = [
-            ("output", Some(frame.output), self.output_format, "the output format that the context was made for"),
+            ("output", Some(frame.output), self.output_format, "the output format given to GpuSimulator::new"),
             ("levels of detail", frame.lod, TextureFormat::R32Float, "R32Float"),
         ];
         for (input, texture, format, expected) in written {
@@ -214,7 +213,7 @@ impl GpuSimulator {
                 return Err(FrameError::Texture {
                     input,
                     format: found,
-                    problem: "not what is written".into(),
+                    problem: "which is not the format that is written".into(),
                     expected,
                 });
             }
@@ -222,7 +221,7 @@ impl GpuSimulator {
         Ok(())
     }
 
-    /// The frame's uniforms. Remembers where the eyes look.
+    /// Uniforms of a frame. Holds its gaze positions for frames in which the gaze is lost.
     fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
         let mut gaze_px = vec![];
         for (view, held) in views.iter().zip(&mut self.held_gaze) {

@@ -1,4 +1,4 @@
-//! Uniforms of the simulators' passes. Order, offsets and sizes are checked against the WGSL by a test.
+//! Uniforms of the simulators. A test checks order, offsets and sizes against the WGSL.
 
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, ViewFrame};
@@ -14,22 +14,22 @@ pub struct FoveationUniforms {
     pub size: [u32; 2],
     /// Coarsest level.
     pub coarsest: u32,
-    /// Radius of the full-rate region.
+    /// Radius of the fovea.
     pub fovea_radius_deg: f32,
     /// Radius of the middle region.
     pub mid_radius_deg: f32,
     /// Width of the blends outside the radii.
     pub blend_deg: f32,
-    /// How coarse the middle region is: level of detail, or standard deviation in pixels of the Gaussian at its edge.
+    /// Coarseness of the middle region: level of detail, or standard deviation in pixels of the Gaussian at the region's edge.
     pub mid: f32,
-    /// How coarse the frame is beyond: level of detail, or largest standard deviation in pixels.
+    /// Coarseness of the periphery: level of detail, or largest standard deviation in pixels of the Gaussian.
     pub far: f32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
 }
 
 impl FoveationUniforms {
-    /// Uniforms of a frame whose eyes look at `gaze_px`.
+    /// Uniforms of a frame with gaze positions `gaze_px`.
     pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], gaze_px: &[[f32; 2]]) -> Self {
         let foveation = &desc.settings.foveation;
         let [mid, far] = foveation.coarseness();

@@ -394,6 +394,7 @@ pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
         DepthConvention::Forward { near, far } => (1.0 / near - 1.0 / z) / (1.0 / near - 1.0 / far),
         DepthConvention::Reversed { near, far } => (1.0 / z - 1.0 / far) / (1.0 / near - 1.0 / far),
         DepthConvention::Orthographic { near, far } => (z - near) / (far - near),
+        other => panic!("{other:?}: a convention that the rig does not know"),
     };
     View {
         facts: ViewFrame {

@@ -28,7 +28,7 @@ fn a_flipped_motion_sign_is_caught() {
 
 #[test]
 fn trust_after_the_fact_and_a_forgotten_limit_are_caught() {
-    caught(decisions::PROBES, "believe", "a_es_decay(past.log_key, share)", "past.log_key");
+    caught(decisions::PROBES, "scale_by_trust", "a_es_decay(past.log_key, share)", "past.log_key");
     caught(state::PROBES, "trust", "return 1.0;", "return t;");
     caught(
         decisions::PROBES,

@@ -167,21 +167,21 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "believe",
+        name: "scale_by_trust",
         module: "wrs",
         words: [4, 2],
-        wgsl: "let p = believe(Past(vec3<f32>(0.0), in_f(0u), in_f(1u)), in_f(2u), in_u(3u)); out_f(p.w_sum); out_f(p.log_key);",
+        wgsl: "let p = scale_by_trust(Past(vec3<f32>(0.0), in_f(0u), in_f(1u)), in_f(2u), in_u(3u)); out_f(p.w_sum); out_f(p.log_key);",
         rust: |r, o| {
             let past = Past { w_sum: r.f(0), log_key: r.f(1), ..Past::EMPTY };
-            let believed = wrs::believe(past, r.f(2), [SamplerCode::AChao, SamplerCode::AEs][r.u(3) as usize]);
-            o.f(believed.w_sum);
-            o.f(believed.log_key);
+            let scaled = wrs::scale_by_trust(past, r.f(2), [SamplerCode::AChao, SamplerCode::AEs][r.u(3) as usize]);
+            o.f(scaled.w_sum);
+            o.f(scaled.log_key);
         },
         rows: || {
             let keys = floats(&[0.0, -1e-8, -1.0, -1e30, f32::MIN]);
             Rows::new(4)
                 .cross(&[&normal(), &keys, &any(), &[0, 1]])
-                .random("believe", |d, row| {
+                .random("scale_by_trust", |d, row| {
                     row.extend([scaled(d, -10, 10), signed(d, -10, 10) | 1 << 31, range(d, 0.0, 1.0), d.bits() & 1]);
                 })
                 .within(|r| r.f(0) <= pack::MAX_W_SUM)

@@ -208,12 +208,12 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "coarser_worth",
+        name: "discount_coarser",
         module: "noise",
         words: [5, 2],
-        wgsl: "let n = coarser_worth(Noise(in_f(0u), in_f(1u)), Noise(in_f(2u), in_f(3u)), in_f(4u)); out_f(n.samples); out_f(n.variance);",
-        rust: |r, o| put(o, noise::coarser_worth(known(r, 0), known(r, 2), r.f(4))),
-        rows: || pair_rows("coarser_worth", &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])]),
+        wgsl: "let n = discount_coarser(Noise(in_f(0u), in_f(1u)), Noise(in_f(2u), in_f(3u)), in_f(4u)); out_f(n.samples); out_f(n.variance);",
+        rust: |r, o| put(o, noise::discount_coarser(known(r, 0), known(r, 2), r.f(4))),
+        rows: || pair_rows("discount_coarser", &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])]),
     },
     Probe {
         name: "sample_difference",

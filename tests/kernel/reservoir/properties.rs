@@ -73,7 +73,7 @@ proptest! {
         let weight = if usable { sanitize::weight(weight).min(1.0) } else { 0.0 };
         let history = pack::unpack(words);
         let past = Past { color: history.color, w_sum: history.w_sum, log_key: key };
-        let past = wrs::believe(past, trust, params.sampler);
+        let past = wrs::scale_by_trust(past, trust, params.sampler);
         prop_assert!(past.w_sum >= 0.0 && past.w_sum <= history.w_sum);
         let d = wrs::step(candidate, weight, past, &params, draw as f32 / 16_777_216.0);
         prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && d.log_key.is_finite() && d.log_key <= 0.0);

@@ -1,8 +1,8 @@
-//! FLIP: how visible the difference of two pictures is to a person who flips between them (Andersson et al., "FLIP: A Difference
-//! Evaluator for Alternating Images", 2020), for pictures of sRGB-encoded values in \[0, 1\] (LDR-FLIP).
+//! FLIP: visibility of the difference between two images that are shown in alternation (Andersson et al., "FLIP: A Difference
+//! Evaluator for Alternating Images", 2020). This is LDR-FLIP, for sRGB-encoded values in \[0, 1\].
 //!
-//! What the eye cannot resolve at the given distance is filtered out of both; what is left is compared as colors, and the more
-//! so where edges and points come or go.
+//! A contrast sensitivity filter removes detail that the eye cannot resolve at the given distance. The filtered images are then
+//! compared by color, with more weight where edges or points differ.
 
 use afterimage::kernel::color;
 use afterimage::{Image, ViewGeometry};
@@ -12,34 +12,34 @@ use std::f64::consts::PI;
 
 /// Exponent of the color difference (q_c, section 4.1.3).
 const COLOR_EXPONENT: f32 = 0.7;
-/// Color differences up to this share of the largest one (p_c) ...
+/// Knee of the color error curve, as a share of the largest color difference (p_c).
 const COLOR_KNEE: f32 = 0.4;
-/// ... take up this share of the range (p_t).
+/// Color error at the knee (p_t).
 const COLOR_BELOW_KNEE: f32 = 0.95;
-/// Width in degrees of the edges and points looked for (w, section 4.2).
+/// Width in degrees of the detected edges and points (w, section 4.2).
 const FEATURE_DEG: f64 = 0.082;
 
-/// Contrast sensitivity to luminance, red-green and blue-yellow as Gaussians a exp(-b f^2) of the frequency
-/// (section 4.1.1): pairs (a, b).
+/// Contrast sensitivity to luminance, red-green and blue-yellow: sums of Gaussians a exp(-b f^2) of the frequency f in cycles per
+/// degree, as pairs (a, b) (section 4.1.1).
 const LUMINANCE: [(f64, f64); 1] = [(1.0, 0.0047)];
 const RED_GREEN: [(f64, f64); 1] = [(1.0, 0.0053)];
 const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
-/// The largest b, which says how far the filters reach.
+/// The largest b, which determines the radius of the filters.
 const WIDEST: f64 = 0.04;
 
-/// Chromaticities (x, y) of red, green, blue and white (BT.709).
+/// Chromaticities (x, y) of the primaries and of white (BT.709).
 const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
 const WHITE: [f64; 2] = [0.3127, 0.3290];
 
-/// Resolutions that are told apart: below, the filters are a single pixel; above, they are many and no eye sees more.
+/// Range of pixels per degree: below it the filters are a single pixel; above it they grow large beyond what any eye resolves.
 const PIXELS_PER_DEGREE: [f32; 2] = [1.0, 1000.0];
 
-/// Weights of pixels -r to r.
+/// Filter weights of pixels -r to r.
 type Kernel = Vec<f32>;
-/// One value a pixel, row after row.
+/// One value per pixel, in row-major order.
 type Plane = Vec<f32>;
 
-/// The metric for an eye at a distance.
+/// The FLIP metric for a viewing distance.
 #[derive(Clone, Debug)]
 pub struct Flip {
     pixels_per_degree: f32,
@@ -54,18 +54,18 @@ pub struct Flip {
     largest_color: f32,
 }
 
-/// What the eye makes of one picture.
+/// An image after FLIP's filters and feature detection.
 #[derive(Clone, Debug)]
-pub struct Seen {
-    /// L\*a\*b\* of what is left by the filters, chroma adjusted to lightness (Hunt).
+pub struct Preprocessed {
+    /// Filtered color in L\*a\*b\*, with Hunt's adjustment of chroma to lightness.
     colors: Image<Vec3>,
-    /// How much of an edge and of a point there is.
+    /// Strength of edges and of points.
     features: Image<[f32; 2]>,
 }
 
 impl Flip {
-    /// For a picture of so many pixels a degree, clamped to 1 to 1000. NVIDIA's default is 67.02: a screen of 3840 pixels on 0.7 m
-    /// at a distance of 0.7 m.
+    /// The metric at a resolution in pixels per degree, clamped to 1 to 1000. NVIDIA's default is 67.02: 3840 pixels over 0.7 m, seen
+    /// from 0.7 m.
     pub fn new(pixels_per_degree: f32) -> Self {
         let [least, most] = PIXELS_PER_DEGREE;
         let pixels_per_degree = pixels_per_degree.max(least).min(most);
@@ -89,19 +89,19 @@ impl Flip {
         }
     }
 
-    /// For an eye where the view's angles are true: at its pixels per degree in the middle.
+    /// The metric at the pixels per degree in the middle of `view`.
     pub fn for_view(view: &ViewGeometry) -> Self {
         let ([tangent_per_px, _], _) = view.scale_offset();
         Self::new(1.0 / (2.0 * (0.5 * tangent_per_px).atan().to_degrees()))
     }
 
-    /// Pixels a degree.
+    /// Resolution in pixels per degree.
     pub fn pixels_per_degree(&self) -> f32 {
         self.pixels_per_degree
     }
 
-    /// Looks at a picture: sRGB-encoded, in \[0, 1\].
-    pub fn see(&self, encoded: &Image<[f32; 3]>) -> Seen {
+    /// Filters an image of sRGB-encoded values in \[0, 1\] and detects its features.
+    pub fn preprocess(&self, encoded: &Image<[f32; 3]>) -> Preprocessed {
         let size = encoded.size();
         let width = encoded.width().max(1);
         let opponent: Vec<Vec3> = encoded.pixels().par_iter().map(|&c| self.opponent(c)).collect();
@@ -125,34 +125,34 @@ impl Flip {
             let i = y as usize * width + x as usize;
             [&edges, &points].map(|[across, down]| across[i].hypot(down[i]))
         });
-        Seen { colors, features }
+        Preprocessed { colors, features }
     }
 
-    /// The difference of two pictures at every pixel, 0 to 1.
+    /// FLIP error at every pixel, 0 to 1.
     ///
     /// # Panics
     /// If the sizes differ.
-    pub fn difference(&self, reference: &Seen, shown: &Seen) -> Image<f32> {
+    pub fn difference(&self, reference: &Preprocessed, output: &Preprocessed) -> Image<f32> {
         let size = reference.colors.size();
-        assert_eq!(size, shown.colors.size());
+        assert_eq!(size, output.colors.size());
         Image::from_fn_parallel(size, |[x, y]| {
             let (x, y) = (x as usize, y as usize);
-            let color = self.color_difference(reference.colors.at(x, y), shown.colors.at(x, y));
-            let [r, s] = [reference, shown].map(|seen| seen.features.at(x, y));
+            let color = self.color_difference(reference.colors.at(x, y), output.colors.at(x, y));
+            let [r, s] = [reference, output].map(|image| image.features.at(x, y));
             let feature = ((r[0] - s[0]).abs().max((r[1] - s[1]).abs()) * std::f32::consts::FRAC_1_SQRT_2).sqrt();
             color.powf(1.0 - feature.min(1.0))
         })
     }
 
-    /// The difference of two pictures that are looked at once only.
+    /// FLIP error at every pixel, 0 to 1, of two images that are not preprocessed yet.
     ///
     /// # Panics
     /// If the sizes differ.
-    pub fn map(&self, reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Image<f32> {
-        self.difference(&self.see(reference), &self.see(shown))
+    pub fn map(&self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>) -> Image<f32> {
+        self.difference(&self.preprocess(reference), &self.preprocess(output))
     }
 
-    /// The difference of two colors, 0 to 1 (section 4.1.3).
+    /// Color error, 0 to 1 (section 4.1.3).
     fn color_difference(&self, a: Vec3, b: Vec3) -> f32 {
         let difference = hyab(a, b).powf(COLOR_EXPONENT);
         let knee = COLOR_KNEE * self.largest_color;
@@ -164,20 +164,21 @@ impl Flip {
         share.min(1.0)
     }
 
-    /// Luminance, red-green and blue-yellow (YCxCz) of an sRGB-encoded color, over 116, 500 and 200: the filters are linear.
+    /// Opponent color YCxCz (luminance, red-green, blue-yellow) of an sRGB-encoded color, divided by 116, 500 and 200. The factors
+    /// cancel, because the filters are linear.
     fn opponent(&self, encoded: [f32; 3]) -> Vec3 {
         let xyz = self.xyz_from_linear * Vec3::from(encoded.map(color::srgb_decode));
         Vec3::new(xyz.y, xyz.x - xyz.y, xyz.y - xyz.z)
     }
 
-    /// The way back from [`Self::opponent`], to linear values that can be shown.
+    /// Inverse of [`Self::opponent`]: linear RGB, clamped to \[0, 1\].
     fn linear(&self, [y, red_green, blue_yellow]: [f32; 3]) -> Vec3 {
         let xyz = Vec3::new(y + red_green, y, y - blue_yellow);
         (self.linear_from_xyz * xyz).clamp(Vec3::ZERO, Vec3::ONE)
     }
 }
 
-/// From linear colors to XYZ, each over that of white.
+/// Matrix from linear RGB to XYZ, relative to white.
 fn xyz_from_linear() -> DMat3 {
     let xyz = |[x, y]: [f64; 2]| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
     let [r, g, b] = PRIMARIES.map(xyz);
@@ -186,7 +187,7 @@ fn xyz_from_linear() -> DMat3 {
     DMat3::from_diagonal(white.recip()) * primaries * DMat3::from_diagonal(primaries.inverse() * white)
 }
 
-/// L\*a\*b\* whose chroma grows with lightness (Hunt's effect, section 4.1.2).
+/// L\*a\*b\* with chroma scaled by lightness (Hunt effect, section 4.1.2).
 fn hunt_lab(linear: Vec3) -> Vec3 {
     let lab = color::lab(linear);
     let chroma = 0.01 * lab.x;
@@ -199,10 +200,10 @@ fn hyab(a: Vec3, b: Vec3) -> f32 {
     d.x.abs() + d.y.hypot(d.z)
 }
 
-/// A contrast sensitivity function as filters across and down, one for each of its Gaussians; their sum over the plane is 1.
+/// Spatial filters of a contrast sensitivity function: a separable kernel for each of its Gaussians. Their 2D sum is 1.
 fn sensitivity(gaussians: &[(f64, f64)], ppd: f64) -> Vec<Kernel> {
     let reach = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * ppd).ceil() as i32;
-    // The inverse Fourier transform (section 4.1.1). As published, the plane's filters, too, have a line's root of pi / b.
+    // The inverse Fourier transform (section 4.1.1). As published, the 2D filters have the factor sqrt(pi / b) of the 1D transform.
     let height = |(a, b): (f64, f64)| a * (PI / b).sqrt();
     let along = |b: f64, x: i32| (-PI * PI / b * (f64::from(x) / ppd).powi(2)).exp();
     let side = |b: f64| (-reach..=reach).map(|x| along(b, x)).sum::<f64>();
@@ -214,7 +215,7 @@ fn sensitivity(gaussians: &[(f64, f64)], ppd: f64) -> Vec<Kernel> {
     gaussians.iter().map(kernel).collect()
 }
 
-/// The values of `f` at -reach to reach, positive ones scaled to a sum of 1, negative ones to -1.
+/// Values of `f` at -reach to reach, with positive values scaled to a sum of 1 and negative ones to -1.
 fn balanced(reach: i32, f: impl Fn(f64) -> f64) -> Kernel {
     let values: Vec<f64> = (-reach..=reach).map(|x| f(f64::from(x))).collect();
     let sum = |sign: f64| values.iter().map(|v| (v * sign).max(0.0)).sum::<f64>();
@@ -222,7 +223,7 @@ fn balanced(reach: i32, f: impl Fn(f64) -> f64) -> Kernel {
     values.iter().map(|&v| if v > 0.0 { v / positive } else { v / negative.max(f64::MIN_POSITIVE) } as f32).collect()
 }
 
-/// The sum of a plane's convolutions, across and down, with each of the kernels.
+/// Sum of the separable convolutions of a plane with each kernel.
 fn convolved(plane: &Plane, width: usize, kernels: &[Kernel]) -> Plane {
     let mut sum: Option<Plane> = None;
     for kernel in kernels {
@@ -235,7 +236,7 @@ fn convolved(plane: &Plane, width: usize, kernels: &[Kernel]) -> Plane {
     sum.unwrap_or_default()
 }
 
-/// Convolution along the rows; the outermost pixels go on beyond the border.
+/// Convolution along rows, clamped to the edge.
 fn across(plane: &Plane, width: usize, kernel: &Kernel) -> Plane {
     let reach = kernel.len() / 2;
     let mut out = vec![0.0; plane.len()];
@@ -251,7 +252,7 @@ fn across(plane: &Plane, width: usize, kernel: &Kernel) -> Plane {
     out
 }
 
-/// Convolution along the columns; the outermost pixels go on beyond the border.
+/// Convolution along columns, clamped to the edge.
 fn down(plane: &Plane, width: usize, kernel: &Kernel) -> Plane {
     let reach = kernel.len() / 2;
     let last = (plane.len() / width).saturating_sub(1);

@@ -1,36 +1,36 @@
-//! Ghosts: how much of what a pixel showed before a change is still in it, and for how long.
+//! Ghosting: the share of a pixel's old color that remains in the output after a change, and its duration.
 
 use super::{NO_PAST, Tracked};
 use afterimage::Image;
 use glam::Vec3;
 
-/// Frames after a change that are looked at.
+/// Number of frames after a change in which ghosting is measured.
 pub const GHOST_FRAMES: usize = 32;
 
-/// By how much, on a scale of 1, a channel must leave what the 3x3 pixels around its past held, to count as changed: more than
-/// resampling and noise explain.
+/// Threshold of a change, on a scale of 1: distance of a channel from the range of the 3x3 pixels around its previous position. It
+/// is above the effect of resampling and noise.
 const CHANGE: f32 = 0.1;
 
-/// What a pixel's surface looked like before it last changed.
+/// Last change of the color of a pixel's surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ghost {
-    /// sRGB-encoded color.
+    /// sRGB-encoded color before the change.
     pub old: [f32; 3],
-    /// Frames since, 0 for the first frame that shows the new; [`GHOST_FRAMES`] or more: too long ago, or never.
+    /// Frames since the change, 0 for the first frame with the new color. [`GHOST_FRAMES`] or more: no recent change.
     pub age: u8,
 }
 
-/// No ghost.
+/// No recent change.
 const NONE: Ghost = Ghost { old: [0.0; 3], age: GHOST_FRAMES as u8 };
 
-/// Follows what changes in the full-rate frames.
+/// Tracks color changes of surfaces in the full-rate frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ghosts {
     previous: Option<(Image<[f32; 3]>, Image<Ghost>)>,
 }
 
 impl Ghosts {
-    /// Takes the next full-rate frame, sRGB-encoded.
+    /// Processes the next full-rate frame, sRGB-encoded. Returns the last change of every pixel.
     pub fn advance(&mut self, encoded: &Image<[f32; 3]>, tracked: &Tracked) -> Image<Ghost> {
         let ghosts = match &self.previous {
             None => Image::filled(encoded.size(), NONE),
@@ -55,7 +55,7 @@ impl Ghosts {
     }
 }
 
-/// Whether a color lies outside of what the 3x3 pixels around pixel `index` hold.
+/// Whether a color is outside of the range of the 3x3 pixels around pixel `index` by more than [`CHANGE`].
 fn leaves(color: [f32; 3], before: &Image<[f32; 3]>, index: usize) -> bool {
     let (width, height) = (before.width(), before.height());
     let (x, y) = (index % width, index / width);
@@ -70,10 +70,10 @@ fn leaves(color: [f32; 3], before: &Image<[f32; 3]>, index: usize) -> bool {
     (low - color).max(color - high).max_element() > CHANGE
 }
 
-/// The shares of old pictures that a method shows, by frames since the change.
+/// Accumulator of the share of the old color in a method's output, by frames since the change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GhostShares {
-    /// For each age, sums of (shown - new) (old - new) and (old - new)^2.
+    /// For each age, the sums of (output - new) . (old - new) and |old - new|^2.
     sums: [(f64, f64); GHOST_FRAMES],
 }
 
@@ -84,26 +84,28 @@ impl Default for GhostShares {
 }
 
 impl GhostShares {
-    pub fn add(&mut self, ghost: Ghost, new: Vec3, shown: Vec3) {
+    pub fn add(&mut self, ghost: Ghost, new: Vec3, output: Vec3) {
         if let Some((along, whole)) = self.sums.get_mut(usize::from(ghost.age)) {
             let old = Vec3::from(ghost.old) - new;
-            *along += f64::from((shown - new).dot(old));
+            *along += f64::from((output - new).dot(old));
             *whole += f64::from(old.length_squared());
         }
     }
 
-    /// The share of the old picture in what is shown, by least squares: 1 all, 0 none, for the ages that occurred.
+    /// Least-squares share of the old color in the output, for each age that occurred: 1 is all, 0 is none.
     fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(age, s)| (age, s.0 / s.1))
     }
 
-    /// The squared shares added up, in frames: a picture that stays as it was for n frames has n. `None` if nothing changed.
+    /// Ghost energy in frames: sum of the squared shares over all ages. Output that keeps the old color for n frames has n. `None` if
+    /// nothing changed.
     pub fn energy(&self) -> Option<f64> {
         self.shares().next()?;
         Some(self.shares().map(|(_, share)| share.max(0.0).powi(2)).sum())
     }
 
-    /// Frames until the share is half of that in the first frame; `None` if it never is, or there was none.
+    /// Number of frames until the share falls to half of its value in the first frame; `None` if it does not, or if there is no
+    /// ghosting in the first frame.
     pub fn half_frames(&self) -> Option<u32> {
         let first = self.shares().next().filter(|&(age, share)| age == 0 && share > 0.0)?.1;
         self.shares().find(|&(_, share)| share <= 0.5 * first).map(|(age, _)| age as u32)

@@ -1,6 +1,6 @@
-//! Sums that grow with a clip and do not keep it: means and quantiles.
+//! Streaming accumulators: means and quantiles.
 
-/// A sum of weighted values and of their weights.
+/// Accumulator of a weighted mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Mean {
     sum: f64,
@@ -22,7 +22,7 @@ impl Mean {
         self.weight += other.weight;
     }
 
-    /// The sum of the weights: the number of values where none has another.
+    /// Sum of the weights: the number of values if all weights are 1.
     pub fn weight(self) -> f64 {
         self.weight
     }
@@ -39,27 +39,27 @@ impl Mean {
     }
 }
 
-/// Counts of values from 0 on, in equal bins; the last one has all above.
+/// Histogram of non-negative values with bins of equal width. The last bin also holds all larger values.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Histogram {
     counts: Vec<u64>,
 }
 
 impl Histogram {
-    /// Width of a bin, which bounds the error of a quantile. For Delta E 94 a thirtieth of what can be seen.
+    /// Bin width, which bounds the error of a quantile. For Delta E 94 it is about 1/30 of the just noticeable difference.
     pub const BIN: f32 = 1.0 / 32.0;
-    /// 128: no two colors of a screen are farther apart in Delta E 94.
+    /// Bins up to 128, which is above the largest Delta E 94 of sRGB colors.
     const BINS: usize = 4096;
 
     pub fn add(&mut self, value: f32) {
         if self.counts.is_empty() {
             self.counts.resize(Self::BINS, 0);
         }
-        // The conversion saturates, and takes NaN to 0.
+        // The conversion saturates, and maps NaN to 0.
         self.counts[((value / Self::BIN) as usize).min(Self::BINS - 1)] += 1;
     }
 
-    /// The value that a share of the values does not pass, to the width of a bin, from above.
+    /// Quantile: upper end of the bin that contains it; 0 for the first bin. `None` if there are no values.
     pub fn quantile(&self, share: f64) -> Option<f64> {
         let all: u64 = self.counts.iter().sum();
         let rank = ((share * all as f64).ceil() as u64).clamp(1, all.max(1));
@@ -68,7 +68,7 @@ impl Histogram {
             passed += count;
             passed >= rank
         })?;
-        // Equal pictures are 0 apart, not a bin.
+        // Equal images have a difference of 0, not of a bin width.
         Some(if bin == 0 { 0.0 } else { (bin + 1) as f64 * f64::from(Self::BIN) })
     }
 }

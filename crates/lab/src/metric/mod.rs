@@ -1,7 +1,7 @@
-//! How good a shown frame is, frame by frame, without keeping frames: PSNR, SSIM and FLIP, whole and by eccentricity, errors weighted
-//! by what the eye resolves, what was retained of earlier foveas, flicker and ghosts.
+//! Streaming image quality metrics: PSNR, SSIM and FLIP over the whole frame and by eccentricity, PSNR weighted by visual acuity,
+//! retention of detail from earlier foveas, flicker, and ghosting.
 //!
-//! All figures are of sRGB-encoded RGB in \[0, 1\] against the full-rate frame of the same moment. `docs/metrics.md` has the formulas.
+//! All compare sRGB-encoded RGB in \[0, 1\] with the full-rate frame of the same time. `docs/metrics.md` has the formulas.
 
 pub mod flip;
 mod ghost;
@@ -38,7 +38,7 @@ impl Band {
     /// All bands, from the gaze outwards.
     pub const ALL: [Self; 3] = [Self::Fovea, Self::Mid, Self::Periphery];
 
-    /// The band of an eccentricity in degrees.
+    /// Band of an eccentricity in degrees.
     pub fn of(e_deg: f32) -> Self {
         if e_deg < 2.5 {
             Self::Fovea
@@ -74,12 +74,12 @@ fn lab_map(encoded: &Image<[f32; 3]>) -> Image<Vec3> {
 }
 
 /// Weight of an error at an eccentricity in degrees: the density of retinal ganglion cells (Watson 2014, [`acuity::cell_density`])
-/// over that in the middle of the fovea, so that every cell counts alike and not every pixel.
+/// relative to the centre of the fovea. Each cell then counts equally, rather than each pixel.
 pub fn error_weight(e_deg: f32) -> f32 {
     acuity::cell_density(e_deg) / acuity::cell_density(0.0)
 }
 
-/// PSNR in dB of a mean squared error on a scale of 1; `None` for an error of 0, which has none.
+/// PSNR in dB of a mean squared error on a scale of 1; `None` for an error of 0, where it is infinite.
 pub fn psnr_db(mse: f64) -> Option<f64> {
     (mse > 0.0).then(|| -10.0 * mse.log10())
 }

@@ -1,4 +1,4 @@
-//! Sums over a clip, and the figures made of them.
+//! Accumulates the scores of a method over a clip.
 
 use super::ghost::GhostShares;
 use super::mean::{Histogram, Mean};
@@ -9,10 +9,10 @@ use afterimage::kernel::color;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Share of the pixels that `delta_e94_p99` leaves above it.
+/// Share of the pixels above `delta_e94_p99`.
 const WORST: f64 = 0.01;
 
-/// Collects the scores of one method over a clip.
+/// Accumulator of the scores of one method over a clip.
 #[derive(Clone, Debug, Default)]
 pub struct Scorer {
     squared: [Mean; 3],
@@ -28,20 +28,20 @@ pub struct Scorer {
     skip_ssim: bool,
 }
 
-/// Figures of one eccentricity band. `None` where no pixel fell into it.
+/// Scores of one eccentricity band. `None` if the band has no pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BandScores {
-    /// PSNR in dB over pooled squared error; also `None` where the error is 0 (then `mse` is 0).
+    /// PSNR in dB of the pooled squared error; also `None` if the error is 0 (then `mse` is 0).
     pub psnr_db: Option<f64>,
     /// Mean squared error on a scale of 1.
     pub mse: Option<f64>,
     /// Mean SSIM.
     pub ssim: Option<f64>,
-    /// Mean FLIP, 0 to 1; `None` where the references are without.
+    /// Mean FLIP error, 0 to 1; `None` if the references have no FLIP.
     pub flip: Option<f64>,
 }
 
-/// Figures of one method over a clip.
+/// Scores of one method over a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scores {
     /// All pixels of all frames.
@@ -50,25 +50,25 @@ pub struct Scores {
     /// By eccentricity, from the gaze outwards.
     #[serde(with = "named_bands")]
     pub bands: [BandScores; 3],
-    /// PSNR in dB over squared error weighted by [`error_weight`]; `None` where it is 0.
+    /// PSNR in dB of the squared error weighted by [`error_weight`]; `None` if the error is 0.
     pub weighted_psnr_db: Option<f64>,
     /// Mean Delta E 94.
     pub delta_e94_mean: Option<f64>,
-    /// Delta E 94 that 99 % of the pixels do not pass, to 1/32.
+    /// 99th percentile of Delta E 94 over pixels, to 1/32.
     pub delta_e94_p99: Option<f64>,
-    /// PSNR in dB over pixels beyond 3.5 degrees that were shown at full rate earlier and have stayed visible.
+    /// PSNR in dB over retained pixels: beyond 3.5 degrees, sampled at full rate earlier, and visible since.
     pub retained_psnr_db: Option<f64>,
-    /// Share of pixels that the retained figure is about.
+    /// Share of retained pixels.
     pub retained_share: Option<f64>,
-    /// 1000 x mean absolute change of the luma error from a frame to the next, along the motion.
+    /// 1000 x mean absolute change of the luma error between frames, along the motion vectors.
     pub flicker: Option<f64>,
-    /// Squared share of the old picture in what is shown beyond 3.5 degrees after a change, added up over 32 frames.
+    /// Squared share of the old color in the output beyond 3.5 degrees after a change, summed over 32 frames.
     pub ghost_energy: Option<f64>,
-    /// Frames until that share is half of what it is in the first frame after the change; `None`: not within 32 frames.
+    /// Frames until that share falls to half of its value in the first frame after the change; `None`: not within 32 frames.
     pub ghost_half_frames: Option<u32>,
 }
 
-/// Bands by name.
+/// Serializes bands by name.
 mod named_bands {
     use super::BandScores;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -92,62 +92,62 @@ mod named_bands {
 /// Mean squared errors of one frame, on a scale of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameErrors {
-    /// Over all pixels.
+    /// MSE over all pixels.
     pub mse: f64,
-    /// By eccentricity, from the gaze outwards; `None` where there is no pixel.
+    /// MSE by eccentricity, from the gaze outwards; `None` for a band without pixels.
     pub band_mse: [Option<f64>; 3],
-    /// Over retained pixels; `None` if there are none.
+    /// MSE over retained pixels; `None` if there are none.
     pub retained_mse: Option<f64>,
 }
 
 impl Scorer {
-    /// A scorer that leaves SSIM out, which is much of the work.
+    /// A scorer without SSIM, which takes much of the time.
     pub fn without_ssim() -> Self {
         Self { skip_ssim: true, ..Self::default() }
     }
 
-    /// Takes one frame: its reference, the sRGB-encoded image shown, what is known of the frame, eccentricities in degrees. Gives
-    /// the frame's own errors.
+    /// Adds a frame: its reference, the method's sRGB-encoded output, correspondence to the previous frame, and eccentricities in
+    /// degrees. Returns the frame's own errors.
     ///
     /// # Panics
     /// If the sizes differ.
     pub fn push(
         &mut self,
         reference: &Reference<'_>,
-        shown: &Image<[f32; 3]>,
+        output: &Image<[f32; 3]>,
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
     ) -> FrameErrors {
-        assert_eq!(reference.encoded.size(), shown.size());
-        let errors = self.push_errors(reference, shown, tracked, ecc_deg);
-        self.push_flicker(reference.encoded, shown, tracked);
-        for (r, s) in reference.lab.pixels().iter().zip(lab_map(shown).pixels()) {
+        assert_eq!(reference.encoded.size(), output.size());
+        let errors = self.push_errors(reference, output, tracked, ecc_deg);
+        self.push_flicker(reference.encoded, output, tracked);
+        for (r, s) in reference.lab.pixels().iter().zip(lab_map(output).pixels()) {
             let difference = color::delta_e94(*r, *s);
             self.delta_e94.add(f64::from(difference));
             self.delta_e94_counts.add(difference);
         }
-        if let Some((flip, seen)) = &reference.flip {
-            add_by_band(&mut self.flip, &flip.difference(seen, &flip.see(shown)), ecc_deg);
+        if let Some((flip, preprocessed)) = &reference.flip {
+            add_by_band(&mut self.flip, &flip.difference(preprocessed, &flip.preprocess(output)), ecc_deg);
         }
         if !self.skip_ssim
-            && let Some(map) = ssim_map(reference.encoded, shown)
+            && let Some(map) = ssim_map(reference.encoded, output)
         {
             add_by_band(&mut self.ssim, &map, ecc_deg);
         }
         errors
     }
 
-    /// Squared errors and ghosts.
+    /// Adds squared errors and ghosting.
     fn push_errors(
         &mut self,
         reference: &Reference<'_>,
-        shown: &Image<[f32; 3]>,
+        output: &Image<[f32; 3]>,
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
     ) -> FrameErrors {
         let mut squared = [Mean::default(); 3];
         let mut retained = Mean::default();
-        for (i, (r, s)) in reference.encoded.pixels().iter().zip(shown.pixels()).enumerate() {
+        for (i, (r, s)) in reference.encoded.pixels().iter().zip(output.pixels()).enumerate() {
             let (r, s, e_deg) = (Vec3::from(*r), Vec3::from(*s), ecc_deg.pixels()[i]);
             let error = f64::from((s - r).length_squared()) / 3.0;
             squared[Band::of(e_deg) as usize].add(error);
@@ -170,10 +170,10 @@ impl Scorer {
         }
     }
 
-    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>, tracked: &Tracked) {
-        let error = |i: usize| color::luma(Vec3::from(shown.pixels()[i]) - Vec3::from(reference.pixels()[i]));
-        let mut index = 0..shown.pixels().len();
-        let luma_error = shown.map(|_| index.next().map_or(0.0, error));
+    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>, tracked: &Tracked) {
+        let error = |i: usize| color::luma(Vec3::from(output.pixels()[i]) - Vec3::from(reference.pixels()[i]));
+        let mut index = 0..output.pixels().len();
+        let luma_error = output.map(|_| index.next().map_or(0.0, error));
         if let Some(before) = &self.luma_error {
             for (now, &from) in luma_error.pixels().iter().zip(tracked.past.pixels()) {
                 if from != NO_PAST {
@@ -185,7 +185,7 @@ impl Scorer {
         self.luma_error = Some(luma_error);
     }
 
-    /// The figures so far.
+    /// Scores of the frames added so far.
     pub fn scores(&self) -> Scores {
         let figures = |squared: Mean, ssim: Mean, flip: Mean| BandScores {
             psnr_db: squared.value().and_then(psnr_db),
@@ -209,7 +209,7 @@ impl Scorer {
     }
 }
 
-/// Adds a map, which may lack the same border on all sides.
+/// Adds the values of a map by band. The map may be smaller by the same border on all sides.
 fn add_by_band(sums: &mut [Mean; 3], map: &Image<f32>, ecc_deg: &Image<f32>) {
     let margin = (ecc_deg.width() - map.width()) / 2;
     for y in 0..map.height() {

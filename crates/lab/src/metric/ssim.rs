@@ -6,20 +6,20 @@ use blazediff_ssim::{Plane, SsimOptions, ssim};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Side of the window.
+/// Side of the window in pixels.
 const WINDOW: usize = 11;
 
-/// Rows of the map computed at a time. The crate shrinks images whose shorter side passes 384 pixels, as the authors' script
-/// does; strips stay below, so that every figure is at full resolution, and strips run in parallel.
+/// Rows of the map per strip. The crate downsamples images whose shorter side exceeds 384 pixels, as the authors' script does. Strips
+/// stay below, so that SSIM is computed at full resolution, and run in parallel.
 const STRIP_ROWS: usize = 128;
 
-/// SSIM at every pixel whose window lies inside the image: a map smaller by 10 pixels a side, pixel (0, 0) of which belongs to
-/// (5, 5). `None` for images smaller than the window.
+/// SSIM at every pixel whose window lies inside the image: a map that is 10 pixels smaller in width and height, whose pixel (0, 0) is
+/// the image's (5, 5). `None` for images smaller than the window.
 ///
 /// # Panics
 /// If the sizes differ.
-pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<Image<f32>> {
-    assert_eq!(reference.size(), shown.size());
+pub fn ssim_map(reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>) -> Option<Image<f32>> {
+    assert_eq!(reference.size(), output.size());
     let (width, height) = (reference.width(), reference.height());
     if width < WINDOW || height < WINDOW {
         return None;
@@ -37,7 +37,7 @@ pub fn ssim_map(reference: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> Option<
                 width,
                 height: rows + WINDOW - 1,
             };
-            let outcome = ssim(&plane(reference), &plane(shown), &SsimOptions::default())
+            let outcome = ssim(&plane(reference), &plane(output), &SsimOptions::default())
                 .expect("strips have one size, at least that of the window");
             assert_eq!([outcome.map_width, outcome.map_height], [map_width, rows], "strips must not be shrunk");
             outcome.map

@@ -1,46 +1,47 @@
-//! Which pixel was which in the previous frame, and which surface points the eye has seen sharp: ground truth for metrics,
-//! from the full-rate frames, whatever a method does.
+//! Correspondence of pixels between frames, and surface points that were sampled at full rate: ground truth for metrics, from the
+//! full-rate frames and independent of any method.
 
 use crate::frame::SourceFrame;
 use afterimage::kernel::{depth, reproject};
 use afterimage::{DepthConvention, DepthTest, Image, ViewGeometry};
 
-/// Level of detail below which a pixel counts as shown at full rate.
+/// Level of detail below which a pixel counts as sampled at full rate.
 const SHARP_LOD: f32 = 0.25;
 
-/// Eccentricity in degrees beyond which retention is judged: outside every fovea of the common settings and their blends.
+/// Eccentricity in degrees beyond which retention is measured: outside the foveas of the common settings and their blend zones.
 pub(super) const RETAINED_FROM_DEG: f32 = 3.5;
 
-/// Stands in [`Tracked::past`] for a pixel without a visible past.
+/// Value in [`Tracked::past`] of a pixel that was not visible in the previous frame.
 pub const NO_PAST: u32 = u32::MAX;
 
-/// What is known of one frame.
+/// Correspondence of a frame to the previous one.
 #[derive(Clone, Debug)]
 pub struct Tracked {
-    /// For each pixel the index of its pixel in the previous frame, or [`NO_PAST`].
+    /// Index of each pixel's surface point in the previous frame, or [`NO_PAST`] if it was not visible.
     pub past: Image<u32>,
-    /// The same whichever surface stands there: where a method that trusts motion alone fetches from.
+    /// Index of the pixel in the previous frame that the motion vector points to, without a depth test, or [`NO_PAST`] outside of the
+    /// frame: the history fetch of a method that relies on motion vectors alone.
     pub fetched: Image<u32>,
-    /// Pixels beyond 3.5 degrees whose surface point was shown at full rate earlier and has stayed visible.
+    /// Retained pixels: beyond 3.5 degrees, with a surface point that was sampled at full rate earlier and has been visible since.
     pub retained: Image<bool>,
 }
 
 impl Tracked {
-    /// Of a frame that stands alone.
+    /// A frame without correspondence.
     pub fn unknown(size: [u32; 2]) -> Self {
         let past = Image::filled(size, NO_PAST);
         Self { fetched: past.clone(), past, retained: Image::filled(size, false) }
     }
 }
 
-/// Follows surface points from frame to frame.
+/// Tracks surface points from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Tracker {
     previous: Option<(Image<bool>, Option<Image<f32>>)>,
 }
 
 impl Tracker {
-    /// Takes the next frame, seen with the given eccentricities (degrees) and levels of detail.
+    /// Processes the next frame, given its eccentricities in degrees and levels of detail.
     pub fn advance(
         &mut self,
         frame: &SourceFrame,
@@ -75,7 +76,7 @@ impl Tracker {
     }
 }
 
-/// For each pixel that of its surface, and the fetched one.
+/// For each pixel, its indices in [`Tracked::past`] and [`Tracked::fetched`].
 fn correspond(
     frame: &SourceFrame,
     geometry: &ViewGeometry,

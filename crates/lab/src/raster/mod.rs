@@ -39,7 +39,7 @@ pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
 pub use targets::Targets;
 
-use crate::error::InputError;
+use crate::error::{Bound, Exceeded, InputError};
 use crate::kernel::albedo::AlbedoTables;
 use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use crate::trace::effects::Effects;
@@ -197,7 +197,7 @@ impl Raster {
 fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> Result<(), InputError> {
     let side = limits.max_texture_dimension_2d;
     if size.iter().any(|s| !(1..=side).contains(s)) {
-        return Err(InputError::new(
+        return Err(InputError::request(
             &scene.name,
             format!("the size is {}x{}", size[0], size[1]),
             format!("expected 1 to {side} pixels a side, which is what this device draws"),
@@ -206,7 +206,8 @@ fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> R
     let count = scene.still().len().max(pose.moving.len()) as u64;
     let most = (limits.max_buffer_size / (3 * STRIDE)).min(u64::from(u32::MAX / 3));
     if count > most {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            Exceeded { bound: Bound::Device, needed: Some(count), allowed: most },
             &scene.name,
             format!("has {count} triangles"),
             format!("expected at most {most}, which is what this device holds"),

@@ -1,36 +1,36 @@
-//! From a recording on a screen to one gaze point per frame.
+//! Resamples a scanpath on a screen to one gaze point per frame.
 
 use super::{Scanpath, Screen};
 use crate::error::InputError;
 use afterimage::ViewGeometry;
 
-/// Slack in seconds when sample and frame times are compared: covers the rounding of `start_s + i / fps` over hours, and is
-/// far below the spacing of any recording.
+/// Tolerance in seconds for comparing sample and frame times: covers the rounding of `start_s + i / fps` over hours, and is far
+/// below the sample spacing of any recording.
 const TIME_SLACK_S: f64 = 1e-9;
 
-/// How screen positions become frame positions.
+/// Mapping of screen positions to frame positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GazeMap {
-    /// Keep visual angles: the middle of the screen is the view's straight ahead, and an eye turned by 5 degrees then is turned
-    /// by 5 degrees now. Needs the screen's size in centimetres and its distance.
+    /// Keeps visual angles: the middle of the screen maps to the view's forward direction, and a gaze 5 degrees from it on the screen
+    /// is 5 degrees from it in the view. Needs the screen's size in centimetres and its distance.
     Angle,
-    /// Stretch the screen to the frame, edge on edge.
+    /// Stretches the screen to the frame, edge to edge.
     Fit,
 }
 
 impl GazeMap {
-    /// [`GazeMap::Angle`] where the screen's geometry is known, else [`GazeMap::Fit`].
+    /// [`GazeMap::Angle`] if the screen's geometry is known, else [`GazeMap::Fit`].
     pub fn default_for(screen: &Screen) -> Self {
         if screen.tangent_per_px().is_some() { Self::Angle } else { Self::Fit }
     }
 }
 
-/// The gaze of each frame: the last valid sample at or before the frame's time. Never interpolated, never predicted.
+/// Gaze of each frame: the last valid sample at or before the frame's time, neither interpolated nor predicted.
 ///
-/// Frame `i` is shown `start_s + i / fps` seconds after the recording's first sample. A lookup takes O(log samples).
+/// Frame `i` is displayed `start_s + i / fps` seconds after the recording's first sample. A lookup takes O(log samples).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameGaze {
-    /// Times (the recording's clock) of the valid samples, and where they fall in the frame.
+    /// Times (on the recording's clock) and frame positions of the valid samples.
     valid: Vec<(f64, [f32; 2])>,
     map: GazeMap,
     first_s: f64,
@@ -44,15 +44,15 @@ impl FrameGaze {
     /// Samples so far off the screen that their pixel overflows an `f32` count as lost.
     ///
     /// # Errors
-    /// If `fps` is not a positive number, `start_s` is negative, not finite or beyond the recording's end, or
-    /// [`GazeMap::Angle`] is asked for and the screen's geometry is not known.
+    /// [`Request`](InputError::Request) if `fps` is not a positive number, `start_s` is negative, not finite or beyond the
+    /// recording's end, or `map` is [`GazeMap::Angle`] and the screen's geometry is not known.
     pub fn new(path: &Scanpath, view: &ViewGeometry, map: GazeMap, start_s: f64, fps: f64) -> Result<Self, InputError> {
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::new("fps", format!("{fps} frames per second"), "expected a number above 0"));
+            return Err(InputError::request("fps", format!("{fps} frames per second"), "expected a number above 0"));
         }
         let left_s = path.duration_s() - start_s;
         if !(start_s >= 0.0 && left_s >= -TIME_SLACK_S) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 "start",
                 format!("{start_s} s is not within {}", path.name()),
                 format!("expected 0 to {} s", path.duration_s()),
@@ -73,25 +73,25 @@ impl FrameGaze {
         })
     }
 
-    /// Frames that are shown no later than the recording's last sample: `floor((duration - start) * fps) + 1`.
+    /// Number of frames up to the recording's last sample: `floor((duration - start) * fps) + 1`.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// The map in use.
+    /// The mapping in use.
     pub fn map(&self) -> GazeMap {
         self.map
     }
 
-    /// Gaze in frame `index` in pixels, (0, 0) being the **centre** of the top left pixel, y down; finite, but not always
-    /// inside the frame. `None` before the first valid sample, where the caller decides what a lost gaze means. Past
-    /// [`FrameGaze::frames`] the last valid sample is held.
+    /// Gaze in frame `index` in pixels; (0, 0) is the **centre** of the top left pixel, y down. Finite, but possibly outside of the
+    /// frame. `None` before the first valid sample: the caller chooses a fallback. Past [`FrameGaze::frames`] the last valid sample
+    /// is held.
     pub fn px(&self, index: u64) -> Option<[f32; 2]> {
         self.held(index).map(|(_, px)| px)
     }
 
-    /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]: how long ago the eye was last seen there. More than a
-    /// few sample intervals mean that the gaze is lost and held, which a caller may answer with a wider fovea.
+    /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]. An age of more than a few sample intervals means that the
+    /// gaze is lost and held; a caller may respond with a wider fovea.
     pub fn age_s(&self, index: u64) -> Option<f64> {
         self.held(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
     }
@@ -102,13 +102,13 @@ impl FrameGaze {
         after.checked_sub(1).map(|last| self.valid[last])
     }
 
-    /// When frame `index` is shown, on the recording's clock.
+    /// Display time of frame `index` on the recording's clock.
     fn time_s(&self, index: u64) -> f64 {
         self.first_s + index as f64 / self.fps
     }
 }
 
-/// The function from corner-based screen pixels to centre-based frame pixels.
+/// Function from corner-based screen pixels to centre-based frame pixels.
 fn mapping(
     path: &Scanpath,
     view: &ViewGeometry,
@@ -118,9 +118,9 @@ fn mapping(
     let tangent_per_px = match map {
         GazeMap::Fit => None,
         GazeMap::Angle => Some(screen.tangent_per_px().ok_or_else(|| {
-            InputError::new(
+            InputError::request(
                 path.name(),
-                "the screen's size in cm or its distance is not known, so visual angles are not either",
+                "visual angles are unknown, because the screen's size in cm or its distance is",
                 "use the gaze map `fit`, or add `# screen_cm: WxH` and `# distance_cm: D` to the file",
             )
         })?),

@@ -1,7 +1,7 @@
-//! Where the eye looked: recorded and synthetic scanpaths, and their resampling to frames.
+//! Scanpaths: recorded and synthetic gaze over time, and its resampling to frames.
 //!
-//! A [`Scanpath`] comes from a CSV file ([`read_csv`]) or from a model of the eye ([`generate`]); [`FrameGaze`] turns it into
-//! one gaze point per frame. Lost gaze is `None` from the file to the frame: nothing here makes up where somebody looked.
+//! A [`Scanpath`] comes from a CSV file ([`read_csv`]) or from a model of the eye ([`generate`]); [`FrameGaze`] resamples it to one
+//! gaze point per frame. Lost gaze is `None` in samples, and is never filled in by interpolation.
 
 mod frames;
 mod recorded;
@@ -15,34 +15,34 @@ pub use synthetic::{Event, EventKind, Synthetic, SyntheticOptions, generate};
 use crate::error::InputError;
 use afterimage::ViewGeometry;
 
-/// Header keys with a meaning of their own; a note cannot use them.
+/// Header keys with a defined meaning; notes cannot use them.
 const RESERVED_KEYS: [&str; 5] = ["task", "rate_hz", "screen_px", "screen_cm", "distance_cm"];
 
-/// What a header writes where nothing is known.
+/// Header value for unknown quantities.
 const UNKNOWN: &str = "unknown";
 
-/// One reading of the eye tracker.
+/// One sample of an eye tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Seconds on the recording's own clock.
+    /// Time in seconds on the recording's clock.
     pub t_s: f64,
-    /// Screen pixels from the top left **corner** of the screen, y down; may lie off the screen. `None`: the gaze was lost.
+    /// Gaze in screen pixels from the top left **corner** of the screen, y down; may lie off the screen. `None`: lost gaze.
     pub px: Option<[f32; 2]>,
 }
 
-/// The screen that was looked at: flat, its middle straight ahead of the eye.
+/// The screen of a recording: flat, with its middle straight ahead of the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
     /// Width and height in pixels, at least 1.
     pub size_px: [u32; 2],
-    /// Width and height in centimetres, where known.
+    /// Width and height in centimetres, if known.
     pub size_cm: Option<[f32; 2]>,
-    /// From the eye to the middle of the screen in centimetres, where known.
+    /// Distance from the eye to the middle of the screen in centimetres, if known.
     pub distance_cm: Option<f32>,
 }
 
 impl Default for Screen {
-    /// 1920x1080 pixels that span 70 degrees, the field of view of a flat view unless told otherwise, seen from 60 cm.
+    /// 1920x1080 pixels seen from 60 cm that span 70 degrees, the default field of view of sources.
     fn default() -> Self {
         let width_cm = 2.0 * 60.0 * 35f32.to_radians().tan();
         Self { size_px: [1920, 1080], size_cm: Some([width_cm, width_cm * 1080.0 / 1920.0]), distance_cm: Some(60.0) }
@@ -50,8 +50,8 @@ impl Default for Screen {
 }
 
 impl Screen {
-    /// A screen with the pixels and visual angles of `view`, seen from 60 cm: both [`GazeMap`]s onto `view` are then the same.
-    /// An off-axis view is centred.
+    /// A screen with the pixels and visual angles of `view`, seen from 60 cm: both [`GazeMap`]s onto `view` are then equal. An
+    /// off-axis view is centred.
     pub fn of_view(view: &ViewGeometry) -> Self {
         let size_px = view.size_px().map(|n| n.max(1));
         let (tangent_per_px, _) = view.scale_offset();
@@ -59,13 +59,13 @@ impl Screen {
         Self { size_px, size_cm: Some([side(0), side(1)]), distance_cm: Some(60.0) }
     }
 
-    /// Slope of the view ray per pixel in x and y (the tangent of a small angle); `None` unless size and distance are known.
+    /// Tangent of the visual angle per pixel in x and y; `None` unless size and distance are known.
     pub fn tangent_per_px(&self) -> Option<[f64; 2]> {
         let (cm, distance) = (self.size_cm?, f64::from(self.distance_cm?));
         Some([0, 1].map(|i| f64::from(cm[i]) / f64::from(self.size_px[i]) / distance))
     }
 
-    /// What is wrong with the screen, and the remedy.
+    /// Checks the screen. The error is problem and remedy.
     fn check(&self) -> Result<(), (String, &'static str)> {
         let [w, h] = self.size_px;
         if w == 0 || h == 0 {
@@ -88,14 +88,14 @@ impl Screen {
     }
 }
 
-/// What a header says besides the screen.
+/// Metadata of a recording other than its screen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// What the person did, in words. Empty and `unknown` mean `None`.
+    /// Task of the viewer, in words. Empty and `unknown` mean `None`.
     pub task: Option<String>,
-    /// Samples per second as stated by the recorder.
+    /// Nominal samples per second.
     pub rate_hz: Option<f64>,
-    /// Any other `# key: value` lines, in order: source, licence and the like.
+    /// All other `# key: value` lines in order: source, licence and the like.
     pub notes: Vec<(String, String)>,
 }
 
@@ -109,12 +109,13 @@ pub struct Scanpath {
 }
 
 impl Scanpath {
-    /// A scanpath from its parts. Coordinates that are not finite become lost samples; nothing else is altered. `name` is what
-    /// errors call it, usually the file's path.
+    /// A scanpath from its parts. Samples whose coordinates are not finite become lost; nothing else is altered. `name` is the name
+    /// in errors, usually the file's path.
     ///
     /// # Errors
-    /// If the screen has no pixels or an impossible size, the rate is not a positive number, a note is not one line of
-    /// `key: value` or uses a reserved key, times are not finite and increasing, there is no sample, or none is valid.
+    /// [`Invalid`](InputError::Invalid) if the screen has no pixels or a size that is not positive, the rate is not a positive
+    /// number, a note is not one line of `key: value` or uses a reserved key, times are not finite and increasing, there is no
+    /// sample, or none is valid.
     pub fn new(
         name: impl Into<String>,
         screen: Screen,
@@ -122,24 +123,24 @@ impl Scanpath {
         mut samples: Vec<Sample>,
     ) -> Result<Self, InputError> {
         let name = name.into();
-        screen.check().map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
-        tidy(&mut about).map_err(|(problem, remedy)| InputError::new(&name, problem, remedy))?;
+        screen.check().map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
+        normalize(&mut about).map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
         for sample in &mut samples {
             sample.px = sample.px.filter(|px| px.iter().all(|v| v.is_finite()));
         }
         let bad_time = |i: usize| !samples[i].t_s.is_finite() || (i > 0 && samples[i].t_s <= samples[i - 1].t_s);
         if let Some(i) = (0..samples.len()).find(|&i| bad_time(i)) {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 name,
                 format!("sample {i} is at {} s", samples[i].t_s),
                 "times must be finite and increase from sample to sample",
             ));
         }
         if samples.is_empty() {
-            return Err(InputError::new(name, "there is no sample", "give at least one row with a valid gaze"));
+            return Err(InputError::invalid(name, "there is no sample", "give at least one row with a valid gaze"));
         }
         if samples.iter().all(|s| s.px.is_none()) {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 name,
                 format!("the gaze is lost in all {} samples", samples.len()),
                 "give a recording with at least one valid sample",
@@ -148,49 +149,49 @@ impl Scanpath {
         Ok(Self { name, screen, about, samples })
     }
 
-    /// What errors call it, usually the file's path.
+    /// Name in errors, usually the file's path.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The screen that was looked at.
+    /// Screen of the recording.
     pub fn screen(&self) -> &Screen {
         &self.screen
     }
 
-    /// What the header says besides the screen.
+    /// Metadata other than the screen.
     pub fn about(&self) -> &About {
         &self.about
     }
 
-    /// All samples, lost ones too, by increasing time.
+    /// All samples including lost ones, by increasing time.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
-    /// Seconds from the first to the last sample; 0 for a single one.
+    /// Duration in seconds from the first to the last sample; 0 for a single one.
     pub fn duration_s(&self) -> f64 {
         self.end_s() - self.begin_s()
     }
 
-    /// Samples in which the gaze was lost.
+    /// Number of samples with lost gaze.
     pub fn lost(&self) -> usize {
         self.samples.iter().filter(|s| s.px.is_none()).count()
     }
 
-    /// Time of the first sample on the recording's own clock.
+    /// Time of the first sample on the recording's clock.
     fn begin_s(&self) -> f64 {
         self.samples.first().map_or(0.0, |s| s.t_s)
     }
 
-    /// Time of the last sample on the recording's own clock.
+    /// Time of the last sample on the recording's clock.
     fn end_s(&self) -> f64 {
         self.samples.last().map_or(0.0, |s| s.t_s)
     }
 }
 
-/// Brings header texts into the form in which a file returns them, so that writing and reading is the identity.
-fn tidy(about: &mut About) -> Result<(), (String, &'static str)> {
+/// Normalises metadata to the form in which it is read from a file, so that writing and reading is the identity.
+fn normalize(about: &mut About) -> Result<(), (String, &'static str)> {
     const ONE_LINE: &str = "a header line is `# key: value` on one line, each key once";
     about.task = about.task.take().map(|t| t.trim().to_owned()).filter(|t| !t.is_empty() && t != UNKNOWN);
     if about.task.as_ref().is_some_and(|t| t.contains('\n')) {

@@ -1,4 +1,4 @@
-//! Scanpath files: `# key: value` lines, the column names, then one row per sample.
+//! Scanpath files: `# key: value` lines, column names, then one row per sample.
 //!
 //! ```text
 //! # task: free viewing of a photograph
@@ -12,12 +12,12 @@
 //! ```
 
 use super::{About, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
-use crate::error::InputError;
+use crate::error::{Bound, Exceeded, InputError};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// Largest file that is read: 256 MiB, about three hours at 1250 Hz. Bounds the memory that a wrong path can take.
+/// Largest file size in bytes: 256 MiB, about three hours at 1250 Hz. Bounds the memory that a wrong path can take.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
 const COLUMNS: &str = "t_s,x_px,y_px,valid";
@@ -25,15 +25,17 @@ const COLUMNS: &str = "t_s,x_px,y_px,valid";
 /// Reads a scanpath file; its path becomes the scanpath's name.
 ///
 /// # Errors
-/// If the file is missing, a folder, larger than [`MAX_FILE_BYTES`] or unreadable, and as [`parse_csv`] does.
+/// [`Io`](InputError::Io) if the file is missing or unreadable, [`Request`](InputError::Request) if it is a folder,
+/// [`Limit`](InputError::Limit) if it is larger than [`MAX_FILE_BYTES`], and those of [`parse_csv`].
 pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let path = path.as_ref();
     let name = path.display().to_string();
     let unreadable = |e: std::io::Error| {
-        InputError::new(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
+        InputError::io(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
     };
-    let too_large = || {
-        InputError::new(
+    let too_large = |bytes: Option<u64>| {
+        InputError::limit(
+            Exceeded { bound: Bound::Fixed, needed: bytes, allowed: MAX_FILE_BYTES },
             &name,
             format!("larger than {} MiB", MAX_FILE_BYTES >> 20),
             "cut the recording to the time window that is needed",
@@ -42,30 +44,30 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     let file = File::open(path).map_err(unreadable)?;
     let meta = file.metadata().map_err(unreadable)?;
     if meta.is_dir() {
-        return Err(InputError::new(name, "is a folder", "give the path of a scanpath CSV file"));
+        return Err(InputError::request(name, "is a folder", "give the path of a scanpath CSV file"));
     }
     if meta.len() > MAX_FILE_BYTES {
-        return Err(too_large());
+        return Err(too_large(Some(meta.len())));
     }
-    // Devices and pipes report no length, so the read is bounded as well.
+    // Devices and pipes report no length: bound the read as well.
     let mut bytes = Vec::new();
     file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(too_large());
+        return Err(too_large(None));
     }
     parse_csv(&name, &bytes)
 }
 
-/// Parses the contents of a scanpath file; `name` is what errors call it.
+/// Parses the contents of a scanpath file; `name` is its name in errors.
 ///
 /// Columns are `t_s,x_px,y_px,valid`: seconds, screen pixels from the top left corner (y down), 1 or 0. A sample is lost if
-/// `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept as they are. A measure in the
+/// `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept unchanged. A measure in the
 /// header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`, or be `unknown`; only
 /// `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
 ///
 /// # Errors
-/// With the line number: bytes that are not UTF-8, a header line or row that cannot be understood, a row without exactly four
-/// columns, times that do not increase. Without: no column names, and all that [`Scanpath::new`] refuses.
+/// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot be parsed, a
+/// row without exactly four columns, times that do not increase. Without: no column names, and the errors of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     let text = utf8(name, bytes)?;
     let mut header = Header::default();
@@ -84,23 +86,24 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
             Ok(())
         } else {
             Err(bad(
-                format!("{} where the column names belong", quote(line)),
+                format!("{} instead of the column names", quote(line)),
                 format!("the first line without # must be {COLUMNS}"),
             ))
         };
-        parsed.map_err(|(problem, remedy)| InputError::new(format!("{name}, line {}", index + 1), problem, remedy))?;
+        parsed
+            .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
     }
     if !columns_seen {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             name,
             "there are no column names",
             format!("the first line without # must be {COLUMNS}"),
         ));
     }
     let Some(size_px) = header.size_px else {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             name,
-            "the screen's size is not known",
+            "the screen's size is missing",
             "state it in the header as `# screen_px: WIDTHxHEIGHT`",
         ));
     };
@@ -108,11 +111,11 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     Scanpath::new(name, screen, header.about, samples)
 }
 
-/// Writes the format that [`read_csv`] reads. Numbers take as many digits as bring back the same value, lost samples are
-/// `nan,nan,0`, and the name is not written; reading the result under the same name gives an equal scanpath.
+/// Writes the format that [`read_csv`] reads. Numbers have as many digits as an exact round trip needs, and lost samples are
+/// `nan,nan,0`. The name is not written: reading the result under the same name gives an equal scanpath.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_csv(path: &Scanpath, out: &mut impl Write) -> std::io::Result<()> {
     let about = path.about();
     let screen = path.screen();
@@ -141,14 +144,14 @@ pub fn write_csv(path: &Scanpath, out: &mut impl Write) -> std::io::Result<()> {
     out.flush()
 }
 
-/// What is wrong with a line, and the remedy.
+/// Problem and remedy of a line.
 type LineError = (String, String);
 
 fn bad(problem: impl Into<String>, remedy: impl Into<String>) -> LineError {
     (problem.into(), remedy.into())
 }
 
-/// A piece of the file as it may appear in a one-line message: escaped and short.
+/// A piece of the file for a one-line message: escaped and truncated.
 fn quote(text: &str) -> String {
     const LONGEST: usize = 40;
     let cut: String = text.chars().take(LONGEST).collect();
@@ -161,11 +164,11 @@ fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
     std::str::from_utf8(bytes).map_err(|e| {
         let before = &bytes[..e.valid_up_to()];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        InputError::new(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
+        InputError::invalid(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
     })
 }
 
-/// The header as far as it has been read.
+/// Header lines read so far.
 #[derive(Default)]
 struct Header {
     size_px: Option<[u32; 2]>,
@@ -176,7 +179,7 @@ struct Header {
 }
 
 impl Header {
-    /// One line without its leading `#`. Without a colon it is a comment.
+    /// Parses a line without its leading `#`. A line without a colon is a comment.
     fn line(&mut self, line: &str) -> Result<(), LineError> {
         let Some((key, value)) = line.split_once(':') else {
             return Ok(());
@@ -186,7 +189,7 @@ impl Header {
             return Ok(());
         }
         if !self.keys.insert(key.to_owned()) {
-            return Err(bad(format!("{} is given a second time", quote(key)), "keep one of the two lines"));
+            return Err(bad(format!("{} is given a second time", quote(key)), "remove one of the two lines"));
         }
         match key {
             "task" => self.about.task = Some(value.to_owned()),
@@ -205,7 +208,7 @@ impl Header {
         Ok(())
     }
 
-    /// The first word of `value`; the rest is a remark and is kept as a note. `None` for `unknown`.
+    /// Parses the first word of `value`; the rest is a remark and becomes a note. `None` for `unknown`.
     fn measure<T>(
         &mut self,
         key: &str,

@@ -1,76 +1,78 @@
-//! A model of free viewing: what it draws, from which distributions, and what it reports about them.
+//! A stochastic model of free viewing: its distributions with their sources, its options, and the events that it generates.
 //!
 //! ```text
-//! fixation -> saccade -> fixation                                  (the rest of the error is small)
-//! fixation -> saccade -> landing -> corrective -> fixation         (it is not)
+//! fixation -> saccade -> fixation                                  (the landing error is small)
+//! fixation -> saccade -> landing -> corrective -> fixation         (the landing error is large)
 //! ```
 //!
-//! Angles are true visual angles. A saccade turns the eye along a great circle, which is a straight line on a flat screen.
-//! The numbers below give about 2.5 saccades and 1.1 correctives a second on the default screen; either count, with or without
-//! the correctives, is within the 2 to 4 a second of ordinary viewing.
+//! Angles are true visual angles. A saccade rotates the eye along a great circle, which is a straight line on a flat screen.
+//! The constants below give about 2.5 saccades and 1.1 correctives a second on the default screen. With or without the correctives,
+//! this is within the 2 to 4 saccades a second of ordinary viewing.
 
 use super::walk::Walk;
 use super::{About, Sample, Scanpath, Screen};
 use crate::error::InputError;
 
-/// Fixation, seconds: uniform. Free viewing has means of 250 to 330 ms (Rayner 1998, table 1: 330 for scenes, 275 for search).
+/// Duration of a fixation in seconds: uniform. Means in free viewing are 250 to 330 ms (Rayner 1998, table 1: 330 for scenes, 275
+/// for search).
 pub(super) const FIXATION_S: [f64; 2] = [0.2, 0.4];
 
-/// Drift, degrees: root mean square displacement, both axes together, after [`DRIFT_STEP_S`] of a Brownian walk. Chosen here:
-/// 0.15 degrees over a fixation of 300 ms, the order reported by Martinez-Conde et al. 2004.
+/// Drift: root mean square displacement in degrees, over both axes, of a Brownian walk during [`DRIFT_STEP_S`]. Chosen to give 0.15
+/// degrees over a fixation of 300 ms, the order reported by Martinez-Conde et al. 2004.
 pub(super) const DRIFT_RMS_DEG: f64 = 0.035;
 
-/// Time over which [`DRIFT_RMS_DEG`] is meant: a frame at 60 Hz.
+/// Time in seconds that [`DRIFT_RMS_DEG`] refers to: a frame at 60 Hz.
 pub(super) const DRIFT_STEP_S: f64 = 1.0 / 60.0;
 
 /// Microsaccades per second of fixation (Martinez-Conde et al. 2004: 1 to 2). A fixation of `d` seconds has one with probability
-/// `rate * d` and never two, which keeps the mean rate exact and is a crude refractory time.
+/// `rate * d`, and never two. This keeps the mean rate exact, and approximates a refractory time.
 pub(super) const MICROSACCADE_HZ: f64 = 2.0;
 
-/// Microsaccade, degrees: uniform. Up to 1 degree (Martinez-Conde et al. 2013); below 0.2 it is lost in drift.
+/// Amplitude of a microsaccade in degrees: uniform. Up to 1 degree (Martinez-Conde et al. 2013); below 0.2 it is indistinguishable
+/// from drift.
 pub(super) const MICROSACCADE_DEG: [f64; 2] = [0.2, 1.0];
 
-/// Intended saccade, degrees: exponential with the scale [`SACCADE_SCALE_DEG`], cut to this range. Larger turns are made with
-/// the head (Bahill, Adler & Stark 1975: most natural saccades are below 15 degrees).
+/// Intended amplitude of a saccade in degrees: exponential with the scale [`SACCADE_SCALE_DEG`], truncated to this range. Larger gaze
+/// shifts involve the head (Bahill, Adler & Stark 1975: most natural saccades are below 15 degrees).
 pub(super) const SACCADE_DEG: [f64; 2] = [2.5, 18.0];
 
-/// Scale of the intended amplitude, degrees: many short, few long (shape as in Tatler & Vincent 2008, the number chosen here). Larger: fewer
-/// revisits of places seen before.
+/// Scale of the intended amplitude in degrees: many short saccades, few long ones (the shape is that in Tatler & Vincent 2008, the
+/// number is chosen here). A larger scale revisits earlier places less often.
 pub(super) const SACCADE_SCALE_DEG: f64 = 6.0;
 
-/// Main sequence, seconds and seconds per degree: duration = 21 ms + 2.2 ms/deg (Carpenter 1988, p. 72).
+/// Main sequence in seconds and seconds per degree: duration = 21 ms + 2.2 ms/deg (Carpenter 1988, p. 72).
 pub(super) const MAIN_SEQUENCE_S: [f64; 2] = [0.021, 0.0022];
 
-/// Share of the intended amplitude that a saccade falls short by: uniform, 8 % in the mean (Becker & Fuchs 1969: about 10 %).
+/// Undershoot of a saccade as a share of its intended amplitude: uniform, with a mean of 8 % (Becker & Fuchs 1969: about 10 %).
 pub(super) const UNDERSHOOT: [f64; 2] = [0.04, 0.12];
 
-/// Error in degrees above which a corrective saccade follows; smaller ones stay (they are within the foveola and of the order of
-/// drift). Smaller: more correctives, and more than 4 saccades a second.
+/// Landing error in degrees above which a corrective saccade follows. Smaller errors are within the foveola and of the order of
+/// drift. A smaller threshold gives more correctives, and more than 4 saccades a second.
 pub(super) const CORRECT_ABOVE_DEG: f64 = 0.5;
 
-/// Rest between a saccade and its corrective, seconds: uniform (Becker & Fuchs 1969: 130 ms; 120 to 180 in later work).
+/// Interval in seconds between a saccade and its corrective: uniform (Becker & Fuchs 1969: 130 ms; 120 to 180 in later work).
 pub(super) const LANDING_S: [f64; 2] = [0.12, 0.18];
 
-/// Saccades aim no closer than this to the edge, degrees, so that the longest microsaccade and drift seldom meet the edge.
+/// Smallest distance in degrees of a saccade's target from the screen's edge. Microsaccades and drift then seldom reach the edge.
 pub(super) const AIM_MARGIN_DEG: f64 = 1.5;
 
-/// The gaze never comes closer than this to the edge, degrees.
+/// Smallest distance in degrees of the gaze from the screen's edge.
 pub(super) const EDGE_MARGIN_DEG: f64 = 0.5;
 
-/// Most samples that are made: 24 bytes each, so a quarter of a gigabyte.
+/// Largest number of samples: 24 bytes each, a quarter of a gigabyte in all.
 const MAX_SAMPLES: f64 = 1e7;
 
-/// What to generate.
+/// Options of [`generate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SyntheticOptions {
-    /// Same seed, same scanpath (on one platform bit for bit; elsewhere sines may differ in their last digit).
+    /// Seed. The same seed gives the same scanpath, bit for bit on one platform; on others sines may differ in the last digit.
     pub seed: u64,
-    /// Seconds, above 0; default 60. `duration_s * rate_hz` is at most ten million.
+    /// Duration in seconds, above 0; default 60. `duration_s * rate_hz` is at most ten million.
     pub duration_s: f64,
     /// Samples per second, 1 to 10,000; default 500.
     pub rate_hz: f64,
-    /// Where the eye looks; default [`Screen::default`]. Needs its size in centimetres and its distance, and at least 8 degrees
-    /// a side.
+    /// Screen; default [`Screen::default`]. Its size in centimetres and its distance must be known, and it must span at least 8
+    /// degrees in width and height.
     pub screen: Screen,
 }
 
@@ -84,21 +86,21 @@ impl SyntheticOptions {
     /// Checks every option.
     ///
     /// # Errors
-    /// Names the first option outside its range.
+    /// [`Request`](InputError::Request) for the first option that is out of range.
     pub fn validate(&self) -> Result<(), InputError> {
         self.aim_field().map(|_| ())
     }
 
-    /// Samples to make: one at every multiple of `1 / rate_hz` below the duration.
+    /// Number of samples: one at every multiple of `1 / rate_hz` below the duration.
     fn samples(&self) -> usize {
-        // 1.1 s at 10 Hz, 11.000000000000002 in floats, are eleven samples and not twelve.
+        // Tolerance for rounding: 1.1 s at 10 Hz is 11.000000000000002 in floats, and must give 11 samples.
         ((self.duration_s * self.rate_hz - 1e-6).ceil() as usize).max(1)
     }
 
-    /// After all checks: slope per pixel, and half the screen's width and height in degrees.
+    /// Checks all options. Returns the tangent per pixel, and half the screen's width and height in degrees.
     fn aim_field(&self) -> Result<([f64; 2], [f64; 2]), InputError> {
         let fault = |option: &str, found: String, remedy: &str| {
-            Err(InputError::new(format!("synthetic scanpath, {option}"), found, remedy))
+            Err(InputError::request(format!("synthetic scanpath, {option}"), found, remedy))
         };
         if !(1.0..=10_000.0).contains(&self.rate_hz) {
             return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");
@@ -118,7 +120,7 @@ impl SyntheticOptions {
             return fault(
                 "screen",
                 "its size in cm or its distance is not known".into(),
-                "give both: the eye's movements are angles",
+                "give both: eye movements are defined as angles",
             );
         };
         let half_deg = [0, 1].map(|i| {
@@ -130,32 +132,32 @@ impl SyntheticOptions {
             return fault(
                 "screen",
                 format!("it spans {:.1}x{:.1} degrees", 2.0 * half_deg[0], 2.0 * half_deg[1]),
-                "expected at least 8 degrees a side, or no saccade would fit",
+                "expected at least 8 degrees in width and height, or no saccade fits",
             );
         }
         Ok((slope, half_deg))
     }
 }
 
-/// What the eye was doing.
+/// Kind of an eye movement or rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EventKind {
-    /// At rest on its target, drifting; 200 to 400 ms. Microsaccades are inside.
+    /// Rest on the target with drift; 200 to 400 ms. Contains microsaccades.
     Fixation,
-    /// At rest where a saccade fell short, drifting; 120 to 180 ms. Always followed by a corrective.
+    /// Rest with drift after a saccade that fell short; 120 to 180 ms. A corrective always follows.
     Landing,
-    /// A turn to a new target.
+    /// Movement to a new target.
     Saccade,
-    /// A small turn during a fixation.
+    /// Small movement during a fixation.
     Microsaccade,
-    /// The turn that makes good a saccade's undershoot. Not counted in "saccades per second"; see the module's text.
+    /// Movement that corrects a saccade's undershoot. Not counted in "saccades per second"; see the module's documentation.
     Corrective,
 }
 
-/// One stretch of the truth behind the samples.
+/// An eye movement or rest: ground truth behind the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// What the eye was doing.
+    /// Kind of movement or rest.
     pub kind: EventKind,
     /// Begin in seconds.
     pub start_s: f64,
@@ -163,22 +165,21 @@ pub struct Event {
     pub end_s: f64,
     /// Visual angle in degrees between the gaze at begin and end.
     pub amplitude_deg: f64,
-    /// Visual angle in degrees from the begin to where the turn was meant to end: above `amplitude_deg` for a saccade, which falls
-    /// short; equal to it for all else.
+    /// Visual angle in degrees between the gaze at begin and the target: above `amplitude_deg` for a saccade, which falls short;
+    /// equal to it for all other kinds.
     pub intended_deg: f64,
 }
 
-/// A generated scanpath and the truth behind it.
+/// A generated scanpath and its ground truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Synthetic {
-    /// The samples; none is lost.
+    /// Samples; none is lost.
     pub path: Scanpath,
-    /// What the eye did, by begin. All but microsaccades follow one another without a gap, from 0 s to past the last sample.
+    /// Events by begin. All but microsaccades are contiguous, from 0 s to past the last sample.
     pub events: Vec<Event>,
 }
 
-/// Generates a scanpath of free viewing. The distributions and their sources are in this module's constants and in
-/// [`EventKind`].
+/// Generates a scanpath of free viewing. The constants of this module give the distributions and their sources.
 ///
 /// # Errors
 /// Those of [`SyntheticOptions::validate`].

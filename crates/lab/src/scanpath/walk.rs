@@ -1,4 +1,4 @@
-//! The eye of the synthetic scanpath: moves along its events and writes down where it is at the sample times.
+//! Simulation of the eye for synthetic scanpaths: generates events, and samples the gaze at given times.
 
 use super::synthetic::{
     AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S,
@@ -9,11 +9,11 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// Draws of a direction (and amplitude) that stays on the screen before the eye simply turns towards the middle. Fewer would skew
-/// amplitudes in the corners of small screens to short ones.
+/// Attempts to draw a direction (and amplitude) that stays on the screen, before the eye moves towards the middle instead. Fewer
+/// attempts bias amplitudes in the corners of small screens towards short ones.
 const AIM_TRIES: usize = 64;
 
-/// Rectangle of tangents around straight ahead.
+/// Rectangle around the forward direction, by its half size in tangents.
 #[derive(Clone, Copy)]
 struct Field(DVec2);
 
@@ -27,11 +27,12 @@ impl Field {
     }
 }
 
-/// State of the eye. Gaze is a unit vector, x right, y down, z forward.
+/// State of the simulation. Gaze is a unit vector: x right, y down, z forward.
 pub(super) struct Walk<T: Iterator<Item = f64>> {
     rng: Pcg64,
-    /// Where saccades may aim, and what the gaze never leaves.
+    /// Allowed targets of saccades.
     aim: Field,
+    /// Allowed gaze.
     edge: Field,
     times: std::iter::Peekable<T>,
     now_s: f64,
@@ -58,18 +59,18 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         }
     }
 
-    /// All samples are written.
+    /// Whether all samples are recorded.
     pub(super) fn done(&mut self) -> bool {
         self.times.peek().is_none()
     }
 
-    /// Samples as (seconds, tangents), and the events by begin.
+    /// Samples as (seconds, tangents), and events by begin.
     pub(super) fn finish(mut self) -> (Vec<(f64, [f64; 2])>, Vec<Event>) {
         self.events.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
         (self.samples, self.events)
     }
 
-    /// Rests on the target, with at most one microsaccade.
+    /// Simulates a fixation with at most one microsaccade.
     pub(super) fn fixate(&mut self) {
         let rest_s = uniform(&mut self.rng, FIXATION_S);
         let end_s = self.now_s + rest_s;
@@ -86,7 +87,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         self.note_rest(EventKind::Fixation, start_s, start);
     }
 
-    /// A saccade to a new target, and its corrective where it falls too short.
+    /// Simulates a saccade to a new target, and a landing and corrective if it falls too short.
     pub(super) fn look_elsewhere(&mut self) {
         let (towards, intended_deg) = self.choose_target();
         let target = turn(self.gaze, towards, intended_deg);
@@ -104,7 +105,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         self.turn_by(EventKind::Corrective, towards, left_deg, left_deg);
     }
 
-    /// Direction and amplitude in degrees of a turn that ends in the aim field.
+    /// Direction and amplitude in degrees of a saccade that ends in the aim field.
     fn choose_target(&mut self) -> (DVec3, f64) {
         for _ in 0..AIM_TRIES {
             let amplitude_deg = saccade_amplitude_deg(unit(&mut self.rng));
@@ -113,13 +114,13 @@ impl<T: Iterator<Item = f64>> Walk<T> {
                 return (towards, amplitude_deg);
             }
         }
-        // The shortest saccade towards the middle ends in the field, because a circle of that radius around the middle does
-        // (`SyntheticOptions::validate`).
+        // The shortest saccade towards the middle ends in the field, because the field contains a circle of that radius around the
+        // middle (`SyntheticOptions::validate`).
         (tangent_towards(self.gaze, DVec3::Z), SACCADE_DEG[0])
     }
 
-    /// A direction in which a turn stays clear of the edge. The field is convex and wider than a microsaccade, so towards the
-    /// middle always does.
+    /// A direction in which a movement of `amplitude_deg` stays in the allowed field. The field is convex and wider than a
+    /// microsaccade, so the direction towards the middle is always valid.
     fn direction_inside(&mut self, amplitude_deg: f64) -> DVec3 {
         for _ in 0..AIM_TRIES {
             let towards = self.any_direction();
@@ -136,7 +137,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         right * cos + down * sin
     }
 
-    /// Brownian drift up to `until_s`. Steps that would cross the edge are not taken.
+    /// Simulates Brownian drift up to `until_s`. Steps that would cross the edge are skipped.
     fn drift_until(&mut self, until_s: f64) {
         while let Some(t_s) = self.times.next_if(|t| *t < until_s) {
             self.drift_by(t_s - self.now_s);
@@ -157,7 +158,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         }
     }
 
-    /// Turns the eye by `amplitude_deg` with the minimum-jerk profile (Flash & Hogan 1985).
+    /// Simulates a movement of `amplitude_deg` with the minimum-jerk profile (Flash & Hogan 1985).
     fn turn_by(&mut self, kind: EventKind, towards: DVec3, amplitude_deg: f64, intended_deg: f64) {
         let (start_s, start) = (self.now_s, self.gaze);
         let duration_s = main_sequence_s(amplitude_deg);
@@ -186,14 +187,14 @@ fn main_sequence_s(amplitude_deg: f64) -> f64 {
     MAIN_SEQUENCE_S[0] + MAIN_SEQUENCE_S[1] * amplitude_deg
 }
 
-/// Inverse of the cut exponential distribution function.
+/// Inverse of the truncated exponential distribution function.
 fn saccade_amplitude_deg(u: f64) -> f64 {
     let [least, most] = SACCADE_DEG;
     let share = 1.0 - (-(most - least) / SACCADE_SCALE_DEG).exp();
     least - SACCADE_SCALE_DEG * (1.0 - u * share).ln()
 }
 
-/// In \[0, 1). Written out because the crate's own conversion may change its values between versions.
+/// Uniform in \[0, 1). Not the `rand` crate's conversion, whose values may change between versions.
 fn unit(rng: &mut Pcg64) -> f64 {
     (rng.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
@@ -202,20 +203,20 @@ fn uniform(rng: &mut Pcg64, [low, high]: [f64; 2]) -> f64 {
     low + (high - low) * unit(rng)
 }
 
-/// Unit vector `from` turned by `angle_deg` in the direction `towards`, a unit vector at right angles to it.
+/// Unit vector `from` rotated by `angle_deg` towards `towards`, a unit vector orthogonal to it.
 fn turn(from: DVec3, towards: DVec3, angle_deg: f64) -> DVec3 {
     let (sin, cos) = angle_deg.to_radians().sin_cos();
-    // Normalised so that rounding does not add up over millions of steps.
+    // Normalised, so that rounding errors do not accumulate over millions of steps.
     (from * cos + towards * sin).normalize()
 }
 
-/// Two unit vectors at right angles to `gaze` and to each other; `gaze` looks forward, so it is never the y axis.
+/// Two orthonormal vectors orthogonal to `gaze`, which points forward and so is never the y axis.
 fn axes(gaze: DVec3) -> (DVec3, DVec3) {
     let right = DVec3::Y.cross(gaze).normalize();
     (right, gaze.cross(right))
 }
 
-/// Direction at `from` of the shortest turn to `to`; any direction if they coincide.
+/// Direction at `from` of the shortest rotation to `to`; an arbitrary one if they coincide.
 fn tangent_towards(from: DVec3, to: DVec3) -> DVec3 {
     (to - from * from.dot(to)).try_normalize().unwrap_or_else(|| axes(from).0)
 }

@@ -1,9 +1,9 @@
-//! What a scene spans, and a camera that has all of it in view.
+//! Bounding boxes, and a camera that frames a whole scene.
 
 use super::{Camera, Scene, Triangles};
 use glam::{DVec3, Vec3};
 
-/// A box along the axes.
+/// An axis-aligned bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest coordinates, in metres.
@@ -12,16 +12,16 @@ pub struct Bounds {
     pub max: Vec3,
 }
 
-/// Vertical field of view of the camera that is made where a scene has none.
+/// Vertical field of view of the framing camera.
 const FRAMING_VFOV_DEG: f32 = 40.0;
-/// That camera's direction as seen from the middle: to the right of the front, and above.
+/// Direction from the middle of the scene to the framing camera: right of the front, and above.
 const AZIMUTH_DEG: f64 = 35.0;
 const ELEVATION_DEG: f64 = 20.0;
-/// Free space around the box, as a share of the picture.
+/// Size of the frame over that of the bounding box.
 const MARGIN: f64 = 1.05;
 
 impl Triangles {
-    /// The box around them; `None` if there are none.
+    /// Bounding box; `None` if there are no triangles.
     pub fn bounds(&self) -> Option<Bounds> {
         let first = self.positions.first()?[0];
         let start = Bounds { min: first, max: first };
@@ -30,7 +30,7 @@ impl Triangles {
 }
 
 impl Scene {
-    /// The box around all triangles at time 0; `None` if there are none.
+    /// Bounding box of all triangles at time 0; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         match (self.still.bounds(), self.rest.moving.bounds()) {
             (Some(a), Some(b)) => Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }),
@@ -38,9 +38,9 @@ impl Scene {
         }
     }
 
-    /// A camera with the whole box of the scene in view, from the front, right and above: for scenes without one.
+    /// A camera with the scene's whole bounding box in view, from the front, right and above: for scenes without a camera.
     ///
-    /// `aspect` is width by height of the picture. Of an empty scene it sees the space around the origin.
+    /// `aspect` is width over height of the frame. For an empty scene it looks at the origin.
     pub fn framing_camera(&self, aspect: f32) -> Camera {
         let aspect = if aspect.is_finite() && aspect > 0.0 { f64::from(aspect) } else { 1.0 };
         let (min, max) = self.bounds().map_or((DVec3::NEG_ONE, DVec3::ONE), |b| (b.min.as_dvec3(), b.max.as_dvec3()));
@@ -56,7 +56,7 @@ impl Scene {
         let up = back.cross(right);
         let tan_y = (f64::from(FRAMING_VFOV_DEG) / 2.0).to_radians().tan() / MARGIN;
         let tan_x = tan_y * aspect;
-        // A corner at (x, y, z) in camera axes from the middle is in view from distance d if |x| <= (d - z) tan_x, and so for y.
+        // A corner at (x, y, z) in camera axes around the middle is in view from distance d if |x| <= (d - z) tan_x; same for y.
         let distance = (0..8)
             .map(|corner| {
                 let sign = |bit: i32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };

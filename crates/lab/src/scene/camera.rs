@@ -2,19 +2,19 @@
 
 use glam::{DMat4, DVec3};
 
-/// Where a picture is taken from. Looks along its -z, x right, y up.
+/// A perspective camera. It looks along -z, with x right and y up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// As the file names it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
-    /// Rigid: rotation and translation only.
+    /// Camera-to-world matrix: rotation and translation only.
     pub world_from_camera: DMat4,
-    /// Vertical field of view in degrees, above 0 and below 180. The horizontal one follows from the picture's shape.
+    /// Vertical field of view in degrees, above 0 and below 180. The horizontal one follows from the aspect ratio.
     pub vfov_deg: f32,
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, upright; straight up or down some side is up.
+    /// A camera at `eye` that looks at `target`, with y up. If it looks straight up or down, its x axis is the world's.
     pub fn look_at(eye: DVec3, target: DVec3, vfov_deg: f32) -> Self {
         let back = (eye - target).normalize_or(DVec3::Z);
         let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);

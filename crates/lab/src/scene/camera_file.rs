@@ -1,4 +1,4 @@
-//! Cameras from a file: a pose for each frame, or a path of keyframes.
+//! Camera files: a pose for each frame, or a path of keyframes.
 
 use crate::error::InputError;
 use crate::error::one_line;
@@ -9,21 +9,21 @@ use serde::Deserialize;
 use std::cmp::Ordering;
 use std::path::Path;
 
-/// Where the camera is over time, in the scene's axes.
+/// A camera path read from a file, in the scene's axes.
 #[derive(Clone, Debug)]
 pub struct CameraFile {
-    /// Frames per second, where the file says so.
+    /// Frames per second, if the file states them.
     pub fps: Option<f32>,
-    /// Horizontal field of view in degrees, where the file says so.
+    /// Horizontal field of view in degrees, if the file states it.
     pub hfov_deg: Option<f32>,
     path: CameraPath,
 }
 
 #[derive(Clone, Debug)]
 enum CameraPath {
-    /// One pose a frame; the last one stays.
+    /// One pose per frame; the last one is held.
     Frames(Vec<DMat4>),
-    /// Sorted by time; the ends stay.
+    /// Sorted by time; the first and the last one are held.
     Keyframes(Vec<Keyframe>),
 }
 
@@ -44,24 +44,25 @@ struct KeyframesForm {
 }
 
 impl CameraFile {
-    /// Reads a `cameras.json` (poses in axes with z up, as Blender writes them) or a path:
-    /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}` in the scene's axes, through which the
-    /// camera flies smoothly, upright.
+    /// Reads a `cameras.json` (poses in Blender's axes, z up) or keyframes in the scene's axes:
+    /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}`. The camera follows a smooth curve through
+    /// the keyframes, with y up.
     ///
     /// # Errors
-    /// If the file cannot be read, is neither, or holds numbers that no camera has.
+    /// [`Io`](InputError::Io) if the file cannot be read, [`Limit`](InputError::Limit) if it is too large, and those of
+    /// [`CameraFile::parse`].
     pub fn open(path: &Path) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         Self::parse(&subject, &cameras::read(path)?)
     }
 
-    /// The same from the file's text; `subject` is how errors name it.
+    /// Parses the text of a camera file; `subject` is the file's name in errors.
     ///
     /// # Errors
-    /// As [`CameraFile::open`].
+    /// [`Invalid`](InputError::Invalid) if the text is neither form, has no camera, or has numbers out of range.
     pub fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let error = |problem: String| {
-            InputError::new(
+            InputError::invalid(
                 subject,
                 problem,
                 "expected a cameras.json with camera_to_world for each frame, or {keyframes: [{time_s, position, target}]}",
@@ -109,7 +110,7 @@ impl CameraFile {
         Ok(Self { fps, hfov_deg, path: CameraPath::Keyframes(keys) })
     }
 
-    /// How many frames the file has poses for; paths have any number.
+    /// Number of frames with a pose; `None` for keyframes, which define any number of frames.
     pub fn frames(&self) -> Option<usize> {
         match &self.path {
             CameraPath::Frames(poses) => Some(poses.len()),
@@ -117,7 +118,7 @@ impl CameraFile {
         }
     }
 
-    /// Whether all its poses are the same.
+    /// Whether all poses are equal.
     pub fn is_still(&self) -> bool {
         match &self.path {
             CameraPath::Frames(poses) => poses.iter().all(|p| *p == poses[0]),
@@ -133,7 +134,7 @@ impl CameraFile {
             CameraPath::Frames(poses) => poses[(index as usize).min(poses.len() - 1)],
             CameraPath::Keyframes(keys) => {
                 let (position, target) = along(keys, time_s);
-                // Between keyframes the path may touch its own target: then the nearest keyframe's view.
+                // Between keyframes, position and target may coincide: then use the nearest keyframe's view.
                 looking(position, target).unwrap_or_else(|| {
                     let nearest =
                         keys.iter().min_by(|a, b| (a.time_s - time_s).abs().total_cmp(&(b.time_s - time_s).abs()));
@@ -145,11 +146,11 @@ impl CameraFile {
     }
 }
 
-/// Upright at `position`, looking at `target`; `None` where they meet or are not finite.
+/// Camera at `position` that looks at `target`, with y up; `None` if the two coincide or are not finite.
 fn looking(position: DVec3, target: DVec3) -> Option<DMat4> {
     let back = (position - target).try_normalize()?;
     let across = DVec3::Y.cross(back);
-    // Straight up or down: x stays to the right.
+    // Looking straight up or down: keep the world's x axis.
     let right = if across.length() > 1e-6 { across.normalize() } else { DVec3::X };
     let rotation = DMat3::from_cols(right, back.cross(right), back);
     position.is_finite().then(|| {
@@ -159,7 +160,7 @@ fn looking(position: DVec3, target: DVec3) -> Option<DMat4> {
     })
 }
 
-/// Position and target at a time: Catmull-Rom through the keyframes, tangents by the times on both sides.
+/// Position and target at a time, by a Catmull-Rom spline with non-uniform knots.
 fn along(keys: &[Keyframe], time_s: f64) -> (DVec3, DVec3) {
     let next = keys.partition_point(|k| k.time_s <= time_s);
     if next == 0 || next == keys.len() {
@@ -222,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_path_is_refused() {
+    fn invalid_paths_are_refused() {
         for (text, word) in [
             ("{", "JSON"),
             (r#"{"keyframes":[]}"#, "no keyframe"),

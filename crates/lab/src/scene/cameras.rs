@@ -1,20 +1,19 @@
 //! `cameras.json`: frame rate, field of view and camera poses of a sequence.
 
-use crate::error::InputError;
-use crate::error::{io_error, one_line};
+use crate::error::{Bound, Exceeded, InputError, io_error, one_line};
 use glam::{DMat3, DMat4, DVec3};
 use serde::Deserialize;
 use std::fs;
 use std::path::Path;
 
-/// Name of the file, beside the frames.
+/// Name of the file in the folder of the frames.
 pub const FILE_NAME: &str = "cameras.json";
 
-/// Largest file that is read: 100,000 frames with every field take less.
+/// Largest file size in bytes: 100,000 frames with every field take less.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// How far the rotation part may be from orthonormal, and a pair of matrices from inverse. Eight printed digits are off by
-/// 1e-8; a scaled or sheared camera by far more than this.
+/// Tolerance for orthonormality of a rotation, and for a pair of matrices being inverse to each other. Rounding to eight digits
+/// errs by 1e-8; a scaled or sheared camera by far more than this tolerance.
 const RIGID_TOLERANCE: f64 = 1e-3;
 
 #[derive(Deserialize)]
@@ -40,7 +39,7 @@ struct Pose {
     camera_from_world: DMat4,
 }
 
-/// What `cameras.json` says. Fields that it does not have are `None`.
+/// Contents of a `cameras.json`. Absent fields are `None`.
 #[derive(Clone, Debug)]
 pub struct Cameras {
     /// Frames per second, above 0.
@@ -57,7 +56,8 @@ impl Cameras {
     /// Reads `folder/cameras.json`; `None` if there is no such file.
     ///
     /// # Errors
-    /// If the file cannot be read, is not JSON of the expected form, or holds numbers that no camera has.
+    /// [`Io`](InputError::Io) if the file cannot be read, [`Limit`](InputError::Limit) if it is too large,
+    /// [`Invalid`](InputError::Invalid) if it is not JSON of the expected form or has numbers out of range.
     pub fn beside(folder: &Path) -> Result<Option<Self>, InputError> {
         let path = folder.join(FILE_NAME);
         match fs::metadata(&path) {
@@ -71,14 +71,14 @@ impl Cameras {
 
     pub(crate) fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let form: FileForm = serde_json::from_slice(text).map_err(|e| {
-            InputError::new(
+            InputError::invalid(
                 subject,
                 one_line(&format!("is not the expected JSON ({e})")),
                 "expected {fps, horizontal_fov_deg, width, height, frames: [{frame, camera_to_world, world_to_camera}]}, all optional",
             )
         })?;
         let in_range = |name: &str, value: Option<f64>, max: f64| match value {
-            Some(v) if !(v > 0.0 && v < max) => Err(InputError::new(
+            Some(v) if !(v > 0.0 && v < max) => Err(InputError::invalid(
                 subject,
                 format!("its {name} is {v}"),
                 format!("expected a number above 0 and below {max}; correct or remove it"),
@@ -91,7 +91,7 @@ impl Cameras {
             poses.extend(pose(subject, number, frame)?);
         }
         if !poses.is_empty() && poses.len() != form.frames.len() {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 format!("has matrices for {} of its {} frames", poses.len(), form.frames.len()),
                 "expected camera_to_world for every frame, or for none",
@@ -107,25 +107,25 @@ impl Cameras {
         })
     }
 
-    /// Camera-to-world of every frame, in the file's axes.
+    /// Camera-to-world matrix of every frame, in the file's axes.
     pub(crate) fn world_from_camera(&self) -> impl ExactSizeIterator<Item = DMat4> {
         self.poses.iter().map(|p| p.world_from_camera)
     }
 
-    /// Checks that the images have the size that the cameras were made for.
+    /// Checks that the images have the size that the file states, if it states one.
     pub(crate) fn check_size(&self, size: [u32; 2]) -> Result<(), InputError> {
         match self.size {
-            Some(s) if s != size => Err(InputError::new(
+            Some(s) if s != size => Err(InputError::invalid(
                 &self.subject,
-                format!("says {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
+                format!("states {}x{} pixels but the frames have {}x{}", s[0], s[1], size[0], size[1]),
                 "use the file that belongs to these frames, or remove width and height from it",
             )),
             _ => Ok(()),
         }
     }
 
-    /// The pose of every file, by the number in its name, or in order where either side has no numbers. `None` if there are
-    /// no matrices at all.
+    /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no number.
+    /// `None` if there are no matrices.
     pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);
@@ -133,7 +133,7 @@ impl Cameras {
         if self.numbers.iter().chain(file_numbers).all(Option::is_some) {
             let find = |n: &Option<u64>| {
                 self.numbers.iter().position(|m| m == n).ok_or_else(|| {
-                    InputError::new(
+                    InputError::invalid(
                         &self.subject,
                         format!("has no camera for frame {}", n.unwrap_or_default()),
                         "expected one for every file; use the file that belongs to these frames, or remove it",
@@ -145,14 +145,14 @@ impl Cameras {
         if self.poses.len() == file_numbers.len() {
             return Ok(Some((0..self.poses.len()).collect()));
         }
-        Err(InputError::new(
+        Err(InputError::invalid(
             &self.subject,
             format!("has {} cameras for {} files", self.poses.len(), file_numbers.len()),
             "expected one for every file, or numbers in both the file names and `frame`",
         ))
     }
 
-    /// From the view space of pose `current` to that of `previous`, row-major, x right, y down, z forward.
+    /// Matrix from the view space of pose `current` to that of `previous`; row-major; x right, y down, z forward.
     pub(crate) fn previous_from_current(&self, previous: usize, current: usize) -> [[f32; 4]; 4] {
         // The file's cameras have y up and look along -z; the flip is its own inverse.
         let flip = DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0));
@@ -161,12 +161,13 @@ impl Cameras {
     }
 }
 
-/// The bytes of a file of cameras, if there are not too many.
+/// Reads a camera file of at most [`MAX_BYTES`].
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let subject = path.display().to_string();
     let bytes = fs::metadata(path).map_err(|e| io_error(&subject, &e))?.len();
     if bytes > MAX_BYTES {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            Exceeded { bound: Bound::Fixed, needed: Some(bytes), allowed: MAX_BYTES },
             &subject,
             format!("has {} MB, above the limit of {} MB", bytes >> 20, MAX_BYTES >> 20),
             "expected fps, horizontal_fov_deg and two matrices for each frame; remove the rest",
@@ -181,7 +182,7 @@ fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, I
             let matrix = DMat4::from_cols_array_2d(&rows).transpose();
             match why_not_rigid(matrix) {
                 None => Ok(matrix),
-                Some(why) => Err(InputError::new(
+                Some(why) => Err(InputError::invalid(
                     subject,
                     format!("{name} of frame {number} {why}"),
                     "expected a rotation and a translation, row-major, for column vectors",
@@ -200,7 +201,7 @@ fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, I
     };
     let distance = world_from_camera.w_axis.truncate().length();
     if !(world_from_camera * camera_from_world).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
-        return Err(InputError::new(
+        return Err(InputError::invalid(
             subject,
             format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
             "correct one of them, or remove it",

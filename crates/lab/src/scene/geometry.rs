@@ -1,22 +1,22 @@
-//! A mesh in the space of its node or of its skin's bind pose, and how it becomes triangles in world space.
+//! Meshes in node space or in their skin's bind pose, and their transformation to triangles in world space.
 
 use super::Triangles;
 use glam::{Affine3A, DAffine3, Mat3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
-/// Largest coordinate in metres. Products of four fit a float, so that areas and intersections are finite.
+/// Largest coordinate in metres. Products of four coordinates fit a float, so that areas and intersections are finite.
 pub(crate) const MAX_COORDINATE: f32 = 1e9;
 
-/// Vertices that a thread takes at least.
+/// Smallest number of vertices per parallel task.
 const MIN_BATCH: usize = 4096;
 
-/// Vertices shared by triangles. Attributes are empty where the mesh lacks them.
+/// An indexed triangle mesh. Attributes that it lacks are empty.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Geometry {
     pub positions: Vec<Vec3>,
-    /// Empty: faces are flat.
+    /// Empty: flat shading.
     pub normals: Vec<Vec3>,
-    /// Empty: nothing depends on them.
+    /// Empty: the material needs none.
     pub tangents: Vec<Vec4>,
     pub uvs: Vec<Vec2>,
     pub colors: Vec<Vec4>,
@@ -26,7 +26,7 @@ pub(crate) struct Geometry {
     pub influences: Influences,
 }
 
-/// What a morph target of weight 1 adds. Empty: nothing.
+/// Displacements of a morph target at weight 1. Empty: none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Target {
     pub positions: Vec<Vec3>,
@@ -34,7 +34,7 @@ pub(crate) struct Target {
     pub tangents: Vec<Vec3>,
 }
 
-/// Which joints move a vertex and how much: the same number for all, weights sum to 1.
+/// Joints and weights of each vertex. All vertices have the same number of joints; weights sum to 1.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Influences {
     pub per_vertex: usize,
@@ -42,7 +42,7 @@ pub(crate) struct Influences {
     pub weights: Vec<f32>,
 }
 
-/// Vertices at a time, in world space.
+/// Vertices of a mesh in world space, at one time.
 pub(crate) struct Posed {
     vertices: Vec<PosedVertex>,
 }
@@ -56,9 +56,9 @@ struct PosedVertex {
 }
 
 impl Geometry {
-    /// Moved as a whole.
-    pub fn place(&self, world: &DAffine3, weights: &[f32]) -> Posed {
-        // In f64, so that the normals of tiny and huge scales survive.
+    /// Vertices after morphing and a rigid or affine transformation.
+    pub fn transformed(&self, world: &DAffine3, weights: &[f32]) -> Posed {
+        // In f64, so that normals stay accurate under tiny and huge scales.
         let largest = world.matrix3.to_cols_array().iter().fold(0.0f64, |a, x| a.max(x.abs())).max(f64::MIN_POSITIVE);
         let scaled = (world.matrix3 * (1.0 / largest)).as_mat3();
         let mirrored = world.matrix3.determinant() < 0.0;
@@ -66,13 +66,13 @@ impl Geometry {
         self.posed(weights, |_, v| PosedVertex {
             position: world.transform_point3(v.position.as_dvec3()).as_vec3(),
             normal: Vec3::from(normal_from_local * Vec3A::from(v.normal)).normalize_or_zero(),
-            tangent: turned(scaled, v.tangent, mirrored),
+            tangent: transformed_tangent(scaled, v.tangent, mirrored),
             mirrored,
         })
     }
 
-    /// Moved by joints.
-    pub fn bend(&self, joints: &[Affine3A], weights: &[f32]) -> Posed {
+    /// Vertices after morphing and linear blend skinning.
+    pub fn skinned(&self, joints: &[Affine3A], weights: &[f32]) -> Posed {
         let n = self.influences.per_vertex;
         self.posed(weights, |i, v| {
             let mut linear = Mat3A::ZERO;
@@ -89,14 +89,14 @@ impl Geometry {
             PosedVertex {
                 position: Vec3::from(linear * Vec3A::from(v.position) + shift),
                 normal: Vec3::from(signed_cofactors(scaled, mirrored) * Vec3A::from(v.normal)).normalize_or_zero(),
-                tangent: turned(scaled, v.tangent, mirrored),
+                tangent: transformed_tangent(scaled, v.tangent, mirrored),
                 mirrored,
             }
         })
     }
 
-    /// Gives every corner a vertex of its own, in the order of the triangles.
-    pub fn unshare(&mut self) {
+    /// Gives every triangle corner its own vertex, in the order of the triangles.
+    pub fn unweld(&mut self) {
         fn corners<T: Copy>(values: &mut Vec<T>, indices: &[[u32; 3]]) {
             if !values.is_empty() {
                 *values = indices.iter().flatten().map(|&i| values[i as usize]).collect();
@@ -150,15 +150,15 @@ impl Geometry {
         v
     }
 
-    /// Adds the triangles. Those with a corner that is not finite or absurdly far are left out and counted if `drop_bad`,
-    /// else they shrink to a point, so that order and number stay.
-    pub fn emit(&self, posed: &Posed, drop_bad: bool, out: &mut Triangles) -> u64 {
+    /// Appends the triangles to `out`. Triangles with a corner that is not finite or beyond [`MAX_COORDINATE`] are dropped if
+    /// `drop_bad`; otherwise they collapse to a point, which keeps the order and number of triangles. Returns the number dropped.
+    pub fn push_triangles(&self, posed: &Posed, drop_bad: bool, out: &mut Triangles) -> u64 {
         let mut dropped = 0;
         out.reserve(self.indices.len());
         for &triangle in &self.indices {
             let triangle = triangle.map(|i| i as usize);
             let first = &posed.vertices[triangle[0]];
-            // A mirrored triangle is seen from behind unless two corners change places.
+            // Mirroring flips the winding order: swap two corners.
             let [a, b, c] = triangle;
             let triangle = if first.mirrored { [a, c, b] } else { [a, b, c] };
             let corners = triangle.map(|i| posed.vertices[i]);
@@ -176,7 +176,7 @@ impl Geometry {
                     self.normals.len() == self.positions.len() && v.normal.is_finite() && v.normal != Vec3::ZERO;
                 if usable { v.normal } else { face }
             });
-            let tangents = std::array::from_fn(|k| beside(normals[k], corners[k].tangent));
+            let tangents = std::array::from_fn(|k| orthogonal_tangent(normals[k], corners[k].tangent));
             out.positions.push(positions);
             out.normals.push(normals);
             out.tangents.push(tangents);
@@ -188,35 +188,35 @@ impl Geometry {
     }
 }
 
-/// Whether a corner may be there.
+/// Whether a position is finite and within [`MAX_COORDINATE`].
 pub(crate) fn is_usable(p: &Vec3) -> bool {
     p.is_finite() && p.abs().max_element() <= MAX_COORDINATE
 }
 
-/// Normal of a triangle of any size; of one without area some direction.
+/// Unit normal of a triangle of any size; y for a degenerate one.
 pub(crate) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (u, v) = ((b - a).as_dvec3(), (c - a).as_dvec3());
     u.cross(v).normalize_or(glam::DVec3::Y).as_vec3()
 }
 
-/// Takes normals along: the inverse transpose up to length, its sign such that the outside stays outside.
+/// Normal transformation: the inverse transpose up to a factor, signed so that normals keep pointing outwards under mirroring.
 fn signed_cofactors(m: Mat3, mirrored: bool) -> Mat3A {
     let sign = if mirrored { -1.0 } else { 1.0 };
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     Mat3A::from_cols((y.cross(z) * sign).into(), (z.cross(x) * sign).into(), (x.cross(y) * sign).into())
 }
 
-fn turned(m: Mat3, tangent: Vec4, mirrored: bool) -> Vec4 {
+fn transformed_tangent(m: Mat3, tangent: Vec4, mirrored: bool) -> Vec4 {
     let direction = (m * tangent.truncate()).normalize_or_zero();
     direction.extend(if mirrored { -tangent.w } else { tangent.w })
 }
 
-/// The tangent made perpendicular to the normal; some direction where there is none.
-fn beside(normal: Vec3, tangent: Vec4) -> Vec4 {
+/// The tangent made orthogonal to the normal; an arbitrary orthogonal direction if there is no usable tangent.
+fn orthogonal_tangent(normal: Vec3, tangent: Vec4) -> Vec4 {
     let t = tangent.truncate();
     let flat = t - normal * normal.dot(t);
     let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
-    // Below 1e-6 of its length the rest is rounding.
+    // A component below 1e-6 of the length is rounding error.
     if flat.is_finite() && flat.length_squared() > 1e-12 {
         flat.normalize().extend(sign)
     } else {

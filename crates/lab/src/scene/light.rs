@@ -1,4 +1,4 @@
-//! Lights that are not triangles: punctual ones (KHR_lights_punctual) and what surrounds the scene.
+//! Lights that are not triangles: punctual lights (KHR_lights_punctual) and the environment.
 
 use afterimage::Image;
 use glam::Vec3;
@@ -6,27 +6,27 @@ use glam::Vec3;
 /// A light without extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PunctualLight {
-    /// What it is.
+    /// Directional, point or spot.
     pub kind: PunctualKind,
-    /// World position in metres. A directional light has none.
+    /// World position in metres; not used for directional lights.
     pub position: Vec3,
-    /// Where it shines to, of length 1. A point light shines everywhere.
+    /// Unit direction that the light shines in; not used for point lights.
     pub direction: Vec3,
     /// Linear color times intensity: radiant intensity of point and spot lights (glTF's candela taken as W/sr), irradiance of
     /// directional ones (lux taken as W/m^2).
     pub intensity: [f32; 3],
-    /// Metres beyond which it does not reach; infinity: everywhere.
+    /// Range in metres; infinity for no limit.
     pub range: f32,
 }
 
 /// Kinds of punctual lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PunctualKind {
-    /// From infinitely far.
+    /// A light at infinity.
     Directional,
-    /// From a point, all around.
+    /// A point that radiates equally in all directions.
     Point,
-    /// From a point, within a cone: full inside the inner angle, none outside the outer one.
+    /// A point that radiates into a cone: full intensity inside the inner angle, none outside the outer one.
     Spot {
         /// Cosine of the inner half angle.
         cos_inner: f32,
@@ -35,11 +35,11 @@ pub enum PunctualKind {
     },
 }
 
-/// What rays see that hit nothing.
+/// Radiance of rays that hit nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Environment {
-    /// The same radiance from everywhere; black for none.
+    /// Constant radiance; black for no environment.
     Constant([f32; 3]),
-    /// Radiance by direction: longitude along x, the middle column towards -z, latitude along y, up on top.
+    /// Equirectangular map of radiance: longitude along x with -z in the middle column, latitude along y with up at the top.
     Map(Image<[f32; 3]>),
 }

@@ -1,102 +1,102 @@
-//! Materials: the parameters of the Disney principled BRDF in glTF's terms.
+//! Materials: parameters of the Disney principled BSDF under glTF's names.
 
-/// What a surface is made of. Colors are linear Rec. 709. Textures multiply their factor.
+/// A surface material. Colors are linear Rec. 709. Textures multiply their factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// As the file names it.
+    /// Name in the file.
     pub name: String,
-    /// Base color: of the diffuse lobe, of metal, of what is transmitted.
+    /// Base color: albedo of the diffuse lobe, reflectance of metal, tint of transmission.
     pub base_color: [f32; 3],
-    /// sRGB-encoded; alpha linear.
+    /// Base color factor in RGB, sRGB-encoded; opacity factor in A, linear.
     pub base_color_texture: Option<TextureRef>,
-    /// Opacity, factor of the texture's and the vertices' alpha; what it means is said by `alpha`.
+    /// Opacity, a factor of the alpha of texture and vertices. `alpha` selects its effect.
     pub opacity: f32,
-    /// What opacity does.
+    /// Alpha mode.
     pub alpha: Alpha,
     /// 0 dielectric to 1 metal.
     pub metallic: f32,
-    /// Perceptual roughness, 0 to 1; GGX' width is its square.
+    /// Perceptual roughness, 0 to 1; GGX alpha is its square.
     pub roughness: f32,
-    /// Linear: roughness in G, metallic in B.
+    /// Roughness factor in G, metallic factor in B, linear.
     pub metallic_roughness_texture: Option<TextureRef>,
-    /// Linear, tangent space.
+    /// Tangent-space normal map, linear.
     pub normal_texture: Option<TextureRef>,
     /// Factor of the normal map's x and y.
     pub normal_scale: f32,
-    /// Emitted radiance, strength included; both sides emit where `double_sided`, else the front.
+    /// Emitted radiance, strength included. Both sides emit if `double_sided`, else the front.
     pub emissive: [f32; 3],
-    /// sRGB-encoded.
+    /// Factor of `emissive`, sRGB-encoded.
     pub emissive_texture: Option<TextureRef>,
     /// Strength of the dielectric interface, 0 to 1. With 0 the diffuse lobe is Lambert's.
     pub specular: f32,
-    /// Factor in A.
+    /// Factor of `specular` in A.
     pub specular_texture: Option<TextureRef>,
-    /// Color of the dielectric reflection at normal incidence, factor of what `ior` gives.
+    /// Color of the dielectric reflection at normal incidence, a factor of the reflectance given by `ior`.
     pub specular_color: [f32; 3],
-    /// sRGB-encoded.
+    /// Factor of `specular_color`, sRGB-encoded.
     pub specular_color_texture: Option<TextureRef>,
-    /// 0 to 1: how far the hue of the base color tints the dielectric reflection.
+    /// Tint of the dielectric reflection towards the hue of the base color, 0 to 1.
     pub specular_tint: f32,
     /// Index of refraction, 1 or more.
     pub ior: f32,
-    /// 0 to 1: stretch of the highlight along the tangent.
+    /// Stretch of the highlight along the tangent, 0 to 1.
     pub anisotropy: f32,
     /// Strength of the coat, 0 to 1. Its index of refraction is 1.5.
     pub clearcoat: f32,
-    /// Factor in R.
+    /// Factor of `clearcoat` in R.
     pub clearcoat_texture: Option<TextureRef>,
     /// Perceptual roughness of the coat.
     pub clearcoat_roughness: f32,
-    /// Factor in G.
+    /// Factor of `clearcoat_roughness` in G.
     pub clearcoat_roughness_texture: Option<TextureRef>,
     /// Color of the sheen; black for none.
     pub sheen_color: [f32; 3],
-    /// sRGB-encoded.
+    /// Factor of `sheen_color`, sRGB-encoded.
     pub sheen_color_texture: Option<TextureRef>,
     /// Perceptual roughness of the sheen.
     pub sheen_roughness: f32,
-    /// Factor in A.
+    /// Factor of `sheen_roughness` in A.
     pub sheen_roughness_texture: Option<TextureRef>,
-    /// 0 to 1: how far the hue of the base color tints the sheen.
+    /// Tint of the sheen towards the hue of the base color, 0 to 1.
     pub sheen_tint: f32,
-    /// Share of what enters the surface that passes through instead of being scattered back, 0 to 1.
+    /// Share of the light entering the surface that is transmitted instead of scattered diffusely, 0 to 1.
     pub transmission: f32,
-    /// Factor in R.
+    /// Factor of `transmission` in R.
     pub transmission_texture: Option<TextureRef>,
-    /// Whether the surface bounds a body that refracts; a thin sheet that does not bend rays otherwise.
+    /// Whether the surface bounds a refracting volume; otherwise it is a thin sheet that does not bend rays.
     pub volume: bool,
-    /// Absorption inside the body, 1/m for each color.
+    /// Absorption coefficient inside the volume in 1/m, for each color.
     pub absorption: [f32; 3],
-    /// Whether the back emits as the front does. Both sides always scatter: a surface does not vanish from behind.
+    /// Whether the back emits like the front. Both sides always scatter: there is no back-face culling.
     pub double_sided: bool,
-    /// Phong's specular albedo and exponent, for the thesis' mode; `None`: derived from the other parameters.
+    /// Phong parameters for the thesis' mode; `None`: derived from the other parameters.
     pub phong: Option<Phong>,
 }
 
-/// The thesis' material: Lambert with `base_color` times (1 - `metallic`), and this lobe.
+/// The thesis' material: Lambert with albedo `base_color` times (1 - `metallic`), plus this Phong lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phong {
     /// Specular albedo.
     pub specular: [f32; 3],
-    /// Exponent, 0 or more.
+    /// Phong exponent, 0 or more.
     pub exponent: f32,
 }
 
-/// What opacity does.
+/// Alpha mode: the effect of opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Alpha {
-    /// Nothing.
+    /// Opacity is ignored.
     Opaque,
-    /// Below the cutoff the surface is not there.
+    /// Alpha test: the surface is absent where opacity is below the cutoff.
     Mask {
-        /// Smallest opacity that is seen.
+        /// Smallest opacity of a visible surface.
         cutoff: f32,
     },
-    /// That share of light meets the surface, the rest passes straight on.
+    /// Opacity is the share of light that interacts with the surface; the rest passes straight through.
     Blend,
 }
 
-/// A texture of the scene as a material uses it.
+/// A reference to a texture of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureRef {
     /// Index into the scene's textures.
@@ -104,7 +104,7 @@ pub struct TextureRef {
 }
 
 impl Default for Material {
-    /// White, rough, dielectric, opaque: glTF's default but for `metallic`, which is 0 here, and for emission from both sides.
+    /// White, rough, dielectric, opaque: glTF's default except that `metallic` is 0 and `double_sided` is true.
     fn default() -> Self {
         Self {
             name: String::new(),

@@ -1,25 +1,25 @@
-//! Images on surfaces.
+//! Textures.
 
-/// An image as materials use it: 8 bit RGBA, encoded as the file has it (the material's slot says whether that is sRGB).
+/// An 8 bit RGBA texture. Texels are encoded as in the file; whether that is sRGB depends on the material slot that uses it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// Width and height in texels, 1 or more.
     pub size: [u32; 2],
-    /// First row on top, as glTF's v grows.
+    /// Texels in row-major order, top row (v = 0) first.
     pub texels: Vec<[u8; 4]>,
-    /// Beyond 0 and 1, along u and v.
+    /// Wrap mode along u and v.
     pub wrap: [Wrap; 2],
-    /// The nearest texel instead of a blend of four.
+    /// Nearest instead of bilinear filtering.
     pub nearest: bool,
 }
 
-/// What is beyond the edge.
+/// Wrap mode: the texture outside of 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// The image again.
+    /// Repeated.
     Repeat,
-    /// The image again, every second time reversed.
+    /// Repeated, every second copy mirrored.
     Mirror,
-    /// The texel at the edge.
+    /// Clamped to the edge.
     Clamp,
 }

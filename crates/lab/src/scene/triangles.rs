@@ -1,21 +1,21 @@
-//! A soup of triangles in world space.
+//! Triangle soup in world space.
 
 use glam::{Vec2, Vec3, Vec4};
 
-/// Triangles in world space, one array an attribute, one entry a triangle. No vertex is shared.
+/// Triangle soup in world space: one array per attribute, one entry per triangle. Vertices are not shared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
-    /// Metres. Counter-clockwise from the front.
+    /// Corners in metres, counter-clockwise seen from the front.
     pub positions: Vec<[Vec3; 3]>,
-    /// Shading normals of length 1.
+    /// Unit shading normals.
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates, (0, 0) at the first texel's corner.
     pub uvs: Vec<[Vec2; 3]>,
-    /// Direction of growing u, of length 1, and in w the sign of the bitangent `cross(normal, tangent) * w`, which a
-    /// normal map's green points along (up in the image, against growing v). Some direction beside
-    /// the normal where the material needs none.
+    /// Unit tangent in the direction of increasing u; w is the sign of the bitangent `cross(normal, tangent) * w`, which is the
+    /// direction of a normal map's green channel (up in the image, decreasing v). An arbitrary direction orthogonal to the normal
+    /// if the material needs no tangent.
     pub tangents: Vec<[Vec4; 3]>,
-    /// Linear factors of the base color, and of alpha in w.
+    /// Vertex colors: linear factors of the base color, and of alpha in w.
     pub colors: Vec<[Vec4; 3]>,
     /// Index into the scene's materials.
     pub materials: Vec<u32>,
@@ -27,7 +27,7 @@ impl Triangles {
         self.positions.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -38,7 +38,7 @@ impl Triangles {
         others == [self.len(); 5]
     }
 
-    /// Makes room for `more` triangles.
+    /// Reserves capacity for `more` triangles.
     pub(crate) fn reserve(&mut self, more: usize) {
         self.positions.reserve(more);
         self.normals.reserve(more);
@@ -48,7 +48,7 @@ impl Triangles {
         self.materials.reserve(more);
     }
 
-    /// Adds all of `other`.
+    /// Appends the triangles of `other`.
     pub fn extend(&mut self, other: &Self) {
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
@@ -58,7 +58,7 @@ impl Triangles {
         self.materials.extend_from_slice(&other.materials);
     }
 
-    /// Adds a triangle with its geometric normal, white, without texture coordinates.
+    /// Appends a white triangle with its geometric normal and no texture coordinates.
     pub fn push_flat(&mut self, positions: [Vec3; 3], material: u32) {
         let [a, b, c] = positions;
         let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
@@ -70,7 +70,7 @@ impl Triangles {
         self.materials.push(material);
     }
 
-    /// Adds the two triangles of a quadrilateral, corners counter-clockwise from the front.
+    /// Appends the two triangles of a quadrilateral. Corners are counter-clockwise seen from the front.
     pub fn push_quad(&mut self, corners: [Vec3; 4], material: u32) {
         let [a, b, c, d] = corners;
         self.push_flat([a, b, c], material);

@@ -1,22 +1,22 @@
 //! Reading and writing EXR frames.
 //!
-//! # What is read
-//! Scan-line and tiled files, one or several parts, half, float and unsigned samples, every compression that the `exr`
-//! crate decodes. Of mip and rip maps the full resolution only. The data window must be the display window (at any origin):
-//! a cropped or overscanned frame is refused, because pixels that are not there have neither color nor motion. So are
-//! subsampled channels and deep data.
+//! # Supported files
+//! Scan-line and tiled files, one or several parts, half, float and unsigned samples, and every compression that the `exr` crate
+//! decodes. Mip and rip maps are read at full resolution only. The data window must equal the display window (at any origin):
+//! cropped and overscanned frames are not supported, because missing pixels have neither color nor motion. Nor are subsampled
+//! channels and deep data.
 //!
-//! # Which channels are used
-//! Names are looked up over all parts; a part's name counts as a prefix of its channels'. Upper and lower case are the same.
+//! # Channel names
+//! Names are looked up over all parts; a part's name counts as a prefix of its channel names. Case is ignored.
 //!
-//! | meaning | channels, the first that is found |
+//! | meaning | channels, first match wins |
 //! |---|---|
 //! | color, linear | `<layer>.Combined.R/G/B` (Blender); `R`, `G`, `B`; `<layer>.R/G/B`, fewest name parts first; grey `Y` |
 //! | depth, distance along the view axis | `<layer>.Depth.Z` or `.V`; `Z`; `depth` |
 //! | motion, Blender's | `<layer>.Vector.X/Y/Z/W`: with y **up**, X/Y are previous minus current, Z/W are current minus next |
 //! | motion, plain | `motion.X/Y/Z/W`: with y **down**, X/Y are previous minus current, Z/W are **next minus current** |
 //!
-//! All vectors are in pixels. Z/W are optional: only playing a sequence backwards needs them.
+//! All vectors are in pixels. Z/W are optional: only backward playback needs them.
 
 mod channels;
 mod decode;
@@ -30,25 +30,26 @@ pub use write::{ColorFormat, FrameToWrite, write, write_channels};
 use crate::error::{InputError, io_error, one_line};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// An error of the `exr` crate as one line of ours.
+/// Converts an error of the `exr` crate.
 fn exr_error(subject: &str, error: exr::error::Error) -> InputError {
     use exr::error::Error;
-    let (problem, remedy) = match error {
-        Error::NotSupported(what) => (
-            format!("uses a feature of EXR that is not supported ({what})"),
+    let invalid = |problem: String| InputError::invalid(subject, one_line(&problem), "export it again, or remove it");
+    match error {
+        Error::NotSupported(what) => InputError::not_supported(
+            subject,
+            one_line(&format!("uses a feature of EXR that is not supported ({what})")),
             "write it as a flat scan-line or tiled EXR with ZIP compression",
         ),
-        Error::Invalid(what) => (format!("is not a valid EXR file ({what})"), "export it again, or remove it"),
-        Error::Io(error) => return io_error(subject, &error),
-        other => (format!("cannot be read ({other})"), "export it again, or remove it"),
-    };
-    InputError::new(subject, one_line(&problem), remedy)
+        Error::Invalid(what) => invalid(format!("is not a valid EXR file ({what})")),
+        Error::Io(error) => io_error(subject, &error),
+        other => invalid(format!("cannot be read ({other})")),
+    }
 }
 
-/// Runs a decoder of another crate: a panic on a malformed file is that file's fault, not a reason to stop.
+/// Runs a decoder of another crate and turns a panic, which malformed files can cause, into an error.
 pub(crate) fn guarded<T>(subject: &str, decode: impl FnOnce() -> Result<T, InputError>) -> Result<T, InputError> {
     catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|_| {
-        Err(InputError::new(
+        Err(InputError::invalid(
             subject,
             "is malformed in a way that its decoder does not handle",
             "export it again, or remove it",

@@ -1,4 +1,4 @@
-//! Where frames come from: stills, EXR sequences, analytic scenes, rendered scenes. All hand out frames in one form.
+//! Frame sources: stills, EXR sequences, analytic scenes and rendered scenes, behind one trait ([`FrameSource`]).
 
 pub mod analytic;
 
@@ -45,49 +45,50 @@ use crate::frame::DeviceFrame;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use glam::DMat4;
 
-/// What is known about a source before its first frame is read.
+/// Properties of a source that are known before its first frame is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceInfo {
-    /// As the user named it.
+    /// Name as the user gave it.
     pub name: String,
     /// Width and height of every frame in pixels.
     pub size: [u32; 2],
-    /// Distinct frames; `None` for a source that never ends (analytic scenes).
+    /// Number of distinct frames; `None` for an endless source (analytic scenes).
     pub frames: Option<u64>,
-    /// Frames per second, where the input says so.
+    /// Frames per second, if the input states them.
     pub fps: Option<f32>,
-    /// Horizontal field of view in degrees, where the input says so.
+    /// Horizontal field of view in degrees, if the input states it.
     pub hfov_deg: Option<f32>,
-    /// The same picture for ever: nothing moves, and every pixel stays the same surface point.
+    /// Whether all frames show the same picture: nothing moves, and every pixel keeps its surface point.
     pub still: bool,
 }
 
-/// Where a camera stands.
+/// Pose of a camera that a viewer can steer, and a speed to steer it with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stance {
-    /// x right, y up, looking along -z.
+pub struct CameraPose {
+    /// Camera-to-world matrix: x right, y up, looking along -z.
     pub world_from_camera: DMat4,
-    /// How many metres a second are a walk in its scene: through all of it in about ten.
+    /// Walking speed that suits the scene, in m/s: it crosses the scene in about ten seconds.
     pub speed_m_s: f64,
 }
 
 /// A stream of frames, by playback index.
 ///
-/// A sequence shorter than the playback goes forwards and backwards (0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...), with motion
-/// vectors that follow. Memory does not grow with the number of frames.
+/// A sequence shorter than the playback is played forwards and backwards (0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...), with motion
+/// vectors for the direction of playback. Memory does not grow with the number of frames.
 pub trait FrameSource {
-    /// Facts that hold for all frames.
+    /// Properties that hold for all frames.
     fn info(&self) -> &SourceInfo;
 
-    /// The frame at playback position `index`. Positions may be asked for in any order; the vectors always refer to
-    /// `index - 1`.
+    /// The frame at playback position `index`. Positions may come in any order; motion vectors always refer to `index - 1`.
     ///
     /// # Errors
-    /// If the file behind it cannot be read or is not what its header promised.
+    /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or contradicts its
+    /// header, [`Limit`](InputError::Limit) if it is larger than the limits by now, [`Device`](InputError::Device) if the renderer
+    /// failed or lost its device.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
 
-    /// The same frame as the source foveates it for a gaze in pixels, with samples where `guide` misses them; `None` if it does not, and
-    /// a simulator has to.
+    /// The frame at `index`, foveated by the source itself around a gaze in pixels. `guide` directs the samples. `None` if the
+    /// source cannot foveate: a simulator then foveates the full-rate frame.
     ///
     /// # Errors
     /// As for [`frame`](Self::frame).
@@ -106,22 +107,23 @@ pub trait FrameSource {
         None
     }
 
-    /// Where the camera stands at playback position `index`; `None` if there is none that can be steered.
-    fn stance(&self, _index: u64) -> Option<Stance> {
+    /// Camera pose at playback position `index`; `None` if the camera cannot be steered.
+    fn camera_pose(&self, _index: u64) -> Option<CameraPose> {
         None
     }
 
-    /// Takes a camera that can be steered off its path, or with `None` back ([`SceneCamera::steer`]).
+    /// Overrides the camera's path from frame `index` on with the poses before and from then; `None` returns it to its path. See
+    /// `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
     fn steer(&mut self, _index: u64, _before_and_now: Option<[DMat4; 2]>) {}
 }
 
-/// What a scene needs to be told; files know it themselves.
+/// View parameters of scenes. Files of frames state their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneOptions {
-    /// Width and height in pixels; default 640x360. Refused for files.
+    /// Width and height in pixels; default 640x360. An error for files of frames.
     pub size: Option<[u32; 2]>,
-    /// Horizontal field of view in degrees; default 70. Files keep their own.
+    /// Horizontal field of view in degrees; default 70. Ignored for files of frames.
     pub hfov_deg: Option<f32>,
-    /// Frames per second; default 60. Files keep their own.
+    /// Frames per second; default 60. Ignored for files of frames.
     pub fps: Option<f32>,
 }

@@ -1,47 +1,47 @@
-//! Which convention do a renderer's motion vectors follow? Found by trying all of them on two frames.
+//! Detects the convention of a renderer's motion vectors by trying all of them on two frames.
 //!
-//! A mistaken sign or unit does not crash: it shows as ghosts and blur. Reprojecting the frame before under each of the
-//! twelve conventions and comparing tells which one is meant, wherever the scene moves enough.
+//! A wrong sign or unit does not crash: it shows as ghosts and blur. The detector reprojects the previous frame under each of the
+//! twelve conventions and picks the one that matches the current frame best. The scene must move enough.
 
 use crate::error::InputError;
 use afterimage::{Image, MotionConvention, MotionDirection, MotionUnit, YAxis};
 
-/// Pixels looked at in search of motion. More finds smaller moving things, and takes longer.
+/// Pixels scanned for motion. More finds smaller moving objects and takes longer.
 const SCANNED: usize = 1 << 18;
 
-/// Moving pixels compared under each convention. More steadies the figures, and takes longer.
+/// Moving pixels compared under each convention. More reduces the variance of the PSNR and takes longer.
 const COMPARED: usize = 1 << 14;
 
-/// Conventions this close to the best, in dB, are taken as equal: path-tracing noise moves the figure by about 0.1 dB.
+/// Conventions within this many dB of the best count as tied: path-tracing noise changes the PSNR by about 0.1 dB.
 const TIE_DB: f64 = 0.3;
 
-/// What the two frames allow to say.
+/// Outcome of [`detect`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// One convention is clearly better than all others.
     Decided,
-    /// Unit and direction are clear, but nothing moves vertically: either direction of the y axis would do.
+    /// Unit and direction are clear, but nothing moves vertically, so the y axis is undetermined.
     YAxisOpen,
     /// Nothing moves, or several conventions explain the motion equally well.
     Undecidable,
 }
 
-/// How well each convention explains a frame from the one before.
+/// How well each convention predicts a frame from the previous one.
 #[derive(Clone, Debug)]
 pub struct MotionCheck {
-    /// What can be said.
+    /// Whether `best` is certain.
     pub verdict: Verdict,
-    /// The convention that explains best; among equals the one closest to the internal form.
+    /// The convention with the highest PSNR; among tied ones the first of [`conventions`].
     pub best: MotionConvention,
     /// All twelve conventions with the PSNR in dB of tone-mapped color over moving pixels (100 at most), best first.
     pub psnr_db: Vec<(MotionConvention, f64)>,
-    /// PSNR of the best above that of the first convention that is not equal to it, in dB; 0 if all are equal.
+    /// PSNR of the best minus that of the first convention that is not tied with it, in dB; 0 if all are tied.
     pub margin_db: f64,
-    /// Moving pixels compared.
+    /// Number of moving pixels compared.
     pub pixels: usize,
 }
 
-/// All conventions: three units, two directions, two y axes. The internal form comes first.
+/// All conventions: three units, two directions, two y axes. The library's own comes first.
 pub fn conventions() -> impl Iterator<Item = MotionConvention> {
     let units = [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc];
     let directions = [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious];
@@ -52,12 +52,12 @@ pub fn conventions() -> impl Iterator<Item = MotionConvention> {
     })
 }
 
-/// Finds the convention of `raw` motion vectors of the frame `current`, given the frame before.
+/// Detects the convention of the `raw` motion vectors of frame `current`, given the previous frame.
 ///
 /// Frames are linear color at full rate. Vectors that are not finite are skipped.
 ///
 /// # Errors
-/// If the three images differ in size.
+/// [`Request`](InputError::Request) if the three images differ in size.
 pub fn detect(
     previous: &Image<[f32; 3]>,
     current: &Image<[f32; 3]>,
@@ -66,7 +66,7 @@ pub fn detect(
     let size = current.size();
     for (name, other) in [("previous frame", previous.size()), ("motion", raw.size())] {
         if other != size {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 name,
                 format!("has {}x{} pixels but the frame has {}x{}", other[0], other[1], size[0], size[1]),
                 "expected one size for both frames and the motion",
@@ -75,7 +75,7 @@ pub fn detect(
     }
     let moving = moving_pixels(raw);
     let mut psnr_db: Vec<_> = conventions().map(|c| (c, explained_db(previous, current, raw, &moving, c))).collect();
-    // Stable: among exact equals the internal form stays first.
+    // A stable sort: among exact ties the library's own convention stays first.
     psnr_db.sort_by(|a, b| b.1.total_cmp(&a.1));
     let top = psnr_db[0].1;
     let tied: Vec<_> = psnr_db.iter().filter(|p| top - p.1 < TIE_DB).collect();
@@ -96,7 +96,7 @@ pub fn detect(
     })
 }
 
-/// Evenly spread pixels whose vectors are among the longer ones. Pixels at rest look alike under every convention.
+/// Evenly spread pixels with the longer motion vectors. Pixels at rest look alike under every convention.
 fn moving_pixels(raw: &Image<[f32; 2]>) -> Vec<[usize; 2]> {
     let stride = ((raw.width() * raw.height()) as f64 / SCANNED as f64).sqrt().ceil().max(1.0) as usize;
     let mut found: Vec<(f32, [usize; 2])> = Vec::new();
@@ -111,7 +111,7 @@ fn moving_pixels(raw: &Image<[f32; 2]>) -> Vec<[usize; 2]> {
     if found.is_empty() {
         return Vec::new();
     }
-    // A quantile, not the longest: a few wild vectors must not hide the rest.
+    // A quantile, not the maximum: a few outliers must not hide the rest.
     let at = found.len() * 9 / 10;
     let mut lengths: Vec<f32> = found.iter().map(|f| f.0).collect();
     let threshold = 0.25 * *lengths.select_nth_unstable_by(at, f32::total_cmp).1;
@@ -120,7 +120,7 @@ fn moving_pixels(raw: &Image<[f32; 2]>) -> Vec<[usize; 2]> {
     found.into_iter().step_by(thin).map(|f| f.1).collect()
 }
 
-/// PSNR of the previous frame, fetched where the convention points, against the current one.
+/// PSNR in dB of the previous frame, reprojected under `convention`, against the current frame at `pixels`.
 fn explained_db(
     previous: &Image<[f32; 3]>,
     current: &Image<[f32; 3]>,
@@ -142,13 +142,13 @@ fn explained_db(
     -10.0 * mse.max(1e-10).log10()
 }
 
-/// Compresses highlights: errors then count about as much as they are seen.
+/// Tone curve that compresses highlights, so that errors weigh about as much as they are visible.
 fn tone(x: f32) -> f32 {
     let x = x.max(0.0);
     (x / (1.0 + x)).powf(1.0 / 2.2)
 }
 
-/// Tone-mapped color at a place, the border repeated outside: a convention that points far away finds the wrong color.
+/// Bilinearly filtered tone-mapped color, clamped to the edge: a convention that points far outside finds a wrong color.
 fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
     let along = |v: f32, n: usize| {
         let v = v.clamp(0.0, (n - 1) as f32);

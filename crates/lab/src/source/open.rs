@@ -1,4 +1,4 @@
-//! From what the user named to a source.
+//! Opens a source from the name that a user gives.
 
 use super::analytic::{self, AnalyticSource};
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
@@ -6,26 +6,31 @@ use crate::error::InputError;
 use afterimage::FrameError;
 use std::path::Path;
 
-/// Whether what the user named is a scene, which a renderer makes frames of ([`RasterSource`]), and not frames.
+/// Whether `input` names a scene, which needs a renderer (`RasterSource`, `TracedSource`), and not a file of frames.
 pub fn is_scene(input: &str) -> bool {
     input.starts_with("builtin:") || matches!(extension(Path::new(input)).as_str(), "gltf" | "glb")
 }
 
-/// Opens what the user named: a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
+/// Opens a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
 ///
 /// # Errors
-/// If it does not exist, cannot be read, or is of a kind that is not read.
+/// - [`Io`](InputError::Io): the file or folder does not exist or cannot be read.
+/// - [`Invalid`](InputError::Invalid): a file is damaged, lacks color, or does not fit the other frames of its sequence.
+/// - [`NotSupported`](InputError::NotSupported): the kind of file or a feature of it is not implemented.
+/// - [`Limit`](InputError::Limit): a frame has more pixels than `limits` allows.
+/// - [`Request`](InputError::Request): `scene` gives a size for a file, there is no analytic scene of that name, `input` is a
+///   scene that needs a renderer, or the folder holds no frames.
 pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
-    // A scheme in front names a source that is no file. Checked first, so that no file hides it.
+    // Schemes first, so that a file of the same name cannot hide them.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
         _ if is_scene(input) => return Err(scene_error(input)),
         _ => {}
     }
     if let Some([w, h]) = scene.size {
-        return Err(InputError::new(
+        return Err(InputError::request(
             input,
-            format!("has a size of its own, and {w}x{h} was asked for"),
+            format!("has its own size, but {w}x{h} pixels were requested"),
             "give a size for scenes only",
         ));
     }
@@ -35,14 +40,14 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     }
     match extension(path).as_str() {
         "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
-        _ if !path.exists() => Err(InputError::new(
+        _ if !path.exists() => Err(InputError::io(
             input,
             "does not exist",
             "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
         )),
-        _ => Err(InputError::new(
+        _ => Err(InputError::not_supported(
             input,
-            "is not of a kind that is read",
+            "is a kind of file that is not supported",
             "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
         )),
     }
@@ -59,33 +64,34 @@ fn open_analytic(name: &str, limits: &ReadLimits, scene: &SceneOptions) -> Resul
     )
 }
 
-/// Refuses frames to be rendered that are larger than those that may be read.
+/// Checks the size of frames to render against the limit for frames to read.
 pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -> Result<(), InputError> {
     let pixels = u64::from(w) * u64::from(h);
     if pixels <= limits.max_pixels {
         return Ok(());
     }
-    Err(InputError::new(
+    Err(InputError::limit(
+        limits.exceeded(Some(pixels)),
         subject,
         format!("{w}x{h} pixels are above the limit of {} million", limits.max_pixels / 1_000_000),
-        format!("choose a smaller size, or raise the limit with --max-megapixels {}", pixels.div_ceil(1_000_000)),
+        "choose a smaller size, or raise the limit",
     ))
 }
 
-/// What a renderer says that has lost its device.
+/// The error of a renderer that has lost its device.
 pub(super) fn device_lost(name: &str, lost: &FrameError) -> InputError {
-    InputError::new(name, lost.to_string(), "start again, or use --backend cpu where that is possible")
+    InputError::device(name, lost.to_string(), "start again, or render on the CPU where that is possible")
 }
 
 fn scene_error(input: &str) -> InputError {
-    InputError::new(
+    InputError::request(
         input,
         "is a scene, and scenes need a renderer",
         "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
     )
 }
 
-/// The ending of a file name in lower case, without the dot; empty if there is none.
+/// File name extension in lower case, without the dot; empty if there is none.
 pub(super) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

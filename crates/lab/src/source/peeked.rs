@@ -1,6 +1,6 @@
 //! A source whose first frame was read ahead.
 
-use super::{FrameSource, SourceInfo, Stance};
+use super::{FrameSource, SourceInfo, CameraPose};
 use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::DeviceFrame;
@@ -50,8 +50,8 @@ impl FrameSource for PeekedSource<'_> {
         self.source.device_frame()
     }
 
-    fn stance(&self, index: u64) -> Option<Stance> {
-        self.source.stance(index)
+    fn camera_pose(&self, index: u64) -> Option<CameraPose> {
+        self.source.camera_pose(index)
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {

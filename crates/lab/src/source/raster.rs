@@ -1,6 +1,6 @@
-//! Frames of a scene by the rasteriser.
+//! Frames of a scene from the rasteriser.
 
-use super::Stance;
+use super::CameraPose;
 use super::open::{check_size, device_lost};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
@@ -13,16 +13,16 @@ use crate::trace::view::View;
 use glam::DMat4;
 use std::sync::Arc;
 
-/// Width and height in pixels where nothing else is asked for.
+/// Default width and height in pixels.
 pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
-/// Frames per second where nothing else is asked for.
+/// Default frames per second.
 pub const DEFAULT_FPS: f32 = 60.0;
 
-/// A scene seen by a camera, rendered frame by frame and read back to memory.
+/// A scene seen by a camera, rasterised frame by frame and read back to memory.
 ///
 /// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from `(index - 1) / fps`.
-/// Frame 0 is a cut, in which nothing has moved. `previous_from_current` is always given, and so are depth and motion, which are
-/// those at the pixels' centres; the color is the mean of four samples.
+/// Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present. Depth and motion are sampled at
+/// pixel centres; color is the mean of four samples.
 pub struct RasterSource {
     info: SourceInfo,
     device: Arc<Headless>,
@@ -33,11 +33,12 @@ pub struct RasterSource {
 }
 
 impl RasterSource {
-    /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that
-    /// [`SceneCamera::choose`] finds by `camera`. Textures are filtered anisotropically except on software devices.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for `camera`.
+    /// Texture filtering is anisotropic except on software devices.
     ///
     /// # Errors
-    /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
+    /// Those of [`Scene::open`], [`SceneCamera::choose`] and [`RasterSource::new`], and [`Limit`](InputError::Limit) if the frame
+    /// has more pixels than `limits` allows.
     pub fn open(
         input: &str,
         limits: &ReadLimits,
@@ -50,15 +51,16 @@ impl RasterSource {
         let scene = Scene::open(input, &SceneLimits::default())?;
         let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
         let defaults = RasterSettings::default();
-        // A software device takes ten times as long for a frame of Sponza with 16.
+        // With an anisotropy of 16, a software device takes ten times as long for a frame of Sponza.
         let anisotropy = if device.is_software() { 1 } else { defaults.anisotropy };
         Self::new(device, scene, camera, options.fps, RasterSettings { anisotropy, ..defaults })
     }
 
-    /// `scene` as `camera` sees it, at `fps` frames per second (default: the camera file's, else 60).
+    /// `scene` seen by `camera` at `fps` frames per second (default: those of the camera file, else 60).
     ///
     /// # Errors
-    /// If the frame rate is not above 0, or the scene or the frame is more than the device takes.
+    /// [`Request`](InputError::Request) if the frame rate is not above 0 or the device cannot draw the frame's size;
+    /// [`Limit`](InputError::Limit) if the scene has more triangles than the device holds.
     pub fn new(
         device: Arc<Headless>,
         scene: Scene,
@@ -69,7 +71,7 @@ impl RasterSource {
         let fps = fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
         if !(fps.is_finite() && fps > 0.0) {
             let problem = format!("the frame rate is {fps}");
-            return Err(InputError::new(&scene.name, problem, "expected frames per second above 0"));
+            return Err(InputError::request(&scene.name, problem, "expected frames per second above 0"));
         }
         let size = camera.geometry().size_px();
         let raster = Raster::new(&device.device, &device.queue, &scene, size, settings)?;
@@ -84,7 +86,7 @@ impl RasterSource {
         Ok(Self { info, device, scene, camera, raster, fps: f64::from(fps) })
     }
 
-    /// What the file asks for and is not done.
+    /// Features of the scene file that are ignored or approximated.
     pub fn warnings(&self) -> &[String] {
         &self.scene.warnings
     }
@@ -94,14 +96,14 @@ impl RasterSource {
         &self.scene
     }
 
-    /// The views of frame `index` and of the one before, and the times of both in seconds.
+    /// Views of frame `index` and of the previous one, and the times of both in seconds.
     pub fn views(&self, index: u64) -> ([View; 2], [f64; 2]) {
         let before = index.saturating_sub(1);
         let times = [index, before].map(|i| i as f64 / self.fps);
         ([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])], times)
     }
 
-    /// Renders frame `index` and leaves it on the device.
+    /// Renders frame `index` without reading it back.
     pub fn render(&mut self, index: u64) -> &Raster {
         let ([view, previous], times) = self.views(index);
         self.raster.pose(&self.scene, times[0], times[1]);
@@ -152,8 +154,8 @@ impl FrameSource for RasterSource {
         })
     }
 
-    fn stance(&self, index: u64) -> Option<Stance> {
-        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    fn camera_pose(&self, index: u64) -> Option<CameraPose> {
+        Some(self.camera.camera_pose(&self.scene, index, index as f64 / self.fps))
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {

@@ -1,6 +1,6 @@
-//! Where a scene is seen from, frame by frame.
+//! Cameras and camera paths of scenes.
 
-use super::Stance;
+use super::CameraPose;
 use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene};
@@ -9,35 +9,46 @@ use afterimage::ViewGeometry;
 use glam::{DMat4, DQuat, DVec3};
 use std::path::Path;
 
-/// Horizontal field of view of camera files that say nothing about it, degrees.
+/// Horizontal field of view in degrees of camera files that do not state one.
 const DEFAULT_HFOV_DEG: f32 = 70.0;
-/// Largest distance from the middle of a `lateral` path over the distance that is moved in a second.
+/// Amplitude of a `lateral` path in metres, over its largest speed in m/s.
 const LATERAL_SECONDS: f64 = 0.8;
-/// Degrees that an `orbit` turns in a second.
+/// Angular speed of `orbit`, degrees per second.
 const ORBIT_DEG_PER_S: f64 = 15.0;
 
-/// A camera and its path.
+/// A camera, its path, and its view parameters.
 #[derive(Clone, Debug)]
 pub struct SceneCamera {
     path: CameraPath,
     geometry: ViewGeometry,
-    /// From frame `.0` on in the second of these places, in the first before; `None`: on its path.
-    steered: Option<(u64, [DMat4; 2])>,
+    /// `None`: the camera follows its path.
+    steering: Option<Steering>,
+}
+
+/// Camera-to-world matrices that override the path.
+#[derive(Clone, Copy, Debug)]
+struct Steering {
+    /// First frame with the pose `now`.
+    from_frame: u64,
+    /// Pose of all earlier frames.
+    before: DMat4,
+    /// Pose from `from_frame` on.
+    now: DMat4,
 }
 
 #[derive(Clone, Debug)]
 enum CameraPath {
-    /// The scene's camera of that number, as the scene moves it.
+    /// Camera of this index in the scene, which may be animated.
     Scene(usize),
-    /// Stands still.
+    /// A static camera.
     Framing(Camera),
     File(CameraFile),
-    /// Sideways and back, at most `speed` m/s.
+    /// Sideways oscillation with a largest speed of `speed` m/s.
     Lateral {
         from: DMat4,
         speed: f64,
     },
-    /// Around an upright axis through the middle.
+    /// Rotation about the vertical axis through `middle`.
     Orbit {
         from: DMat4,
         middle: DVec3,
@@ -45,21 +56,22 @@ enum CameraPath {
 }
 
 impl SceneCamera {
-    /// A camera by what the user named: a camera of the scene, a `.json` file ([`CameraFile`]), or one of
+    /// Selects a camera by name: a camera of the scene, a `.json` file ([`CameraFile`]), or one of
     ///
     /// - `still`: the scene's first camera, else `framing`;
-    /// - `framing`: one that stands still with all of the scene in view;
-    /// - `lateral`: the scene's first camera, else `framing`, that glides to the right and back. At its fastest it moves an
-    ///   eighteenth of the scene's radius a second where it stands inside the scene's box (1 m/s in a hall of 36 m), else a fifth of
-    ///   its distance from the middle;
-    /// - `orbit`: the same camera around the scene's middle, 15 degrees a second.
+    /// - `framing`: a static camera with all of the scene in view;
+    /// - `lateral`: the scene's first camera, else `framing`, moving to the right and back. Its largest speed is an eighteenth of the
+    ///   scene's radius per second if it is inside the scene's bounding box (1 m/s in a hall of 36 m), else a fifth of its distance
+    ///   from the box's middle;
+    /// - `orbit`: the scene's first camera, else `framing`, rotating about the scene's middle at 15 degrees per second.
     ///
-    /// `None`: the scene's first camera, else `framing`; if nothing moves then, `lateral`.
+    /// `None` selects `still` for an animated scene and `lateral` for a static one.
     ///
     /// `hfov_deg` replaces the camera's horizontal field of view.
     ///
     /// # Errors
-    /// If there is no such camera, the file is none, or the size or field of view is none.
+    /// [`Request`](InputError::Request) if there is no such camera, or the size or the field of view is out of range; those of
+    /// [`CameraFile::open`].
     pub fn choose(
         scene: &Scene,
         name: Option<&str>,
@@ -87,32 +99,32 @@ impl SceneCamera {
                 let file = CameraFile::open(Path::new(file))?;
                 let hfov_deg = hfov_deg.or(file.hfov_deg).unwrap_or(DEFAULT_HFOV_DEG);
                 let geometry = flat(scene, size_px, hfov_deg)?;
-                return Ok(Self { path: CameraPath::File(file), geometry, steered: None });
+                return Ok(Self { path: CameraPath::File(file), geometry, steering: None });
             }
             Some(name) => {
                 let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
-                let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-                return Err(InputError::new(
-                    format!("--camera {name}"),
+                let listed = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                return Err(InputError::request(
+                    format!("camera {name}"),
                     "the scene has no such camera",
-                    format!("expected still, lateral, orbit, framing, a .json file, or one of its cameras: {there}"),
+                    format!("expected still, lateral, orbit, framing, a .json file, or one of its cameras: {listed}"),
                 ));
             }
         };
-        // As a symmetric view, which the rest of the tool describes by its horizontal angle.
+        // Scenes state the vertical angle, `ViewGeometry` takes the horizontal one.
         let own = || {
             let half = (camera.vfov_deg.to_radians() * 0.5).tan() * aspect;
             2.0 * half.atan().to_degrees()
         };
-        Ok(Self { path, geometry: flat(scene, size_px, hfov_deg.unwrap_or_else(own))?, steered: None })
+        Ok(Self { path, geometry: flat(scene, size_px, hfov_deg.unwrap_or_else(own))?, steering: None })
     }
 
-    /// Pixels and angles of all frames.
+    /// Frame size and field of view of all frames.
     pub fn geometry(&self) -> &ViewGeometry {
         &self.geometry
     }
 
-    /// Frames per second, where a camera file says so.
+    /// Frames per second, if a camera file states them.
     pub fn fps(&self) -> Option<f32> {
         match &self.path {
             CameraPath::File(file) => file.fps,
@@ -120,7 +132,7 @@ impl SceneCamera {
         }
     }
 
-    /// How many frames a camera file has poses for; other paths have any number.
+    /// Number of frames that a camera file has poses for; `None` for endless paths.
     pub fn frames(&self) -> Option<u64> {
         match &self.path {
             CameraPath::File(file) => file.frames().map(|n| n as u64),
@@ -128,7 +140,7 @@ impl SceneCamera {
         }
     }
 
-    /// Whether it never moves in `scene`.
+    /// Whether the camera never moves in `scene`.
     pub fn is_still(&self, scene: &Scene) -> bool {
         match &self.path {
             CameraPath::Scene(_) => scene.duration_s() <= 0.0,
@@ -138,27 +150,27 @@ impl SceneCamera {
         }
     }
 
-    /// Takes the camera off its path: from frame `index` on it is at the second of these places (x right, y up, looking along -z), until
-    /// then it was at the first. `None`: back onto its path.
+    /// Overrides the path with camera-to-world matrices (x right, y up, looking along -z): the second from frame `index` on, the
+    /// first for earlier frames. `None` returns the camera to its path.
     pub fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
-        self.steered = before_and_now.map(|places| (index, places));
+        self.steering = before_and_now.map(|[before, now]| Steering { from_frame: index, before, now });
     }
 
-    /// Whether it is off its path.
+    /// Whether the path is overridden.
     pub fn is_steered(&self) -> bool {
-        self.steered.is_some()
+        self.steering.is_some()
     }
 
-    /// Where it stands in frame `index`, at `time_s`.
-    pub fn stance(&self, scene: &Scene, index: u64, time_s: f64) -> Stance {
+    /// Camera pose in frame `index`, at `time_s`.
+    pub fn camera_pose(&self, scene: &Scene, index: u64, time_s: f64) -> CameraPose {
         let (radius, _) = middle(scene);
-        Stance { world_from_camera: self.view(scene, index, time_s).world_from_camera(), speed_m_s: radius / 5.0 }
+        CameraPose { world_from_camera: self.view(scene, index, time_s).world_from_camera(), speed_m_s: radius / 5.0 }
     }
 
-    /// What it sees in frame `index`, at `time_s`.
+    /// View of frame `index`, at `time_s`.
     pub fn view(&self, scene: &Scene, index: u64, time_s: f64) -> View {
-        if let Some((from, [before, now])) = self.steered {
-            return View::new(self.geometry, if index < from { before } else { now });
+        if let Some(Steering { from_frame, before, now }) = self.steering {
+            return View::new(self.geometry, if index < from_frame { before } else { now });
         }
         let world_from_camera = match &self.path {
             CameraPath::Scene(camera) => scene.pose(time_s).cameras[*camera].world_from_camera,
@@ -177,18 +189,18 @@ impl SceneCamera {
     }
 }
 
-/// The scene's first camera, or one that stands still.
+/// Path of the scene's first camera, or a static one with the pose of `framing`.
 fn own_path(cameras: &[Camera], framing: &Camera) -> CameraPath {
     if cameras.is_empty() { CameraPath::Framing(framing.clone()) } else { CameraPath::Scene(0) }
 }
 
 fn flat(scene: &Scene, size_px: [u32; 2], hfov_deg: f32) -> Result<ViewGeometry, InputError> {
     ViewGeometry::flat(size_px, hfov_deg).map_err(|e| {
-        InputError::new(&scene.name, format!("{} is {}", e.setting, e.found), format!("expected {}", e.expected))
+        InputError::request(&scene.name, format!("{} is {}", e.setting, e.found), format!("expected {}", e.expected))
     })
 }
 
-/// Half the diagonal of the scene's box and its middle.
+/// Half the diagonal of the scene's bounding box, and the box's middle.
 fn middle(scene: &Scene) -> (f64, DVec3) {
     scene.bounds().map_or((1.0, DVec3::ZERO), |b| {
         let (min, max) = (b.min.as_dvec3(), b.max.as_dvec3());
@@ -215,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_stands_still_is_passed_by_and_named_cameras_stand() {
+    fn a_static_scene_gets_a_moving_camera_and_named_cameras_stand_still() {
         let scene = builtin::courtyard();
         let passing = SceneCamera::choose(&scene, None, [64, 36], None).unwrap();
         assert!(!passing.is_still(&scene));
@@ -224,7 +236,7 @@ mod tests {
         let step = eye(&passing, &scene, 1e-3).distance(start) / 1e-3;
         let fastest = (radius / 18.0).max(start.distance(middle(&scene).1) / 5.0);
         assert!(step > 0.0 && step <= fastest * 1.000_001, "{step} m/s of at most {fastest}");
-        // It never leaves its stretch.
+        // It stays within its amplitude.
         assert!((0..1000).all(|i| eye(&passing, &scene, f64::from(i)).distance(start) <= fastest * LATERAL_SECONDS));
         let framing = SceneCamera::choose(&scene, Some("framing"), [64, 36], Some(60.0)).unwrap();
         assert!(framing.is_still(&scene) && (framing.geometry().hfov_deg() - 60.0).abs() < 1e-3);
@@ -241,20 +253,20 @@ mod tests {
     }
 
     #[test]
-    fn a_steered_camera_is_where_it_is_put_and_finds_its_path_again() {
+    fn a_steered_camera_takes_the_given_poses_and_returns_to_its_path() {
         let scene = builtin::courtyard();
         let mut camera = SceneCamera::choose(&scene, Some("orbit"), [64, 36], None).unwrap();
-        let on_path = camera.stance(&scene, 7, 0.5);
+        let on_path = camera.camera_pose(&scene, 7, 0.5);
         let [before, now] = [1.0, 2.0].map(|x| DMat4::from_translation(DVec3::X * x));
         camera.steer(7, Some([before, now]));
         let places = [6, 7, 8].map(|i| camera.view(&scene, i, 0.5).world_from_camera());
         assert_eq!((places, camera.is_steered()), ([before, now, now], true));
         camera.steer(8, None);
-        assert_eq!((camera.stance(&scene, 7, 0.5), camera.is_steered()), (on_path, false));
+        assert_eq!((camera.camera_pose(&scene, 7, 0.5), camera.is_steered()), (on_path, false));
     }
 
     #[test]
-    fn what_is_no_camera_is_refused() {
+    fn unknown_cameras_and_fields_of_view_are_refused() {
         let scene = builtin::courtyard();
         let error = SceneCamera::choose(&scene, Some("left"), [64, 36], None).unwrap_err().to_string();
         assert!(error.contains("lateral") && error.contains("left"), "{error}");

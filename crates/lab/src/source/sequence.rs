@@ -11,8 +11,8 @@ use crate::scene::cameras::Cameras;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json` beside
-/// them. Every header is checked on opening; a frame's pixels are read when it is asked for and not kept.
+/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json`. Opening
+/// checks every header; pixels are decoded on request and not cached.
 ///
 /// A folder with a single frame is a still.
 #[derive(Debug)]
@@ -29,9 +29,12 @@ impl SequenceSource {
     /// Opens `folder` and checks all headers. No pixel is decoded, except for a single frame.
     ///
     /// # Errors
-    /// If the folder is missing or has no `.exr`; if a frame is damaged, truncated, larger than the limits, without color,
-    /// or differs from the first in size or in whether it has depth or motion; if one is missing between two numbers; if
-    /// several frames have no motion vectors; or if `cameras.json` does not fit.
+    /// - [`Io`](InputError::Io): the folder or a file cannot be read.
+    /// - [`Request`](InputError::Request): the folder has no `.exr`.
+    /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of [`ExrHeader::open`].
+    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in size, or in
+    ///   whether it has depth or motion; a frame number is missing; several frames have no motion vectors; or `cameras.json` is
+    ///   invalid or belongs to other frames.
     pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let name = folder.display().to_string();
         let files = exr_files(folder)?;
@@ -68,7 +71,7 @@ impl SequenceSource {
         Ok(Self { info, limits: *limits, has_depth: first.has_depth(), cameras, still: None, files })
     }
 
-    /// The frames in playing order.
+    /// Paths of the frames in playback order.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
@@ -86,7 +89,7 @@ impl FrameSource for SequenceSource {
         let (file, step) = playback(index, self.files.len() as u64);
         let header = ExrHeader::open(&self.files[file], &self.limits)?;
         if header.size() != self.info.size || header.has_depth() != self.has_depth {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 self.files[file].display().to_string(),
                 "has changed since the sequence was opened",
                 "leave the frames alone while they are read",
@@ -117,14 +120,14 @@ impl FrameSource for SequenceSource {
     }
 }
 
-/// How a frame was reached.
+/// Direction of playback that leads to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
-    /// Nothing was shown before.
+    /// There is no previous frame.
     First,
-    /// From the file before.
+    /// The previous frame is the file before.
     Forward,
-    /// From the file after.
+    /// The previous frame is the file after.
     Backward,
 }
 
@@ -142,7 +145,7 @@ fn playback(index: u64, n: u64) -> (usize, Step) {
     (file as usize, step)
 }
 
-/// The `.exr` files of a folder in playing order. Hidden files are not frames.
+/// The `.exr` files of a folder in playback order. Hidden files are skipped.
 fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let subject = folder.display().to_string();
     let mut files = Vec::new();
@@ -154,7 +157,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
         }
     }
     if files.is_empty() {
-        return Err(InputError::new(
+        return Err(InputError::request(
             subject,
             "holds no .exr file",
             "expected a folder of EXR frames, or the path of one image",
@@ -167,7 +170,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     Ok(files)
 }
 
-/// The last run of digits in the name, without the ending.
+/// The last run of digits in the file name, extension excluded.
 fn frame_number(path: &Path) -> Option<u64> {
     let stem = path.file_stem()?.to_string_lossy();
     let digits = |c: char| c.is_ascii_digit();
@@ -176,16 +179,16 @@ fn frame_number(path: &Path) -> Option<u64> {
     stem[start..end].parse().ok()
 }
 
-/// Refuses a sequence with a frame missing: the vectors of the one after it would point past their neighbour.
+/// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
 fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> {
     let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<u64>>>() else {
         return Ok(());
     };
     let steps: Vec<u64> = numbers.windows(2).map(|w| w[1] - w[0]).collect();
     let smallest = steps.iter().copied().min().unwrap_or(0);
-    // Equal numbers are a naming scheme of its own.
+    // Repeated numbers mean that they do not count frames.
     match steps.iter().position(|&s| s != smallest) {
-        Some(at) if smallest > 0 => Err(InputError::new(
+        Some(at) if smallest > 0 => Err(InputError::invalid(
             subject,
             format!("its frame numbers jump from {} to {}", numbers[at], numbers[at + 1]),
             format!(
@@ -196,7 +199,7 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     }
 }
 
-/// Checks every header against the first, which is returned.
+/// Checks every header against the first, and returns the first.
 fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, InputError> {
     let first = ExrHeader::open(&files[0], limits)?;
     let first_name = files[0].display();
@@ -205,7 +208,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
         let subject = file.display().to_string();
         if header.size() != first.size() {
             let ([w, h], [w0, h0]) = (header.size(), first.size());
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 format!("has {w}x{h} pixels but {first_name} has {w0}x{h0}"),
                 "expected frames of one size; keep one sequence in a folder",
@@ -221,7 +224,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
         for ((what, here), (_, there)) in traits(&header).into_iter().zip(traits(&first)) {
             if here != there {
                 let (has, lacks) = if here { ("has", "does not") } else { ("has no", "does") };
-                return Err(InputError::new(
+                return Err(InputError::invalid(
                     subject,
                     format!("{has} {what} but {first_name} {lacks}"),
                     "expected the same channels in every frame; export the sequence again",
@@ -232,9 +235,9 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
     if first.has(Vectors::ToPrevious) {
         Ok(first)
     } else {
-        Err(InputError::new(
+        Err(InputError::invalid(
             first_name.to_string(),
-            "has no motion vectors, without which a sequence cannot be reprojected",
+            "has no motion vectors, which reprojection of a sequence needs",
             "expected <layer>.Vector.X/Y (Blender: enable the Vector pass) or motion.X/Y; or give one frame as a still",
         ))
     }

@@ -1,7 +1,7 @@
-//! Still images: the same frame for ever.
+//! Still images: a source with a single frame.
 
 use super::exr_file::{ExrHeader, Vectors, guarded};
-use super::limits::ReadLimits;
+use super::limits::{ReadLimits, SMALLER};
 use super::{FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
@@ -16,9 +16,9 @@ use std::path::Path;
 
 /// A still image, decoded once.
 ///
-/// PNG and JPEG are taken as sRGB (gamma and color profiles in the file are ignored, and so is its orientation tag), grey
-/// counts for all three channels, alpha is ignored. EXR is linear; its depth is used, its motion is not, and a `cameras.json`
-/// beside it gives the field of view.
+/// PNG and JPEG are read as sRGB: gamma, color profiles, the orientation tag and alpha are ignored, and grey is replicated to all
+/// three channels. EXR is linear; its depth is used, its motion is ignored, and a `cameras.json` in its folder gives the field of
+/// view.
 #[derive(Clone, Debug)]
 pub struct StillSource {
     info: SourceInfo,
@@ -26,14 +26,18 @@ pub struct StillSource {
 }
 
 impl StillSource {
-    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
+    /// Opens and decodes `path`, by its extension: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
     ///
     /// # Errors
-    /// If the file is missing, damaged, larger than the limits, of another kind, or an EXR without color.
+    /// - [`Io`](InputError::Io): the file is missing or cannot be read.
+    /// - [`Invalid`](InputError::Invalid): it is damaged, or an EXR without color; or its `cameras.json` is.
+    /// - [`NotSupported`](InputError::NotSupported): another extension, or a feature of the format that is not implemented.
+    /// - [`Limit`](InputError::Limit): it is larger than `limits` allows.
+    /// - [`Request`](InputError::Request): it is a folder.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         if path.is_dir() {
-            return Err(InputError::new(subject, "is a folder", "expected an image file"));
+            return Err(InputError::request(subject, "is a folder", "expected an image file"));
         }
         match super::open::extension(path).as_str() {
             "exr" => Self::open_exr(path, subject, limits),
@@ -50,9 +54,9 @@ impl StillSource {
                 };
                 Ok(Self::new(subject, frame, None))
             }
-            _ => Err(InputError::new(
+            _ => Err(InputError::not_supported(
                 subject,
-                "is not of a kind that is read as a still",
+                "is a kind of file that is not supported as a still",
                 "expected .png, .jpg, .jpeg or .exr",
             )),
         }
@@ -90,7 +94,7 @@ impl StillSource {
         Self { info, frame }
     }
 
-    /// The same still under the name that the user gave.
+    /// Replaces the name.
     pub(super) fn named(mut self, name: String) -> Self {
         self.info.name = name;
         self
@@ -107,18 +111,23 @@ impl FrameSource for StillSource {
     }
 }
 
+/// Memory of the decoders: their buffers and a 16-bit RGBA result take at most this for each pixel.
+const PIXEL_BYTES: u64 = 24;
+/// Memory of the decoders that does not depend on the image's size.
+const FIXED_BYTES: u64 = 1 << 24;
+
 fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Image<[f32; 3]>, InputError> {
     let io = |e: std::io::Error| io_error(subject, &e);
-    // The decoder's own buffers and the 16-bit RGBA result, for the largest image that is allowed.
-    let most_bytes = limits.max_pixels.saturating_mul(24).saturating_add(1 << 24);
+    let most_bytes = limits.max_pixels.saturating_mul(PIXEL_BYTES).saturating_add(FIXED_BYTES);
     let mut allowed = Limits::no_limits();
     allowed.max_alloc = Some(most_bytes);
     let file_bytes = fs::metadata(path).map_err(io)?.len();
     if file_bytes > most_bytes {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            limits.exceeded(Some((file_bytes - FIXED_BYTES).div_ceil(PIXEL_BYTES))),
             subject,
             format!("has {} MB, more than the largest allowed image", file_bytes >> 20),
-            "use a smaller image, or raise the limit with --max-megapixels N",
+            SMALLER,
         ));
     }
     let bytes = fs::read(path).map_err(io)?;
@@ -128,7 +137,7 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
         Some(ImageFormat::Jpeg) if jpeg_is_whole(&bytes) => {}
         Some(ImageFormat::Jpeg) => return Err(io_error(subject, &ErrorKind::UnexpectedEof.into())),
         _ => {
-            return Err(InputError::new(
+            return Err(InputError::invalid(
                 subject,
                 "holds neither a PNG nor a JPEG image",
                 "export it again as PNG, JPEG or EXR",
@@ -136,27 +145,28 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
         }
     }
     reader.limits(allowed.clone());
-    let error = |e: ImageError| image_error(subject, e);
+    let error = |e: ImageError| image_error(subject, e, limits);
     let mut decoder = reader.into_decoder().map_err(error)?;
     let (w, h) = decoder.dimensions();
     let size = limits.check(subject, u64::from(w), u64::from(h))?;
     decoder.set_limits(allowed).map_err(error)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
-    Image::from_pixels(size, linear(decoded)).map_err(|e| InputError::new(subject, e.to_string(), "export it again"))
+    Image::from_pixels(size, linear(decoded))
+        .map_err(|e| InputError::invalid(subject, e.to_string(), "export it again"))
 }
 
-/// Whether a JPEG has its end marker after the first scan. Its decoder fills what is missing with grey and says nothing.
+/// Whether a JPEG has an end marker after its first scan. The decoder silently fills missing data with grey.
 fn jpeg_is_whole(bytes: &[u8]) -> bool {
     const START_OF_SCAN: u8 = 0xDA;
     const END: [u8; 2] = [0xFF, 0xD9];
     let mut at = 2;
-    // Segments state their length. A thumbnail in one of them has an end marker of its own.
+    // Skip segments by their length: a thumbnail inside one has its own end marker.
     while let Some(&[0xFF, marker, high, low]) = bytes.get(at..at + 4) {
         if marker == START_OF_SCAN {
-            // In a scan, 0xFF is never followed by a marker's second byte.
+            // Entropy-coded data never contain 0xFF followed by a marker code.
             return bytes[at..].windows(2).any(|w| w == END);
         }
-        // Before a marker there may be more 0xFF.
+        // Fill bytes of 0xFF may precede a marker.
         at += match marker {
             0xFF => 1,
             _ => 2 + usize::from(u16::from_be_bytes([high, low])),
@@ -193,21 +203,24 @@ fn srgb_to_linear(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
-fn image_error(subject: &str, error: ImageError) -> InputError {
+fn image_error(subject: &str, error: ImageError, limits: &ReadLimits) -> InputError {
     match error {
         ImageError::IoError(e) => io_error(subject, &e),
-        ImageError::Limits(e) => InputError::new(
+        ImageError::Limits(e) => InputError::limit(
+            limits.exceeded(None),
             subject,
             one_line(&format!("needs more memory than allowed ({e})")),
-            "use a smaller image, or raise the limit with --max-megapixels N",
+            SMALLER,
         ),
-        ImageError::Unsupported(e) => InputError::new(
+        ImageError::Unsupported(e) => InputError::not_supported(
             subject,
             one_line(&format!("uses a feature that is not supported ({e})")),
             "export it again as 8 or 16 bit PNG",
         ),
-        other => {
-            InputError::new(subject, one_line(&format!("is damaged or truncated ({other})")), "copy or export it again")
-        }
+        other => InputError::invalid(
+            subject,
+            one_line(&format!("is damaged or truncated ({other})")),
+            "copy or export it again",
+        ),
     }
 }

@@ -1,6 +1,6 @@
-//! Frames of a scene by path tracing.
+//! Frames of a scene from the path tracer.
 
-use super::Stance;
+use super::CameraPose;
 use super::open::{check_size, device_lost};
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
@@ -20,26 +20,26 @@ use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
 use glam::DMat4;
 
-/// Samples that are traced at once: their paths' film stays small.
+/// Samples traced per call, which bounds the memory of their paths.
 const STEP: u32 = 1 << 20;
-/// Where the frame numbers of full-rate frames begin, so that their noise is not that of the foveated ones.
+/// Offset of the frame numbers that seed full-rate frames, so that their noise is independent of the foveated frames'.
 const FULL_RATE_FRAMES: u64 = 1 << 31;
 
-/// How many samples frames have, and where.
+/// Sample counts and distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TracedSamples {
-    /// How the foveated frame is sampled; `None` leaves foveation to a simulator.
+    /// Sampling pattern of the foveated frame; `None` leaves foveation to a simulator.
     pub foveated: Option<Sampling>,
-    /// Samples of a pixel of the foveated frame where it has most, unless the pattern states its own.
+    /// Largest number of samples per pixel of the foveated frame, unless the pattern states its own.
     pub samples: u32,
-    /// Samples of every pixel of the full-rate frame.
+    /// Samples per pixel of the full-rate frame.
     pub full_rate_samples: u32,
 }
 
 /// A scene seen by a camera, path-traced frame by frame: at full rate with the same number of samples everywhere, and foveated.
 ///
-/// As of [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and motion are
-/// those at the pixels' centres, without noise.
+/// As with [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and
+/// motion are those at pixel centres, without noise.
 pub struct TracedSource {
     info: SourceInfo,
     scene: Scene,
@@ -49,16 +49,18 @@ pub struct TracedSource {
     fps: f64,
     samples: TracedSamples,
     seed: u64,
-    /// The full-rate frame of a scene where nothing moves.
+    /// Cached full-rate frame of a static scene.
     still: Option<SourceFrame>,
 }
 
 impl TracedSource {
-    /// Opens what the user named, a `.gltf` or `.glb` file or `builtin:NAME`, as seen by the camera that [`SceneCamera::choose`] finds by
-    /// `camera`. A scene without light stands under a soft white sky.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for `camera`. A scene
+    /// without lights gets a uniform white environment.
     ///
     /// # Errors
-    /// If the scene or the camera cannot be read, or is more than the limits or the device allow.
+    /// Those of [`Scene::open`] and [`SceneCamera::choose`]; [`Limit`](InputError::Limit) if the frame has more pixels than `limits`
+    /// allows; [`Device`](InputError::Device) if the scene does not fit the device; [`Request`](InputError::Request) if the frame
+    /// rate is not above 0.
     pub fn open(
         input: &str,
         limits: &ReadLimits,
@@ -75,11 +77,11 @@ impl TracedSource {
         let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
         let world = World::new(&scene);
         let tracer = Tracer::new(backend, &world, settings)
-            .map_err(|e| InputError::new(input, e.to_string(), "trace it on the CPU"))?;
+            .map_err(|e| InputError::device(input, e.to_string(), "trace it on the CPU"))?;
         let fps = options.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
         if !(fps.is_finite() && fps > 0.0) {
             let problem = format!("the frame rate is {fps}");
-            return Err(InputError::new(input, problem, "expected frames per second above 0"));
+            return Err(InputError::request(input, problem, "expected frames per second above 0"));
         }
         let info = SourceInfo {
             name: scene.name.clone(),
@@ -92,14 +94,14 @@ impl TracedSource {
         Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, seed: settings.seed, still: None })
     }
 
-    /// What the file asks for and is not done.
+    /// Features of the scene file that are ignored or approximated.
     pub fn warnings(&self) -> &[String] {
         &self.scene.warnings
     }
 }
 
 impl TracedSource {
-    /// Poses the scene for a frame. Gives its view and the one before.
+    /// Poses the scene for a frame, and returns the frame's view and the previous one.
     fn pose(&mut self, index: u64) -> Result<[View; 2], InputError> {
         let before = index.saturating_sub(1);
         let times = [index, before].map(|i| i as f64 / self.fps);
@@ -107,12 +109,12 @@ impl TracedSource {
             self.world.pose(&self.scene, times[0], times[1]);
             self.tracer
                 .update(&self.world)
-                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "trace it on the CPU"))?;
+                .map_err(|e| InputError::device(&self.info.name, e.to_string(), "trace it on the CPU"))?;
         }
         Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
     }
 
-    /// Whether what was traced is worth anything.
+    /// An error if the device was lost, which makes the traced samples invalid.
     fn check(&self) -> Result<(), InputError> {
         self.tracer.check().map_err(|lost| device_lost(&self.info.name, &lost))
     }
@@ -171,15 +173,15 @@ impl FrameSource for TracedSource {
             None => plan,
             Some(guide) => plan
                 .guided(guide, index, self.seed)
-                .map_err(|e| InputError::new(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
+                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
         };
         let frame = plan.trace(&self.tracer, &self.world, &view, index);
         self.check()?;
         Ok(Some(frame))
     }
 
-    fn stance(&self, index: u64) -> Option<Stance> {
-        Some(self.camera.stance(&self.scene, index, index as f64 / self.fps))
+    fn camera_pose(&self, index: u64) -> Option<CameraPose> {
+        Some(self.camera.camera_pose(&self.scene, index, index as f64 / self.fps))
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {

@@ -78,7 +78,7 @@ const SHARED: &[(&str, &str)] = &[
     ("source.texel + vec2<i32>(at) - 1", "source.texel + vec2<i32>(at)"),
     ("catmull_rom(source.fraction.x)", "catmull_rom(source.fraction.y)"),
     // Inputs that are not read, and tests that are not made.
-    ("believed = trust(textureLoad(trust_in, px, view, 0).x);", ""),
+    ("confidence = trust(textureLoad(trust_in, px, view, 0).x);", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
     ("if !is_same_surface(", "if false && !is_same_surface("),
     ("same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
@@ -125,26 +125,26 @@ fn every_planted_error_in_smr_is_caught() {
             ("clamp((candidate + DARK)", "clamp(1.01 * (candidate + DARK)"),
             // The other eye's chain, its levels and texels one off.
             (
-                "textureLoad(past_chain, four.low, view, level - 1u)",
-                "textureLoad(past_chain, four.low, 1u - view, level - 1u)",
+                "textureLoad(past_mips, four.low, view, level - 1u)",
+                "textureLoad(past_mips, four.low, 1u - view, level - 1u)",
             ),
-            ("textureStore(next_chain, id.xy, group.z,", "textureStore(next_chain, id.xy, 1u - group.z,"),
-            ("first = chain_level(at, level, view);", "first = chain_level(at, min(level + 1u, last), view);"),
+            ("textureStore(next_mips, id.xy, group.z,", "textureStore(next_mips, id.xy, 1u - group.z,"),
+            ("first = past_level(at, level, view);", "first = past_level(at, min(level + 1u, last), view);"),
             (
-                "let second = chain_level(at, min(level + 1u, last), view);",
-                "let second = chain_level(at, max(level, 1u), view);",
+                "let second = past_level(at, min(level + 1u, last), view);",
+                "let second = past_level(at, max(level, 1u), view);",
             ),
-            ("chain_level(at, min(level + 1u, last), view)", "chain_level(at, level, view)"),
+            ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
             ("texels_1 = select(texels_1, texel, i == 1u);", ""),
             // Rules that are forgotten: coarse edges are not kept, broken pixels are empty, means weigh what is covered.
-            ("select(MAX_LOD, made.lod, keep || made.lod < 0.0)", "made.lod"),
-            ("if source.verdict == VERDICT_VALID && !keep {", "if false {"),
+            ("select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0)", "result.lod"),
+            ("if source.verdict == VERDICT_VALID && !coherent_motion {", "if false {"),
             ("select(-1.0, lod, candidate.usable)", "lod"),
             ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
             // Quality of what is stored.
             ("return (relight.x + relight.y * contrast) + noise;", "return relight.x + noise;"),
-            ("1.0 - want.finer * believed", "1.0 - believed"),
-            ("count_if(valid && made.share == 0.0, COUNT_REPLACED);", ""),
+            ("1.0 - reuse.finer * acceptance", "1.0 - acceptance"),
+            ("count_if(valid && result.share == 0.0, COUNT_REPLACED);", ""),
         ],
     ]
     .concat();
@@ -185,8 +185,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
                 "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
             ),
             (
-                "textureLoad(candidate_chain, four.low, view, level - 1u)",
-                "textureLoad(candidate_chain, four.low, 1u - view, level - 1u)",
+                "textureLoad(candidate_mips, four.low, view, level - 1u)",
+                "textureLoad(candidate_mips, four.low, 1u - view, level - 1u)",
             ),
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
             // Noise that exposure forgets, a mean of broken candidates, three sigmas that are two.
@@ -198,8 +198,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
                 "let together = candidate.samples / max(1.0 - share",
                 "let together = candidate.samples / max(1.01 - share",
             ),
-            ("/ QUALITY_WIDTH, 0.0, 1.0) * sure.x", "/ QUALITY_WIDTH, 0.0, 1.0)"),
-            ("/ COARSER_WIDTH, 0.0, 1.0) * sure.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
+            ("/ QUALITY_WIDTH, 0.0, 1.0) * confidence.x", "/ QUALITY_WIDTH, 0.0, 1.0)"),
+            ("/ COARSER_WIDTH, 0.0, 1.0) * confidence.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
             ("const COARSER_FRAMES: f32 = 4.0;", "const COARSER_FRAMES: f32 = 5.0;"),
         ],
     );

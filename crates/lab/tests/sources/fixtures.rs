@@ -1,4 +1,4 @@
-//! The fixtures are what their commands write, and are enough to work with.
+//! The fixtures equal the output of the commands that write them, and the library can read them.
 
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::source;
@@ -18,7 +18,7 @@ fn scene() -> AnalyticSource {
     AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap()
 }
 
-/// Motion to the next frame, next minus current: nothing but the camera moves in this scene.
+/// Motion to the next frame, next minus current, of a scene in which only the camera moves.
 fn to_next(view: &ViewGeometry, depth: &Image<f32>, next_from_current: Mat4) -> Image<[f32; 2]> {
     Image::from_fn(SIZE, |[x, y]| {
         let px = [x as f32, y as f32];

@@ -1,4 +1,4 @@
-//! Where frames and eyes come from, and how good what is shown is.
+//! Frame sources, scanpaths and metrics.
 
 mod analytic;
 mod fixtures;

@@ -1,5 +1,5 @@
-//! The whole on frames that nobody here made: Sponza by another renderer, a page of text, recorded eyes. Skipped, loudly, where
-//! `../shared/data` is not there.
+//! End to end on external data: Sponza from another renderer, a page of text, recorded scanpaths. Skipped with a message if
+//! `../shared/data` is absent.
 
 use afterimage::{Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 
 const DATA: &str = "../shared/data";
 
-/// The file or folder, if there is real data at all.
+/// Path of the file or folder; `None` if the data is absent.
 fn data(name: &str) -> Option<PathBuf> {
     let path = afterimage_testing::workspace().join(DATA).join(name);
     if path.exists() {
         return Some(path);
     }
-    // Straight to the descriptor: the test harness hides what a passing test prints.
+    // Write to stderr directly: the test harness hides the output of passing tests.
     use std::io::Write;
     let _ = writeln!(std::io::stderr(), "\nSKIPPED: {} is not there\n", path.display());
     None
@@ -128,7 +128,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     assert_eq!(outcome.flushed, 0.0, "nothing moves");
 }
 
-/// The bar: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7 dB in the last
+/// Expected values: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7 dB in the last
 /// one by angle, +2.2 and +3.6 dB by fit.
 #[test]
 #[ignore = "two minutes; cargo test --release --features lab --test real_data -- --ignored"]
@@ -145,7 +145,7 @@ fn the_oracle_agrees_with_an_independent_measurement() {
     }
 }
 
-/// A source whose motion vectors point the wrong way.
+/// A source with negated motion vectors.
 struct Flipped(Box<dyn FrameSource + Send>);
 
 impl FrameSource for Flipped {
@@ -161,7 +161,7 @@ impl FrameSource for Flipped {
 }
 
 #[test]
-fn sponza_sequences_reproject_and_flush_as_they_should() {
+fn sponza_sequences_reproject_and_reject_history_as_they_should() {
     for (name, most_flushed) in [("sequences/sponza_lateral", 0.05), ("sequences/sponza_object", 0.05)] {
         let Some(path) = data(name) else { return };
         let clip = Clip {
@@ -174,7 +174,7 @@ fn sponza_sequences_reproject_and_flush_as_they_should() {
         println!("flushed {:.3}", outcome.flushed);
         assert!(outcome.flushed > 0.0 && outcome.flushed < most_flushed);
         assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0));
-        // The planted error: vectors of the wrong sign lead to other surfaces, which the depth test finds out.
+        // Planted error: vectors of the wrong sign lead to other surfaces, which the depth test rejects.
         let flipped = play(&mut Flipped(open(&path)), &clip, &[lane(Method::None), lane(Method::Wrs)]);
         println!("flushed with vectors of the wrong sign {:.3}", flipped.flushed);
         assert!(flipped.flushed > 1.5 * outcome.flushed, "{name}: the sign of motion must matter");

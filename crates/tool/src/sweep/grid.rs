@@ -47,7 +47,7 @@ impl Axis {
     /// # Errors
     /// If the text has another form.
     pub fn parse(text: &str) -> Result<Self, InputError> {
-        let wrong = |problem: String| InputError::new(format!("--axis {text}"), problem, EXPECTED_AXIS);
+        let wrong = |problem: String| InputError::request(format!("--axis {text}"), problem, EXPECTED_AXIS);
         let (names, values) = text.split_once('=').ok_or_else(|| wrong("has no =".into()))?;
         let separator = if values.contains(';') { ';' } else { ',' };
         let values = values.split(separator).map(str::trim).filter(|v| !v.is_empty());

@@ -82,7 +82,7 @@ impl Plan {
     /// If the file cannot be read or is larger than 1 MiB, and those of [`Plan::add`].
     pub fn add_file(&mut self, path: &Path) -> Result<(), InputError> {
         let name = path.display().to_string();
-        let wrong = |problem: String| InputError::new(&name, problem, "expected a plan of at most 1 MiB");
+        let wrong = |problem: String| InputError::invalid(&name, problem, "expected a plan of at most 1 MiB");
         let unreadable = |e: std::io::Error| wrong(format!("cannot be read ({e})"));
         let length = std::fs::metadata(path).map_err(unreadable)?.len();
         if length > MAX_BYTES {
@@ -96,7 +96,7 @@ impl Plan {
     /// # Errors
     /// If the text is not TOML of the form in docs/sweep.md.
     pub fn add(&mut self, name: &str, text: &str) -> Result<(), InputError> {
-        let wrong = |problem: String| InputError::new(name, problem, EXPECTED);
+        let wrong = |problem: String| InputError::invalid(name, problem, EXPECTED);
         let file: PlanFile = toml::from_str(text).map_err(|e| {
             let reason = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
             wrong(format!("is no plan of a sweep ({reason})"))
@@ -130,7 +130,11 @@ impl Plan {
     pub fn check(&self) -> Result<(), InputError> {
         if !(1..=MAX_SEEDS).contains(&self.seeds) {
             let text = format!("is not in 1 to {MAX_SEEDS}");
-            return Err(InputError::new(format!("--seeds {}", self.seeds), text, format!("expected 1 to {MAX_SEEDS}")));
+            return Err(InputError::request(
+                format!("--seeds {}", self.seeds),
+                text,
+                format!("expected 1 to {MAX_SEEDS}"),
+            ));
         }
         let axes = &self.grid.axes;
         for reserved in ["out", "input", "seed", "help"] {
@@ -138,7 +142,7 @@ impl Plan {
                 || axes.iter().any(|a| a.options.iter().any(|o| o == reserved))
                 || self.grid.switches.iter().any(|s| s.0 == reserved);
             if is_taken {
-                return Err(InputError::new(
+                return Err(InputError::request(
                     reserved,
                     "is set by the sweep itself",
                     "expected an option of run, or --seeds N",
@@ -146,7 +150,7 @@ impl Plan {
             }
         }
         if let Some(name) = self.common.keys().find(|name| axes.iter().any(|a| a.options.contains(name))) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 name,
                 "is an axis of the sweep and cannot be the same for all points",
                 format!("expected --axis {name}=VALUE"),
@@ -155,7 +159,7 @@ impl Plan {
         let combinations = axes.iter().map(|a| a.values.len()).try_fold(1_usize, usize::checked_mul);
         if combinations.is_none_or(|n| n.saturating_mul(self.seeds as usize) > MAX_POINTS) {
             let text = format!("have more than {MAX_POINTS} combinations");
-            return Err(InputError::new("the axes", text, "leave some out"));
+            return Err(InputError::request("the axes", text, "leave some out"));
         }
         Ok(())
     }

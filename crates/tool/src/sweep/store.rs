@@ -30,7 +30,7 @@ impl Store {
     pub fn create(root: &Path) -> Result<Self, InputError> {
         let refuse = |path: &Path, error: io::Error| {
             let problem = format!("cannot be written ({error})");
-            InputError::new(path.display().to_string(), problem, "give --out a folder that can be created or written")
+            InputError::io(path.display().to_string(), problem, "give --out a folder that can be created or written")
         };
         for folder in ["points", "pictures"] {
             let path = root.join(folder);
@@ -48,7 +48,7 @@ impl Store {
     pub fn open(root: &Path) -> Result<Self, InputError> {
         if !root.join("points").is_dir() {
             let remedy = "expected the --out folder of an earlier afterimage sweep";
-            return Err(InputError::new(root.display().to_string(), "holds no sweep", remedy));
+            return Err(InputError::request(root.display().to_string(), "holds no sweep", remedy));
         }
         Ok(Self { root: root.to_owned() })
     }
@@ -95,7 +95,7 @@ impl Store {
     pub fn load(&self) -> Result<Vec<Measurement>, InputError> {
         let folder = self.root.join("points");
         let wrong = |path: &Path, problem: String| {
-            InputError::new(path.display().to_string(), problem, "remove it, and the point is measured again")
+            InputError::invalid(path.display().to_string(), problem, "remove it, and the point is measured again")
         };
         let entries = fs::read_dir(&folder).map_err(|e| wrong(&folder, format!("cannot be read ({e})")))?;
         let mut measurements = vec![];

@@ -235,7 +235,7 @@ fn sound<T>(read: Result<T, InputError>) -> Option<T> {
         Ok(read) => Some(read),
         Err(refused) => {
             let text = refused.to_string();
-            assert!(!text.contains('\n') && !refused.remedy.is_empty(), "{text:?}");
+            assert!(!text.contains('\n') && !refused.message().remedy.is_empty(), "{text:?}");
             None
         }
     }

@@ -1,28 +1,28 @@
-//! Keyframes and what lies between them.
+//! Animation curves: keyframes and interpolation.
 
 use glam::DQuat;
 
-/// How values follow from one key to the next.
+/// Interpolation between keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interpolation {
     Step,
     Linear,
-    /// Cubic Hermite splines; each key has the tangent towards it, its value, and the tangent away from it.
+    /// Cubic Hermite spline; each key stores in-tangent, value and out-tangent.
     Cubic,
 }
 
-/// Values over time. Before the first key it has the first one's value, after the last the last one's.
+/// Values over time. The first key's value holds before it, the last key's after it.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     /// Seconds, ascending; at least one.
     pub times: Vec<f32>,
-    /// `width` numbers a key, three times as many with [`Interpolation::Cubic`].
+    /// `width` numbers per key, three times as many with [`Interpolation::Cubic`].
     pub values: Vec<f32>,
     pub width: usize,
     pub interpolation: Interpolation,
 }
 
-/// Between two keys, or at one.
+/// Position of a time among the keys.
 enum Place {
     At(usize),
     Between { key: usize, share: f64, seconds: f64 },
@@ -43,7 +43,7 @@ impl Curve {
         Place::Between { key, share: (time_s - start) / seconds, seconds }
     }
 
-    /// Component `i` of what is stored with a key: 0 the tangent towards it, 1 its value, 2 the tangent away from it.
+    /// Component `i` of a key's in-tangent (`part` 0), value (1) or out-tangent (2).
     fn stored(&self, key: usize, part: usize, i: usize) -> f64 {
         let at = match self.interpolation {
             Interpolation::Cubic => (key * 3 + part) * self.width,
@@ -52,7 +52,7 @@ impl Curve {
         f64::from(self.values[at + i])
     }
 
-    /// Component `i` at a time.
+    /// Component `i` of the value at a time.
     pub fn component(&self, time_s: f64, i: usize) -> f64 {
         match self.place(time_s) {
             Place::At(key) => self.stored(key, 1, i),
@@ -72,12 +72,12 @@ impl Curve {
         }
     }
 
-    /// The first `N` components at a time.
+    /// The first `N` components of the value at a time.
     pub fn components<const N: usize>(&self, time_s: f64) -> [f64; N] {
         std::array::from_fn(|i| self.component(time_s, i))
     }
 
-    /// The rotation at a time: along the shorter arc between keys, of length 1.
+    /// Unit rotation at a time; linear interpolation follows the shorter arc.
     pub fn rotation(&self, time_s: f64) -> DQuat {
         let at = |key| unit(DQuat::from_array(std::array::from_fn(|i| self.stored(key, 1, i))));
         match self.place(time_s) {
@@ -89,7 +89,7 @@ impl Curve {
     }
 }
 
-/// A quaternion scaled to length 1; of none no rotation.
+/// A normalised quaternion; the identity if it has no finite length above 0.
 pub(crate) fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length.is_finite() && length > 0.0 { q / length } else { DQuat::IDENTITY }

@@ -1,4 +1,4 @@
-//! What moves in a scene: nodes, skins and morph targets, and the pose of all at a time.
+//! Animation: nodes, skins and morph targets, and their pose at a time.
 
 pub(crate) mod curve;
 pub(crate) mod nodes;
@@ -12,16 +12,16 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A scene's moving half. Meshes are kept in local space; a pose transforms them.
+/// The animated part of a scene. Meshes stay in local space; a pose transforms them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Animated {
     pub nodes: Nodes,
-    /// Where the nodes are while no curve is followed.
+    /// World transforms of the nodes without animation.
     pub rest_worlds: Vec<DAffine3>,
-    /// Nodes that curves move and all below them, parents first.
+    /// Animated nodes and their descendants, parents first.
     pub moving_order: Vec<u32>,
     pub channels: Vec<Channel>,
-    /// Length of the animation in seconds; 0: one pose.
+    /// Duration of the animation in seconds; 0 for a single pose.
     pub duration_s: f64,
     pub skins: Vec<Skin>,
     pub meshes: Vec<Mesh>,
@@ -29,7 +29,7 @@ pub(crate) struct Animated {
     pub cameras: Vec<View>,
 }
 
-/// A curve and what it sets.
+/// A curve and the property that it animates.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
     pub node: u32,
@@ -37,7 +37,7 @@ pub(crate) struct Channel {
     pub curve: Curve,
 }
 
-/// What a curve sets of a node.
+/// Animated property of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Property {
     Translation,
@@ -50,18 +50,18 @@ pub(crate) enum Property {
 #[derive(Clone, Debug)]
 pub(crate) struct Skin {
     pub joints: Vec<u32>,
-    /// From the mesh's space to each joint's.
+    /// Inverse bind matrices: from mesh space to each joint's space.
     pub inverse_bind: Vec<DAffine3>,
 }
 
-/// A mesh that is in the world.
+/// An instance of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     pub node: u32,
     pub geometry: Arc<Geometry>,
-    /// Index into the skins; the node's own place does not count then.
+    /// Index into the skins. A skinned mesh ignores its node's transform.
     pub skin: Option<u32>,
-    /// Of the morph targets, while no curve sets them.
+    /// Morph target weights without animation.
     pub weights: Arc<[f32]>,
 }
 
@@ -80,25 +80,25 @@ pub(crate) struct View {
     pub vfov_deg: f32,
 }
 
-/// Nodes and joints at a time.
-pub(crate) struct Moment {
+/// Node transforms, joint matrices and morph weights at a time.
+pub(crate) struct AnimationState {
     pub worlds: Vec<DAffine3>,
-    /// Of each skin, from the mesh's space to the world.
+    /// Joint matrices of each skin, from mesh space to world space.
     joints: Vec<Vec<Affine3A>>,
-    /// Weights that curves set, by node.
+    /// Animated morph target weights, by node.
     weights: HashMap<u32, Vec<f32>>,
 }
 
 impl Animated {
-    /// Everything that moves, `time_s` seconds into the animation, which starts over at its end.
+    /// Triangles, lights and cameras `time_s` seconds into the animation, which loops.
     pub fn pose(&self, time_s: f64) -> Pose {
-        let moment = self.moment(time_s);
+        let state = self.evaluate(time_s);
         let parts: Vec<Triangles> = self
             .meshes
             .par_iter()
             .map(|mesh| {
                 let mut out = Triangles::default();
-                mesh.geometry.emit(&self.posed(mesh, &moment), false, &mut out);
+                mesh.geometry.push_triangles(&self.posed(mesh, &state), false, &mut out);
                 out
             })
             .collect();
@@ -107,24 +107,25 @@ impl Animated {
         for part in &parts {
             moving.extend(part);
         }
-        let lights = self.lights.iter().map(|l| placed(l, &moment.worlds)).collect();
-        let cameras = self.cameras.iter().map(|c| c.placed(&moment.worlds)).collect();
+        let lights = self.lights.iter().map(|l| placed(l, &state.worlds)).collect();
+        let cameras = self.cameras.iter().map(|c| c.placed(&state.worlds)).collect();
         Pose { moving, lights, cameras }
     }
 
-    /// The vertices of a mesh at a time.
-    pub fn posed(&self, mesh: &Mesh, moment: &Moment) -> Posed {
-        let weights = moment.weights.get(&mesh.node).map_or(&*mesh.weights, |w| w);
+    /// Vertices of a mesh in an animation state.
+    pub fn posed(&self, mesh: &Mesh, state: &AnimationState) -> Posed {
+        let weights = state.weights.get(&mesh.node).map_or(&*mesh.weights, |w| w);
         match mesh.skin {
-            Some(skin) => mesh.geometry.bend(&moment.joints[skin as usize], weights),
-            None => mesh.geometry.place(&moment.worlds[mesh.node as usize], weights),
+            Some(skin) => mesh.geometry.skinned(&state.joints[skin as usize], weights),
+            None => mesh.geometry.transformed(&state.worlds[mesh.node as usize], weights),
         }
     }
 
-    pub fn moment(&self, time_s: f64) -> Moment {
+    /// Evaluates all curves at a time.
+    pub fn evaluate(&self, time_s: f64) -> AnimationState {
         let time_s = match time_s.rem_euclid(self.duration_s) {
             t if t.is_finite() => t,
-            // No length, or no time.
+            // The duration is 0, or the time is not finite.
             _ => 0.0,
         };
         let mut locals = None;
@@ -147,7 +148,7 @@ impl Animated {
             joints.map(|(&joint, bind)| (worlds[joint as usize] * *bind).as_affine3a()).collect()
         };
         let joints = self.skins.iter().map(matrices).collect();
-        Moment { joints, weights, worlds }
+        AnimationState { joints, weights, worlds }
     }
 }
 
@@ -165,7 +166,7 @@ impl Channel {
     }
 }
 
-/// The light in the world. Scales do not touch it.
+/// The light in world space. Scale of its node is ignored.
 fn placed(light: &Light, worlds: &[DAffine3]) -> PunctualLight {
     let rigid = rigid(&worlds[light.node as usize]);
     PunctualLight {
@@ -182,7 +183,7 @@ impl View {
     }
 }
 
-/// Without scale, shear and mirror: what is behind stays behind, above stays above as far as it can.
+/// Rigid part of a transform: keeps the direction of z, and that of y as far as possible.
 fn rigid(world: &DAffine3) -> DMat4 {
     let back = world.matrix3.z_axis.normalize_or(DVec3::Z);
     let up = world.matrix3.y_axis.reject_from_normalized(back);

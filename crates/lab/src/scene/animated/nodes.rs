@@ -1,8 +1,8 @@
-//! The tree of nodes and where each is in the world.
+//! The node tree and its world transforms.
 
 use glam::{DAffine3, DQuat, DVec3};
 
-/// A tree of any depth, walked without recursion.
+/// A node tree of any depth, traversed without recursion.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Nodes {
     pub parents: Vec<Option<u32>>,
@@ -11,7 +11,7 @@ pub(crate) struct Nodes {
     pub order: Vec<u32>,
 }
 
-/// Where a node is in its parent's space.
+/// Transform of a node relative to its parent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Local {
     Matrix(DAffine3),
@@ -28,7 +28,7 @@ impl Local {
         }
     }
 
-    /// As translation, rotation and scale, which is what curves set.
+    /// Decomposed into translation, rotation and scale, which curves animate.
     pub fn into_parts(self) -> Self {
         match self {
             Self::Matrix(m) => {
@@ -41,14 +41,14 @@ impl Local {
 }
 
 impl Nodes {
-    /// Where every node is in the world.
+    /// World transforms of all nodes.
     pub fn worlds(&self) -> Vec<DAffine3> {
         let mut worlds = vec![DAffine3::IDENTITY; self.parents.len()];
         self.refresh(&mut worlds, &self.locals, &self.order);
         worlds
     }
 
-    /// Recomputes some nodes, given parents first, from where they are in their parents.
+    /// Updates the world transforms of `nodes`, which must list parents before children.
     pub fn refresh(&self, worlds: &mut [DAffine3], locals: &[Local], nodes: &[u32]) {
         for &node in nodes {
             let node = node as usize;
@@ -60,7 +60,7 @@ impl Nodes {
         }
     }
 
-    /// Which nodes move when `moved` do: these and all below.
+    /// Flags of the nodes in `moved` and all their descendants.
     pub fn moving(&self, moved: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut moving = vec![false; self.parents.len()];
         for node in moved {

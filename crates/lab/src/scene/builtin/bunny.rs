@@ -1,11 +1,11 @@
-//! `bunny-low` and `bunny-high`: a rabbit of ellipsoids. Not the Stanford bunny, nor made from it: a look-alike with as many
-//! triangles as the thesis' two decimations of that have, 292 and 4,968.
+//! `bunny-low` and `bunny-high`: a rabbit of ellipsoids, not derived from the Stanford bunny, but with as many triangles as the
+//! thesis' two decimations of it: 292 and 4,968.
 
 use super::shapes::{self, Ellipsoid};
 use crate::scene::{Camera, Environment, Pose, PunctualKind, PunctualLight, Scene, Triangles};
 use glam::{DVec3, Quat, Vec3};
 
-/// Faces around and rings of body, head, each ear, each foot, and tail.
+/// Tessellation of each body part: faces around, and rings.
 struct Detail {
     body: [u32; 2],
     head: [u32; 2],
@@ -14,12 +14,12 @@ struct Detail {
     tail: [u32; 2],
 }
 
-/// 292 triangles.
+/// `bunny-low`: 292 triangles.
 pub(super) fn low() -> Scene {
     scene("builtin:bunny-low", &Detail { body: [8, 6], head: [8, 5], ear: [6, 4], foot: [5, 4], tail: [4, 3] })
 }
 
-/// 4,968 triangles.
+/// `bunny-high`: 4,968 triangles.
 pub(super) fn high() -> Scene {
     scene(
         "builtin:bunny-high",

@@ -1,4 +1,4 @@
-//! `control`: nothing but sky, what a frame costs when rays hit nothing.
+//! `control`: an empty scene under a sky, which gives the cost of a frame whose rays hit nothing.
 
 use crate::scene::{Camera, Environment, Pose, Scene, Triangles};
 use glam::DVec3;

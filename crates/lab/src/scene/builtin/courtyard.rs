@@ -1,4 +1,4 @@
-//! A courtyard of about 260,000 triangles in which every surface is rough: a scene for timing rays.
+//! `courtyard`: about 260,000 triangles with displaced surfaces everywhere, for timing of rays.
 
 use super::patch::{direction, patch};
 use crate::scene::{Environment, Material, Scene, Triangles};
@@ -6,13 +6,13 @@ use afterimage::kernel::rng::{pcg4d, unit_draw};
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// The courtyard with 262,144 triangles, give or take the poles of its bushes.
+/// The courtyard with about 262,144 triangles; degenerate ones at the poles of bushes are left out.
 pub fn courtyard() -> Scene {
     courtyard_of(262_144)
 }
 
-/// The same courtyard with about `triangles` triangles: paving, walls of rough stone, 32 columns under an architrave, 16 bushes.
-/// Open to a soft sky; a lantern burns between the columns on each side.
+/// The courtyard with about `triangles` triangles: paving, walls of rough stone, 32 columns under an architrave, 16 bushes. Light
+/// comes from a uniform sky and a lantern on each side.
 pub fn courtyard_of(triangles: u32) -> Scene {
     let [paving, stone, marble, leaves, lantern] = [0, 1, 2, 3, 4];
     let lambert =
@@ -69,7 +69,7 @@ pub fn courtyard_of(triangles: u32) -> Scene {
         let center = turned(side, Vec3::new((place as f32 - 1.5) * 2.6, 0.7, -4.6));
         patch(&mut t, [cells, cells], leaves, |u, v| {
             let d = direction(u, v);
-            // Closed in u: noise of the direction, not of u.
+            // Noise of the direction, not of u: it is seamless.
             let rough = smooth_noise(d.x * 9.0 + d.z * 5.0, d.y * 9.0 + d.z * 7.0, 20 + bush);
             center + d * (0.55 + 0.25 * rough)
         });
@@ -82,7 +82,7 @@ pub fn courtyard_of(triangles: u32) -> Scene {
     super::still("courtyard", materials, t, camera, Environment::Constant([0.5, 0.65, 0.9]))
 }
 
-/// A quarter turn about y for each side.
+/// Rotation by `side` quarter turns about y.
 fn turned(side: u32, p: Vec3) -> Vec3 {
     match side % 4 {
         0 => p,
@@ -92,12 +92,12 @@ fn turned(side: u32, p: Vec3) -> Vec3 {
     }
 }
 
-/// A number in \[0, 1) for a cell.
+/// Random number in \[0, 1) of a lattice cell.
 fn noise(x: i32, y: i32, salt: u32) -> f32 {
     unit_draw(pcg4d([x as u32, y as u32, salt, 0])[0])
 }
 
-/// The same, smooth between cells.
+/// Value noise: [`noise`] interpolated smoothly between cells.
 fn smooth_noise(x: f32, y: f32, salt: u32) -> f32 {
     let (i, j) = (x.floor(), y.floor());
     let fade = |t: f32| t * t * (3.0 - 2.0 * t);

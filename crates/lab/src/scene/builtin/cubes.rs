@@ -1,4 +1,4 @@
-//! `cubes`: 441 cubes along the axes on a grid of 21 x 21, each at a height and in a color of its own.
+//! `cubes`: 441 axis-aligned cubes on a grid of 21 x 21, at random heights and in random colors.
 
 use super::shapes;
 use crate::scene::{Camera, Environment, Pose, PunctualKind, PunctualLight, Scene, Triangles};
@@ -55,7 +55,7 @@ pub(super) fn scene() -> Scene {
     }
 }
 
-/// Spreads a number over 32 bits (the finaliser of MurmurHash3).
+/// 32-bit hash (the finaliser of MurmurHash3).
 fn scatter(i: u32) -> u32 {
     let mut h = i.wrapping_add(1).wrapping_mul(0x9e37_79b9);
     h = (h ^ (h >> 16)).wrapping_mul(0x85eb_ca6b);

@@ -1,11 +1,11 @@
-//! The white furnace: what returns exactly the light that falls on it cannot be seen.
+//! The white furnace test: an object that reflects all incident light is invisible in a uniform environment.
 
 use super::patch::direction;
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;
 
-/// A ball of eight white sectors, a lobe of the reflection model each, in light of radiance 1 from everywhere. Energy is
-/// conserved where the ball is invisible: every pixel is 1 but for noise, for any depth of 1 or more.
+/// A ball of eight white sectors, each with another lobe of the BSDF, in a uniform environment of radiance 1. Where energy is
+/// conserved the ball is invisible: every pixel is 1 except for noise, at any path depth of 1 or more.
 pub fn furnace() -> Scene {
     let white = Material::default();
     let metal = Material { metallic: 1.0, ..white.clone() };
@@ -21,8 +21,8 @@ pub fn furnace() -> Scene {
     ])
 }
 
-/// A ball of radius 1 m with a sector for each of `materials`, in light of radiance 1 from everywhere, seen from 4 m. Its faces
-/// are flat and shaded as such, so that no direction is above the one normal and below the other.
+/// A ball of radius 1 m with a sector for each of `materials`, in a uniform environment of radiance 1, seen from 4 m. It is shaded
+/// flat, so that shading and geometric normals agree.
 pub fn furnace_of(materials: Vec<Material>) -> Scene {
     let mut t = Triangles::default();
     let sectors = materials.len().max(1) as u32;
@@ -41,7 +41,7 @@ pub fn furnace_of(materials: Vec<Material>) -> Scene {
             }
         }
     }
-    // The poles are points, not the rounded sines of pi.
+    // Snap the poles, which are off by the rounded sine of pi.
     for corners in &mut t.positions {
         for p in corners {
             if p.y.abs() > 1.0 - 1e-6 {

@@ -1,4 +1,4 @@
-//! `mirror-room`: walls that are mirrors and glow a little, so that every path goes on to the last bounce that it may have.
+//! `mirror-room`: weakly emissive mirror walls, so that every path continues to the largest depth.
 
 use super::shapes::{self, Ellipsoid};
 use crate::scene::{Camera, Environment, Material, Phong, Pose, Scene, Triangles};
@@ -8,7 +8,7 @@ const MIRROR: u32 = 0;
 const RED: u32 = 1;
 const BLUE: u32 = 2;
 
-/// A closed room of 6 x 3 x 6 m; its walls are all the light there is.
+/// A closed room of 6 x 3 x 6 m, lit by its walls alone.
 pub(super) fn scene() -> Scene {
     let mut still = Triangles::default();
     shapes::push_box(Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 3.0, 3.0), true, MIRROR, &mut still);

@@ -1,4 +1,4 @@
-//! Scenes made by code: `builtin:NAME`.
+//! Built-in scenes: `builtin:NAME`.
 
 mod bunny;
 mod control;
@@ -36,7 +36,7 @@ pub(crate) fn open(name: &str) -> Option<Scene> {
     })
 }
 
-/// A scene in which nothing moves, seen from one place.
+/// A static scene with one camera.
 fn still(name: &str, materials: Vec<Material>, still: Triangles, camera: Camera, environment: Environment) -> Scene {
     Scene {
         name: format!("builtin:{name}"),
@@ -51,7 +51,7 @@ fn still(name: &str, materials: Vec<Material>, still: Triangles, camera: Camera,
     }
 }
 
-/// A camera at `eye` that looks at `target`, upright.
+/// A camera named "main" at `eye` that looks at `target`, with y up.
 fn look_at(eye: [f64; 3], target: [f64; 3], vfov_deg: f32) -> Camera {
     Camera { name: "main".into(), ..Camera::look_at(DVec3::from(eye), DVec3::from(target), vfov_deg) }
 }

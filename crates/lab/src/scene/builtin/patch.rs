@@ -1,10 +1,10 @@
-//! Surfaces given by a formula.
+//! Tessellation of parametric surfaces.
 
 use crate::scene::Triangles;
 use glam::{Vec2, Vec3};
 
-/// The surface `at(u, v)` over the unit square as `cells` quadrilaterals along u and v, two triangles each, with smooth normals.
-/// The front is where u grows to the right and v upwards. Triangles without area (poles) are left out.
+/// Tessellates the surface `at(u, v)` over the unit square into `cells` quadrilaterals along u and v, two triangles each, with smooth
+/// normals. Seen from the front, u increases to the right and v upwards. Degenerate triangles (poles) are left out.
 pub(super) fn patch(to: &mut Triangles, cells: [u32; 2], material: u32, at: impl Fn(f32, f32) -> Vec3) {
     let [columns, rows] = cells;
     let point = |i: u32, j: u32| at(i as f32 / columns as f32, j as f32 / rows as f32);
@@ -14,7 +14,7 @@ pub(super) fn patch(to: &mut Triangles, cells: [u32; 2], material: u32, at: impl
         let along_u = at(u + du, v) - at(u - du, v);
         let along_v = at(u, v + dv) - at(u, v - dv);
         let smooth = along_u.cross(along_v).normalize_or(flat);
-        // Where the parametrisation folds (poles), the face knows better.
+        // Where the parametrisation is singular (poles), use the face normal.
         if smooth.dot(flat) > 0.0 { smooth } else { flat }
     };
     for j in 0..rows {

@@ -1,16 +1,16 @@
-//! Bodies and materials that the scenes are made of.
+//! Shapes and materials shared by the built-in scenes.
 
 use crate::scene::{Material, Phong, Triangles};
 use glam::{Quat, Vec2, Vec3, Vec4};
 use std::f32::consts::{PI, TAU};
 
-/// A matt material with a highlight, in both modes: Disney's with that roughness, Phong's with that exponent.
+/// A diffuse material with a highlight: of `roughness` in the Disney mode, of `exponent` in the Phong mode.
 pub(super) fn glossy(name: &str, base_color: [f32; 3], roughness: f32, exponent: f32) -> Material {
     let phong = Some(Phong { specular: [0.1; 3], exponent });
     Material { name: name.into(), base_color, roughness, double_sided: false, phong, ..Material::default() }
 }
 
-/// An ellipsoid, first scaled, then turned, then shifted.
+/// A sphere that is scaled, then rotated, then translated.
 pub(super) struct Ellipsoid {
     pub center: Vec3,
     pub radii: Vec3,
@@ -22,13 +22,13 @@ pub(super) struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// Adds 2 `around` (`rings` - 1) triangles: closed, with the normals of the smooth surface.
+    /// Appends 2 `around` (`rings` - 1) triangles: a closed mesh with smooth normals.
     pub fn push(&self, material: u32, out: &mut Triangles) {
         for ring in 0..self.rings {
             for k in 0..self.around {
                 let [a, b] = [k, k + 1].map(|k| self.direction(ring, k));
                 let [c, d] = [k, k + 1].map(|k| self.direction(ring + 1, k));
-                // At the poles one side of the face is a point.
+                // At the poles the quadrilateral degenerates to one triangle.
                 if ring > 0 {
                     self.push_triangle([a, d, b], material, out);
                 }
@@ -39,7 +39,7 @@ impl Ellipsoid {
         }
     }
 
-    /// On the unit sphere, ring 0 at its top. The last meridian is the first one, to the last bit.
+    /// Vertex on the unit sphere, ring 0 at the top. The last meridian equals the first one bit for bit.
     fn direction(&self, ring: u32, k: u32) -> Vec3 {
         if ring == 0 || ring == self.rings {
             return if ring == 0 { Vec3::Y } else { Vec3::NEG_Y };
@@ -60,12 +60,12 @@ impl Ellipsoid {
     }
 }
 
-/// Adds the 12 triangles of a box along the axes, seen from outside or, `inward`, from inside.
+/// Appends the 12 triangles of an axis-aligned box. Fronts face outwards, or inwards if `inward`.
 pub(super) fn push_box(min: Vec3, max: Vec3, inward: bool, material: u32, out: &mut Triangles) {
     let corner = |x: bool, y: bool, z: bool| Vec3::select(glam::BVec3::new(x, y, z), max, min);
     for axis in 0..3 {
         for upper in [false, true] {
-            // Counter-clockwise around the axis as seen from its far end.
+            // Counter-clockwise seen from the positive end of the axis.
             let mut face = [(false, false), (true, false), (true, true), (false, true)].map(|(u, v)| match axis {
                 0 => corner(upper, u, v),
                 1 => corner(v, upper, u),

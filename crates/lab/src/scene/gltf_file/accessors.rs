@@ -1,12 +1,13 @@
-//! Numbers out of buffers: any component type, sparse or not, never more than the buffers hold.
+//! Accessors: reads typed elements from buffers, of any component type, dense or sparse, with bounds checks.
 
-use super::{Document, InputError};
+use super::{Document, InputError, SceneLimits};
+use crate::error::{Bound, Exceeded};
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Index, buffer};
 use std::cell::Cell;
 
-/// Reads accessors and keeps count of what is read.
+/// Reads accessors, and counts the elements read against [`SceneLimits::max_elements`].
 pub(super) struct Accessors<'a> {
     document: &'a Document<'a>,
     elements: Cell<u64>,
@@ -17,12 +18,13 @@ impl<'a> Accessors<'a> {
         Self { document, elements: Cell::new(0) }
     }
 
-    /// Elements that an accessor claims to have.
+    /// Number of elements that an accessor states.
     pub fn count(&self, index: Index<Accessor>) -> Result<u64, InputError> {
         Ok(self.accessor(index)?.count.0)
     }
 
-    /// Vectors of `N` components; integers become numbers as the accessor says. `expected` elements, if that is known.
+    /// Vectors of `N` floats. Integers are converted, normalised if the accessor says so. An error unless there are `expected`
+    /// elements, if that is given.
     pub fn vectors<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -50,7 +52,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Vectors of `N` whole numbers: indices of vertices or joints.
+    /// Vectors of `N` unsigned integers: indices of vertices or joints.
     pub fn integers<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -68,7 +70,7 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Whether the vectors have four components, not three: colors come with and without opacity.
+    /// Whether the elements are VEC4, not VEC3: colors come with and without alpha.
     pub fn is_vec4(&self, index: Index<Accessor>) -> Result<bool, InputError> {
         Ok(matches!(self.accessor(index)?.type_, Checked::Valid(Type::Vec4)))
     }
@@ -112,7 +114,9 @@ impl<'a> Accessors<'a> {
         let elements = self.elements.get().saturating_add(found);
         let limit = self.document.limits.max_elements();
         if elements > limit {
-            return Err(InputError::new(
+            let needed = Some(elements.div_ceil(SceneLimits::ELEMENTS_PER_TRIANGLE));
+            return Err(InputError::limit(
+                Exceeded { bound: Bound::Triangles, needed, allowed: self.document.limits.max_triangles },
                 self.document.subject,
                 format!("its vertices, indices and keys come to more than {limit} elements"),
                 "use a smaller scene, or raise SceneLimits::max_triangles",
@@ -122,7 +126,7 @@ impl<'a> Accessors<'a> {
         Ok(())
     }
 
-    /// All elements, each of `N` components of `S` bytes.
+    /// Reads all elements, each of `N` components of `S` bytes.
     fn read<const N: usize, const S: usize, T: Copy + Default>(
         &self,
         accessor: &Accessor,
@@ -141,7 +145,7 @@ impl<'a> Accessors<'a> {
                 let (bytes, stride) = self.strided(view, offset, accessor.count, N * S).ok_or_else(outside)?;
                 bytes.chunks(stride).take(accessor.count.0 as usize).map(element).collect()
             }
-            // All zero. So many zeros have a use only beside as many other numbers.
+            // Without a buffer view all elements are zero. A count above the file's bytes has no legitimate use.
             None if accessor.count.0 <= self.document.buffers.total_bytes => {
                 vec![[T::default(); N]; accessor.count.0 as usize]
             }
@@ -168,7 +172,7 @@ impl<'a> Accessors<'a> {
         Ok(elements)
     }
 
-    /// The bytes of `count` elements from `offset` on in a view, and their distance; `None` if they are not all there.
+    /// Bytes of `count` elements from `offset` on in a buffer view, and their stride; `None` if they exceed the view.
     fn strided(
         &self,
         view: Index<buffer::View>,
@@ -195,7 +199,7 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// A component as a number: itself, or from -1 or 0 to 1 if it is normalised (glTF 2.0, 3.11).
+/// Conversion of an integer component to float, scaled to at most 1 if it is normalised (glTF 2.0, 3.11).
 fn scaled<const S: usize, T: Into<f32>>(
     normalized: bool,
     decode: impl Fn([u8; S]) -> T,

@@ -1,14 +1,14 @@
-//! Animations: which one plays, and its curves.
+//! Selection of an animation, and its curves.
 
 use super::accessors::Accessors;
 use super::warnings::Warnings;
-use super::{Document, InputError, named, shown};
+use super::{Document, InputError, named, printable};
 use crate::scene::animated::curve::{Curve, Interpolation};
 use crate::scene::animated::{Channel, Property};
 use gltf::json::validation::Checked;
 use gltf::json::{self, animation};
 
-/// The curves of the animation of that name or number, else of the first; none if there is no animation.
+/// Channels of the animation with the name or index `clip`, by default the first; empty if the file has no animation.
 pub(super) fn channels(
     document: &Document,
     accessors: &Accessors,
@@ -52,7 +52,7 @@ pub(super) fn channels(
     Ok(channels)
 }
 
-/// Number of morph targets of each mesh.
+/// Number of morph targets of each mesh of the file.
 fn targets(root: &json::Root) -> Vec<usize> {
     let of = |mesh: &json::Mesh| mesh.primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len)).max();
     root.meshes.iter().map(|mesh| of(mesh).unwrap_or(0)).collect()
@@ -101,10 +101,10 @@ fn find(document: &Document, clip: &str) -> Result<usize, InputError> {
     by_name.or_else(by_number).ok_or_else(|| {
         let names = animations.iter().enumerate().take(20).map(|(i, a)| named("animation", i, a.name.as_deref()));
         let names = names.collect::<Vec<_>>().join(", ");
-        InputError::new(
+        InputError::request(
             document.subject,
-            format!("has no animation \"{}\"", shown(clip)),
-            if names.is_empty() { "it has none at all".to_owned() } else { format!("expected one of {names}") },
+            format!("has no animation \"{}\"", printable(clip)),
+            if names.is_empty() { "it has no animations".to_owned() } else { format!("expected one of {names}") },
         )
     })
 }

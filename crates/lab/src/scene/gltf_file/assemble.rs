@@ -1,4 +1,4 @@
-//! A scene out of its parts: what never moves becomes triangles at once, the rest is kept to be posed.
+//! Assembles a scene: static meshes become triangles in world space, animated ones are kept in local space to be posed.
 
 use super::accessors::Accessors;
 use super::container::Container;
@@ -6,7 +6,7 @@ use super::images::Textures;
 use super::mesh::Primitives;
 use super::warnings::Warnings;
 use super::{Document, InputError, animation, extensions, materials, nodes, skins, viewpoints};
-use crate::scene::animated::{Animated, Mesh, Moment, Property, Skin};
+use crate::scene::animated::{Animated, AnimationState, Mesh, Property, Skin};
 use crate::scene::geometry::{Geometry, MAX_COORDINATE};
 use crate::scene::{Environment, Scene, Triangles};
 use gltf::json::{self, Index};
@@ -24,9 +24,9 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
 
     let set = channels.iter().filter(|c| c.property != Property::Weights).map(|c| c.node);
     let moving = nodes.moving(set);
-    let mut reshaped = vec![false; shown.len()];
+    let mut morphed = vec![false; shown.len()];
     for channel in channels.iter().filter(|c| c.property == Property::Weights) {
-        reshaped[channel.node as usize] = true;
+        morphed[channel.node as usize] = true;
     }
     let duration_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
     let placed: Vec<Placed> = placed(document, &shown)?;
@@ -45,12 +45,12 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     let primitives = Primitives { document, accessors: &accessors, surfaces: &surfaces, default_surface };
     check_triangles(document, &primitives, &placed)?;
     let mut stage = Stage {
-        moment: animated.moment(0.0),
+        state: animated.evaluate(0.0),
         animated,
         still: Triangles::default(),
         dropped: 0,
         moving: &moving,
-        reshaped: &reshaped,
+        morphed: &morphed,
         skin_of: &skin_of,
     };
     for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
@@ -87,14 +87,14 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     })
 }
 
-/// A node of the scene with a mesh.
+/// An instance of a mesh: a node of the scene that refers to it.
 struct Placed {
     node: u32,
     mesh: usize,
     skin: Option<usize>,
 }
 
-/// All nodes with meshes, by mesh.
+/// All mesh instances of the scene, sorted by mesh.
 fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError> {
     let root = document.root;
     let mut placed = Vec::new();
@@ -110,7 +110,7 @@ fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError
     Ok(placed)
 }
 
-/// The skins that are used, and where each of the file's is among them.
+/// Skins in use, and a map from the file's skin indices to theirs.
 fn used_skins(
     document: &Document,
     accessors: &Accessors,
@@ -127,7 +127,7 @@ fn used_skins(
     Ok((skins, places))
 }
 
-/// Refuses more triangles than there may be, before any is made. A primitive counts as one at least.
+/// Checks the number of triangles against the limit before any is built. A primitive counts as one triangle at least.
 fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Placed]) -> Result<(), InputError> {
     let mut total = 0u64;
     for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
@@ -140,22 +140,22 @@ fn check_triangles(document: &Document, primitives: &Primitives, placed: &[Place
     document.limits.check_triangles(document.subject, total)
 }
 
-/// Where meshes go.
+/// Destination of meshes while the scene is assembled.
 struct Stage<'a> {
     animated: Animated,
-    /// All nodes and joints at time 0.
-    moment: Moment,
+    /// Animation state at time 0.
+    state: AnimationState,
     still: Triangles,
     dropped: u64,
-    /// Nodes that move.
+    /// Flags of nodes whose world transform is animated.
     moving: &'a [bool],
-    /// Nodes whose morph targets move.
-    reshaped: &'a [bool],
+    /// Flags of nodes whose morph target weights are animated.
+    morphed: &'a [bool],
     skin_of: &'a HashMap<usize, u32>,
 }
 
 impl Stage<'_> {
-    /// Reads a mesh and adds it wherever it is used.
+    /// Reads a mesh, and adds it for each of its instances.
     fn add_mesh(
         &mut self,
         primitives: &Primitives,
@@ -188,7 +188,7 @@ impl Stage<'_> {
     ) -> Result<(), InputError> {
         let node = used.node as usize;
         let skin = used.skin.filter(|_| geometry.influences.per_vertex > 0).map(|s| self.skin_of[&s]);
-        let mut moves = self.reshaped[node];
+        let mut moves = self.morphed[node];
         if let Some(skin) = skin {
             let skin = &self.animated.skins[skin as usize];
             skins::check_joints(document, &geometry.influences, skin)?;
@@ -203,8 +203,8 @@ impl Stage<'_> {
         if moves {
             self.animated.meshes.push(placed);
         } else {
-            let posed = self.animated.posed(&placed, &self.moment);
-            self.dropped += geometry.emit(&posed, true, &mut self.still);
+            let posed = self.animated.posed(&placed, &self.state);
+            self.dropped += geometry.push_triangles(&posed, true, &mut self.still);
         }
         Ok(())
     }

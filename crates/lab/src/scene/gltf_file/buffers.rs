@@ -1,17 +1,17 @@
-//! Bytes that accessors and images are read from.
+//! Buffers and buffer views.
 
 use super::container::{Container, read_file};
-use super::{InputError, SceneLimits, damaged, shown, uri};
+use super::{InputError, SceneLimits, damaged, printable, uri};
 use gltf::json::{Index, buffer};
 
 /// All buffers of a file.
 pub(super) struct Buffers {
     buffers: Vec<Vec<u8>>,
-    /// Bytes of all files and data addresses so far; images go on from here.
+    /// Bytes of all files and data URIs so far. Images continue the count.
     pub total_bytes: u64,
 }
 
-/// Reads all buffers. Those of a binary file's own chunk are copied from it.
+/// Reads all buffers. The binary chunk of a `.glb` is copied.
 pub(super) fn load(file: &Container, limits: &SceneLimits) -> Result<Buffers, InputError> {
     let subject = file.subject.as_str();
     let mut total_bytes = file.bytes.len() as u64;
@@ -37,19 +37,19 @@ pub(super) fn load(file: &Container, limits: &SceneLimits) -> Result<Buffers, In
     Ok(Buffers { buffers, total_bytes })
 }
 
-/// What is at an address, of at most the bytes that the limits leave.
+/// Contents of a URI. `so_far` bytes already count towards the limit of file bytes.
 pub(super) fn fetch(file: &Container, address: &str, so_far: u64, limits: &SceneLimits) -> Result<Vec<u8>, InputError> {
     match uri::resolve(&file.subject, &file.folder, address)? {
         uri::Resolved::Data(bytes) => Ok(bytes),
         uri::Resolved::File(path) => {
-            let subject = format!("{}: {}", file.subject, shown(address));
+            let subject = format!("{}: {}", file.subject, printable(address));
             read_file(&path, &subject, limits.max_file_bytes.saturating_sub(so_far), limits)
         }
     }
 }
 
 impl Buffers {
-    /// The bytes of a view, and the distance of its elements where it states one.
+    /// Bytes of a buffer view, and its stride if it states one; `None` if it exceeds its buffer.
     pub fn view(&self, views: &[buffer::View], index: Index<buffer::View>) -> Option<(&[u8], Option<usize>)> {
         let view = views.get(index.value())?;
         let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok()?;

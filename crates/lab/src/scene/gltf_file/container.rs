@@ -1,6 +1,6 @@
-//! The file itself: text or binary, its description, and what it must have.
+//! The container: `.gltf` or `.glb`, its JSON, and the checks of version and required extensions.
 
-use super::{InputError, SceneLimits, damaged, extensions, shown};
+use super::{InputError, SceneLimits, damaged, extensions, printable};
 use gltf::json::Root;
 use serde::Deserialize;
 use std::fs::File;
@@ -8,19 +8,19 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A file as it was read.
+/// A file in memory.
 pub(super) struct Container {
-    /// As the user named it.
+    /// Path as the user gave it.
     pub subject: String,
-    /// The folder it is in, as the user named it.
+    /// Folder of the file.
     pub folder: PathBuf,
     pub root: Root,
-    /// The whole file, and where its binary chunk is.
+    /// The whole file. `binary` is the range of its binary chunk.
     pub bytes: Vec<u8>,
     pub binary: Option<Range<usize>>,
 }
 
-/// What decides whether the rest can be understood.
+/// Version and required extensions, which are checked before the rest is parsed.
 #[derive(Deserialize)]
 struct Preamble {
     asset: Asset,
@@ -40,13 +40,13 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     limits.check_json_bytes(input, json.len() as u64)?;
     let json = &bytes[json];
     let unreadable = |e: serde_json::Error| {
-        let problem = format!("is not a glTF 2.0 description: {}", shown(&e.to_string()));
-        InputError::new(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
+        let problem = format!("is not a glTF 2.0 file: {}", printable(&e.to_string()));
+        InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
     };
     let preamble: Preamble = serde_json::from_slice(json).map_err(unreadable)?;
     if !preamble.asset.version.starts_with("2.") {
-        let problem = format!("is of glTF version {}", shown(&preamble.asset.version));
-        return Err(InputError::new(input, problem, "expected version 2.0; convert it"));
+        let problem = format!("is of glTF version {}", printable(&preamble.asset.version));
+        return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
     }
     extensions::check_required(input, &preamble.extensions_required)?;
     let root = Root::from_slice(json).map_err(unreadable)?;
@@ -54,37 +54,37 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     Ok(Container { subject: input.to_owned(), folder, root, bytes, binary })
 }
 
-/// A whole file of at most `allowed` bytes. Pipes and devices, which may have no end, are no files.
+/// Reads a whole file of at most `allowed` bytes. Pipes and devices are refused, because they may be endless.
 pub(super) fn read_file(path: &Path, subject: &str, allowed: u64, limits: &SceneLimits) -> Result<Vec<u8>, InputError> {
     let failed = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => InputError::new(subject, "does not exist", "check its name and folder"),
-        _ => InputError::new(subject, format!("cannot be read: {e}"), "check its permissions"),
+        std::io::ErrorKind::NotFound => InputError::io(subject, "does not exist", "check its name and folder"),
+        _ => InputError::io(subject, format!("cannot be read: {e}"), "check its permissions"),
     };
     let metadata = std::fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
-        return Err(InputError::new(subject, "is not a file", "expected a regular file"));
+        return Err(InputError::io(subject, "is not a file", "expected a regular file"));
     }
     let over = |bytes: u64| limits.check_file_bytes(subject, limits.max_file_bytes - allowed + bytes);
     over(metadata.len())?;
     let mut bytes = Vec::new();
     let reserved = bytes.try_reserve_exact(metadata.len() as usize);
     reserved.map_err(|_| {
-        InputError::new(subject, format!("its {} bytes do not fit into memory", metadata.len()), "use a smaller scene")
+        InputError::io(subject, format!("its {} bytes do not fit into memory", metadata.len()), "use a smaller scene")
     })?;
-    // It may have grown meanwhile.
+    // The file may have grown since.
     let file = File::open(path).map_err(failed)?;
     file.take(allowed.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
     over(bytes.len() as u64)?;
     Ok(bytes)
 }
 
-/// Where a binary file has its description and its binary chunk.
+/// Byte ranges of the JSON chunk and of the binary chunk of a `.glb`.
 fn split(subject: &str, bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usize>>), InputError> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
     let truncated = || damaged(subject, format!("ends after {} bytes, before its contents do", bytes.len()));
     let version = word(4).ok_or_else(truncated)?;
     if version != 2 {
-        return Err(InputError::new(
+        return Err(InputError::not_supported(
             subject,
             format!("is a .glb of version {version}"),
             "expected version 2; convert it",
@@ -96,7 +96,7 @@ fn split(subject: &str, bytes: &[u8]) -> Result<(Range<usize>, Option<Range<usiz
     }
     let mut chunks = Vec::new();
     let mut at = 12;
-    // Chunks after the second are for extensions.
+    // Chunks after the second belong to extensions.
     while at < end && chunks.len() < 2 {
         let length = word(at).ok_or_else(truncated)? as usize;
         let kind = word(at + 4).ok_or_else(truncated)?;

@@ -1,7 +1,7 @@
-//! Which extensions are understood.
+//! Supported extensions.
 
 use super::warnings::Warnings;
-use super::{InputError, shown};
+use super::{InputError, printable};
 use std::collections::BTreeSet;
 
 const SUPPORTED: [&str; 12] = [
@@ -19,10 +19,10 @@ const SUPPORTED: [&str; 12] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions that are named; no honest file uses as many.
+/// Largest number of extensions named in warnings, which bounds the output for hostile files.
 const MOST_NAMED: usize = 50;
 
-/// Refuses what a file cannot be read without.
+/// Refuses a file that requires an unsupported extension.
 pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), InputError> {
     let Some(missing) = required.iter().find(|name| !SUPPORTED.contains(&name.as_str())) else { return Ok(()) };
     let remedy = match missing.as_str() {
@@ -34,15 +34,19 @@ pub(super) fn check_required(subject: &str, required: &[String]) -> Result<(), I
         }
         _ => "export the scene without it",
     };
-    Err(InputError::new(subject, format!("requires the extension {}, which is not supported", shown(missing)), remedy))
+    Err(InputError::not_supported(
+        subject,
+        format!("requires the extension {}, which is not supported", printable(missing)),
+        remedy,
+    ))
 }
 
-/// Names what a file uses and is left out.
+/// Warns of each unsupported extension in use.
 pub(super) fn warn_of_unsupported(used: &[String], warnings: &mut Warnings) {
     let unsupported: BTreeSet<&str> =
         used.iter().map(String::as_str).filter(|name| !SUPPORTED.contains(name)).collect();
     for name in unsupported.iter().take(MOST_NAMED) {
-        warnings.add(format!("extension {} is not supported and left out", shown(name)));
+        warnings.add(format!("extension {} is not supported and left out", printable(name)));
     }
     if unsupported.len() > MOST_NAMED {
         warnings.add(format!("{} more extensions are not supported and left out", unsupported.len() - MOST_NAMED));

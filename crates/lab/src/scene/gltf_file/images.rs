@@ -1,4 +1,4 @@
-//! Images of materials.
+//! Textures of materials: collects those in use, and decodes their images.
 
 use super::container::Container;
 use super::{Document, InputError, buffers, named};
@@ -12,14 +12,15 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 
-/// The textures that materials turn out to use, each pair of image and sampler once.
+/// Textures in use, each pair of image and sampler once.
 pub(super) struct Textures<'a> {
     document: &'a Document<'a>,
-    wanted: Vec<Wanted>,
+    uses: Vec<TextureUse>,
     indices: HashMap<(usize, Option<usize>), u32>,
 }
 
-struct Wanted {
+/// Image and sampler of a texture.
+struct TextureUse {
     image: usize,
     wrap: [Wrap; 2],
     nearest: bool,
@@ -34,10 +35,10 @@ struct Encoded<'a> {
 
 impl<'a> Textures<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self { document, wanted: Vec::new(), indices: HashMap::new() }
+        Self { document, uses: Vec::new(), indices: HashMap::new() }
     }
 
-    /// Notes that a texture of the file is used.
+    /// Registers a texture of the file as used.
     pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<TextureRef, InputError> {
         let root = self.document.root;
         let texture = self.document.look_up(&root.textures, index, "texture")?;
@@ -47,7 +48,7 @@ impl<'a> Textures<'a> {
             None => None,
         };
         let key = (texture.source.value(), texture.sampler.map(|s| s.value()));
-        let next = self.wanted.len() as u32;
+        let next = self.uses.len() as u32;
         let texture = *self.indices.entry(key).or_insert(next);
         if texture == next {
             let wrap = |mode: Option<&Checked<WrappingMode>>| match mode {
@@ -55,7 +56,7 @@ impl<'a> Textures<'a> {
                 Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Wrap::Mirror,
                 _ => Wrap::Repeat,
             };
-            self.wanted.push(Wanted {
+            self.uses.push(TextureUse {
                 image: key.0,
                 wrap: [wrap(sampler.map(|s| &s.wrap_s)), wrap(sampler.map(|s| &s.wrap_t))],
                 nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
@@ -64,18 +65,18 @@ impl<'a> Textures<'a> {
         Ok(TextureRef { texture })
     }
 
-    /// Reads and decodes the used images, sizes checked first.
+    /// Reads and decodes the images in use. Sizes are checked against the limits before any image is decoded.
     pub fn load(self, file: &Container) -> Result<Vec<Texture>, InputError> {
         let mut total_bytes = self.document.buffers.total_bytes;
         let mut texels = 0u64;
         let mut encoded = Vec::new();
         let mut place_of_image = HashMap::new();
-        for wanted in &self.wanted {
-            let place = match place_of_image.get(&wanted.image) {
+        for used in &self.uses {
+            let place = match place_of_image.get(&used.image) {
                 Some(&place) => place,
                 None => {
-                    encoded.push((wanted.image, self.encoded(file, wanted.image, &mut total_bytes)?));
-                    place_of_image.insert(wanted.image, encoded.len() - 1);
+                    encoded.push((used.image, self.encoded(file, used.image, &mut total_bytes)?));
+                    place_of_image.insert(used.image, encoded.len() - 1);
                     encoded.len() - 1
                 }
             };
@@ -85,18 +86,18 @@ impl<'a> Textures<'a> {
         let decoded: Result<Vec<_>, _> =
             encoded.par_iter().map(|(image, encoded)| self.decoded(*image, encoded)).collect();
         let mut decoded = decoded?;
-        let mut uses = vec![0; decoded.len()];
-        for wanted in &self.wanted {
-            uses[place_of_image[&wanted.image]] += 1;
+        let mut remaining = vec![0; decoded.len()];
+        for used in &self.uses {
+            remaining[place_of_image[&used.image]] += 1;
         }
-        let texture = |wanted: &Wanted| {
-            let place = place_of_image[&wanted.image];
-            uses[place] -= 1;
+        let texture = |used: &TextureUse| {
+            let place = place_of_image[&used.image];
+            remaining[place] -= 1;
             let (size, texels) = &mut decoded[place];
-            let texels = if uses[place] == 0 { std::mem::take(texels) } else { texels.clone() };
-            Texture { size: *size, texels, wrap: wanted.wrap, nearest: wanted.nearest }
+            let texels = if remaining[place] == 0 { std::mem::take(texels) } else { texels.clone() };
+            Texture { size: *size, texels, wrap: used.wrap, nearest: used.nearest }
         };
-        Ok(self.wanted.iter().map(texture).collect())
+        Ok(self.uses.iter().map(texture).collect())
     }
 
     fn encoded(&self, file: &Container, index: usize, total_bytes: &mut u64) -> Result<Encoded<'a>, InputError> {
@@ -120,7 +121,7 @@ impl<'a> Textures<'a> {
         let format = reader.ok().and_then(|r| r.format());
         let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = format else {
             let found = format.map_or("of an unknown format".to_owned(), |f| format!("{f:?}"));
-            return Err(InputError::new(
+            return Err(InputError::not_supported(
                 document.subject,
                 format!("{} is {found}", self.name(index)),
                 "expected PNG or JPEG; convert it",
@@ -138,7 +139,7 @@ impl<'a> Textures<'a> {
         let undecodable = |e| self.undecodable(index, &e);
         let reader = ImageReader::with_format(Cursor::new(&*encoded.bytes), encoded.format);
         let mut decoder = reader.into_decoder().map_err(undecodable)?;
-        // The largest form: four components of 16 bits, as much again while decoding.
+        // The largest format has four components of 16 bits; the decoder needs as much again.
         let mut limits = Limits::default();
         limits.max_alloc = Some(encoded.texels.saturating_mul(16).max(1 << 20));
         decoder.set_limits(limits).map_err(undecodable)?;
@@ -149,7 +150,7 @@ impl<'a> Textures<'a> {
     }
 
     fn undecodable(&self, index: usize, error: &image::ImageError) -> InputError {
-        self.bad(index, format!("cannot be decoded: {}", super::shown(&error.to_string())))
+        self.bad(index, format!("cannot be decoded: {}", super::printable(&error.to_string())))
     }
 
     fn bad(&self, index: usize, problem: String) -> InputError {

@@ -1,4 +1,4 @@
-//! Extensions of materials.
+//! Material extensions.
 
 use super::InputError;
 use super::materials::Reader;
@@ -7,7 +7,7 @@ use gltf::json::extensions::material::Material as Extensions;
 use gltf::json::texture;
 use serde_json::Value;
 
-/// Shares of light below this count as this, for absorption is their logarithm.
+/// Smallest attenuation color, because the absorption coefficient is its logarithm.
 const DARKEST: f32 = 1e-6;
 
 pub(super) fn read(r: &mut Reader, extensions: &Extensions) -> Result<(), InputError> {
@@ -15,7 +15,7 @@ pub(super) fn read(r: &mut Reader, extensions: &Extensions) -> Result<(), InputE
         r.material.emissive = r.material.emissive.map(|c| c * strength.emissive_strength.0);
     }
     if let Some(ior) = &extensions.ior {
-        // 0 stands for infinity there, for files converted from specular-glossiness.
+        // KHR_materials_ior defines 0 as infinity, for files converted from specular-glossiness.
         r.material.ior = if ior.ior.0 == 0.0 { MAX_IOR } else { r.clamped(ior.ior.0, 1.0, MAX_IOR) };
     }
     if let Some(specular) = &extensions.specular {
@@ -74,12 +74,12 @@ pub(super) fn read(r: &mut Reader, extensions: &Extensions) -> Result<(), InputE
     Ok(())
 }
 
-/// Reflects all light at normal incidence, nearly.
+/// Largest index of refraction: reflects 99.6 % at normal incidence.
 const MAX_IOR: f32 = 1e3;
-/// Black within a micrometre.
+/// Largest absorption coefficient in 1/m: black within a micrometre.
 const MAX_ABSORPTION: f32 = 1e7;
 
-/// Shows its base color whatever the light: emits it and reflects nothing. Opacity stays.
+/// Emulates an unlit material: emits the base color and reflects nothing. Opacity is kept.
 fn unlit(r: &mut Reader) {
     let m = &mut r.material;
     m.emissive = m.base_color;
@@ -96,12 +96,12 @@ fn unlit(r: &mut Reader) {
     r.warn("unlit materials emit their base color, and so light what is around them");
 }
 
-/// A factor from 0 to 1 that is 0 by default.
+/// Factor in 0 to 1 with a default of 0.
 fn factor(r: &mut Reader, extension: &Value, name: &str) -> f32 {
     r.clamped(extension.get(name).and_then(Value::as_f64).unwrap_or(0.0) as f32, 0.0, 1.0)
 }
 
-/// Numbers of an array of exactly that length.
+/// Numbers of a JSON array; `None` unless it has exactly `N` numbers.
 pub(super) fn array_of<const N: usize>(value: Option<&Value>) -> Option<[f32; N]> {
     let numbers: Option<Vec<f32>> = value?.as_array()?.iter().map(|x| x.as_f64().map(|x| x as f32)).collect();
     numbers?.try_into().ok()
@@ -112,7 +112,7 @@ fn texture_of(r: &mut Reader, extension: &Value, name: &str) -> Result<Option<Te
     match serde_json::from_value::<texture::Info>(value.clone()) {
         Ok(info) => r.texture(Some(&info)),
         Err(_) => {
-            r.warn("textures that are not described as glTF 2.0 has them are left out");
+            r.warn("textures that do not conform to glTF 2.0 are left out");
             Ok(None)
         }
     }

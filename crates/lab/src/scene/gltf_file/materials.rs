@@ -1,8 +1,8 @@
-//! Materials: the core ones here, their extensions in `lobes`.
+//! Core glTF materials. `lobes` reads their extensions.
 
 use super::images::Textures;
 use super::lobes;
-use super::uv::{PLAIN, UvSource, agreed};
+use super::uv::{PLAIN, UvSource, common_source};
 use super::warnings::Warnings;
 use super::{Document, InputError, named};
 use crate::scene::{Alpha, Material, TextureRef};
@@ -10,20 +10,20 @@ use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
 
-/// Largest emitted radiance. Sums of many such stay finite.
+/// Largest emitted radiance, so that sums stay finite.
 const MAX_EMISSION: f32 = 1e12;
 
-/// A material, and what it wants of the triangles it is on.
+/// A material, and the vertex attributes that it needs.
 pub(super) struct Surface {
     pub material: Material,
     pub uv: UvSource,
     pub textured: bool,
-    pub wants_tangents: bool,
-    /// By how much tangents are turned about the normal, in radians.
+    pub needs_tangents: bool,
+    /// Rotation of tangents about the normal, in radians.
     pub tangent_turn: f32,
 }
 
-/// What is filled in while a material is read.
+/// State of reading one material.
 pub(super) struct Reader<'a, 'b> {
     pub textures: &'b mut Textures<'a>,
     pub warnings: &'b mut Warnings,
@@ -33,10 +33,10 @@ pub(super) struct Reader<'a, 'b> {
     sources: Vec<UvSource>,
 }
 
-/// glTF's material for triangles that have none.
+/// glTF's default material, for primitives without one.
 pub(super) fn default() -> Surface {
     let material = Material { metallic: 1.0, double_sided: false, ..Material::default() };
-    Surface { material, uv: PLAIN, textured: false, wants_tangents: false, tangent_turn: 0.0 }
+    Surface { material, uv: PLAIN, textured: false, needs_tangents: false, tangent_turn: 0.0 }
 }
 
 /// All materials of the file, in its order.
@@ -68,7 +68,7 @@ fn surface(
     let [red, green, blue, opacity] = pbr.base_color_factor.0;
     r.material.base_color = [red, green, blue].map(|c| r.clamped(c, 0.0, 1.0));
     r.material.opacity = r.clamped(opacity, 0.0, 1.0);
-    // First, for all textures take their coordinates as this one does.
+    // The base color texture first: all textures of the material use the first one's coordinates.
     r.material.base_color_texture = r.texture(pbr.base_color_texture.as_ref())?;
     r.material.metallic = r.clamped(pbr.metallic_factor.0, 0.0, 1.0);
     r.material.roughness = r.clamped(pbr.roughness_factor.0, 0.0, 1.0);
@@ -95,31 +95,31 @@ fn surface(
         lobes::read(&mut r, extensions)?;
     }
     r.material.emissive = r.material.emissive.map(|c| r.clamped(c, 0.0, MAX_EMISSION));
-    let uv = agreed(&r.sources, r.warnings, || r.name.clone());
+    let uv = common_source(&r.sources, r.warnings, || r.name.clone());
     Ok(Surface {
         uv,
         textured: !r.sources.is_empty(),
-        wants_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
+        needs_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
         tangent_turn: r.tangent_turn,
         material: r.material,
     })
 }
 
 impl Reader<'_, '_> {
-    /// A texture and where it takes its coordinates.
+    /// Registers a texture and its source of coordinates.
     pub fn texture(&mut self, info: Option<&json::texture::Info>) -> Result<Option<TextureRef>, InputError> {
         let Some(info) = info else { return Ok(None) };
         self.sources.push(UvSource::of(info));
         self.textures.use_texture(info.index).map(Some)
     }
 
-    /// A factor held in its range.
+    /// A factor clamped to its range, with a warning if it is outside.
     pub fn clamped(&mut self, value: f32, low: f32, high: f32) -> f32 {
         if (low..=high).contains(&value) {
             return value;
         }
-        self.warn("factors of materials out of their range are brought into it");
-        // A float overflows to infinity where it is too large to be told; it is never NaN.
+        self.warn("factors of materials out of their range are clamped");
+        // JSON numbers too large for a float become infinite; they are never NaN.
         value.clamp(low, high)
     }
 

@@ -1,4 +1,4 @@
-//! Primitives of meshes: triangles with their attributes, in local space.
+//! Mesh primitives: triangles with their attributes, in local space.
 
 use super::accessors::Accessors;
 use super::materials::Surface;
@@ -12,16 +12,16 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
 
-/// What primitives are read with.
+/// Context for reading primitives.
 pub(super) struct Primitives<'a> {
     pub document: &'a Document<'a>,
     pub accessors: &'a Accessors<'a>,
     pub surfaces: &'a [Surface],
-    /// For primitives without a material, behind all others.
+    /// Material of primitives without one. Its index follows all others.
     pub default_surface: Surface,
 }
 
-/// How vertices follow one another.
+/// Primitive topology.
 #[derive(Clone, Copy)]
 enum Topology {
     List,
@@ -30,15 +30,15 @@ enum Topology {
 }
 
 impl Primitives<'_> {
-    /// Number of triangles that a primitive claims to have; 0 if it has none to draw.
+    /// Number of triangles that a primitive states; 0 for points, lines, and primitives without positions.
     pub fn claimed_triangles(&self, primitive: &Primitive) -> Result<u64, InputError> {
         let Some(topology) = topology(primitive) else { return Ok(0) };
         let Some(source) = primitive.indices.or(attribute(primitive, Semantic::Positions)) else { return Ok(0) };
         Ok(topology.triangles(self.accessors.count(source)?))
     }
 
-    /// The triangles of a primitive, and how many are left out for a corner that is not finite or absurdly far; `None` if it is
-    /// not made of triangles or has no vertices.
+    /// Mesh of a primitive, and the number of triangles dropped because a corner is not finite or too far; `None` for points, lines,
+    /// and primitives without positions.
     pub fn geometry(
         &self,
         mesh: usize,
@@ -81,7 +81,7 @@ impl Primitives<'_> {
             geometry.normals = vectors(read.vectors(normals, "normals", Some(n))?);
         }
         if let Some(tangents) = attribute(primitive, Semantic::Tangents)
-            && surface.wants_tangents
+            && surface.needs_tangents
             && !geometry.normals.is_empty()
         {
             geometry.tangents =
@@ -109,7 +109,7 @@ impl Primitives<'_> {
         Ok(Some((geometry, left_out)))
     }
 
-    /// Linear factors from 0 to 1.
+    /// Vertex colors: linear factors clamped to 0 to 1.
     fn colors(&self, index: Index<json::Accessor>, n: usize) -> Result<Vec<Vec4>, InputError> {
         let colors: Vec<Vec4> = if self.accessors.is_vec4(index)? {
             self.accessors.vectors(index, "colors", Some(n))?.into_iter().map(Vec4::from_array).collect()
@@ -134,11 +134,11 @@ impl Primitives<'_> {
     }
 }
 
-/// Brings attributes into the form that posing relies on, and makes the tangents that are wanted and absent.
+/// Normalises normals and tangents, and generates tangents that are needed and absent.
 fn finish(geometry: &mut Geometry, surface: &Surface) {
-    // Many vertices that no triangle uses would cost as much as used ones.
+    // Unused vertices cost as much as used ones when posed.
     if geometry.positions.len() > geometry.indices.len() * 3 {
-        geometry.unshare();
+        geometry.unweld();
     }
     for normal in &mut geometry.normals {
         *normal = normal.normalize_or_zero();
@@ -147,7 +147,7 @@ fn finish(geometry: &mut Geometry, surface: &Surface) {
         let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
         *tangent = tangent.truncate().normalize_or_zero().extend(sign);
     }
-    if surface.wants_tangents && geometry.tangents.is_empty() && !geometry.uvs.is_empty() {
+    if surface.needs_tangents && geometry.tangents.is_empty() && !geometry.uvs.is_empty() {
         tangents::generate(geometry);
     }
     if surface.tangent_turn != 0.0 {
@@ -176,7 +176,7 @@ impl Topology {
         }
     }
 
-    /// Triangles counter-clockwise from the front (glTF 2.0, 3.7.2.1).
+    /// Triangles, counter-clockwise seen from the front (glTF 2.0, 3.7.2.1).
     fn assemble(self, v: &[u32]) -> Vec<[u32; 3]> {
         let strip = |(i, w): (usize, &[u32])| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] };
         match self {
@@ -195,7 +195,7 @@ fn vectors(arrays: Vec<[f32; 3]>) -> Vec<Vec3> {
     arrays.into_iter().map(Vec3::from_array).collect()
 }
 
-/// Removes triangles with a corner that is not finite or absurdly far, at rest or in a morph target, and says how many.
+/// Removes triangles with a corner that is not finite or too far, at rest or in a morph target, and returns their number.
 fn leave_out_unusable(geometry: &mut Geometry) -> u64 {
     let (targets, positions) = (&geometry.targets, &geometry.positions);
     let usable = |i: &u32| {

@@ -1,8 +1,8 @@
 //! glTF 2.0 files.
 //!
-//! The crate `gltf` gives the types of the description. Its own validation is not used, for it indexes before it checks and
-//! refuses attributes that applications add; here whatever refers to something is looked up and may be missing. Nor is its
-//! import, which reads any path.
+//! The crate `gltf` provides the types of the JSON. Its validation is not used, because it indexes before it checks, and refuses
+//! application-specific attributes; here every reference is looked up with a check. Its import is not used either, because it
+//! reads any path.
 
 mod accessors;
 mod animation;
@@ -26,7 +26,7 @@ use super::{Scene, SceneLimits};
 use crate::error::InputError;
 use gltf::json::{Index, Root};
 
-/// Reads the file with the animation of that name or number, else the first.
+/// Opens a file with the animation of the name or index `clip`, by default the first.
 pub(super) fn open(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Result<Scene, InputError> {
     let file = container::read(input, limits)?;
     let buffers = buffers::load(&file, limits)?;
@@ -34,9 +34,9 @@ pub(super) fn open(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Res
     assemble::scene(&document, &file, clip)
 }
 
-/// What all parts of the reader look at.
+/// A parsed file, shared by all parts of the reader.
 struct Document<'a> {
-    /// As the user named the file.
+    /// Path of the file as the user gave it.
     subject: &'a str,
     root: &'a Root,
     buffers: &'a buffers::Buffers,
@@ -49,7 +49,7 @@ impl Document<'_> {
         damaged(self.subject, problem)
     }
 
-    /// What an index refers to.
+    /// The element that an index refers to, or an error if it is out of range.
     fn look_up<'b, T>(&self, list: &'b [T], index: Index<T>, what: &str) -> Result<&'b T, InputError> {
         let found = list.get(index.value());
         found.ok_or_else(|| self.damaged(format!("it refers to {what} {index} of {}", list.len())))
@@ -57,11 +57,11 @@ impl Document<'_> {
 }
 
 fn damaged(subject: &str, problem: impl Into<String>) -> InputError {
-    InputError::new(subject, problem, "export the scene again")
+    InputError::invalid(subject, problem, "export the scene again")
 }
 
-/// A name from the file, fit for a line of text: on one line and not too long.
-fn shown(name: &str) -> String {
+/// Text from the file, escaped to one line and truncated.
+fn printable(name: &str) -> String {
     const LONGEST: usize = 80;
     let mut text: String = name.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if name.chars().nth(LONGEST).is_some() {
@@ -70,10 +70,10 @@ fn shown(name: &str) -> String {
     text
 }
 
-/// A thing by its name, if it has one, and its number.
+/// Kind, index and, if there is one, name of an object of the file.
 fn named(what: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) if !name.is_empty() => format!("{what} {index} ({})", shown(name)),
+        Some(name) if !name.is_empty() => format!("{what} {index} ({})", printable(name)),
         _ => format!("{what} {index}"),
     }
 }

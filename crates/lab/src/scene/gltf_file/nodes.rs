@@ -7,7 +7,7 @@ use crate::scene::animated::nodes::{Local, Nodes};
 use glam::{DAffine3, DQuat, DVec3, Mat4, Vec3};
 use gltf::json;
 
-/// All nodes of the file, and which of them belong to the scene that is shown.
+/// All nodes of the file, and flags of those that belong to the loaded scene.
 pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Nodes, Vec<bool>), InputError> {
     let nodes = &document.root.nodes;
     let mut parents = vec![None; nodes.len()];
@@ -33,7 +33,7 @@ pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Node
     Ok((Nodes { parents, locals, order }, shown))
 }
 
-/// Nodes and all below them, each once; parents before children where none of the given nodes is below another.
+/// Nodes and all their descendants, each once. Parents come before children if no given node is a descendant of another.
 fn below(nodes: &[json::Node], mut found: Vec<u32>) -> Vec<u32> {
     let mut met = vec![false; nodes.len()];
     found.retain(|&node| !std::mem::replace(&mut met[node as usize], true));

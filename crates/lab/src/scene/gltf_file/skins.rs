@@ -1,4 +1,4 @@
-//! Skins: joints, and how much each moves a vertex.
+//! Skins: joints, bind poses and vertex weights.
 
 use super::accessors::Accessors;
 use super::mesh::attribute;
@@ -10,10 +10,10 @@ use glam::{DAffine3, Mat4};
 use gltf::json;
 use gltf::json::mesh::{Primitive, Semantic};
 
-/// Sums of weights that differ from 1 by more are named; rounding to bytes explains less.
+/// Deviation of a weight sum from 1 that causes a warning. Quantisation to bytes deviates less.
 const WEIGHT_TOLERANCE: f32 = 0.02;
 
-/// Joints and bind pose.
+/// Joints and inverse bind matrices of a skin.
 pub(super) fn skin(document: &Document, accessors: &Accessors, index: usize) -> Result<Skin, InputError> {
     let json: &json::Skin = &document.root.skins[index];
     for joint in &json.joints {
@@ -34,7 +34,7 @@ pub(super) fn skin(document: &Document, accessors: &Accessors, index: usize) -> 
     Ok(Skin { joints, inverse_bind })
 }
 
-/// All sets of joints and weights of a primitive, brought to a sum of 1.
+/// Joints and weights of a primitive from all sets. Weights are scaled to a sum of 1.
 pub(super) fn influences(
     document: &Document,
     accessors: &Accessors,
@@ -58,7 +58,7 @@ pub(super) fn influences(
         for (joints, weights) in &sets {
             for (&joint, &weight) in joints[vertex].iter().zip(&weights[vertex]) {
                 let weight = if weight.is_finite() { weight.max(0.0) } else { 0.0 };
-                // What does not count may point anywhere.
+                // Joints with zero weight may be out of range.
                 let joint = if weight > 0.0 { joint } else { 0 };
                 let joint = u16::try_from(joint);
                 out.joints.push(joint.map_err(|_| document.damaged(format!("{}: joint above 65535", name())))?);
@@ -82,7 +82,7 @@ pub(super) fn influences(
     Ok(out)
 }
 
-/// Checks that a skin has all joints that vertices name.
+/// Checks that all joint indices of vertices exist in the skin.
 pub(super) fn check_joints(document: &Document, influences: &Influences, skin: &Skin) -> Result<(), InputError> {
     match influences.joints.iter().find(|&&joint| usize::from(joint) >= skin.joints.len()) {
         Some(joint) => Err(document.damaged(format!("a vertex follows joint {joint} of {}", skin.joints.len()))),

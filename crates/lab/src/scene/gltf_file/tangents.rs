@@ -1,18 +1,18 @@
-//! Tangents where a file leaves them out: MikkTSpace's, as glTF 2.0 (3.7.2.1) prescribes.
+//! Generation of absent tangents by MikkTSpace, as glTF 2.0 (3.7.2.1) prescribes.
 
 use crate::scene::geometry::{Geometry, face_normal};
 use bevy_mikktspace::{Geometry as Faces, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 use std::collections::HashMap;
 
-/// Corners at one vertex up to which MikkTSpace is used: its time grows with their square.
+/// Largest number of corners at one position for MikkTSpace, whose time grows with its square.
 const MAX_VALENCE: u32 = 512;
 
-/// Gives every corner its own vertex, with a tangent. There must be texture coordinates.
+/// Gives every corner its own vertex with a tangent. The mesh must have texture coordinates.
 ///
-/// In w, glTF has the sign of the normal map's green, which points up in the image, against growing v: the opposite of MikkTSpace's.
+/// The sign in w is the opposite of MikkTSpace's: a glTF normal map's green channel points up in the image, towards decreasing v.
 pub(super) fn generate(geometry: &mut Geometry) {
-    geometry.unshare();
+    geometry.unweld();
     geometry.tangents = vec![Vec4::ZERO; geometry.positions.len()];
     let flat = geometry.normals.is_empty();
     if flat {
@@ -34,21 +34,21 @@ fn fill(geometry: &mut Geometry) {
         }
         return;
     }
-    // It has no error to give.
+    // It cannot fail.
     let _ = generate_tangents(&mut Corners(geometry));
 }
 
-/// Most corners at one position.
+/// Largest number of corners at one position.
 fn valence(geometry: &Geometry) -> u32 {
     let mut corners = HashMap::new();
     for p in &geometry.positions {
-        // Zero has two signs.
+        // Adding zero turns -0 into +0.
         *corners.entry((*p + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(0u32) += 1;
     }
     corners.into_values().max().unwrap_or(0)
 }
 
-/// Direction of growing u across a triangle.
+/// Tangent of a triangle from its texture coordinates.
 fn face_tangent(geometry: &Geometry, face: usize) -> Vec4 {
     let [a, b, c] = [0, 1, 2].map(|k| face * 3 + k);
     let (p, uv) = (&geometry.positions, &geometry.uvs);
@@ -59,7 +59,7 @@ fn face_tangent(geometry: &Geometry, face: usize) -> Vec4 {
     direction.normalize_or_zero().extend(-area.signum())
 }
 
-/// Faces whose corners are all vertices of their own.
+/// Adapter to MikkTSpace for meshes without shared vertices.
 struct Corners<'a>(&'a mut Geometry);
 
 impl Faces for Corners<'_> {

@@ -1,32 +1,32 @@
-//! Addresses inside a scene: data that is in the address itself, and files in the scene's folder.
+//! URIs in a scene: data URIs, and files in the scene's folder.
 
-use super::{InputError, shown};
+use super::{InputError, printable};
 use base64::Engine;
 use base64::alphabet;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::path::{Component, Path, PathBuf};
 
-/// With or without padding, as files have it.
+/// Base64 with or without padding: files have both.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &alphabet::STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// What an address means.
+/// Target of a URI.
 #[derive(Debug)]
 pub(super) enum Resolved {
     Data(Vec<u8>),
-    /// A file that exists, inside the folder however its links lead.
+    /// Canonical path of an existing file inside the folder, symbolic links resolved.
     File(PathBuf),
 }
 
-/// Resolves an address against the scene's folder.
+/// Resolves a URI against the scene's folder.
 ///
 /// # Errors
-/// If it leads, or could lead, out of the folder; if there is no such file; if its data are damaged.
+/// `NotSupported` if it leads, or could lead, out of the folder; `Io` if there is no such file; `Invalid` if its data is damaged.
 pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolved, InputError> {
     let damaged = |problem: &str| {
-        InputError::new(subject, format!("the address \"{}\" {problem}", shown(uri)), "export the scene again")
+        InputError::invalid(subject, format!("the URI \"{}\" {problem}", printable(uri)), "export the scene again")
     };
     if let Some(rest) = uri.strip_prefix("data:") {
         let (kind, data) = rest.split_once(',').ok_or_else(|| damaged("has no data"))?;
@@ -37,9 +37,9 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
         return Ok(Resolved::Data(data));
     }
     let refused = |problem: &str| {
-        InputError::new(
+        InputError::not_supported(
             subject,
-            format!("it refers to \"{}\", which {problem}", shown(uri)),
+            format!("it refers to \"{}\", which {problem}", printable(uri)),
             "a scene may only read files in its own folder; copy them there",
         )
     };
@@ -48,7 +48,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     if decoded.is_empty() || decoded.contains('\0') {
         return Err(damaged("names no file"));
     }
-    // A colon is a scheme or, on some systems, a drive or a stream; a backslash separates folders on some.
+    // A colon marks a scheme or, on Windows, a drive or a stream; a backslash separates folders there.
     if decoded.contains([':', '\\']) {
         return Err(refused("has a scheme, a drive or a backslash"));
     }
@@ -61,9 +61,9 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
         }
     }
     let missing = |e: std::io::Error| {
-        InputError::new(
+        InputError::io(
             subject,
-            format!("it refers to \"{}\", which cannot be read: {e}", shown(uri)),
+            format!("it refers to \"{}\", which cannot be read: {e}", printable(uri)),
             "put the file where the scene expects it",
         )
     };
@@ -75,7 +75,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     Ok(Resolved::File(path))
 }
 
-/// Bytes with `%xx` replaced; `None` if one is not hexadecimal.
+/// Percent-decoded bytes; `None` if an escape is not hexadecimal.
 fn percent_decoded(text: &str) -> Option<Vec<u8>> {
     let mut bytes = text.bytes();
     let mut decoded = Vec::with_capacity(text.len());

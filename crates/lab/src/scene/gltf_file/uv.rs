@@ -1,32 +1,32 @@
-//! Texture coordinates: one set and one transform a material, baked into its triangles.
+//! Texture coordinates: one set and one transform per material, baked into its triangles.
 
 use super::lobes::array_of;
 use super::warnings::Warnings;
 use gltf::json::texture;
 use serde_json::Value;
 
-/// Which set of texture coordinates, and how it is transformed (KHR_texture_transform).
+/// A set of texture coordinates and its transform (KHR_texture_transform).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvSource {
     pub set: u32,
     pub offset: [f32; 2],
-    /// Radians, counter-clockwise as one sees the texture.
+    /// Rotation in radians, counter-clockwise in the image.
     pub rotation: f32,
     pub scale: [f32; 2],
 }
 
-/// Set 0 as it is.
+/// Set 0 without a transform.
 pub(super) const PLAIN: UvSource = UvSource { set: 0, offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2] };
 
 impl UvSource {
-    /// That of a texture.
+    /// Source of a texture.
     pub fn of(info: &texture::Info) -> Self {
         let plain = Self { set: info.tex_coord, ..PLAIN };
         let Some(t) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) else { return plain };
         Self { set: t.tex_coord.unwrap_or(plain.set), offset: t.offset.0, rotation: t.rotation.0, scale: t.scale.0 }
     }
 
-    /// That of a normal map, whose extension the crate does not type.
+    /// Source of a normal map, whose extensions the crate `gltf` leaves as JSON.
     pub fn of_value(set: u32, transform: Option<&Value>) -> Self {
         let plain = Self { set, ..PLAIN };
         let Some(t) = transform else { return plain };
@@ -39,7 +39,7 @@ impl UvSource {
         }
     }
 
-    /// Scaled, turned, shifted, in this order. What is not finite becomes 0.
+    /// Scales, rotates and translates coordinates, in this order. Results that are not finite become 0.
     pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         let (sin, cos) = self.rotation.sin_cos();
         let (u, v) = (u * self.scale[0], v * self.scale[1]);
@@ -48,8 +48,8 @@ impl UvSource {
     }
 }
 
-/// The one source for all textures of a material: the first of those given, which are sorted by weight.
-pub(super) fn agreed(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> UvSource {
+/// Common source of all textures of a material: the first of `sources`, with a warning if they differ.
+pub(super) fn common_source(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> UvSource {
     let Some(&first) = sources.first() else { return PLAIN };
     if sources.iter().any(|s| *s != first) {
         warnings.about("textures of one material with different texture coordinates all take the first one's", name);

@@ -1,11 +1,11 @@
-//! What a file asks for and is not done.
+//! Warnings about features of a file that are ignored or approximated.
 
 use std::fmt::Write;
 
-/// Names that are spelled out with one warning.
+/// Largest number of names listed in one warning.
 const NAMED: usize = 3;
 
-/// Warnings, each once, with what it is about.
+/// Warnings, each text once, with the names of the objects concerned.
 #[derive(Default)]
 pub(super) struct Warnings {
     entries: Vec<Entry>,
@@ -14,7 +14,7 @@ pub(super) struct Warnings {
 struct Entry {
     text: String,
     names: Vec<String>,
-    /// The thing that was named last, for things report one after the other.
+    /// Name of the last object. An object reports its warnings in a row, so this detects repetition.
     last: String,
     count: u64,
 }
@@ -26,7 +26,7 @@ impl Entry {
 }
 
 impl Warnings {
-    /// A warning that stands alone.
+    /// Adds a warning without an object.
     pub fn add(&mut self, text: impl AsRef<str>) {
         let text = text.as_ref();
         if self.entries.iter().all(|e| e.text != text) {
@@ -34,7 +34,7 @@ impl Warnings {
         }
     }
 
-    /// A warning about one of several things. The texts are few, the things may be many; each counts once.
+    /// Adds a warning about an object. There are few texts and possibly many objects; each object counts once.
     pub fn about(&mut self, text: &str, name: impl FnOnce() -> String) {
         let at = self.entries.iter().position(|e| e.text == text).unwrap_or_else(|| {
             self.entries.push(Entry::new(text));
@@ -51,7 +51,7 @@ impl Warnings {
         }
     }
 
-    /// All of them, one line each.
+    /// One line per warning.
     pub fn into_lines(self) -> Vec<String> {
         let line = |entry: Entry| {
             let mut line = entry.text;

@@ -1,4 +1,4 @@
-//! Rays against a stage: color, depth and motion of its pixels.
+//! Ray casting: color, depth and motion of the pixels of a [`Stage`].
 
 use super::light;
 use super::scene::{Placed, Stage};
@@ -9,26 +9,26 @@ use afterimage::ViewGeometry;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Side of the square of pixels that shares one list of objects.
+/// Side in pixels of a [`Tile`].
 const SIDE: usize = 16;
 /// Nearest depth of a hit, in metres.
 const NEAR: f32 = 1e-3;
 
-/// Offsets of the color samples from the pixel's centre: the same for every pixel and frame.
+/// Sample pattern of color: offsets from the pixel centre, the same for every pixel and frame.
 pub(super) struct Pattern {
     offsets: Vec<[f32; 2]>,
-    /// Width of the footprint of one sample, in pixels.
+    /// Footprint width of one sample, in pixels.
     footprint: f32,
 }
 
 impl Pattern {
-    /// `count` samples, a power of two: a Hammersley set, stratified in both axes.
+    /// A Hammersley set of `count` samples (a power of two), stratified in both axes.
     pub fn new(count: u32) -> Self {
         let offsets = (0..count)
             .map(|i| {
                 let bits = count.trailing_zeros();
                 let reversed = i.reverse_bits().checked_shr(32 - bits).unwrap_or(0);
-                // A quarter turn of strata keeps the columns of four samples apart.
+                // With four samples a rotated grid, which separates their columns better.
                 let y = if bits == 2 { [1, 3, 0, 2][i as usize] } else { reversed };
                 [i, y].map(|k| (k as f32 + 0.5) / count as f32 - 0.5)
             })
@@ -37,7 +37,7 @@ impl Pattern {
     }
 }
 
-/// A view of a stage.
+/// Casts rays of a view into a stage.
 pub(super) struct Caster<'a> {
     stage: &'a Stage,
     view: &'a ViewGeometry,
@@ -45,12 +45,12 @@ pub(super) struct Caster<'a> {
     outlines: Vec<Outline>,
 }
 
-/// What the ray through a pixel's centre meets.
+/// Depth and motion of the surface at a pixel centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Geometry {
-    /// Along the view axis; infinite for the sky.
+    /// Depth along the view axis; infinite for the sky.
     pub depth: f32,
-    /// Previous minus current, pixels, y down.
+    /// Motion vector in pixels, y down, previous minus current.
     pub motion: [f32; 2],
 }
 
@@ -60,7 +60,7 @@ impl<'a> Caster<'a> {
         Self { stage, view, pattern, outlines: stage.objects.iter().map(outline).collect() }
     }
 
-    /// Calls `pixel(x, y, tile)` for every pixel and gathers the results row after row.
+    /// Evaluates `pixel(x, y, tile)` for every pixel, in parallel. Results are in row-major order.
     pub fn render<T: Send + Copy>(&self, empty: T, pixel: impl Fn(u32, u32, &Tile) -> T + Sync) -> Vec<T> {
         let [width, height] = self.view.size_px().map(|s| s as usize);
         let mut pixels = vec![empty; width * height];
@@ -83,7 +83,7 @@ impl<'a> Caster<'a> {
         pixels
     }
 
-    /// Rays through the corners of a rectangle of pixels, in order around it.
+    /// Rays through the corners of a rectangle of pixels, in cyclic order.
     fn corners(&self, [from, to]: [[f32; 2]; 2]) -> [Ray; 4] {
         [[from[0], from[1]], [to[0], from[1]], [to[0], to[1]], [from[0], to[1]]]
             .map(|corner| self.ray(corner.map(|c| c - 0.5)))
@@ -119,11 +119,11 @@ impl<'a> Caster<'a> {
         (sum / self.pattern.offsets.len() as f32).to_array()
     }
 
-    /// Whether any color sample of a pixel meets object `wanted`.
-    pub fn touches(&self, x: u32, y: u32, tile: &Tile, wanted: usize) -> bool {
+    /// Whether any color sample of a pixel hits the object with index `object`.
+    pub fn touches(&self, x: u32, y: u32, tile: &Tile, object: usize) -> bool {
         self.pattern.offsets.iter().any(|offset| {
             let ray = self.ray([x as f32 + offset[0], y as f32 + offset[1]]);
-            self.nearest(&ray, tile).is_some_and(|(index, _)| index == wanted)
+            self.nearest(&ray, tile).is_some_and(|(index, _)| index == object)
         })
     }
 
@@ -132,7 +132,7 @@ impl<'a> Caster<'a> {
         let [now, before] = &self.stage.cameras;
         let ray = self.ray([x as f32, y as f32]);
         let Some((index, depth)) = self.nearest(&ray, tile) else {
-            // Nothing has a place there, but a direction: only the camera's turn moves it.
+            // The sky is at infinity: only the camera's rotation moves it.
             return Geometry {
                 depth: f32::INFINITY,
                 motion: self.motion(before.axes.transpose() * ray.direction, now.axes.transpose() * ray.direction),
@@ -144,8 +144,8 @@ impl<'a> Caster<'a> {
         Geometry { depth, motion: self.motion(before.view(previous), now.view(point)) }
     }
 
-    /// Pixels from one point of view space to another. A difference of two projections, not of a projection and the pixel:
-    /// that makes it exactly zero where nothing moved. What was behind the previous camera is far out of its picture.
+    /// Motion vector between two points in view space. A difference of two projections, not of a projection and the pixel centre,
+    /// is exactly zero where nothing moved. A point behind the previous camera gets a vector far outside of the frame.
     fn motion(&self, previous: Vec3, current: Vec3) -> [f32; 2] {
         let outside = self.view.size_px().map(|s| 4.0 * s as f32);
         match (self.view.project(previous.into()), self.view.project(current.into())) {
@@ -163,12 +163,12 @@ impl<'a> Caster<'a> {
         albedo * light::arriving(self.stage, tile, index, point, surface.normal)
     }
 
-    /// Texture coordinates and how wide a sample is there.
+    /// Texture coordinates and the sample's footprint there.
     fn spot(&self, ray: &Ray, t: f32, point: Vec3, surface: &Surface, object: &Placed) -> Spot {
         let axes = self.stage.cameras[0].axes;
         let (scale, _) = self.view.scale_offset();
         let d = ray.direction;
-        // A ray one sample aside meets the tangent plane a bit nearer or farther: the bound keeps grazing rays finite.
+        // Ray differentials on the tangent plane. The bound on the slope keeps grazing rays finite.
         let slope = surface.normal.dot(d);
         let slope = if slope.abs() < 1e-3 { -1e-3 } else { slope };
         let aside = |axis: Vec3, scale: f32| {

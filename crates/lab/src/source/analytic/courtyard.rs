@@ -1,4 +1,4 @@
-//! What stands in the courtyard, and what each scene adds to it. Metres and seconds; the eye is 1.6 m above the floor.
+//! Objects of the courtyard, and of each scene set in it. Metres and seconds; the eye is 1.6 m above the floor.
 
 use super::scene::{Camera, Object, Pose, Scene};
 use super::shape::{Cutout, Shape};
@@ -6,9 +6,9 @@ use super::texture::Material;
 use glam::{Mat3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
-/// Height of the floor, y down.
+/// y of the floor; y points down.
 pub(super) const FLOOR: f32 = 1.6;
-/// Where the walls are: left and right along x, back along z.
+/// x of the left and right walls, z of the back wall.
 pub(super) const LEFT: f32 = -3.6;
 pub(super) const RIGHT: f32 = 3.9;
 pub(super) const BACK: f32 = 8.0;
@@ -44,7 +44,7 @@ fn still_camera(_: f64) -> Camera {
 
 const STONE: Material = Material::Plaster([0.62, 0.57, 0.48]);
 
-/// Floor, walls and what hangs on them, columns and the trees behind. The floor comes first.
+/// Floor, walls, and the pictures and rugs on them. The floor comes first.
 fn walls() -> Vec<Object> {
     vec![
         rect([0.0, FLOOR, 5.0], Vec3::X, Vec3::Z, [14.0, 11.0], Material::Floor),
@@ -60,7 +60,7 @@ fn walls() -> Vec<Object> {
     ]
 }
 
-/// What stands around: a bench, a globe on its pedestal, balls.
+/// Free-standing objects: columns, trees behind the wall, a bench, a globe on its pedestal, balls.
 fn things() -> Vec<Object> {
     const OAK: [f32; 3] = [0.40, 0.24, 0.12];
     vec![
@@ -108,7 +108,7 @@ pub(super) fn still() -> Scene {
     scene(extra, still_camera)
 }
 
-/// `lateral`: half a metre to either side, 1 m/s at the middle, past posts a good metre away.
+/// `lateral`: the camera oscillates by half a metre to either side, 1 m/s at the middle, past posts 1 m to 2.4 m away.
 pub(super) fn lateral() -> Scene {
     let mut extra = notice();
     for (x, z) in [(-0.6, 1.0), (0.36, 1.4), (1.25, 1.9), (-1.6, 2.4)] {
@@ -120,7 +120,7 @@ pub(super) fn lateral() -> Scene {
     })
 }
 
-/// `turn`: the camera looks left and right by 8 degrees, and up and down by 3.
+/// `turn`: the camera oscillates by 8 degrees to the left and right, and by 3 up and down.
 pub(super) fn turn() -> Scene {
     scene(notice(), |t| {
         let (yaw, pitch) = (0.14 * (2.0 * t).sin(), 0.05 * (1.4 * t).sin());
@@ -128,7 +128,7 @@ pub(super) fn turn() -> Scene {
     })
 }
 
-/// `occluder`: a fence and a rolling ball pass in front of a camera that drifts and turns a little; the globe spins.
+/// `occluder`: a fence and a rolling ball pass in front of a camera that translates and rotates a little; the globe spins.
 pub(super) fn occluder() -> Scene {
     let mut extra = notice();
     extra.push(Object {
@@ -171,11 +171,11 @@ pub(super) fn occluder() -> Scene {
     scene
 }
 
-/// Half size of the scrolling panel in metres, and how far away it stands.
+/// Half size of the scrolling panel in metres, and its distance.
 const PANEL_HALF: [f32; 2] = [0.72, 0.62];
 const PANEL_Z: f32 = 3.4;
 
-/// `scroll`: a page faces the camera; `step` metres of it pass each frame. The panel is the last object.
+/// `scroll`: a panel that faces the camera shows a scrolling page. The panel is the last object.
 pub(super) fn scroll() -> Scene {
     let panel =
         rect([1.05, 0.15, PANEL_Z], Vec3::X, Vec3::Y, PANEL_HALF, Material::Scroll { half: PANEL_HALF, shift: 0.0 });
@@ -186,7 +186,7 @@ pub(super) fn scroll() -> Scene {
     scene
 }
 
-/// Metres by which the panel's picture moves when it moves `px` pixels of a view with `tangent_per_px`.
+/// Metres on the panel that correspond to `px` pixels of a view with `tangent_per_px`.
 pub(super) fn panel_metres(px: f64, tangent_per_px: f64) -> f64 {
     px * tangent_per_px * f64::from(PANEL_Z)
 }

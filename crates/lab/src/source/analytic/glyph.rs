@@ -1,4 +1,4 @@
-//! Printed text for the pictures on the walls: a 5x7 dot-matrix alphabet and rows of words set in it.
+//! Printed text: a 5x7 dot-matrix font, and running text set in it.
 
 use super::noise::{pulse, split, surviving};
 use glam::Vec2;
@@ -13,7 +13,7 @@ const ALICE: &[u8] = b"alice was beginning to get very tired of sitting by her s
 nothing to do: once or twice she had peeped into the book her sister was reading, but it had no pictures or conversations \
 in it, and what is the use of a book, thought alice without pictures or conversation? ";
 
-/// Dots of a to z, one byte a column from the left, the lowest bit at the top.
+/// Dots of a to z, one byte per column from the left, the lowest bit at the top.
 const LOWER: [[u8; 5]; 26] = [
     [0x20, 0x54, 0x54, 0x54, 0x78],
     [0x7f, 0x48, 0x44, 0x44, 0x38],
@@ -43,7 +43,7 @@ const LOWER: [[u8; 5]; 26] = [
     [0x44, 0x64, 0x54, 0x4c, 0x44],
 ];
 
-/// Dots of the capitals of the headline, in its order: A F T E R I M A G E.
+/// Dots of the headline's capitals: A F T E R I M A G E.
 const HEADLINE: [[u8; 5]; 10] = [
     [0x7e, 0x11, 0x11, 0x11, 0x7e],
     [0x7f, 0x09, 0x09, 0x09, 0x01],
@@ -67,7 +67,7 @@ fn dots(character: u8) -> [u8; 5] {
     }
 }
 
-/// Ink of one dot: whether the dot at (column, row) of a character cell is set.
+/// Ink of one dot: 1 if the dot at (x, y) of a character cell is set, else 0.
 fn dot(columns: [u8; 5], x: f32, y: f32) -> f32 {
     if (0.0..5.0).contains(&x) && (0.0..7.0).contains(&y) {
         f32::from(columns[x as usize] >> (y as u32) & 1)
@@ -76,8 +76,8 @@ fn dot(columns: [u8; 5], x: f32, y: f32) -> f32 {
     }
 }
 
-/// Ink in [0, 1] of running text at `p`, in dots, y down. Lines are `columns` characters long and never end; `first` is where
-/// in the text the first one starts. Where the footprint `w` swallows the dots, the rows' mean grey remains.
+/// Ink in [0, 1] of running text at `p`, in dots, y down. Lines are `columns` characters long and go on without end; the first one
+/// starts at character `first` of the text. Where the footprint `w` is wider than a dot, the result fades to the rows' mean grey.
 pub(super) fn running_text(p: Vec2, w: Vec2, columns: i32, first: i32) -> f32 {
     let line = split(p.y / LEADING).0;
     let column = split(p.x / ADVANCE).0;

@@ -1,4 +1,4 @@
-//! Light on surfaces: a sun through a roof of slats, and a sky that corners and feet see less of.
+//! Lighting: a sun with shadows, partly behind a roof of slats, and a sky with ambient occlusion at walls and around objects.
 
 use super::courtyard::{BACK, FLOOR, LEFT, RIGHT};
 use super::noise::{fbm, pulse, smoothstep};
@@ -7,16 +7,16 @@ use super::shape::{Ray, Shape};
 use super::tile::Tile;
 use glam::{Vec2, Vec3};
 
-/// Nearest distance of what throws a shadow, in metres: below it a surface would shade itself.
+/// Shadow ray offset in metres, which avoids self-shadowing.
 const NEAR: f32 = 1e-3;
-/// Chosen so that the palest surface in full sun is a little above 1.
+/// Irradiance of the sun over pi. Chosen so that the brightest surface in full sun is a little above 1.
 const SUN: Vec3 = Vec3::new(1.30, 1.16, 0.96);
 const SKY: Vec3 = Vec3::new(0.34, 0.41, 0.52);
 const BOUNCE: Vec3 = Vec3::new(0.26, 0.21, 0.16);
-/// How far the darkening around a foot reaches, in radii.
+/// Reach of the ambient occlusion around an object, in radii of its occluder.
 const REACH: f32 = 4.0;
 
-/// Light that arrives at a point with normal `n` of object `index`: what its albedo is multiplied with.
+/// Irradiance over pi at a point of object `index` with normal `n`: the factor of the albedo.
 pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n: Vec3) -> Vec3 {
     let facing = n.dot(TO_SUN);
     let sun = if facing > 0.0 { facing * sunlight(stage, &tile.casters[index], point + n * NEAR) } else { 0.0 };
@@ -25,7 +25,7 @@ pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n:
     BOUNCE.lerp(SKY, upward) * open + SUN * sun
 }
 
-/// Share of the sun seen from a point behind the objects `casters`.
+/// Visible share of the sun from a point, given the objects that may cast a shadow there.
 fn sunlight(stage: &Stage, casters: &[u16], point: Vec3) -> f32 {
     let open = slats(point);
     if open <= 0.0 {
@@ -39,19 +39,19 @@ fn sunlight(stage: &Stage, casters: &[u16], point: Vec3) -> f32 {
     if shaded { 0.0 } else { open }
 }
 
-/// Share of the sky seen this far from a corner.
+/// Visible share of the sky at a distance from a wall or the floor.
 fn corner(distance: f32) -> f32 {
     0.55 + 0.45 * smoothstep(-0.1, 0.9, distance)
 }
 
-/// Share of the sky seen from the floor, between the walls and the objects `standing` around.
+/// Visible share of the sky from the floor, given the objects `standing` on it.
 fn open_floor(stage: &Stage, standing: &[u16], point: Vec3) -> f32 {
     let mut open = corner(BACK - point.z) * corner(point.x - LEFT) * corner(RIGHT - point.x);
     for &object in standing {
-        let Some((centre, radius)) = foot(&stage.objects[object as usize].shape) else {
+        let Some((centre, radius)) = occluder(&stage.objects[object as usize].shape) else {
             continue;
         };
-        // Cosine-weighted share of the hemisphere that a ball hides, cut off smoothly.
+        // Cosine-weighted share of the hemisphere that a sphere occludes, with a smooth cut-off.
         let to_centre = centre - point;
         let squares = to_centre.length_squared() / (radius * radius);
         let near = (1.0 - squares / (REACH * REACH)).max(0.0);
@@ -61,8 +61,8 @@ fn open_floor(stage: &Stage, standing: &[u16], point: Vec3) -> f32 {
     open
 }
 
-/// The ball that stands for the foot of an object on the floor; `None` for what does not stand there.
-fn foot(shape: &Shape) -> Option<(Vec3, f32)> {
+/// Sphere that stands for an object on the floor in ambient occlusion; `None` for objects that do not stand there.
+fn occluder(shape: &Shape) -> Option<(Vec3, f32)> {
     match *shape {
         Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => Some((centre, radius)),
         Shape::Post { centre, radius, .. } => Some((centre.with_y(FLOOR - radius), radius)),
@@ -74,15 +74,15 @@ fn foot(shape: &Shape) -> Option<(Vec3, f32)> {
     }
 }
 
-/// Whether the foot of `shape` darkens the floor somewhere in a ball.
-pub(super) fn darkens(shape: &Shape, (centre, radius): (Vec3, f32)) -> bool {
-    foot(shape).is_some_and(|(foot, size)| foot.distance(centre) < REACH * size + radius)
+/// Whether ambient occlusion of `shape` reaches the floor somewhere in a sphere.
+pub(super) fn occludes_floor(shape: &Shape, (centre, radius): (Vec3, f32)) -> bool {
+    occluder(shape).is_some_and(|(middle, size)| middle.distance(centre) < REACH * size + radius)
 }
 
-/// Share of the sun that passes a roof of slats above and behind the camera: it stripes the floor and the walls.
+/// Share of the sun that passes the roof of slats above and behind the camera. It casts stripes on the floor and the walls.
 fn slats(point: Vec3) -> f32 {
     const HEIGHT: f32 = -3.4;
-    /// The sun's diameter as a slope.
+    /// Angular diameter of the sun, as a slope.
     const BLUR: f32 = 0.0093;
     let t = (HEIGHT - point.y) / TO_SUN.y;
     let above = point + TO_SUN * t;
@@ -95,7 +95,7 @@ fn slats(point: Vec3) -> f32 {
     across * along
 }
 
-/// Sky with fair-weather clouds; a function of direction alone.
+/// Radiance of the sky with clouds, by direction.
 pub(super) fn sky(direction: Vec3) -> Vec3 {
     let d = direction.normalize();
     let up = (-d.y).max(0.0);

@@ -1,15 +1,14 @@
-//! Scenes whose every pixel is known in closed form: a courtyard of textured rectangles, balls and posts, ray-cast on the
-//! CPU. Color, depth, motion vectors and the camera's motion are exact, so what a temporal method makes of them can be
-//! told from errors of its input.
+//! Analytic scenes: a courtyard of textured rectangles, spheres and posts, ray-cast on the CPU. Color, depth, motion vectors and
+//! camera motion are exact, so that errors of a temporal method are not mixed with errors of its input.
 //!
-//! | scene | what moves | what it is for |
+//! | scene | motion | tests |
 //! |---|---|---|
-//! | `still` | nothing | the picture to look at; how much detail comes back |
-//! | `lateral` | the camera, sideways, 1 m/s at the most | reprojection, disocclusion behind near posts |
-//! | `turn` | the camera, about itself, 17 degrees a second at the most | camera rotation: every pixel moves, nothing is disoccluded |
+//! | `still` | none | recovery of detail |
+//! | `lateral` | the camera, sideways, at most 1 m/s | reprojection, disocclusion behind near posts |
+//! | `turn` | the camera, rotation only, at most 17 degrees a second | camera rotation: every pixel moves, nothing is disoccluded |
 //! | `occluder` | a fence and a rolling ball in front, a spinning globe, the camera a little | motion of objects |
-//! | `light-step` | nothing; the light falls to 0.45 for 0.75 s | change without motion |
-//! | `scroll` | the page on a panel, without motion vectors | content that lies about its motion |
+//! | `light-step` | none; the light falls to 0.45 for 0.75 s | change without motion |
+//! | `scroll` | the page on a panel, without motion vectors | content with wrong motion vectors |
 
 mod cast;
 mod courtyard;
@@ -30,25 +29,25 @@ use cast::{Caster, Geometry, Pattern};
 use scene::{Scene, Stage};
 use texture::Material;
 
-/// Width and height in pixels where nothing else is asked for.
+/// Default width and height in pixels.
 pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
-/// Horizontal field of view in degrees where nothing else is asked for.
+/// Default horizontal field of view in degrees.
 pub const DEFAULT_HFOV_DEG: f32 = 70.0;
-/// Frames per second where nothing else is asked for.
+/// Default frames per second.
 pub const DEFAULT_FPS: f32 = 60.0;
 /// Largest width and height in pixels.
 pub const MAX_SIDE: u32 = 16_384;
 /// Factor on all light while `light-step` is dark.
 pub const LIGHT_STEP: f32 = 0.45;
-/// From when until when `light-step` is dark, in seconds: frames 30 to 74 at 60 frames per second.
+/// Begin and end of the dark interval of `light-step` in seconds: frames 30 to 74 at 60 frames per second.
 pub const LIGHT_STEP_SECONDS: [f64; 2] = [0.5, 1.25];
-/// Pixels by which the page of `scroll` moves up each frame, at the default size and field of view.
+/// Upward motion of the page of `scroll` in pixels per frame, at the default size and field of view.
 pub const SCROLL_PX: f64 = 2.0;
 
-/// Color samples of a pixel: many where the picture is kept, few where each frame is cast anew.
+/// Color samples per pixel: many where frame 0 is cached, few where each frame is cast again.
 const SAMPLES_KEPT: u32 = 16;
 const SAMPLES_MOVING: u32 = 4;
-/// Metres after which the page of `scroll` starts again, so that a late frame is as exact as an early one.
+/// Period of the page of `scroll` in metres: bounds the coordinates, so that late frames are as exact as early ones.
 const SCROLL_PERIOD: f64 = 1024.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,13 +69,13 @@ const KINDS: [(&str, Kind); 6] = [
     ("scroll", Kind::Scroll),
 ];
 
-/// A scene with exact color, depth and motion, without an end.
+/// An endless scene with exact color, depth and motion.
 ///
 /// Each frame is a function of its index alone: the same bytes in any order of calls, on any number of threads. Depth and
-/// motion are those at the pixels' centres, color is the mean over the pixel's area.
+/// motion are those at pixel centres; color is the mean over the pixel's area.
 ///
-/// `previous_from_current` is always given (the identity where the camera stands still), and so are depth and motion. Frame 0
-/// is a cut, with the vectors it would have if there were a frame before.
+/// Depth, motion and `previous_from_current` (the identity for a static camera) are always present. Frame 0 is a cut; its motion
+/// vectors refer to the scene one frame earlier.
 pub struct AnalyticSource {
     info: SourceInfo,
     kind: Kind,
@@ -84,43 +83,43 @@ pub struct AnalyticSource {
     view: ViewGeometry,
     pattern: Pattern,
     fps: f64,
-    /// Frame 0, where later frames are made from it.
+    /// Cached frame 0, for scenes whose later frames derive from it.
     base: Option<SourceFrame>,
 }
 
 impl AnalyticSource {
-    /// The scene `name` (see [`AnalyticSource::names`]) in frames of `size` pixels, seen under the horizontal field of view
-    /// `hfov_deg` in degrees, at `fps` frames per second.
+    /// The scene `name` (see [`AnalyticSource::names`]) in frames of `size` pixels, with a horizontal field of view of `hfov_deg`
+    /// degrees, at `fps` frames per second.
     ///
     /// # Errors
-    /// If there is no such scene, a side is 0 or above [`MAX_SIDE`], the field of view is not in (0, 180) degrees, or the
-    /// frame rate is not above 0 and finite.
+    /// [`Request`](InputError::Request) if there is no such scene, a side is 0 or above [`MAX_SIDE`], the field of view is not in
+    /// (0, 180) degrees, or the frame rate is not above 0 and finite.
     pub fn new(name: &str, size: [u32; 2], hfov_deg: f32, fps: f32) -> Result<Self, InputError> {
         let subject = format!("analytic:{name}");
         let Some(&(_, kind)) = KINDS.iter().find(|(known, _)| *known == name) else {
             let names: Vec<_> = Self::names().collect();
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
-                "there is no analytic scene of this name",
+                "there is no such analytic scene",
                 format!("expected one of {}", names.join(", ")),
             ));
         };
         if size.iter().any(|&s| s == 0 || s > MAX_SIDE) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
                 format!("the size is {}x{}", size[0], size[1]),
                 format!("expected 1 to {MAX_SIDE} pixels a side"),
             ));
         }
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::new(
+            return Err(InputError::request(
                 &subject,
                 format!("the frame rate is {fps}"),
                 "expected frames per second above 0",
             ));
         }
         let view = ViewGeometry::flat(size, hfov_deg).map_err(|error| {
-            InputError::new(
+            InputError::request(
                 &subject,
                 format!("{} is {}", error.setting, error.found),
                 format!("expected {}", error.expected),
@@ -151,18 +150,18 @@ impl AnalyticSource {
         })
     }
 
-    /// The names [`AnalyticSource::new`] knows.
+    /// Names of the scenes.
     pub fn names() -> impl Iterator<Item = &'static str> {
         KINDS.iter().map(|&(name, _)| name)
     }
 
-    /// The view all frames are seen through.
+    /// View of all frames.
     pub fn view(&self) -> &ViewGeometry {
         &self.view
     }
 
-    /// Pixels of frame `index` that the panel without motion vectors covers, wholly or in part: all that changes in `scroll`.
-    /// `None` for scenes without one.
+    /// Mask of the panel without motion vectors in frame `index`: pixels that it covers fully or partly. In `scroll`, only these
+    /// change. `None` for scenes without such a panel.
     pub fn panel_mask(&self, index: u64) -> Option<Image<bool>> {
         let stage = self.stage(index);
         let panel = stage.panel?;
@@ -207,8 +206,8 @@ impl AnalyticSource {
         }
     }
 
-    /// Frame 0 again, for scenes that keep it.
-    fn kept(&mut self) -> SourceFrame {
+    /// Frame 0 from the cache.
+    fn cached(&mut self) -> SourceFrame {
         if let Some(base) = &self.base {
             return base.clone();
         }
@@ -216,9 +215,9 @@ impl AnalyticSource {
         self.base.insert(base).clone()
     }
 
-    /// The kept picture with the panel's pixels cast anew.
+    /// Frame 0 with the panel's pixels cast again.
     fn scrolled(&mut self, index: u64) -> SourceFrame {
-        let mut frame = self.kept();
+        let mut frame = self.cached();
         let stage = self.stage(index);
         let Some(panel) = stage.panel else {
             return frame;
@@ -248,10 +247,10 @@ impl FrameSource for AnalyticSource {
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let mut frame = match self.kind {
             Kind::Lateral | Kind::Turn | Kind::Occluder => self.cast(index),
-            Kind::Still => self.kept(),
+            Kind::Still => self.cached(),
             Kind::Scroll => self.scrolled(index),
             Kind::LightStep => {
-                let mut frame = self.kept();
+                let mut frame = self.cached();
                 let [from, until] = LIGHT_STEP_SECONDS;
                 if (from..until).contains(&(index as f64 / self.fps)) {
                     for pixel in frame.color.pixels_mut() {

@@ -1,7 +1,7 @@
 //! Building blocks of the textures: integer hashes, value noise, and step functions averaged over a sample's footprint.
 //!
-//! Everything takes the footprint `w`, the width in texture units that one color sample covers, and returns the mean over
-//! it. A picture that is filtered here does not shimmer where the texture is finer than the pixels.
+//! Functions take the footprint `w`, the width in texture units that one color sample covers, and return the mean over it. Such
+//! prefiltered textures do not alias where they are finer than the pixels.
 
 use glam::{Vec2, Vec3};
 
@@ -25,7 +25,7 @@ pub(super) fn unit(x: i32, y: i32, seed: u32) -> f32 {
     (hash(x, y, seed) >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// The integer below `x` and what remains. Without a call into the C library, which baseline x86 needs for a floor.
+/// Integer and fractional part of `x`, rounded down. Not `f32::floor`: on baseline x86 it calls the C library.
 #[inline]
 pub(super) fn split(x: f32) -> (i32, f32) {
     let truncated = x as i32;
@@ -33,7 +33,7 @@ pub(super) fn split(x: f32) -> (i32, f32) {
     (whole, x - whole as f32)
 }
 
-/// The integers below both coordinates.
+/// Both coordinates rounded down.
 #[inline]
 pub(super) fn floor2(p: Vec2) -> Vec2 {
     Vec2::new(split(p.x).0 as f32, split(p.y).0 as f32)
@@ -51,8 +51,8 @@ pub(super) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Values in [0, 1) at the four lattice points around a cell, top row first. Neighbours share most of their arithmetic, and
-/// one round less than [`hash`] is enough where the values are interpolated.
+/// Hash values in [0, 1) at the four lattice points around a cell, top row first. The four hashes share most of their arithmetic,
+/// and one round less than in [`hash`] is enough for interpolated values.
 #[inline]
 fn corners(x: i32, y: i32, seed: u32) -> [f32; 4] {
     const X: u32 = 0x9e37_79b1;
@@ -65,7 +65,7 @@ fn corners(x: i32, y: i32, seed: u32) -> [f32; 4] {
         let mut h = base.wrapping_add(step);
         h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
         h ^= h >> 13;
-        // A signed conversion: the only one baseline x86 has.
+        // A signed conversion: baseline x86 has no other.
         (h >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
     })
 }
@@ -93,7 +93,7 @@ pub(super) fn noise3(p: Vec3, seed: u32) -> f32 {
     lerp(plane(z), plane(z + 1), s.z)
 }
 
-/// How much of a feature of period 1 survives a footprint of `w`: 1 below a third, 0 from one on.
+/// Remaining contrast of a feature of period 1 under a footprint `w`: 1 below 0.35, 0 from 1 on.
 #[inline]
 pub(super) fn surviving(w: f32) -> f32 {
     1.0 - smoothstep(0.35, 1.0, w)
@@ -114,7 +114,7 @@ pub(super) fn fbm(p: Vec2, w: f32, octaves: u32, seed: u32) -> f32 {
     sum
 }
 
-/// As [`fbm`] in three dimensions.
+/// Sum of `octaves` three-dimensional noises, like [`fbm`].
 pub(super) fn fbm3(p: Vec3, w: f32, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
     for octave in 0..octaves {
@@ -129,7 +129,8 @@ pub(super) fn fbm3(p: Vec3, w: f32, octaves: u32, seed: u32) -> f32 {
     sum
 }
 
-/// Share of [x - w/2, x + w/2] covered by the pulses [n, n + duty] for all integers n. Exact for any `w`.
+/// Pulse train averaged over a footprint: share of [x - w/2, x + w/2] covered by [n, n + duty] over all integers n. Exact for any
+/// `w`.
 #[inline]
 pub(super) fn pulse(x: f32, duty: f32, w: f32) -> f32 {
     let w = w.max(1e-4);
@@ -140,7 +141,7 @@ pub(super) fn pulse(x: f32, duty: f32, w: f32) -> f32 {
     ((integral(x + 0.5 * w) - integral(x - 0.5 * w)) / w).clamp(0.0, 1.0)
 }
 
-/// Share of the footprint on the inner side of an edge `d` away; `d` is negative inside.
+/// Antialiased step: share of the footprint inside an edge at signed distance `d`, negative inside.
 #[inline]
 pub(super) fn inside(d: f32, w: f32) -> f32 {
     (0.5 - d / w.max(1e-5)).clamp(0.0, 1.0)

@@ -1,4 +1,4 @@
-//! Printed matter: the notice board, the scrolling page and the framed prints on the wall.
+//! Printed textures: the notice board, the scrolling page and the framed prints on the wall.
 
 use super::glyph;
 use super::noise::{fbm, floor2, inside, pulse, split, surviving, unit};
@@ -8,12 +8,12 @@ use glam::Vec3;
 const PAPER: Vec3 = Vec3::new(0.80, 0.77, 0.68);
 const INK: Vec3 = Vec3::new(0.035, 0.035, 0.045);
 
-/// Depth of `p` within the box of `half` size around the origin; negative outside.
+/// Distance from `p` to the border of a rectangle of `half` size around the origin; negative outside.
 fn depth_in(p: Vec2, half: Vec2) -> f32 {
     (half - p.abs()).min_element()
 }
 
-/// A board with a wooden rim, the headline and running text; `half` is half its size in metres.
+/// Notice board with a wooden rim, a headline and running text; `half` is half its size in metres.
 pub(super) fn notice(uv: Vec2, w: Vec2, half: Vec2) -> Vec3 {
     const RIM: f32 = 0.035;
     /// Size of a headline dot and of a text dot in metres.
@@ -38,11 +38,11 @@ pub(super) fn notice(uv: Vec2, w: Vec2, half: Vec2) -> Vec3 {
     PAPER.lerp(INK, ink.min(1.0)).lerp(wood, rim) * fibres
 }
 
-/// A page of running text that has moved up by `shift` metres behind its rim.
+/// Page of running text behind a rim, scrolled up by `shift` metres.
 pub(super) fn scroll(uv: Vec2, w: Vec2, half: Vec2, shift: f32) -> Vec3 {
     const RIM: f32 = 0.03;
     const DOT: f32 = 0.0085;
-    /// Metres after which the page repeats its stripes of tint: none of them is like the next.
+    /// Height in metres of a stripe; each stripe has a random tint.
     const STRIPE: f32 = 0.34;
     let wide = w.max_element();
     let page = uv + half - Vec2::splat(RIM) + Vec2::new(0.0, shift);
@@ -85,7 +85,7 @@ pub(super) fn gallery(uv: Vec2, w: Vec2) -> Vec3 {
     (cloth * weave).lerp(framed.lerp(INK, 0.8 * line), inside(-depth, wide))
 }
 
-/// The picture in one frame.
+/// One of five pictures, chosen by its cell.
 fn print(q: Vec2, w: Vec2, half: Vec2, (x, y): (i32, i32)) -> Vec3 {
     let wide = w.max_element();
     let seed = 300 + 17 * x.rem_euclid(64) as u32 + y.rem_euclid(64) as u32;
@@ -104,7 +104,7 @@ fn text_sheet(q: Vec2, w: Vec2, half: Vec2, first: i32) -> Vec3 {
     PAPER.lerp(INK, glyph::running_text((q + half) / DOT, w / DOT, columns, first))
 }
 
-/// A test figure of spokes, as fine towards the middle as anything can show.
+/// Siemens star: spokes that become finer than the pixels towards the middle.
 fn star(q: Vec2, wide: f32) -> Vec3 {
     const SPOKES: f32 = 24.0;
     let r = q.length().max(1e-4);
@@ -127,7 +127,7 @@ fn map(q: Vec2, wide: f32, seed: u32) -> Vec3 {
     ground.lerp(INK, 0.8 * lines).lerp(Vec3::new(0.5, 0.1, 0.1), 0.6 * grid.min(1.0))
 }
 
-/// A head in concentric lines whose thickness is the shade, as engravers did.
+/// Engraving of a head: concentric lines whose thickness encodes the shade.
 fn engraving(q: Vec2, wide: f32, seed: u32) -> Vec3 {
     const PITCH: f32 = 0.016;
     let face = Vec2::new(q.x / 0.16, (q.y + 0.05) / 0.21).length();
@@ -141,7 +141,7 @@ fn engraving(q: Vec2, wide: f32, seed: u32) -> Vec3 {
     PAPER.lerp(INK, ink)
 }
 
-/// Ridge behind ridge under a low sun.
+/// Landscape of hill ridges under a low sun.
 fn hills(q: Vec2, wide: f32, half: Vec2, seed: u32) -> Vec3 {
     let mut color =
         Vec3::new(0.80, 0.42, 0.20).lerp(Vec3::new(0.85, 0.74, 0.45), (0.5 + 0.5 * q.y / half.y).clamp(0.0, 1.0));

@@ -1,4 +1,4 @@
-//! A scene as functions of time, and the same scene frozen at the two instants a frame needs.
+//! A scene as functions of time ([`Scene`]), and its state at a frame and the previous one ([`Stage`]).
 
 use super::shape::Shape;
 use super::texture::Material;
@@ -7,19 +7,19 @@ use glam::{Mat3, Vec3};
 /// Direction towards the sun: behind the first camera, to its left and above.
 pub(super) const TO_SUN: Vec3 = Vec3::new(-0.529_808, -0.739_731_9, -0.414_849_64);
 
-/// Where an object is: points of its own frame are turned by `spin` and moved by `offset`, about the shape's centre.
+/// Pose of an object: rotation by `spin` about the shape's centre, then translation by `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub offset: Vec3,
     pub spin: Mat3,
 }
 
-/// A thing in the scene. Without a path it never moves.
+/// An object of the scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Object {
     pub shape: Shape,
     pub material: Material,
-    /// Pose at a time in seconds. Spins are only for spheres: other shapes keep their axes.
+    /// Pose at a time in seconds; `None` for static objects. Only spheres rotate: other shapes keep their axes.
     pub path: Option<fn(f64) -> Pose>,
 }
 
@@ -44,7 +44,7 @@ impl Camera {
     /// Row-major matrix from this view's space to the other camera's.
     pub fn to(&self, other: &Self) -> [[f32; 4]; 4] {
         let (turn, shift) = if self.axes == other.axes {
-            // Not the product, which is the identity only up to rounding.
+            // Exact, where the product is the identity only up to rounding.
             (Mat3::IDENTITY, other.view(self.origin))
         } else {
             (other.axes.transpose() * self.axes, other.view(self.origin))
@@ -55,15 +55,15 @@ impl Camera {
     }
 }
 
-/// Objects and what happens to them.
+/// Objects and camera with their motion.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
     pub objects: Vec<Object>,
     /// The camera at a time in seconds.
     pub camera: fn(f64) -> Camera,
-    /// Index of the floor, which darkens around what stands on it.
+    /// Index of the floor, which has ambient occlusion around the objects on it.
     pub floor: usize,
-    /// Index of the panel whose picture moves without motion vectors.
+    /// Index of the panel whose content moves without motion vectors.
     pub panel: Option<usize>,
 }
 
@@ -72,9 +72,9 @@ pub(super) struct Scene {
 pub(super) struct Placed {
     pub shape: Shape,
     pub material: Material,
-    /// Pose now and in the previous frame; `None` where they are the same for ever.
+    /// Poses now and in the previous frame; `None` for static objects.
     pub poses: Option<[Pose; 2]>,
-    /// Objects that may stand between this one and the sun.
+    /// Objects that may cast a shadow on this one.
     pub casters: Vec<u16>,
 }
 
@@ -89,7 +89,7 @@ pub(super) struct Stage {
 }
 
 impl Scene {
-    /// The scene at `now`, with what moved since `before`, both in seconds.
+    /// State of the scene at the times `now` and `before`, in seconds.
     pub fn stage(&self, now: f64, before: f64) -> Stage {
         let mut objects: Vec<Placed> = self
             .objects
@@ -117,7 +117,7 @@ impl Scene {
     }
 }
 
-/// Whether a ball can throw its shadow on another.
+/// Whether a sphere can cast a shadow on another.
 pub(super) fn may_shade((caster, caster_radius): (Vec3, f32), (receiver, receiver_radius): (Vec3, f32)) -> bool {
     let between = caster - receiver;
     let along = between.dot(TO_SUN);
@@ -126,7 +126,7 @@ pub(super) fn may_shade((caster, caster_radius): (Vec3, f32), (receiver, receive
 }
 
 impl Placed {
-    /// Where the surface point that is at `point` now was in the previous frame.
+    /// Position in the previous frame of the surface point that is at `point` now.
     pub fn previous(&self, centre_now: Vec3, point: Vec3) -> Vec3 {
         let Some([now, before]) = self.poses else {
             return point;

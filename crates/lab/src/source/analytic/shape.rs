@@ -1,9 +1,9 @@
-//! What rays can meet, in world space, and where.
+//! Shapes in world space, and their intersection with rays.
 
 use super::noise::split;
 use glam::{Vec2, Vec3};
 
-/// A ray. Its direction has view z = 1, so the parameter of a hit is its depth along the view axis.
+/// A ray. Its direction has z = 1 in view space, so that the ray parameter of a hit is its depth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub origin: Vec3,
@@ -16,20 +16,20 @@ impl Ray {
     }
 }
 
-/// Geometry. Axes as everywhere: x right, y down, z away from the first camera.
+/// Geometry of an object. x right, y down, z away from the first camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Shape {
-    /// A flat rectangle, seen from both sides. `u` and `v` are orthogonal unit axes.
+    /// A two-sided rectangle. `u` and `v` are orthogonal unit axes.
     Rect { centre: Vec3, u: Vec3, v: Vec3, half: Vec2, cutout: Cutout },
     /// A ball.
     Sphere { centre: Vec3, radius: f32 },
-    /// A round vertical post without caps.
+    /// A vertical cylinder without caps.
     Post { centre: Vec3, radius: f32, half_height: f32 },
     /// A box along the axes.
     Block { centre: Vec3, half: Vec3 },
 }
 
-/// Holes in a rectangle.
+/// Alpha test of a rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cutout {
     /// None.
@@ -43,7 +43,7 @@ pub(super) const PICKET_PERIOD: f32 = 0.16;
 const PICKET_HALF: f32 = 0.05;
 
 impl Cutout {
-    /// Whether there is matter at `uv` metres from the centre of a rectangle of `half` size.
+    /// Whether the rectangle is opaque `uv` metres from its centre; `half` is half its size.
     fn solid(self, uv: Vec2, half: Vec2) -> bool {
         match self {
             Self::Solid => true,
@@ -57,19 +57,19 @@ impl Cutout {
     }
 }
 
-/// Where on the surface a hit lies.
+/// Local geometry at a hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface {
-    /// Unit normal, towards the ray's origin.
+    /// Unit normal on the side of the ray's origin.
     pub normal: Vec3,
     /// Unit tangents along the texture axes.
     pub tangents: [Vec3; 2],
-    /// Metres along them (spheres: not used; posts: arc length and height).
+    /// Texture coordinates in metres along the tangents (posts: arc length and height; spheres: unused).
     pub uv: Vec2,
 }
 
 impl Shape {
-    /// The same shape moved.
+    /// This shape, translated.
     pub fn moved(self, by: Vec3) -> Self {
         let mut moved = self;
         match &mut moved {
@@ -81,7 +81,7 @@ impl Shape {
         moved
     }
 
-    /// Centre and radius of a ball around the shape.
+    /// Centre and radius of a bounding sphere.
     pub fn bound(&self) -> (Vec3, f32) {
         match *self {
             Self::Rect { centre, half, .. } => (centre, half.length()),
@@ -91,7 +91,7 @@ impl Shape {
         }
     }
 
-    /// Corners of a box around the shape (of a rectangle: its own, twice).
+    /// Corners of a bounding box (of a rectangle: its own corners, twice).
     pub fn corners(&self) -> [Vec3; 8] {
         let (centre, axes) = match *self {
             Self::Rect { centre, u, v, half, .. } => (centre, [u * half.x, v * half.y, Vec3::ZERO]),
@@ -107,7 +107,7 @@ impl Shape {
         })
     }
 
-    /// Distance to the first hit in (`near`, `far`), in lengths of the ray's direction.
+    /// Ray parameter of the first hit in (`near`, `far`).
     #[inline]
     pub fn hit(&self, ray: &Ray, near: f32, far: f32) -> Option<f32> {
         let t = match *self {
@@ -154,7 +154,7 @@ impl Shape {
 fn hit_rect(ray: &Ray, [centre, u, v]: [Vec3; 3], half: Vec2, cutout: Cutout, near: f32, far: f32) -> Option<f32> {
     let n = u.cross(v);
     let t = n.dot(centre - ray.origin) / n.dot(ray.direction);
-    // Also refuses the NaN of a ray within the plane.
+    // Also rejects the NaN of a ray within the plane.
     if !(t > near && t < far) {
         return None;
     }
@@ -163,7 +163,7 @@ fn hit_rect(ray: &Ray, [centre, u, v]: [Vec3; 3], half: Vec2, cutout: Cutout, ne
     (uv.abs().cmple(half).all() && cutout.solid(uv, half)).then_some(t)
 }
 
-/// Ray against a ball, from the point of the ray nearest to the centre: keeps its precision far away.
+/// Ray-sphere intersection relative to the ray's point nearest to the centre, which keeps precision far away.
 #[inline]
 fn hit_ball(ray: &Ray, centre: Vec3, radius: f32, near: f32) -> Option<f32> {
     let d = ray.direction;
@@ -198,7 +198,7 @@ fn hit_post(ray: &Ray, centre: Vec3, radius: f32, half_height: f32, near: f32) -
 
 #[inline]
 fn hit_block(ray: &Ray, centre: Vec3, half: Vec3, near: f32) -> Option<f32> {
-    // A zero would give inf - inf for a ray that starts level with the centre.
+    // A zero in the direction would give inf - inf for a ray whose origin is level with the centre.
     let tiny = Vec3::splat(1e-12);
     let inverse = Vec3::select(ray.direction.abs().cmplt(tiny), tiny, ray.direction).recip();
     let middle = (centre - ray.origin) * inverse;

@@ -1,17 +1,17 @@
-//! Materials of floors, walls and balls: albedo as a function of the place on the surface.
+//! Procedural textures: albedo of each material as a function of position on the surface.
 
 use super::noise::{fbm, fbm3, floor2, inside, pulse, smoothstep, split, surviving, unit};
 use super::print;
 use glam::{Vec2, Vec2Swizzles, Vec3};
 
-/// What a surface is made of.
+/// Procedural texture of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Material {
     /// Octagonal stone tiles with small dark squares at their corners.
     Floor,
     /// Bricks in running bond.
     Bricks,
-    /// Painted tiles below, plaster above the height 0 of the texture.
+    /// Plaster above the texture's height 0, painted tiles below.
     Azulejo,
     /// Rough plaster of one color.
     Plaster([f32; 3]),
@@ -21,13 +21,13 @@ pub(super) enum Material {
     Planks([f32; 3]),
     /// Planed wood with its grain along the second texture axis.
     Timber([f32; 3]),
-    /// A notice board with a headline and running text; half its size in metres.
+    /// A notice board with a headline and running text, by half its size in metres.
     Notice([f32; 2]),
     /// Rows of framed prints.
     Gallery,
-    /// A page that moves up by `shift` metres.
+    /// A page scrolled up by `shift` metres.
     Scroll { half: [f32; 2], shift: f32 },
-    /// White pickets, each a little different.
+    /// Painted pickets in three colors.
     Picket,
     /// A post with a painted spiral.
     Spiral,
@@ -43,14 +43,14 @@ pub(super) enum Material {
     Foliage,
 }
 
-/// A place on a surface and the size of the footprint there.
+/// Texture coordinates and footprint of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
-    /// Metres along the texture axes; y down on upright surfaces.
+    /// Texture coordinates in metres; v points down on upright surfaces.
     pub uv: Vec2,
-    /// Width of the footprint along them, in metres.
+    /// Footprint width along u and v, in metres.
     pub w: Vec2,
-    /// Spheres: the unit direction from the centre in the ball's own frame, and its radius in metres.
+    /// Spheres: unit direction from the centre in the sphere's local space, and radius in metres.
     pub ball: (Vec3, f32),
 }
 
@@ -96,7 +96,7 @@ fn floor(uv: Vec2, w: Vec2) -> Vec3 {
     let stone = mean.lerp(if dark_cell { clay } else { cream }, kept) * tone;
     let wear = 0.55 + 0.9 * fbm(uv * 5.0, 5.0 * wide * TILE, 3, 20);
     let speckle = 1.0 + 0.35 * (fbm(uv * 60.0, 60.0 * wide * TILE, 2, 31) - 0.5);
-    // Octagons: the corner squares reach in by 0.2 of a tile, with a joint around everything.
+    // Octagons: the corner squares cut 0.2 of a tile, and a joint surrounds each piece.
     let to_corner = 0.5 * 2.0 - q.x.abs() - q.y.abs();
     let square = inside(to_corner - 0.2, 1.4 * wide) * kept + 0.08 * (1.0 - kept);
     let seam = inside((to_corner - 0.2).abs() - 0.02, 1.4 * wide) * kept;
@@ -142,7 +142,7 @@ fn azulejo_wall(uv: Vec2, w: Vec2) -> Vec3 {
     let kept = surviving(0.35 * wide);
     let r2 = q.length_squared();
     let r = r2.sqrt();
-    // cos of four times the angle, without one.
+    // Cosine of four times the polar angle, without a trigonometric function.
     let (a, b) = (q.x * q.x, q.y * q.y);
     let cos4 = if r2 > 1e-6 { (a * a - 6.0 * a * b + b * b) / (r2 * r2) } else { 1.0 };
     let turn = if (x ^ y) & 1 == 0 { 1.0 } else { -1.0 };
@@ -165,7 +165,7 @@ fn azulejo_wall(uv: Vec2, w: Vec2) -> Vec3 {
     wall.lerp(tiles, frieze).lerp(Vec3::new(0.08, 0.11, 0.25), ledge)
 }
 
-/// Plaster scored like courses of cut stone.
+/// Plaster with joints like courses of cut stone.
 fn ashlar(uv: Vec2, w: Vec2) -> Vec3 {
     const SIZE: Vec2 = Vec2::new(0.62, 0.31);
     let (mut p, w_cell) = (uv / SIZE, w / SIZE);
@@ -177,7 +177,7 @@ fn ashlar(uv: Vec2, w: Vec2) -> Vec3 {
     plaster(uv, w, Vec3::new(0.74, 0.58, 0.36)) * tone * (0.45 + 0.55 * face)
 }
 
-/// A woven hanging: bands of diamonds and zigzags between fringes of stripes.
+/// Woven hanging: bands of diamonds between stripes.
 fn rug(uv: Vec2, w: Vec2) -> Vec3 {
     const BAND: f32 = 0.30;
     let palette = [
@@ -250,7 +250,7 @@ fn spiral(uv: Vec2, w: Vec2) -> Vec3 {
     paint * (0.65 + 0.7 * chips)
 }
 
-/// Longitude and latitude in turns and quarter turns, with their footprints.
+/// Longitude and latitude in turns (latitude -1/4 to 1/4), and their footprints.
 fn lon_lat(spot: &Spot) -> (Vec2, Vec2) {
     let (d, radius) = spot.ball;
     let tau = std::f32::consts::TAU;
@@ -289,7 +289,7 @@ fn beach_ball(spot: &Spot) -> Vec3 {
     let segment = split(p.x * 12.0).0;
     let color = palette[segment.rem_euclid(4) as usize];
     let seam = pulse(p.x * 12.0 + 0.03, 0.06, w.x * 12.0).max(pulse(p.y * 12.0 + 0.06, 0.12, w.y * 12.0));
-    // Rows of dots, as large on the ball everywhere between the tropics.
+    // Rows of dots of about the same size at low latitudes.
     let dots = Vec2::new(p.x * 36.0, p.y * 36.0);
     let q = dots - floor2(dots) - 0.5;
     let dot = inside(q.length() - 0.22, 36.0 * w.max_element()) * surviving(24.0 * w.max_element());

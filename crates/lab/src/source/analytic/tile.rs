@@ -1,4 +1,4 @@
-//! What a small square of pixels has to look at: objects in it, and objects that can shade them.
+//! Culling for small squares of pixels: the objects visible in them, and the shadow casters of those.
 
 use super::light;
 use super::scene::{Camera, Placed, Stage, may_shade};
@@ -6,19 +6,19 @@ use super::shape::{Ray, Shape};
 use afterimage::ViewGeometry;
 use glam::{Vec2, Vec3};
 
-/// Lists for a square of pixels. They only leave out what cannot matter, so they change no pixel.
+/// Object lists of a square of pixels. Culling is conservative: it changes no pixel.
 #[derive(Debug, Default)]
 pub(super) struct Tile {
-    /// Objects that rays of the tile can meet.
+    /// Objects that rays of the tile can hit.
     pub candidates: Vec<u16>,
-    /// For each candidate, by its index: objects that may stand between its part in the tile and the sun.
+    /// For each candidate, by object index: objects that may cast a shadow on its part in the tile.
     pub casters: Vec<Vec<u16>>,
-    /// Objects whose feet darken the floor in the tile.
+    /// Objects with ambient occlusion on the floor in the tile.
     pub standing: Vec<u16>,
 }
 
 impl Tile {
-    /// Makes the lists for the pixels from `from` to before `to`; `corners` are the rays around them, in order.
+    /// Fills the lists for the pixels in [`from`, `to`); `corners` are the rays through the tile's corners, in cyclic order.
     pub fn fill(&mut self, stage: &Stage, outlines: &[Outline], [from, to]: [Vec2; 2], corners: &[Ray; 4]) {
         self.casters.resize(stage.objects.len(), Vec::new());
         self.candidates.clear();
@@ -35,14 +35,15 @@ impl Tile {
                 .extend(object.casters.iter().filter(|&&c| may_shade(stage.objects[c as usize].shape.bound(), part)));
             if index == stage.floor {
                 self.standing.extend(
-                    (0..stage.objects.len() as u16).filter(|&i| light::darkens(&stage.objects[i as usize].shape, part)),
+                    (0..stage.objects.len() as u16)
+                        .filter(|&i| light::occludes_floor(&stage.objects[i as usize].shape, part)),
                 );
             }
         }
     }
 }
 
-/// A ball around the part of an object that the rays within `corners` can meet.
+/// Bounding sphere of the part of an object that rays between `corners` can hit.
 fn visible_part(object: &Placed, corners: &[Ray; 4]) -> (Vec3, f32) {
     let whole = object.shape.bound();
     let Shape::Rect { centre, u, v, .. } = object.shape else {
@@ -52,7 +53,7 @@ fn visible_part(object: &Placed, corners: &[Ray; 4]) -> (Vec3, f32) {
     let distance = |ray: &Ray| n.dot(centre - ray.origin) / n.dot(ray.direction);
     let in_front = |ray: &Ray| (0.0..1e6).contains(&distance(ray));
     if !corners.iter().all(in_front) {
-        // The square reaches over the horizon of the plane.
+        // The tile crosses the horizon of the plane.
         return whole;
     }
     let points = corners.map(|ray| ray.at(distance(&ray)));
@@ -61,7 +62,7 @@ fn visible_part(object: &Placed, corners: &[Ray; 4]) -> (Vec3, f32) {
     if radius < whole.1 { (middle, radius * 1.001 + 1e-3) } else { whole }
 }
 
-/// The rectangle of the picture, in pixels, outside of which an object cannot be seen.
+/// Screen-space bounding rectangle of an object, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outline {
     from: Vec2,
@@ -69,7 +70,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Around the corners of a box around the object, cut off in front of the camera.
+    /// Bounding rectangle of the projected bounding box, clipped at the near plane.
     pub fn of(shape: &Shape, camera: &Camera, view: &ViewGeometry) -> Self {
         const NEAR: f32 = 1e-2;
         let corners = shape.corners().map(|corner| camera.view(corner));
@@ -90,7 +91,7 @@ impl Outline {
 
     fn add(&mut self, point: Vec3, view: &ViewGeometry) {
         if let Some(px) = view.project(point.into()) {
-            // The margin is for rounding: objects end at the outline, never beyond.
+            // A margin for rounding.
             self.from = self.from.min(Vec2::from(px) - 0.01);
             self.to = self.to.max(Vec2::from(px) + 0.01);
         }

@@ -1,33 +1,33 @@
-//! Which channel of an EXR file means what.
+//! Assigns the channels of an EXR file to color, depth and motion.
 
-/// A channel as the file names it.
+/// Name of a channel, split into its parts.
 #[derive(Clone, Debug)]
 pub(super) struct ChannelName {
     /// Index of the part.
     pub part: usize,
-    /// Position in the part's list of channels.
+    /// Index in the part's channel list.
     pub index: usize,
-    /// As listed to the user: with the part's name in front, unless the channel carries it already.
-    pub shown: String,
-    /// Lower-case pieces of the name before the last, those of the part's name included.
+    /// Full name for messages: prefixed with the part's name, unless the channel's name starts with it.
+    pub full_name: String,
+    /// Components of the full name except the last, in lower case.
     layer: Vec<String>,
-    /// Lower-case last piece.
+    /// Last component, in lower case.
     leaf: String,
-    /// The channel's own name has no layer in front.
+    /// Whether the channel's own name has no layer prefix.
     plain: bool,
 }
 
 impl ChannelName {
     pub fn new(part: usize, part_name: Option<&str>, index: usize, name: &str) -> Self {
-        let shown = match part_name {
+        let full_name = match part_name {
             Some(p) if !p.is_empty() && !name.starts_with(&format!("{p}.")) => {
                 format!("{p}.{name}")
             }
             _ => name.to_owned(),
         };
-        let mut layer: Vec<String> = shown.to_lowercase().split('.').map(str::to_owned).collect();
+        let mut layer: Vec<String> = full_name.to_lowercase().split('.').map(str::to_owned).collect();
         let leaf = layer.pop().unwrap_or_default();
-        Self { part, index, shown, layer, leaf, plain: !name.contains('.') }
+        Self { part, index, full_name, layer, leaf, plain: !name.contains('.') }
     }
 
     fn in_layer(&self, last: &str) -> bool {
@@ -35,10 +35,10 @@ impl ChannelName {
     }
 }
 
-/// Part and channel index.
+/// Part index and channel index.
 pub(super) type ChannelId = (usize, usize);
 
-/// Sign conventions of the vectors in a file.
+/// Naming and sign convention of the vectors in a file (table in [`super`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VectorForm {
     /// `Vector.X/Y/Z/W`.
@@ -55,17 +55,17 @@ pub(super) struct MotionChannels {
     pub to_next: Option<[ChannelId; 2]>,
 }
 
-/// The channels that are used.
+/// Channels assigned to each image.
 #[derive(Clone, Debug)]
 pub(super) struct Roles {
-    /// Red, green, blue; three times the same for grey.
+    /// Red, green, blue; three times the same channel for grey.
     pub color: [ChannelId; 3],
     pub depth: Option<ChannelId>,
     pub motion: Option<MotionChannels>,
 }
 
 impl Roles {
-    /// `None` if there is no color.
+    /// Assigns channels; `None` if there is no color.
     pub fn find(channels: &[ChannelName]) -> Option<Self> {
         Some(Self {
             color: find_color(channels)?,
@@ -89,7 +89,7 @@ fn find_color(channels: &[ChannelName]) -> Option<[ChannelId; 3]> {
     let complete = channels.iter().filter(|c| c.leaf == "r").filter_map(|r| {
         let g = sibling(channels, r, "g")?;
         let b = sibling(channels, r, "b")?;
-        // A renderer's noisy image is not what anybody wants to look at while there is another.
+        // A renderer's noisy image is the last choice.
         let noisy = r.layer.iter().any(|l| l.contains("noisy") || l.contains("denois"));
         let rank = (!r.in_layer("combined"), !r.plain, noisy, r.layer.len());
         Some((rank, [id(r), g, b]))
@@ -102,7 +102,7 @@ fn find_color(channels: &[ChannelName]) -> Option<[ChannelId; 3]> {
 
 fn find_depth(channels: &[ChannelName]) -> Option<ChannelId> {
     let named = |c: &&ChannelName| c.in_layer("depth") && (c.leaf == "z" || c.leaf == "v");
-    // A part that holds vectors or normals has a plain Z too, beside its X.
+    // A part with vectors or normals has a plain Z too, together with X.
     let plain =
         |c: &&ChannelName| c.plain && (c.leaf == "depth" || c.leaf == "z" && sibling(channels, c, "x").is_none());
     let found = channels.iter().find(named).or_else(|| channels.iter().find(plain));

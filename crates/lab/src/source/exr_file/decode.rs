@@ -1,4 +1,4 @@
-//! From the chunks of a checked EXR file to a frame.
+//! Decodes the chunks of a checked EXR file into a frame.
 
 use super::channels::{ChannelId, VectorForm};
 use super::header::{ExrHeader, Vectors, chunk_header_bytes, full_resolution_chunks};
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Decoded bytes that may wait at a time. More keeps more cores busy, and takes as much memory.
+/// Decoded bytes per batch of chunks. More occupies more cores and takes as much more memory.
 const BATCH_BYTES: usize = 64 << 20;
 
 /// A decoded EXR frame.
@@ -25,20 +25,21 @@ const BATCH_BYTES: usize = 64 << 20;
 pub struct ExrFrame {
     /// Linear color; pixels with a NaN or an infinity are black.
     pub color: Image<[f32; 3]>,
-    /// Distance along the view axis; NaN where the file has NaN, zero or less.
+    /// Depth along the view axis; NaN where the file has NaN, zero or less.
     pub depth: Option<Image<f32>>,
-    /// Pixels, y down: where a point is in the other frame, minus where it is in this one. NaN stays.
+    /// Motion vectors in pixels, y down: position of a point in the other frame minus that in this one. NaN is kept.
     pub motion: Option<Image<[f32; 2]>>,
-    /// Color pixels that were NaN or infinite.
+    /// Number of color pixels with a NaN or an infinity.
     pub nonfinite: u64,
 }
 
 impl ExrHeader {
-    /// Decodes the frame with the vectors asked for. Memory: the frame, its compressed chunks a batch at a time, and the
-    /// decoded batch.
+    /// Decodes the frame with the selected vectors. Memory: the frame, and one batch of chunks, compressed and decoded.
     ///
     /// # Errors
-    /// If the file does not have these vectors, has changed, or its compressed data are damaged.
+    /// [`Invalid`](InputError::Invalid) if the file lacks these vectors, has changed, or its compressed data is damaged;
+    /// [`NotSupported`](InputError::NotSupported) for compression that the `exr` crate cannot decode; [`Io`](InputError::Io) if it
+    /// cannot be read.
     pub fn read(&self, vectors: Vectors) -> Result<ExrFrame, InputError> {
         guarded(&self.subject, || self.read_unguarded(vectors))
     }
@@ -49,7 +50,7 @@ impl ExrHeader {
         for part in planes.parts() {
             self.read_part(&mut file, part, &mut planes)?;
         }
-        planes.finish(self.size).map_err(|e| InputError::new(&self.subject, e.to_string(), "export it again"))
+        planes.finish(self.size).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
     }
 
     fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
@@ -76,7 +77,7 @@ impl ExrHeader {
         Ok(())
     }
 
-    /// Reads chunk `index` of a part, which must say that it is the block `tile`: so every pixel is written once.
+    /// Reads chunk `index` of a part. Its header must name the block `tile`, so that every pixel is written exactly once.
     fn read_chunk(&self, file: &mut File, part: usize, index: usize, tile: Vec2<usize>) -> Result<Chunk, InputError> {
         let io = |e: std::io::Error| io_error(&self.subject, &e);
         let header = &self.meta.headers[part];
@@ -102,7 +103,7 @@ impl ExrHeader {
         }
         let compressed_block = match header.blocks {
             BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {
-                // Counted from the window's corner, as the header in memory says.
+                // Relative to the corner of the data window, as in the header in memory.
                 y_coordinate: (tile.1 * header.compression.scan_lines_per_block()) as i32,
                 compressed_pixels_le: data,
             }),
@@ -114,7 +115,7 @@ impl ExrHeader {
         Ok(Chunk { layer_index: part, compressed_block })
     }
 
-    /// What precedes the size in the head of a chunk.
+    /// Fields before the size in a chunk's header: part number (multi-part files only) and block coordinates.
     fn chunk_place(&self, part: usize, tile: Vec2<usize>) -> Vec<i32> {
         let header = &self.meta.headers[part];
         let mut place = Vec::with_capacity(5);
@@ -132,7 +133,7 @@ impl ExrHeader {
     }
 
     fn damaged(&self, index: usize) -> InputError {
-        InputError::new(
+        InputError::invalid(
             &self.subject,
             format!("is truncated or damaged: chunk {} is not what the table of chunks says", index + 1),
             "copy or export it again",
@@ -140,8 +141,8 @@ impl ExrHeader {
     }
 }
 
-/// Whether a DWA chunk promises no more than its block can hold. The `exr` crate sets aside what the counters at its start
-/// ask for, whatever that is, and a failed allocation ends the process.
+/// Whether the counters of a DWA chunk are within the size of its block. The `exr` crate allocates what the counters ask for
+/// without a check, and a failed allocation aborts the process.
 fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> bool {
     if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
         return true;
@@ -151,17 +152,17 @@ fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> boo
     let h = block.1.min(header.layer_size.1 - tile.1 * block.1);
     let pixel_bytes = header.channels.bytes_per_pixel;
     if data.len() == w * h * pixel_bytes {
-        // Stored as it is, because compression did not make it smaller.
+        // Stored uncompressed, because compression did not make it smaller.
         return true;
     }
-    // Coefficients come in blocks of 8x8; run lengths can double what they hold.
+    // Coefficients come in blocks of 8x8; run-length encoding can double their size.
     let most = (2 * w.next_multiple_of(8) * h.next_multiple_of(8) * pixel_bytes) as u64;
     // The first counter is the version.
     let mut counters = data.chunks_exact(8).skip(1).take(9);
     counters.all(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()) <= most)
 }
 
-/// Where a channel's samples go.
+/// Destination of a channel's samples: an image, a component, and for motion a sign.
 #[derive(Clone, Copy)]
 enum Slot {
     Color(usize),
@@ -169,7 +170,7 @@ enum Slot {
     Motion(usize, f32),
 }
 
-/// The frame while it is filled.
+/// Images of a frame under construction.
 struct Planes {
     slots: Vec<(ChannelId, Slot)>,
     color: Vec<[f32; 3]>,
@@ -188,7 +189,7 @@ impl Planes {
             let (ids, signs) = match (vectors, motion.form) {
                 (Vectors::ToNext, form) => {
                     let ids = motion.to_next.ok_or_else(missing)?;
-                    // Blender's are current minus next with y up; next minus current with y down negates x alone.
+                    // Blender stores current minus next with y up: next minus current with y down negates x alone.
                     let signs = if form == VectorForm::Blender { [-1.0, 1.0] } else { [1.0, 1.0] };
                     (ids, signs)
                 }
@@ -206,7 +207,7 @@ impl Planes {
         })
     }
 
-    /// Parts with a wanted channel.
+    /// Parts with a channel in `slots`.
     fn parts(&self) -> Vec<usize> {
         let mut parts: Vec<usize> = self.slots.iter().map(|(id, _)| id.0).collect();
         parts.sort_unstable();
@@ -214,15 +215,15 @@ impl Planes {
         parts
     }
 
-    /// Copies the wanted channels of a decoded block. In it, each row holds the samples of one channel after another.
+    /// Copies the channels in `slots` out of a decoded block. Each row of a block stores the samples channel by channel.
     fn scatter(&mut self, part: usize, block: &UncompressedBlock, channels: &ChannelList, width: usize) {
         let Vec2(x0, y0) = block.index.pixel_position;
         let Vec2(w, h) = block.index.pixel_size;
         let mut first = 0;
         for (index, channel) in channels.list.iter().enumerate() {
             let bytes = w * channel.sample_type.bytes_per_sample();
-            let wanted = self.slots.iter().filter(|(id, _)| *id == (part, index));
-            for slot in wanted.map(|(_, slot)| *slot).collect::<Vec<_>>() {
+            let used = self.slots.iter().filter(|(id, _)| *id == (part, index));
+            for slot in used.map(|(_, slot)| *slot).collect::<Vec<_>>() {
                 for y in 0..h {
                     let at = y * w * channels.bytes_per_pixel + first;
                     let samples = &block.data[at..at + bytes];
@@ -270,7 +271,7 @@ impl Planes {
     }
 }
 
-/// Sets pixels with a NaN or an infinity to black and counts them.
+/// Sets pixels with a NaN or an infinity to black, and returns their number.
 fn blacken_nonfinite(color: &mut [[f32; 3]]) -> u64 {
     let mut count = 0;
     for pixel in color {
@@ -311,5 +312,5 @@ fn missing_vectors(header: &ExrHeader, vectors: Vectors) -> InputError {
         ),
         _ => ("to the previous frame", "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still"),
     };
-    InputError::new(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
+    InputError::invalid(&header.subject, format!("has no motion vectors {which}"), format!("expected {needed}"))
 }

@@ -1,10 +1,10 @@
-//! The header of an EXR file, and the checks that need no pixel: sizes, channels, and whether the file is all there.
+//! The header of an EXR file, and the checks that need no pixel: size, channels, and completeness of the file.
 
 use super::channels::{ChannelName, Roles};
 use super::{exr_error, guarded};
 use crate::error::InputError;
 use crate::error::io_error;
-use crate::source::limits::ReadLimits;
+use crate::source::limits::{BLOCK_BYTES_PER_PIXEL, ReadLimits};
 use exr::math::Vec2;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -12,18 +12,18 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// Which motion vectors to read.
+/// Selects the motion vectors to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
     /// None.
     Skip,
-    /// Where each point was in the frame with the lower number, minus where it is.
+    /// Position of each point in the frame with the lower number, minus its position in this one.
     ToPrevious,
-    /// Where each point will be in the frame with the higher number, minus where it is.
+    /// Position of each point in the frame with the higher number, minus its position in this one.
     ToNext,
 }
 
-/// A checked EXR header: the frame can be decoded unless its compressed data are damaged.
+/// A checked EXR header: the frame can be decoded unless its compressed data is damaged.
 #[derive(Debug)]
 pub struct ExrHeader {
     pub(super) path: PathBuf,
@@ -31,19 +31,22 @@ pub struct ExrHeader {
     pub(super) size: [u32; 2],
     pub(super) meta: MetaData,
     pub(super) roles: Roles,
-    /// Positions of the full-resolution chunks of each part, row by row.
+    /// File offsets of the full-resolution chunks of each part, row by row.
     pub(super) chunk_offsets: Vec<Vec<u64>>,
-    /// Number of each part's first scan line in the file.
+    /// y coordinate of each part's first scan line in the file.
     pub(super) first_lines: Vec<i32>,
     pub(super) file_bytes: u64,
     channel_names: Vec<String>,
 }
 
 impl ExrHeader {
-    /// Reads and checks the header of `path`. Memory stays in proportion to the header, whatever it claims.
+    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, whatever sizes it claims.
     ///
     /// # Errors
-    /// If the file is missing, not EXR, truncated, larger than the limits, cropped, subsampled, or without color.
+    /// - [`Io`](InputError::Io): the file is missing or cannot be read.
+    /// - [`Invalid`](InputError::Invalid): it is not EXR, truncated, or without color.
+    /// - [`NotSupported`](InputError::NotSupported): it is cropped or overscanned, subsampled, deep, or has parts of different sizes.
+    /// - [`Limit`](InputError::Limit): the image, or one block of it, is larger than `limits` allows.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         guarded(&subject, || Self::open_unguarded(path, &subject, limits))
@@ -54,7 +57,7 @@ impl ExrHeader {
         let file = File::open(path).map_err(io)?;
         let file_bytes = file.metadata().map_err(io)?.len();
         if file_bytes == 0 {
-            return Err(InputError::new(subject, "is empty", "copy or export it again"));
+            return Err(InputError::invalid(subject, "is empty", "copy or export it again"));
         }
         let mut reader = Counting::new(BufReader::new(file));
         let invalid = |e| exr_error(subject, e);
@@ -62,15 +65,15 @@ impl ExrHeader {
         let header_end = reader.position;
 
         let names = channel_names(&meta);
-        let shown: Vec<String> = names.iter().map(|n| n.shown.clone()).collect();
-        let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &shown))?;
+        let full_names: Vec<String> = names.iter().map(|n| n.full_name.clone()).collect();
+        let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &full_names))?;
         let size = checked_size(subject, &meta, &roles, limits)?;
         MetaData::validate(&meta.headers, false).map_err(invalid)?;
         let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
         let windows = meta.headers.iter();
         let first_lines = windows.map(|h| h.own_attributes.layer_position.1).collect();
         for header in &mut meta.headers {
-            // Blocks are then counted from the window's corner, wherever that lies.
+            // Block coordinates are then relative to the corner of the data window.
             header.own_attributes.layer_position = Vec2(0, 0);
         }
         Ok(Self {
@@ -82,7 +85,7 @@ impl ExrHeader {
             meta,
             roles,
             file_bytes,
-            channel_names: shown,
+            channel_names: full_names,
         })
     }
 
@@ -101,7 +104,7 @@ impl ExrHeader {
         self.roles.depth.is_some()
     }
 
-    /// Whether there are these vectors.
+    /// Whether the file has these vectors.
     pub fn has(&self, vectors: Vectors) -> bool {
         let motion = self.roles.motion.as_ref();
         match vectors {
@@ -115,7 +118,7 @@ impl ExrHeader {
 fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
     let mut names = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
-        // A single part's name is decoration: some writers put the file's name there.
+        // The name of a single part carries no meaning: some writers put the file's name there.
         let several = meta.headers.len() > 1;
         let part_name = header.own_attributes.layer_name.as_ref();
         let part_name = part_name.filter(|_| several).map(|n| n.to_string());
@@ -127,20 +130,20 @@ fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
     names
 }
 
-fn missing_color(subject: &str, shown: &[String]) -> InputError {
+fn missing_color(subject: &str, names: &[String]) -> InputError {
     const LISTED: usize = 40;
-    let mut list = shown.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-    if shown.len() > LISTED {
-        list += &format!(" and {} more", shown.len() - LISTED);
+    let mut list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > LISTED {
+        list += &format!(" and {} more", names.len() - LISTED);
     }
-    InputError::new(
+    InputError::invalid(
         subject,
         format!("has no color channels; it has {}", crate::error::one_line(&list)),
         "expected <layer>.Combined.R/G/B, R/G/B, <layer>.R/G/B or Y",
     )
 }
 
-/// The size that all used parts share, after every check of what the header claims.
+/// Checks every part in use, and returns their common size.
 fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimits) -> Result<[u32; 2], InputError> {
     let mut size = None;
     for part in used_parts(roles) {
@@ -150,7 +153,7 @@ fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimi
         check_window(subject, header)?;
         check_blocks(subject, header, limits)?;
         if *size.get_or_insert(this) != this {
-            return Err(InputError::new(
+            return Err(InputError::not_supported(
                 subject,
                 "has parts of different sizes",
                 "expected color, depth and motion of one size; export them again",
@@ -160,7 +163,7 @@ fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimi
     size.ok_or_else(|| missing_color(subject, &[]))
 }
 
-/// Parts that hold a used channel, in file order.
+/// Parts with an assigned channel, in file order.
 pub(super) fn used_parts(roles: &Roles) -> Vec<usize> {
     let mut parts: Vec<usize> = roles.color.iter().chain(&roles.depth).map(|c| c.0).collect();
     parts.extend(roles.motion.iter().map(|m| m.to_previous[0].0));
@@ -178,17 +181,17 @@ fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
     let text = |b: exr::meta::attribute::IntegerBounds| {
         format!("{}x{} at ({}, {})", b.size.0, b.size.1, b.position.0, b.position.1)
     };
-    Err(InputError::new(
+    Err(InputError::not_supported(
         subject,
         format!("its data window is {} but its display window is {}", text(data), text(display)),
         "expected the whole frame; export it without crop or overscan",
     ))
 }
 
-/// Refuses subsampled channels, and blocks whose decoding would take far more memory than the frame.
+/// Refuses subsampled channels, and blocks that decode to far more memory than the frame.
 fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(), InputError> {
     if let Some(c) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
-        return Err(InputError::new(
+        return Err(InputError::not_supported(
             subject,
             crate::error::one_line(&format!("its channel {} is subsampled", c.name)),
             "expected a sample for every pixel; export it as RGB instead of luminance and chroma",
@@ -198,21 +201,22 @@ fn check_blocks(subject: &str, header: &Header, limits: &ReadLimits) -> Result<(
     let pixels = block.0.min(header.layer_size.0) as u64 * block.1.min(header.layer_size.1) as u64;
     let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
     if bytes > limits.max_block_bytes() {
-        return Err(InputError::new(
+        return Err(InputError::limit(
+            limits.exceeded(Some(bytes.div_ceil(BLOCK_BYTES_PER_PIXEL))),
             subject,
             format!(
-                "a block of it decodes to {} MB, above the limit of {} MB that follows from {} million pixels",
+                "one of its blocks decodes to {} MB, above the limit of {} MB that follows from {} million pixels",
                 bytes / 1_000_000,
                 limits.max_block_bytes() / 1_000_000,
                 limits.max_pixels as f64 / 1e6
             ),
-            "write it with smaller tiles or fewer channels, or raise the limit with --max-megapixels N",
+            "write it with smaller tiles or fewer channels, or raise the limit",
         ));
     }
     Ok(())
 }
 
-/// Reads the tables of chunk positions and checks that every chunk lies in the file, the last one with its data.
+/// Reads the chunk offset tables, and checks that every chunk header and the last chunk's data lie in the file.
 fn read_tables(
     reader: &mut Counting<BufReader<File>>,
     subject: &str,
@@ -254,7 +258,7 @@ fn read_tables(
     Ok(tables)
 }
 
-/// Checks that the chunk whose data begin at `data_at`, after their size, does not run past the end of the file.
+/// Checks that a chunk ends within the file. Its data starts at `data_at`, right after its size.
 fn check_chunk_is_whole(
     reader: &mut Counting<BufReader<File>>,
     subject: &str,
@@ -274,10 +278,10 @@ fn check_chunk_is_whole(
 }
 
 fn truncated(subject: &str, what: &str) -> InputError {
-    InputError::new(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
+    InputError::invalid(subject, format!("is truncated or damaged: {what}"), "copy or export it again")
 }
 
-/// Bytes before a chunk's data: the part's number in a file of several, the position, the size.
+/// Bytes before a chunk's data: the part number (multi-part files only), the coordinates, the size.
 pub(super) fn chunk_header_bytes(meta: &MetaData, part: usize) -> u64 {
     let part_number = if meta.requirements.is_multilayer() { 4 } else { 0 };
     let position = match meta.headers[part].blocks {
@@ -287,13 +291,13 @@ pub(super) fn chunk_header_bytes(meta: &MetaData, part: usize) -> u64 {
     part_number + position + 4
 }
 
-/// Columns and rows of blocks at full resolution. They come first in the table.
+/// Columns and rows of blocks at full resolution. They are the first entries of the offset table.
 pub(super) fn full_resolution_chunks(header: &Header) -> (usize, usize) {
     let block = header.max_block_pixel_size();
     (header.layer_size.0.div_ceil(block.0), header.layer_size.1.div_ceil(block.1))
 }
 
-/// Counts what is read, because the `exr` crate does not say where its header ended.
+/// A reader that tracks its position, because the `exr` crate does not report where the header ends.
 struct Counting<R> {
     inner: R,
     position: u64,

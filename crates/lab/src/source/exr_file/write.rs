@@ -1,4 +1,4 @@
-//! Writing a frame as EXR: all of it, or nothing.
+//! Writes a frame as EXR, atomically.
 
 use crate::whole_file::write_whole;
 use afterimage::Image;
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Largest finite half float.
 const HALF_MAX: f32 = 65504.0;
 
-/// How color is stored.
+/// Sample format of color.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorFormat {
     /// 16 bit, values clamped to +-65504.
@@ -23,29 +23,29 @@ pub enum ColorFormat {
     Float,
 }
 
-/// What to write. All images must have the size of the color.
+/// Images of a frame to write. All must have the size of the color.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameToWrite<'a> {
     /// Linear color, written to `R`, `G`, `B`.
     pub color: &'a Image<[f32; 3]>,
-    /// How color is stored.
+    /// Sample format of `color`.
     pub format: ColorFormat,
-    /// Distance along the view axis, written to `Z` as float.
+    /// Depth along the view axis, written to `Z` as float.
     pub depth: Option<&'a Image<f32>>,
-    /// Pixels, y down, previous minus current, written to `motion.X/Y` as float.
+    /// Motion vectors in pixels, y down, previous minus current, written to `motion.X/Y` as float.
     pub motion: Option<&'a Image<[f32; 2]>>,
-    /// Pixels, y down, next minus current, written to `motion.Z/W` as float.
+    /// Motion vectors in pixels, y down, next minus current, written to `motion.Z/W` as float.
     pub motion_to_next: Option<&'a Image<[f32; 2]>>,
 }
 
 impl<'a> FrameToWrite<'a> {
-    /// Color alone, as half float.
+    /// A frame of color alone, stored as half float.
     pub fn color(color: &'a Image<[f32; 3]>) -> Self {
         Self { color, format: ColorFormat::Half, depth: None, motion: None, motion_to_next: None }
     }
 }
 
-/// Writes a scan-line EXR with ZIP compression, whole or not at all. The same frame gives the same bytes.
+/// Writes a scan-line EXR with ZIP compression, atomically. The same frame gives the same bytes.
 ///
 /// # Errors
 /// If the images differ in size or are empty, or the file cannot be written.
@@ -61,7 +61,7 @@ pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     write_whole(path, |out| write_to(out, frame))
 }
 
-/// Writes float channels, whole or not at all.
+/// Writes float channels as a scan-line EXR with ZIP compression, atomically.
 ///
 /// # Errors
 /// If they are empty or differ in size, or the file cannot be written.

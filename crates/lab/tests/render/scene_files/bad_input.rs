@@ -4,7 +4,7 @@ use super::builder::{Gltf, TRIANGLE, encoded, glb, png, written};
 use super::{assert_refused, assert_sound, open};
 use serde_json::{Value, json};
 
-/// A file that has some of everything.
+/// A file that uses every feature.
 pub fn everything() -> Gltf {
     let mut file = Gltf::with_material(json!({"name": "m", "normalTexture": {"index": 0}, "alphaMode": "BLEND",
         "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
@@ -57,7 +57,7 @@ fn files_that_end_too_soon() {
     for length in (0..whole.len()).step_by(7).chain([11, 12, 19, 20, whole.len() - 1]) {
         let file = written("cut.glb", &whole[..length]);
         assert_refused(&file.path, &[]);
-        // The same with a length in the header that fits what is there.
+        // Also with a header length that matches the truncated file.
         let mut honest = whole[..length].to_vec();
         if length >= 12 {
             honest[8..12].copy_from_slice(&(length as u32).to_le_bytes());
@@ -93,14 +93,14 @@ fn containers_and_descriptions_of_other_kinds() {
     for (name, bytes, word) in cases {
         assert_refused(&written(name, &bytes).path, &[word]);
     }
-    // No buffer is wanted: no binary chunk needed.
+    // A file without buffers needs no binary chunk.
     let bare = written("bare.glb", &glb(br#"{"asset": {"version": "2.0"}}"#, None));
     let scene = open(&bare.path).unwrap();
     assert!(scene.bounds().is_none() && scene.pose(0.0).cameras.is_empty());
     assert_sound(&scene);
 }
 
-/// Everything, with one value of the description replaced.
+/// [`everything`] with one JSON value replaced.
 fn changed(path: &str, value: Value) -> Gltf {
     let mut file = everything();
     *file.json.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value;
@@ -152,7 +152,7 @@ fn accessors_of_the_wrong_type_or_length() {
     let mut file = everything();
     file.json["meshes"][0]["primitives"][0]["indices"] = positions;
     file.assert_refused(&["indices", "Vec3"]);
-    // Indices that are numbers with a fraction.
+    // Indices that are floats.
     let mut file = everything();
     let floats = file.floats(&[[0.0], [1.0], [2.0]]);
     file.json["meshes"][0]["primitives"][0]["indices"] = json!(floats);
@@ -207,7 +207,7 @@ fn triangles_that_are_not_finite_are_left_out_and_counted() {
     let scene = file.open();
     assert_eq!(scene.still().len(), 1);
     assert_eq!(scene.warnings, ["3 triangles with corners that are not finite, or farther than 1e9 m, are left out"]);
-    // Finite until its node has moved it.
+    // Finite before its node's transform.
     file.json["nodes"][0]["scale"] = json!([1e30, 1.0, 1.0]);
     assert_eq!(file.open().still().len(), 0);
 }
@@ -218,7 +218,7 @@ fn triangles_without_area_and_duplicates_are_kept() {
     file.soup(&[TRIANGLE, TRIANGLE, [[1.0; 3]; 3], [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]].concat());
     let scene = file.open();
     assert_eq!((scene.still().len(), scene.warnings.len()), (4, 0));
-    // With tangents to be made for them, too.
+    // Also with generated tangents.
     let mut file = everything();
     let flat = file.floats(&[[0.5f32, 0.5, 0.5]; 3]);
     file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(flat);
@@ -238,7 +238,7 @@ fn nodes_that_are_no_tree() {
         file.json["scenes"][0]["nodes"] = json!([0]);
         file.assert_refused(&["cycle"]);
     }
-    // A root that the scene names twice is there once.
+    // A root that the scene lists twice is instanced once.
     let mut file = Gltf::new();
     let node = file.soup(&TRIANGLE);
     file.json["scenes"][0]["nodes"] = json!([node, node]);
@@ -287,10 +287,10 @@ fn animations_with_keys_that_do_not_fit() {
     broken(&[], &[], "LINEAR").assert_refused(&["empty"]);
     broken(&two, &[[f32::INFINITY; 3]; 2], "LINEAR").assert_refused(&["not finite"]);
     broken(&two, &[[1.0; 3]; 2], "WOBBLY").assert_refused(&["interpolation"]);
-    // Two keys at once: the later one counts.
+    // Two keys at the same time: the later one applies.
     let scene = broken(&[[0.5], [0.5]], &[[1.0; 3], [3.0; 3]], "LINEAR").open();
     assert_eq!(scene.pose(0.0).moving.positions[0][1].x, 1.0);
-    // Huge values move triangles out of sight, and never to infinity.
+    // Huge values collapse triangles; coordinates stay finite.
     broken(&two, &[[3e38; 3], [-3e38; 3]], "LINEAR").open();
     let mut file = everything();
     file.json["animations"][0]["channels"][0]["target"]["path"] = json!("color");
@@ -307,7 +307,7 @@ fn skins_with_odd_weights_and_joints() {
         file
     };
     with([0, 2, 0, 0], [0.5, 0.5, 0.0, 0.0]).assert_refused(&["joint 2 of 2"]);
-    // What has no weight may point anywhere.
+    // Joints without weight may be out of range.
     assert_eq!(with([0, 200, 0, 0], [1.0, 0.0, 0.0, 0.0]).open().warnings, [""; 0]);
     let even = with([0, 1, 0, 0], [0.5, 0.5, 0.0, 0.0]).open();
     for weights in [[3.0, 3.0, 0.0, 0.0], [0.001, 0.001, 0.0, 0.0], [0.25, 0.25, f32::NAN, -1.0]] {
@@ -354,7 +354,7 @@ fn primitives_and_scenes_that_lack_something() {
     let mut file = everything();
     file.json["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("POSITION");
     assert!(file.open().warnings.contains(&"primitives without positions are left out: mesh 0".to_owned()));
-    // Attributes of applications are no error.
+    // Application-specific attributes are accepted.
     let mut file = everything();
     file.json["meshes"][0]["primitives"][0]["attributes"]["_TEMPERATURE"] = json!(0);
     assert_eq!(file.open().pose(0.0).moving.len(), 1);
@@ -363,7 +363,7 @@ fn primitives_and_scenes_that_lack_something() {
     let scene = file.open();
     assert!(scene.bounds().is_none());
     assert_eq!(scene.warnings, ["scene 0 of 2 is shown, the others are left out"]);
-    // Without scenes all nodes are shown.
+    // Without scenes all nodes are loaded.
     let mut file = Gltf::new();
     file.soup(&TRIANGLE);
     file.json.as_object_mut().unwrap().remove("scenes");

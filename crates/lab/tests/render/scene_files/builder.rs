@@ -1,4 +1,4 @@
-//! Small scenes made in code: JSON and the bytes that it refers to.
+//! Builder of small glTF files: JSON and a binary buffer.
 
 use afterimage_lab::scene::{Scene, SceneLimits};
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ pub struct Gltf {
     pub bin: Vec<u8>,
 }
 
-/// A written file, with its folder.
+/// A file on disk, with its temporary folder.
 pub struct Written {
     pub folder: TempDir,
     pub path: PathBuf,
@@ -29,7 +29,7 @@ impl Gltf {
         Self { json, bin: Vec::new() }
     }
 
-    /// Adds to a list at the top and gives the index.
+    /// Appends to a top-level array and returns the index.
     pub fn push(&mut self, list: &str, value: Value) -> usize {
         if self.json.get(list).is_none() {
             self.json[list] = json!([]);
@@ -100,7 +100,7 @@ impl Gltf {
         file
     }
 
-    /// A texture whose encoded image is in the buffer.
+    /// A texture with its encoded image in the buffer.
     pub fn texture(&mut self, encoded: &[u8]) -> usize {
         let view = self.view(encoded);
         let image = self.push("images", json!({"bufferView": view, "mimeType": "image/png"}));
@@ -140,7 +140,7 @@ impl Gltf {
     }
 }
 
-/// A container around a description and a binary chunk.
+/// A `.glb` of a JSON and a binary chunk.
 pub fn glb(json: &[u8], bin: Option<&[u8]>) -> Vec<u8> {
     let mut body = Vec::new();
     for (kind, data, fill) in [(b"JSON", json, b' ')].into_iter().chain(bin.map(|b| (b"BIN\0", b, 0))) {

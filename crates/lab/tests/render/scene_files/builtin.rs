@@ -1,4 +1,4 @@
-//! Scenes that need no file.
+//! Built-in scenes.
 
 use super::{assert_sound, assert_triangles_sound};
 use afterimage_lab::scene::{Environment, Scene, SceneLimits};
@@ -14,7 +14,7 @@ fn builtin(name: &str) -> Scene {
     scene
 }
 
-/// Directed edges without a partner that runs the other way.
+/// Number of directed edges without an opposite one.
 fn open_edges(triangles: &[[Vec3; 3]]) -> usize {
     let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
     let bits = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
@@ -45,7 +45,7 @@ fn bodies_are_closed_and_face_outwards() {
             assert!(face.length() > 0.0, "{name}: a triangle without area");
             assert!(n.iter().all(|n| n.dot(face) > 0.0), "{name}: shading normals point away from the front");
         }
-        // Planted error: a triangle taken away leaves a hole of three edges, missed in both directions.
+        // Planted error: a removed triangle leaves three edges without an opposite one.
         assert_eq!(open_edges(&scene.still().positions[1..]), 6, "{name}");
     }
 }

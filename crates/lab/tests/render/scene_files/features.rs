@@ -1,4 +1,4 @@
-//! What is read of meshes, nodes, lights and cameras.
+//! Features of meshes, nodes, lights and cameras.
 
 use super::builder::{Gltf, TRIANGLE};
 use afterimage_lab::scene::PunctualKind;
@@ -74,7 +74,7 @@ fn integer_attributes_are_scaled_where_they_are_normalised() {
     assert_eq!(triangles.uvs[0], [Vec2::new(0.0, 1.0), Vec2::new(0.2, 0.0), Vec2::ZERO]);
 
     file.json["accessors"][positions]["normalized"] = json!(true);
-    // -32768 / 32767 is held at -1 (glTF 2.0, 3.11).
+    // -32768 / 32767 is clamped to -1 (glTF 2.0, 3.11).
     assert_eq!(file.open().still().positions[0][2], -Vec3::Y);
 }
 
@@ -120,7 +120,7 @@ fn nodes_place_their_meshes_through_the_tree() {
     let leaf = file.push("nodes", json!({"mesh": mesh, "scale": [2.0, 1.0, 1.0]}));
     let half = std::f32::consts::FRAC_1_SQRT_2;
     file.node(json!({"children": [leaf], "translation": [10.0, 0.0, 0.0], "rotation": [0.0, 0.0, half, half]}));
-    // The same mesh again, by a matrix (column by column).
+    // A second instance, by a column-major matrix.
     file.node(json!({"mesh": mesh, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1]}));
     let scene = file.open();
     let [a, b] = [0, 1].map(|i| scene.still().positions[i]);
@@ -150,14 +150,14 @@ fn mirrored_triangles_stay_counter_clockwise_from_the_front() {
         let uv_of_x = scene.still().positions[i].iter().position(|p| p.x != 0.0).unwrap();
         assert_eq!(scene.still().uvs[i][uv_of_x], Vec2::X, "{i}");
     }
-    // The outside stays the outside.
+    // Fronts keep facing outwards.
     assert_eq!([0, 1, 2, 3, 4].map(|i| scene.still().normals[i][0].z), [1.0, 1.0, -1.0, -1.0, 1.0]);
 }
 
 #[test]
 fn normals_stay_perpendicular_under_uneven_scale() {
     let mut file = Gltf::new();
-    // A slope: normals given, so that they are transformed and not made anew.
+    // A slope with given normals, so that they are transformed and not regenerated.
     let normal = Vec3::new(1.0, 1.0, 0.0).normalize().to_array();
     let attributes = json!({
         "POSITION": file.floats(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]]), "NORMAL": file.floats(&[normal; 3])
@@ -175,7 +175,7 @@ fn normals_stay_perpendicular_under_uneven_scale() {
             assert!(n.dot(edge).abs() < 3e-7, "{i}: {}", n.dot(edge));
         }
     }
-    // Planted error: transformed like a direction, the normal would lean.
+    // Planted error: a normal transformed like a direction is tilted.
     let wrong = (Vec3::new(10.0, 1.0, 3.0) * Vec3::from_array(normal)).normalize();
     let [a, b, _] = scene.still().positions[0];
     assert!(wrong.dot((b - a).normalize()).abs() > 0.5);
@@ -222,7 +222,7 @@ fn lights_and_cameras_follow_their_nodes() {
     let [camera] = &pose.cameras[..] else { panic!() };
     assert_eq!(camera.name, "main");
     assert!((camera.vfov_deg - 0.5f32.to_degrees()).abs() < 1e-4);
-    // Scales of nodes do not reach the camera.
+    // Scales of nodes do not affect the camera.
     let looks = camera.world_from_camera.transform_vector3(-glam::DVec3::Z);
     assert!(looks.abs_diff_eq(-glam::DVec3::X, 1e-7), "{looks}");
 }

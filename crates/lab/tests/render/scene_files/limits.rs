@@ -1,4 +1,4 @@
-//! Counts that would need more memory than allowed are refused before it is set aside.
+//! Limits: counts that need too much memory are refused before allocation.
 
 use super::builder::{Gltf, TRIANGLE, Written, png};
 use afterimage_lab::scene::{Scene, SceneLimits};
@@ -20,7 +20,7 @@ fn assert_open(file: &Written, limits: &SceneLimits) {
     Scene::open(file.path.to_str().unwrap(), limits).unwrap();
 }
 
-/// Largest resident memory of this process so far, in MB, where the system tells.
+/// Peak resident memory of this process in MB, where the system provides it.
 fn peak_mb() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
@@ -52,7 +52,7 @@ fn primitives_without_triangles_count_too() {
 
 #[test]
 fn vertices_that_no_triangle_needs_are_bounded() {
-    // Many primitives that read the same long accessor and draw one triangle of it.
+    // Many primitives that read the same long accessor for one triangle each.
     let mut file = Gltf::new();
     let (positions, indices) = (file.floats(&[TRIANGLE; 4].concat()), file.indices(&[0, 1, 2]));
     let primitive = json!({"attributes": {"POSITION": positions}, "indices": indices});
@@ -117,7 +117,7 @@ fn bytes_of_all_files_together_and_of_the_description() {
 #[test]
 fn counts_alone_take_no_memory() {
     let before = peak_mb();
-    // Elements without a buffer, all zero: a few bytes ask for gigabytes.
+    // Accessors without a buffer, all zero: a few bytes of JSON claim gigabytes.
     for count in [100_000_000u64, 1 << 40, u64::MAX] {
         let mut file = Gltf::new();
         let positions = file.push("accessors", json!({"count": count, "type": "VEC3", "componentType": 5126}));
@@ -128,7 +128,7 @@ fn counts_alone_take_no_memory() {
         assert_refused(&file.written(), &SMALL, &["triangles"]);
     }
     if let (Some(before), Some(after)) = (before, peak_mb()) {
-        // 100 million positions would be 1200 MB; other tests of this process run meanwhile.
+        // 100 million positions would be 1200 MB; other tests run in this process at the same time.
         assert!(after - before < 600, "took {} MB", after - before);
     }
 }

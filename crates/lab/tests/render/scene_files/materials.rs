@@ -6,14 +6,14 @@ use glam::Vec2;
 use image::DynamicImage;
 use serde_json::{Value, json};
 
-/// The material that a description gives, and the warnings.
+/// Material read from JSON, and the warnings.
 #[track_caller]
 fn read(material: Value) -> (Material, Vec<String>) {
     let scene = Gltf::with_material(material).open();
     (scene.materials[0].clone(), scene.warnings)
 }
 
-/// As [`read`], without a warning.
+/// Material read from JSON, without warnings.
 #[track_caller]
 fn quietly(material: Value) -> Material {
     let (material, warnings) = read(material);
@@ -31,7 +31,7 @@ fn defaults_are_gltfs() {
     let material = quietly(json!({}));
     let expected = Material { metallic: 1.0, double_sided: false, ..Material::default() };
     assert_eq!(material, expected);
-    // A primitive without a material has the same one.
+    // A primitive without a material gets the default.
     let mut file = Gltf::new();
     file.soup(&super::builder::TRIANGLE);
     let scene = file.open();
@@ -83,7 +83,7 @@ fn extensions_of_materials() {
         json!({"thicknessFactor": 0.5, "attenuationDistance": 2.0, "attenuationColor": [1.0, 0.5, 0.25]}),
     );
     assert!(glass.volume);
-    // Beer and Lambert: after the attenuation distance that color is left.
+    // Beer-Lambert: the attenuation color remains after the attenuation distance.
     for (share, absorption) in [1.0f64, 0.5, 0.25].into_iter().zip(glass.absorption) {
         assert!(((-f64::from(absorption) * 2.0).exp() - share).abs() < 1e-6);
     }
@@ -109,7 +109,7 @@ fn factors_out_of_range_are_brought_into_it() {
     assert_eq!((material.metallic, material.roughness, material.opacity, material.ior), (1.0, 0.0, 1.0, 1.0));
     assert_eq!(material.base_color, [1.0, 0.5, 0.0]);
     assert!(material.emissive[0] == 0.0 && material.emissive[1].is_finite() && material.emissive[2] == 2.0);
-    assert_eq!(warnings, ["factors of materials out of their range are brought into it: material 0 (odd)"]);
+    assert_eq!(warnings, ["factors of materials out of their range are clamped: material 0 (odd)"]);
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn textures_keep_texels_and_samplers() {
     file.push("samplers", json!({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}));
     file.json["textures"][0]["sampler"] = json!(0);
     let scene = file.open();
-    // In the order in which the material asks for them.
+    // In the order of the material's slots.
     let [rgba, gray, deep] = &scene.textures[..] else { panic!() };
     assert_eq!((rgba.size, rgba.wrap, rgba.nearest), ([3, 5], [Wrap::Clamp, Wrap::Mirror], true));
     assert_eq!(rgba.texels[4 * 3 + 2], [20, 40, 7, 200]);
@@ -207,7 +207,7 @@ fn texture_transforms_are_baked_and_disagreement_is_named() {
     file.texture(&png([2, 2], |_, _| [128, 128, 255, 255]));
     let scene = file.open();
     assert_eq!(scene.warnings, [""; 0]);
-    // Scaled, turned counter-clockwise as seen (v grows downwards: u becomes -v), shifted.
+    // Scaled, rotated counter-clockwise in the image (v increases downwards: u becomes -v), translated.
     let expected = [Vec2::new(0.25, 0.5), Vec2::new(0.25, -1.5), Vec2::new(4.25, 0.5)];
     for (found, expected) in scene.still().uvs[0].iter().zip(expected) {
         assert!(found.abs_diff_eq(expected, 1e-6), "{found} {expected}");

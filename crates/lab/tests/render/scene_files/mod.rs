@@ -1,4 +1,4 @@
-//! glTF scenes: what is read of them, how they are posed, and everything that can be wrong with a file.
+//! glTF scenes: supported features, animation, and damaged files.
 
 #[path = "../../common/sound_scene.rs"]
 mod sound_scene;
@@ -25,7 +25,7 @@ fn open(path: &Path) -> Result<Scene, InputError> {
     Scene::open(path.to_str().unwrap(), &SceneLimits::default())
 }
 
-/// The error of opening a file: one line, with a remedy, that names the file and holds the words.
+/// Checks the error of opening a file: one line with a remedy that names the file and contains the words.
 #[track_caller]
 fn assert_refused(path: &Path, words: &[&str]) {
     let error = match open(path) {
@@ -35,7 +35,7 @@ fn assert_refused(path: &Path, words: &[&str]) {
     let text = error.to_string();
     println!("{text}");
     assert!(!text.contains('\n'), "more than one line: {text:?}");
-    assert!(!error.remedy.is_empty(), "no remedy: {text}");
+    assert!(!error.message().remedy.is_empty(), "no remedy: {text}");
     let name = path.file_name().unwrap().to_str().unwrap();
     for word in words.iter().chain([&name]) {
         assert!(text.contains(word), "{word:?} is not in: {text}");

@@ -1,11 +1,11 @@
-//! Where a scene may read: data in itself, and files in its own folder.
+//! URIs: a scene may read its own data and files in its own folder.
 
 use super::builder::{Gltf, TRIANGLE, Written, png};
 use super::{assert_refused, assert_sound, open};
 use base64::Engine;
 use serde_json::json;
 
-/// A triangle whose buffer is at that address, beside the folder `scene/` with `scene.gltf` in it.
+/// A folder `scene/` with a `scene.gltf` of one triangle, whose buffer has that URI.
 fn with_buffer(address: &str) -> (Written, Vec<u8>) {
     let mut file = Gltf::new();
     file.soup(&TRIANGLE);
@@ -14,7 +14,7 @@ fn with_buffer(address: &str) -> (Written, Vec<u8>) {
     std::fs::create_dir(folder.path().join("scene")).unwrap();
     let path = folder.path().join("scene/scene.gltf");
     std::fs::write(&path, file.json.to_string()).unwrap();
-    // What an attacker would like to see read.
+    // A file outside of the scene's folder.
     std::fs::write(folder.path().join("secret.bin"), &file.bin).unwrap();
     (Written { folder, path }, file.bin)
 }
@@ -71,7 +71,7 @@ fn addresses_that_leave_the_folder_are_refused() {
         "%5c%5chost%5cshare",
     ] {
         let (written, _) = with_buffer(address);
-        // There, so that only the rule keeps it from being read.
+        // The file exists, so that only the check prevents reading it.
         std::fs::create_dir(written.folder.path().join("scene/sub")).unwrap();
         assert_refused(&written.path, &["its own folder"]);
     }
@@ -86,7 +86,7 @@ fn links_out_of_the_folder_are_refused_and_links_inside_are_not() {
     symlink(written.folder.path().join("secret.bin"), scene.join("link.bin")).unwrap();
     assert_refused(&written.path, &["link out of the folder"]);
     std::fs::remove_file(scene.join("link.bin")).unwrap();
-    // A folder that leads out.
+    // A link to an outer folder.
     let (through, _) = with_buffer("sub/secret.bin");
     symlink(through.folder.path(), through.folder.path().join("scene/sub")).unwrap();
     assert_refused(&through.path, &["link out of the folder"]);
@@ -98,7 +98,7 @@ fn links_out_of_the_folder_are_refused_and_links_inside_are_not() {
 #[cfg(unix)]
 #[test]
 fn what_is_no_file_is_not_read() {
-    // A folder; a device without an end is refused in the same way.
+    // A folder; an endless device is refused in the same way.
     let (written, _) = with_buffer("sub");
     std::fs::create_dir(written.folder.path().join("scene/sub")).unwrap();
     assert_refused(&written.path, &["is not a file"]);
@@ -116,10 +116,10 @@ fn missing_buffers_and_textures_are_named() {
     file.push("images", json!({"uri": "gone.png"}));
     file.push("textures", json!({"source": 0}));
     file.assert_refused(&["gone.png"]);
-    // Textures that nothing uses are not looked for.
+    // Unused textures are not read.
     file.json["materials"] = json!([{}]);
     assert_eq!(file.open().textures.len(), 0);
-    // In the folder it is found, and as data.
+    // It is found in the folder, and in a data URI.
     file.json["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
     let written = file.written();
     std::fs::write(written.folder.path().join("gone.png"), png([2, 2], |_, _| [9; 4])).unwrap();

@@ -1,4 +1,4 @@
-//! Animation, skins and morph targets, against a plain evaluation in f64 of what glTF 2.0 says.
+//! Animation, skins and morph targets, against a direct evaluation of glTF 2.0 in f64.
 
 use super::builder::{Gltf, TRIANGLE};
 use afterimage_lab::scene::Scene;
@@ -25,7 +25,7 @@ fn animate<const N: usize>(
     );
 }
 
-/// Where the first corner is at a time.
+/// Position of the first corner at a time.
 fn corner(scene: &Scene, time_s: f64) -> Vec3 {
     scene.pose(time_s).moving.positions[0][0]
 }
@@ -41,7 +41,7 @@ fn every_interpolation_between_keys_and_beyond() {
         let scene = file.open();
         assert_eq!((scene.still().len(), scene.pose(0.0).moving.len(), scene.duration_s()), (0, 1, 2.0));
         let halfway = if interpolation == "STEP" { keys[0] } else { [2.0, 1.0, 0.0] };
-        // The animation is 2 s long: at 2 s it starts over, before its first key.
+        // The animation is 2 s long: at 2 s it loops, to before its first key.
         for (time_s, expected) in
             [(0.0, keys[0]), (0.75, halfway), (1.0, keys[1]), (2.0, keys[0]), (2.75, halfway), (-1.0, keys[1])]
         {
@@ -101,7 +101,7 @@ fn a_clip_is_chosen_by_name_or_number() {
     animate(&mut file, a, "translation", "STEP", &[0.0], &[[5.0, 0.0, 0.0]]);
     animate(&mut file, b, "scale", "LINEAR", &[0.0, 3.0], &[[1.0; 3], [2.0; 3]]);
     assert_eq!(file.open().duration_s(), 0.0);
-    // An animation of one key is one pose.
+    // An animation with one key has one pose.
     assert_eq!(corner(&file.open(), 7.0), Vec3::X * 5.0);
     for clip in ["scale LINEAR", "1"] {
         let scene = file.open_clip(clip).unwrap();
@@ -114,7 +114,7 @@ fn a_clip_is_chosen_by_name_or_number() {
     }
 }
 
-/// A strip bent by two joints, the second below the first and turning.
+/// A strip skinned to two joints; the second is a child of the first and rotates.
 struct Bent {
     file: Gltf,
     positions: Vec<[f32; 3]>,
@@ -148,7 +148,7 @@ fn bent() -> Bent {
     let joint = file.push("nodes", json!({"translation": JOINT_SHIFT, "scale": JOINT_SCALE}));
     let root = file.node(json!({"children": [joint], "translation": ROOT_SHIFT}));
     let skin = file.push("skins", json!({"joints": [root, joint], "inverseBindMatrices": matrices}));
-    // The place of the mesh's own node does not count.
+    // The transform of the mesh's own node is ignored.
     file.node(json!({"mesh": mesh, "skin": skin, "translation": [100.0, 0.0, 0.0]}));
     let half = std::f32::consts::FRAC_1_SQRT_2;
     animate(&mut file, joint, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [half, 0.0, 0.0, half]]);
@@ -156,13 +156,13 @@ fn bent() -> Bent {
     Bent { file, positions, normals, weights, inverse_bind }
 }
 
-/// As the file has them, rounded to f32.
+/// Values of the file, rounded to f32.
 fn matrices_of(m: &[DMat4; 2]) -> [DMat4; 2] {
     m.map(|m| m.as_mat4().as_dmat4())
 }
 
 impl Bent {
-    /// Position and normal of a vertex at a share of the turn.
+    /// Position and normal of a vertex at a share of the rotation.
     fn expected(&self, vertex: usize, share: f64, inverse_bind: &[DMat4; 2]) -> (DVec3, DVec3) {
         let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
         let turn = DQuat::from_rotation_x(share * std::f64::consts::FRAC_PI_2);
@@ -192,7 +192,7 @@ fn skinned_vertices_are_where_f64_puts_them() {
             // Four products and sums in f32, of values up to 5.
             assert!(found.as_dvec3().abs_diff_eq(position, 3e-6), "{found} {position}");
             assert!(normal.as_dvec3().abs_diff_eq(expected_normal, 1e-5), "{normal} {expected_normal}");
-            // Planted error: the bind pose forgotten.
+            // Planted error: the bind pose is ignored.
             let (wrong, _) = bent.expected(vertex, share, &[DMat4::IDENTITY; 2]);
             caught += usize::from((found.as_dvec3() - wrong).length() > 0.01);
             checked += 1;
@@ -228,7 +228,7 @@ fn morph_targets_add_up() {
     };
     let still = file.open();
     for corner in 0..3 {
-        // The node's own weights come before the mesh's.
+        // The node's weights override the mesh's.
         assert_eq!(still.still().positions[0][corner].as_dvec3(), expected(corner, [0.5, 0.0]));
         assert_eq!(still.still().positions[1][corner].as_dvec3(), expected(corner, [0.0, 1.0]));
     }

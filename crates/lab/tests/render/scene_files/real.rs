@@ -1,4 +1,4 @@
-//! Scenes that others made. Counts are those of the data's own list.
+//! External scenes. Counts are those in the data's own list.
 
 use super::{assert_sound, open};
 use afterimage_lab::clock::Stopwatch;
@@ -8,13 +8,13 @@ use serde_json::Value;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// A scene of the shared data; says loudly when it is not there.
+/// Path of a scene in the shared data; prints a message if it is absent.
 pub fn path_of(name: &str) -> Option<PathBuf> {
     let path = afterimage_testing::workspace().join("../shared/data/scenes").join(name);
     if path.is_file() {
         return Some(path);
     }
-    // Not eprintln: the harness would swallow it.
+    // Not eprintln: the test harness captures it.
     let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
     None
 }
@@ -119,7 +119,7 @@ fn the_morph_cube_changes_and_comes_back() {
     assert_eq!(start, again);
 }
 
-/// The fox' file, read plainly: its description and its binary chunk.
+/// The fox's file, parsed independently: its JSON and its binary chunk.
 struct Fox {
     root: Value,
     bin: Vec<u8>,
@@ -140,7 +140,7 @@ impl Fox {
         number(&view["byteOffset"]) + number(&accessor["byteOffset"]) + i * stride
     }
 
-    /// A curve of the first animation at a time, linearly between keys.
+    /// Value of a curve of the first animation at a time, by linear interpolation.
     fn curve(&self, node: usize, path: &str, time_s: f64) -> Option<Vec<f64>> {
         let animation = &self.root["animations"][0];
         let channel = animation["channels"]
@@ -173,7 +173,7 @@ impl Fox {
         Some(a.iter().zip(&b).map(|(a, b)| a + (b - a) * t).collect())
     }
 
-    /// Where a node is in the world at a time, by recursion over its ancestors.
+    /// World transform of a node at a time, by recursion over its ancestors.
     fn world(&self, node: usize, time_s: f64) -> DMat4 {
         let json = &self.root["nodes"][node];
         let part = |path: &str, default: &[f64]| {
@@ -225,7 +225,7 @@ fn the_fox_is_where_its_file_puts_it() {
     assert!(moved(&a, &b) > 1.0, "the fox stands still");
     let mut worst = 0.0f64;
     for (pose, time_s) in [(&a, 0.2 * length), (&b, 0.6 * length)] {
-        // No vertex is shared, so corners are vertices in order.
+        // Vertices are not shared, so corners are vertices in order.
         for i in (0..1728).step_by(53) {
             let found = pose.positions[i / 3][i % 3].as_dvec3();
             worst = worst.max((found - fox.vertex(i, time_s)).length());
@@ -234,7 +234,7 @@ fn the_fox_is_where_its_file_puts_it() {
     println!("the fox is off by {worst:.2e} of its 150 units at most");
     // Sums of four products in f32 of numbers up to 150: a few units in the last place.
     assert!(worst < 2e-4, "{worst}");
-    // Planted error: the pose of a moment later.
+    // Planted error: the pose of a slightly later time.
     let later = scene.pose(0.25 * length).moving;
     assert!((later.positions[0][0].as_dvec3() - fox.vertex(0, 0.2 * length)).length() > 0.01);
     let other =

@@ -1,4 +1,4 @@
-//! Tangents that a file leaves out.
+//! Generated tangents.
 
 use super::builder::{Gltf, png};
 use super::open;
@@ -8,7 +8,7 @@ use afterimage_testing::Draws;
 use glam::{Vec3, Vec4};
 use serde_json::json;
 
-/// A square with a normal map, its texture coordinates as given.
+/// A square with a normal map and the given texture coordinates.
 fn mapped(uvs: &[[f32; 2]; 4], normals: bool) -> Gltf {
     let mut file = Gltf::with_material(json!({"normalTexture": {"index": 0}}));
     file.texture(&png([2, 2], |_, _| [128, 128, 255, 255]));
@@ -24,7 +24,7 @@ fn mapped(uvs: &[[f32; 2]; 4], normals: bool) -> Gltf {
 
 #[test]
 fn tangents_point_along_growing_u_and_green_up_in_the_image() {
-    // u to the right; the image upright (its top at v = 0, so v falls with y), upside down, and turned.
+    // u to the right; the image upright (its top at v = 0, so v falls with y), upside down, and rotated.
     let upright = [[0.0, 1.0], [1.0, 1.0], [0.0, 0.0], [1.0, 0.0]];
     let flipped = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     let turned = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
@@ -65,13 +65,13 @@ fn vertices_that_a_thousand_triangles_share_take_no_square_time() {
     file.json["meshes"][0]["primitives"][0]["mode"] = json!(6);
     let scene = file.open();
     assert_eq!(scene.still().len(), n - 1);
-    // Rims of 6e-5 from coordinates rounded to 6e-8: the direction is good to a few thousandths.
+    // Edges of 6e-5 from coordinates rounded to 6e-8: the direction is accurate to a few thousandths.
     for t in scene.still().tangents.iter().flatten() {
         assert!(t.abs_diff_eq(Vec4::new(1.0, 0.0, 0.0, 1.0), 0.02), "{t}");
     }
 }
 
-/// Triangles on a grid so coarse that many have no area, share edges three times, or lie on each other.
+/// Triangles on a coarse grid: many are degenerate, share an edge with two others, or overlap.
 #[test]
 fn tangled_meshes_get_tangents_too() {
     let mut draws = Draws::new("tangled meshes");
@@ -90,7 +90,7 @@ fn tangled_meshes_get_tangents_too() {
         }
         let indices = file.indices(&indices);
         file.json["meshes"][0]["primitives"][0] = json!({"attributes": attributes, "indices": indices, "material": 0});
-        // Sound: that is all that can be asked.
+        // Only soundness can be checked.
         file.open();
     }
 }
@@ -122,8 +122,8 @@ fn tangents_of_the_flight_helmet_are_found_again() {
     let made = open(&bare).unwrap();
     let found = agreement(&given, &made, 1.0);
     println!("{:.2} % of the tangents agree with the file's", found * 100.0);
-    // The file's are averaged over welded vertices, and differ at seams and poles.
+    // The file's tangents are averaged over welded vertices, and differ at seams and poles.
     assert!(found > 0.99, "{found}");
-    // Planted error: green down.
+    // Planted error: the green channel points down.
     assert!(agreement(&given, &made, -1.0) < 0.1);
 }

@@ -142,7 +142,7 @@ fn a_floor_under_a_lamp_has_its_form_factor() {
         Material { base_color: [0.0; 3], specular: 0.0, emissive: [2.0; 3], double_sided: false, ..floor.clone() };
     let camera = Camera::look_at(DVec3::new(0.0, 0.5, 0.0), DVec3::ZERO, 0.2);
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    let rig = Rig::new(Scene::made("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
+    let rig = Rig::new(Scene::from_parts("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
     // Siegel and Howell, configuration factors: parallel rectangle with a corner above the point, four times.
     let corner = {
         let (a, b) = (1.0f64, 1.0f64);
@@ -167,7 +167,7 @@ fn a_plane_under_a_sky_shows_its_albedo() {
     let camera = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::ZERO, 40.0);
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = Environment::Constant([1.0, 2.0, 0.5]);
-    let rig = Rig::new(Scene::made("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
+    let rig = Rig::new(Scene::from_parts("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
     // Lambertian scattering samples exactly the sky's cosine density, so there is no noise.
     let film = rig.cpu(TraceSettings { integrator: Integrator::Naive, ..depth(5) }, 16);
     for m in film.moments.pixels() {

@@ -144,7 +144,7 @@ fn random_scene(number: u32) -> Scene {
     };
     let camera = Camera::look_at(DVec3::new(0.3, 0.5, 3.5), DVec3::ZERO, 50.0);
     let pose = Pose { moving, lights, cameras: vec![camera] };
-    let mut scene = Scene::made(&format!("random scene {number}"), materials, still, pose, environment).unwrap();
+    let mut scene = Scene::from_parts(&format!("random scene {number}"), materials, still, pose, environment).unwrap();
     scene.textures = (0..TEXTURES).map(|_| texture(d)).collect();
     scene
 }

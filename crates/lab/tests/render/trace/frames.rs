@@ -117,7 +117,7 @@ fn wall_of(emissive: [f32; 3]) -> Rig {
     let (mut materials, t, camera) = stage();
     materials[1].emissive = emissive;
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    Rig::new(Scene::made("a bad wall", materials, t, pose, DARK).unwrap(), [32, 24])
+    Rig::new(Scene::from_parts("a bad wall", materials, t, pose, DARK).unwrap(), [32, 24])
 }
 
 #[test]
@@ -145,14 +145,14 @@ fn a_surface_that_is_no_number_stays_in_its_pixels_h17() {
     materials[3].base_color = [f32::NAN, 0.5, 0.5];
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
-    let bad = Rig::new(Scene::made("a bad ball", materials, t, pose, sky).unwrap(), [32, 24]);
+    let bad = Rig::new(Scene::from_parts("a bad ball", materials, t, pose, sky).unwrap(), [32, 24]);
     let film = bad.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
     assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite() && m.squares.is_finite()));
     // Pixels that do not see the ball are the same as with a valid ball: at depth 1 nothing is reflected twice.
     let (materials, t, camera) = stage();
     let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
-    let sound = Rig::new(Scene::made("a sound ball", materials, t, pose, sky).unwrap(), [32, 24]);
+    let sound = Rig::new(Scene::from_parts("a sound ball", materials, t, pose, sky).unwrap(), [32, 24]);
     let reference = sound.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
     let mut same = 0;
     for (i, (a, b)) in film.moments.pixels().iter().zip(reference.moments.pixels()).enumerate() {

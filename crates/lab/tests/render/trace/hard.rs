@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3, Vec4};
 const SIZE: [u32; 2] = [16, 12];
 
 fn scene(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
-    Scene::made(name, materials, t, pose, environment).unwrap()
+    Scene::from_parts(name, materials, t, pose, environment).unwrap()
 }
 
 fn one_triangle(corners: [Vec3; 3]) -> Triangles {

@@ -91,7 +91,7 @@ pub fn ball(t: &mut Triangles, center: Vec3, radius: f32, material: u32) {
 pub const DARK: Environment = Environment::Constant([0.0; 3]);
 
 fn made(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
-    Scene::made(name, materials, t, pose, environment).unwrap()
+    Scene::from_parts(name, materials, t, pose, environment).unwrap()
 }
 
 /// The stage under an environment map with a bright spot.

@@ -39,7 +39,8 @@ fn wall(distance_m: f32) -> World {
     let corner = |x: f32, y: f32| Vec3::new(x * 3.0, y * 3.0, -1.0) * distance_m;
     still.push_quad([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)], 0);
     let scene =
-        Scene::made("wall", vec![Default::default()], still, Pose::default(), Environment::Constant([1.0; 3])).unwrap();
+        Scene::from_parts("wall", vec![Default::default()], still, Pose::default(), Environment::Constant([1.0; 3]))
+            .unwrap();
     World::new(&scene)
 }
 
@@ -90,7 +91,7 @@ fn gazes_converge_as_ipd_f_over_z() {
 #[test]
 fn eyes_are_parallel_where_there_is_nothing() {
     let nothing =
-        Scene::made("nothing", vec![], Triangles::default(), Pose::default(), Environment::Constant([1.0; 3]));
+        Scene::from_parts("nothing", vec![], Triangles::default(), Pose::default(), Environment::Constant([1.0; 3]));
     let world = World::new(&nothing.unwrap());
     let head = head(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.0, 1.0));
     for gaze in [[199.5, 149.5], [17.0, 260.5]] {

@@ -122,7 +122,7 @@ fn check(scene: &Scene, [now, before]: [&Camera; 2], [time_s, previous_s]: [f64;
 
 fn still_stage() -> (Scene, Camera) {
     let (materials, t, camera) = stage();
-    let scene = Scene::made("stage", materials, t, Pose::default(), Environment::Constant([1.0; 3])).unwrap();
+    let scene = Scene::from_parts("stage", materials, t, Pose::default(), Environment::Constant([1.0; 3])).unwrap();
     (scene, camera)
 }
 

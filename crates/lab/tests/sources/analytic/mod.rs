@@ -1,5 +1,5 @@
-//! Analytic scenes: their depth and motion against closed forms in f64 that share no code with them, their promises about
-//! what stays the same, and the page of text among the fixtures.
+//! Analytic scenes: depth and motion against independent closed forms in f64, invariance over time, threads and size, and the
+//! fixture of a page of text.
 
 use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
@@ -31,13 +31,13 @@ fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
     (0..size[1] as usize).flat_map(move |y| (0..size[0] as usize).map(move |x| (x, y)))
 }
 
-/// Near enough to sRGB for a PSNR.
+/// Approximate sRGB encoding, sufficient for a PSNR.
 fn encode(color: [f32; 3]) -> Vec3 {
     Vec3::from(color).clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2)
 }
 
-/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, where all four texels lie on the same surface,
-/// and the share of pixels that is.
+/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, over pixels whose four texels lie on the same
+/// surface; and the share of those pixels.
 fn explained(before: &SourceFrame, now: &SourceFrame, sign: f32) -> (f64, f64) {
     let (depth, motion) = geometry(now);
     let (previous_depth, _) = geometry(before);
@@ -148,7 +148,7 @@ fn scroll_changes_the_panel_only_and_does_not_say_so() {
 
 #[test]
 fn scroll_moves_two_pixels_a_frame() {
-    // In shade and sun the page's brightness differs, so the rows are compared where the light is even: by correlation.
+    // Shadows change the page's brightness, so rows are compared by correlation.
     let [before, now] = frames("scroll", [39, 40]);
     let luma = |frame: &SourceFrame, x: usize, y: usize| frame.color.at(x, y)[1];
     let difference = |shift: usize| {

@@ -1,4 +1,4 @@
-//! Depth and motion against closed forms in f64, written down again from what the scenes promise.
+//! Depth and motion against closed forms in f64, reimplemented from the documentation of the scenes.
 
 use super::{FPS, SIZE, frames, geometry, pixels, source};
 use afterimage_lab::source::FrameSource;
@@ -6,7 +6,7 @@ use glam::{DMat3, DVec2, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// A pinhole camera in f64, written down again from the definition of the field of view.
+/// A pinhole camera in f64, reimplemented from the definition of the field of view.
 struct Pinhole {
     focal: f64,
     middle: DVec2,
@@ -32,7 +32,7 @@ fn apart(measured: [f32; 2], exact: DVec2) -> f64 {
     (DVec2::from(measured.map(f64::from)) - exact).length()
 }
 
-/// Largest error of a motion vector that single precision explains, in pixels at 640 wide. Measured: 3e-4.
+/// Tolerance of a motion vector in single precision, in pixels at a width of 640. Measured: 3e-4.
 const MOTION_TOLERANCE_PX: f64 = 1e-3;
 
 #[test]
@@ -59,7 +59,7 @@ fn lateral_motion_is_parallax() {
     assert!(fastest > 5.0 && fastest < 9.0);
 }
 
-/// Camera and moving things of `occluder`, written down again.
+/// Camera and moving objects of `occluder`, reimplemented.
 struct Occluder {
     camera: [(DVec3, DMat3); 2],
     fence: [f64; 2],
@@ -70,7 +70,7 @@ struct MovingBall {
     name: &'static str,
     centre: [DVec3; 2],
     radius: f64,
-    /// Turn from this frame back to the previous one.
+    /// Rotation from this frame to the previous one.
     back: DMat3,
 }
 
@@ -103,7 +103,8 @@ impl Occluder {
         }
     }
 
-    /// Name of the thing at a pixel, told by its depth, and where its point was a frame ago. Still things are "rest".
+    /// Name of the object at a pixel, identified by depth, and the previous position of its surface point. Static objects are
+    /// "rest".
     fn previous(&self, ray: DVec3, depth: f64) -> (&'static str, DVec3) {
         let (origin, axes) = self.camera[0];
         let point = origin + axes * ray * depth;
@@ -205,8 +206,8 @@ fn depth_is_that_of_planes_and_balls() {
         let length2 = ray.length_squared();
         let along = ray.dot(ball) / length2;
         let chord2 = 0.38_f64.powi(2) - (ball - ray * along).length_squared();
-        // Open floor between the balls and the notice board, bare bricks below the prints. A rounding error sideways is as
-        // many times as large in depth as the ball's surface is steep.
+        // Open floor between the balls and the notice board, bare bricks below the prints. The slope of the ball's surface
+        // amplifies a lateral rounding error in depth.
         let (kind, exact, steep) = if chord2 > 1e-4 {
             let steep = 0.38 / chord2.sqrt();
             (0, along - (chord2 / length2).sqrt(), steep)

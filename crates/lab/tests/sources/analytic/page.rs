@@ -4,7 +4,7 @@ fn page() -> std::path::PathBuf {
     afterimage_testing::workspace().join("fixtures/text_page.png")
 }
 
-/// The page of text: black on white, one 10x20 character a cell, lines 28 pixels apart.
+/// A page of text: black on white, 10x20 pixels per character, lines 28 pixels apart.
 fn text_page() -> image::GrayImage {
     use embedded_graphics::mock_display::MockDisplay;
     use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_10X20};
@@ -20,7 +20,7 @@ fn text_page() -> image::GrayImage {
     let mut page = image::GrayImage::from_pixel(1280, 720, image::Luma([255]));
     for (line, row) in text.lines().enumerate() {
         for (column, character) in row.chars().enumerate() {
-            // The mock display is a 64x64 canvas: a character at a time.
+            // The mock display is a 64x64 canvas: draw one character at a time.
             let mut cell = MockDisplay::new();
             let glyph = character.to_string();
             Text::with_baseline(&glyph, Point::zero(), style, Baseline::Top).draw(&mut cell).unwrap();

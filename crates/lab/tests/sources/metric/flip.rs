@@ -30,7 +30,7 @@ fn checker(x: u32, y: u32) -> [u32; 3] {
     if (x / 4 + y / 4) % 2 == 1 { [200, 60, 40] } else { [30, 120, 220] }
 }
 
-/// The pairs of `fixtures/flip.py`.
+/// The image pairs of `fixtures/flip.py`.
 fn pair(name: &str) -> [Picture; 2] {
     let grain = |x, y| {
         let (base, grain) = (gradient(x, y), hash(x, y, 1));
@@ -51,7 +51,7 @@ fn mean(map: &Image<f32>) -> f64 {
     map.pixels().iter().map(|&v| f64::from(v)).sum::<f64>() / map.pixels().len() as f64
 }
 
-/// A line of the table: pair, pixels a degree, mean, and the map at the six places.
+/// A line of the table: pair, pixels per degree, mean, and the map at six positions.
 fn published() -> Vec<(String, f32, Vec<f64>)> {
     let table = include_str!("../../../../../fixtures/flip.csv");
     let line = |line: &str| {
@@ -84,7 +84,7 @@ fn flip_is_nvidias_own() {
     println!("largest differences: of means {of_means:.1e}, of the maps {of_maps:.1e}");
 }
 
-/// Every pixel: `python3 fixtures/flip.py FOLDER`, then `FLIP_MAPS=FOLDER cargo test --features lab --test metric -- --ignored flip_maps`.
+/// Every pixel: `python3 fixtures/flip.py FOLDER`, then `FLIP_MAPS=FOLDER cargo test -p afterimage-lab --test sources -- --ignored flip_maps`.
 #[test]
 #[ignore = "needs maps that NVIDIA's implementation wrote"]
 fn flip_maps_are_nvidias_own() {
@@ -111,14 +111,14 @@ fn flip_of_equal_pictures_is_0_and_of_black_and_white_alike_both_ways() {
     let [black, white] = pair("black_white");
     let (there, back) = (flip.map(&black, &white), flip.map(&white, &black));
     assert_eq!(there, back);
-    // HyAB is 100 here, beyond the knee. The largest difference is that of green and blue, by their L*a*b* as textbooks have it.
+    // HyAB is 100 here, above the knee. The largest difference is between green and blue, with L*a*b* values from textbooks.
     let hunt = |[l, a, b]: [f64; 3]| [l, 0.01 * l * a, 0.01 * l * b];
     let (green, blue) = (hunt([87.737, -86.185, 83.181]), hunt([32.303, 79.197, -107.864]));
     let hyab = (green[0] - blue[0]).abs() + (green[1] - blue[1]).hypot(green[2] - blue[2]);
     let (d, largest) = (100_f64.powf(0.7), hyab.powf(0.7));
     let expected = 0.95 + (d - 0.4 * largest) / (0.6 * largest) * 0.05;
     assert_abs_diff_eq!(mean(&there), expected, epsilon = 2e-4);
-    // Noise has features, which weigh alike both ways.
+    // Noise has features; their difference is symmetric.
     assert_eq!(flip.map(&noise, &gradient), flip.map(&gradient, &noise));
 }
 
@@ -153,7 +153,7 @@ fn flip_of_any_size_and_distance_is_a_number() {
             assert!(map.pixels().iter().all(|v| (0.0..=1.0).contains(v)), "{size:?} at {ppd}");
         }
     }
-    // 640 pixels over 70 degrees are 7.98 a degree in the middle.
+    // 640 pixels over 70 degrees are 7.98 per degree in the middle.
     let view = ViewGeometry::flat([640, 360], 70.0).unwrap();
     assert_abs_diff_eq!(Flip::for_view(&view).pixels_per_degree(), 7.98, epsilon = 5e-3);
 }

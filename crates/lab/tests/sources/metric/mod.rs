@@ -1,4 +1,4 @@
-//! Metrics against hand-calculated cases and an oracle in f64, and what latency of the gaze costs (H68).
+//! Metrics against hand-calculated cases and an oracle in f64, and the cost of gaze latency (H68).
 
 mod flip;
 mod weighted;
@@ -31,7 +31,7 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
     let reference = metric::encode(&image, 0.0);
     let geometry = ViewGeometry::flat(size, 70.0).unwrap();
     let ecc = geometry.eccentricity_map([320.0, 180.0]);
-    // The eye moves at 30 degrees a second; the foveation lags.
+    // The gaze moves at 30 degrees a second; the foveation lags.
     let latencies_ms = [0.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0, 100.0, 125.0, 150.0];
     let scores = latencies_ms.map(|latency_ms| {
         let lag_px = 30.0 * latency_ms / 1000.0 * 8.0;
@@ -80,11 +80,11 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     assert_abs_diff_eq!(scores.whole.psnr_db.unwrap(), 20.0, epsilon = 1e-4);
     assert_abs_diff_eq!(scores.bands[2].psnr_db.unwrap(), 20.0, epsilon = 1e-4);
     assert_abs_diff_eq!(scores.flicker.unwrap(), 200.0, epsilon = 1e-2);
-    // Flat patches leave SSIM its luminance term alone: (2 ab + c1) / (a^2 + b^2 + c1).
+    // On flat patches SSIM reduces to its luminance term: (2 ab + c1) / (a^2 + b^2 + c1).
     let luminance = |a: f64, b: f64| (2.0 * a * b + 6.5025) / (a * a + b * b + 6.5025);
     let expected = (2.0 * luminance(127.5, 153.0) + luminance(127.5, 102.0)) / 3.0;
     assert_abs_diff_eq!(scores.whole.ssim.unwrap(), expected, epsilon = 1e-4);
-    // An exact picture has no PSNR.
+    // An exact image has no PSNR.
     let mut exact = Scorer::default();
     let tracked = tracker.advance(&source_frame(reference.clone()), &geometry, &ecc, &ecc);
     exact.push(&references.next(&reference, &tracked), &reference, &tracked, &ecc);
@@ -118,7 +118,7 @@ fn ssim64(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>, x0: usize, y0: usize) -> f64
 
 #[test]
 fn ssim_is_the_published_formula_at_full_resolution() {
-    // Taller than a strip, and larger than the size from which the authors' script would shrink it.
+    // Taller than a strip, and larger than the size above which the authors' script downsamples.
     let (a, mut b) = (noise([400, 420], "ssim a"), noise([400, 420], "ssim b"));
     for (p, q) in b.pixels_mut().iter_mut().zip(a.pixels()) {
         *p = [0, 1, 2].map(|i| 0.6 * q[i] + 0.4 * p[i]);
@@ -151,13 +151,13 @@ fn bands_and_retention_follow_the_eye() {
     let second = look(&frame, [220.0, 90.0]);
     assert!(second.retained.at(100, 90) && !second.retained.at(220, 90) && !second.retained.at(160, 20));
     assert_eq!(second.past.at(7, 3), 3 * 320 + 7);
-    // All moves right by 5 px: retention moves along.
+    // Everything moves right by 5 px: retention follows.
     frame.motion = Some(Image::filled(size, [-5.0, 0.0]));
     let third = look(&frame, [220.0, 90.0]);
     let left_edge = |t: &metric::Tracked| (0..320).find(|&x| t.retained.at(x, 90)).unwrap();
     assert_eq!(left_edge(&third), left_edge(&second) + 5);
     assert_eq!(third.past.at(2, 0), NO_PAST, "came from outside");
-    // Something else stands there now: forgotten for good.
+    // Another surface is there now: retention ends.
     frame.motion = Some(Image::filled(size, [0.0; 2]));
     frame.depth = Some(Image::filled(size, 5.0));
     look(&frame, [220.0, 90.0]);
@@ -194,7 +194,7 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
         assert_abs_diff_eq!(scores.bands[band as usize].flip.unwrap(), mean_of(Some(band)), epsilon = 1e-9);
     }
     assert_abs_diff_eq!(scores.whole.flip.unwrap(), mean_of(None), epsilon = 1e-9);
-    // The fovea is shown at full rate, but the eye's filters reach in from around it.
+    // The fovea has full rate, but the filters include pixels around it.
     assert!(scores.bands[0].flip.unwrap() < 0.1 * scores.bands[2].flip.unwrap());
     let mut without = Scorer::default();
     without.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);

@@ -1,4 +1,4 @@
-//! Weighted error, Delta E 94 and ghosts against brute force and cases by hand.
+//! Weighted error, Delta E 94 and ghosting against brute force and hand-calculated cases.
 
 use super::{noise, source_frame};
 use afterimage::kernel::color::{delta_e94, lab, srgb_decode};
@@ -11,16 +11,16 @@ use glam::Vec3;
 
 const SIZE: [u32; 2] = [160, 90];
 
-/// Watson's density in f64, relative to that at 0.
+/// Watson's cell density in f64, relative to the centre of the fovea.
 fn weight64(e: f64) -> f64 {
     let density = |e: f64| (0.9851 / (1.0 + e / 1.058).powi(2) + 0.0149 * (-e / 22.14).exp()) / (1.0 + e / 41.03);
     density(e) / density(0.0)
 }
 
-/// A reference, what is shown, both encoded, and what is known of the frame.
+/// Reference and output, both encoded, and the frame's correspondence.
 type Frame = (Image<[f32; 3]>, Image<[f32; 3]>, SourceFrame);
 
-/// Scores of frames for an eye that looks at `gaze`.
+/// Scores of frames with the gaze at `gaze`.
 fn score(frames: &[Frame], gaze: [f32; 2]) -> Scores {
     let view = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let ecc = view.eccentricity_map(gaze);
@@ -59,7 +59,7 @@ fn the_weighted_error_counts_cells() {
     assert_abs_diff_eq!(scores.weighted_psnr_db.unwrap(), -10.0 * (sum / weights).log10(), epsilon = 1e-4);
     assert_abs_diff_eq!(error_weight(0.0), 1.0);
     assert_abs_diff_eq!(f64::from(error_weight(20.0)), weight64(20.0), epsilon = 1e-6);
-    // The same error costs more where the eye looks.
+    // The same error weighs more at the gaze.
     let grey = Image::filled(SIZE, [0.5; 3]);
     let spot = |x: usize| {
         let mut spot = grey.clone();
@@ -75,7 +75,7 @@ fn the_weighted_error_counts_cells() {
 #[test]
 fn the_99th_percentile_is_that_of_sorting() {
     let (a, mut b) = (noise(SIZE, "p99 a"), noise(SIZE, "p99 b"));
-    // Most pixels nearly right, so that the tail is a tail.
+    // Most pixels have small errors, so that the distribution has a tail.
     let mut draws = Draws::new("p99");
     for (p, q) in b.pixels_mut().iter_mut().zip(a.pixels()) {
         let share = draws.uniform().powi(6);
@@ -97,7 +97,7 @@ fn the_99th_percentile_is_that_of_sorting() {
     assert_eq!((exact.delta_e94_mean, exact.delta_e94_p99, exact.weighted_psnr_db), (Some(0.0), Some(0.0), None));
 }
 
-/// A dark picture that becomes bright at frame 3; what is shown follows by `keep` of what is missing a frame.
+/// A dark image that becomes bright at frame 3. The output keeps a share `keep` of its error in each frame.
 fn after_a_change(keep: f32, frames: usize) -> Scores {
     let at = |v: f32| Image::filled(SIZE, [v; 3]);
     let mut shown = 0.2;
@@ -113,19 +113,19 @@ fn after_a_change(keep: f32, frames: usize) -> Scores {
 
 #[test]
 fn ghosts_fade_as_the_method_forgets() {
-    // The share is keep^(age + 1).
+    // The share of the old color is keep^(age + 1).
     let scores = after_a_change(0.8, 3 + GHOST_FRAMES);
     let energy: f64 = (1..=GHOST_FRAMES as i32).map(|k| 0.64_f64.powi(k)).sum();
     assert_abs_diff_eq!(scores.ghost_energy.unwrap(), energy, epsilon = 1e-3);
-    // 0.8^4 is the first below one half, three frames after 0.8.
+    // 0.8^4 is the first at most half of 0.8, three frames later.
     assert_eq!(scores.ghost_half_frames, Some(4));
-    // Who follows at once has none; who never does keeps all.
+    // Output that follows at once has no ghosting; output that never follows keeps the old color.
     let scores = after_a_change(0.0, 20);
     assert_eq!((scores.ghost_energy, scores.ghost_half_frames), (Some(0.0), None));
     let scores = after_a_change(1.0, 3 + 20);
     assert_abs_diff_eq!(scores.ghost_energy.unwrap(), 20.0, epsilon = 1e-3);
     assert_eq!(scores.ghost_half_frames, None);
-    // Nothing changed, and changes too small to tell from noise.
+    // No change, and changes below the threshold.
     assert_eq!(after_a_change(0.5, 3).ghost_energy, None);
 }
 

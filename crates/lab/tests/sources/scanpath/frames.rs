@@ -1,16 +1,16 @@
-//! One gaze point per frame: which sample is held, and where it falls.
+//! Resampling to one gaze point per frame: the held sample, and its frame position.
 
 use super::{VIEW_PX, any_samples, at, parse, path_of, screen, view};
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::*;
 use proptest::prelude::*;
 
-/// Any float, the largest and the non-finite ones often.
+/// Any float, with the largest and the non-finite ones frequent.
 fn wild() -> impl Strategy<Value = f32> {
     prop_oneof![any::<f32>(), Just(f32::MAX), Just(f32::MIN), Just(f32::NAN), Just(f32::INFINITY)]
 }
 
-/// The two maps written out for `view()` and `screen(true)`, with a pinhole of the frame's focal length.
+/// Both mappings, reimplemented for `view()` and `screen(true)`, with a pinhole of the frame's focal length.
 fn mapped(px: [f32; 2], map: GazeMap) -> [f32; 2] {
     let (x, y) = (f64::from(px[0]), f64::from(px[1]));
     let focal = 320.0 / 35f64.to_radians().tan();
@@ -27,7 +27,7 @@ fn mapped(px: [f32; 2], map: GazeMap) -> [f32; 2] {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// H63, against an oracle that walks through all samples.
+    /// H63, against an oracle that searches all samples linearly.
     #[test]
     fn each_frame_holds_the_last_valid_sample(
         samples in any_samples(), start in 0.0f64..1.0, fps in 5.0f64..500.0, fit in any::<bool>(),
@@ -36,7 +36,7 @@ proptest! {
         let start_s = start * path.duration_s();
         let map = if fit { GazeMap::Fit } else { GazeMap::Angle };
         let gaze = FrameGaze::new(&path, &view(), map, start_s, fps).unwrap();
-        // The last frame is shown while the recording lasts, the next one would not be.
+        // The last frame is within the recording, the next one is not.
         let last_s = start_s + (gaze.frames() - 1) as f64 / fps;
         prop_assert!(last_s <= path.duration_s() + 1e-9 && last_s + 1.0 / fps > path.duration_s());
         for i in 0..gaze.frames() + 3 {
@@ -67,18 +67,18 @@ proptest! {
         let ray = glam::DVec3::from(view.ray(px).map(f64::from));
         let angle = |x: f64, y: f64| x.hypot(y).atan().to_degrees();
         prop_assert!((angle(ray.x, ray.y) - angle(on_screen[0], on_screen[1])).abs() < 1e-4);
-        // Same direction too: the tangents agree one by one, so left stays left and up stays up.
+        // The direction agrees too: tangents are compared by component.
         prop_assert!((ray.x - on_screen[0]).abs() < 2e-6 && (ray.y - on_screen[1]).abs() < 2e-6);
     }
 
-    /// H63: coordinates of any size come out finite or lost.
+    /// H63: coordinates of any size map to finite positions or count as lost.
     #[test]
     fn wild_coordinates_never_become_non_finite(x in wild(), y in wild(), fit in any::<bool>()) {
         let path = path_of(vec![at(0.0, [3.0, 4.0]), at(0.1, [x, y])]).unwrap();
         let finite = x.is_finite() && y.is_finite();
         prop_assert_eq!(path.lost(), usize::from(!finite));
         let map = if fit { GazeMap::Fit } else { GazeMap::Angle };
-        // So narrow and fine a view that the largest floats overflow in it.
+        // A view with so small a pixel angle that the largest floats overflow.
         let view = ViewGeometry::flat([15_360, 8_640], 5.0).unwrap();
         let gaze = FrameGaze::new(&path, &view, map, 0.0, 10.0).unwrap();
         prop_assert!((0..4).all(|i| gaze.px(i).unwrap().iter().all(|v| v.is_finite())));
@@ -120,7 +120,7 @@ fn a_screen_made_for_the_view_makes_both_maps_the_same() {
     assert!((slope_x / slope_y - 1.0).abs() < 1e-6, "square pixels");
 }
 
-/// H63: nothing before the first valid sample, then held through a blink, through NaN and to the end.
+/// H63: no gaze before the first valid sample; then held during a blink, over NaN, and to the end.
 #[test]
 fn lost_gaze_is_held_and_its_age_grows() {
     let path =

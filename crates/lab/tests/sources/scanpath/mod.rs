@@ -1,6 +1,6 @@
-//! Scanpaths: files, resampling to frames, and the statistics of the synthetic eye.
+//! Scanpaths: files, resampling to frames, and the statistics of synthetic ones.
 //!
-//! `cargo test --features lab --test scanpath -- --ignored write_fixture` makes `fixtures/scanpath_viewing.csv` anew.
+//! `cargo test -p afterimage-lab --test sources -- --ignored write_fixture` rewrites `fixtures/scanpath_viewing.csv`.
 
 use afterimage::ViewGeometry;
 use afterimage_lab::error::InputError;
@@ -38,7 +38,7 @@ fn at(t_s: f64, px: [f32; 2]) -> Sample {
     Sample { t_s, px: Some(px) }
 }
 
-/// Name, samples, lost samples: the table of the data's own README.
+/// Name, samples, lost samples: the table in the data's README.
 const RECORDED: [(&str, usize, usize); 6] = [
     ("reading_1250hz_clean.csv", 20_000, 0),
     ("reading_1250hz_blinks.csv", 22_500, 521),
@@ -65,7 +65,7 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
         assert_eq!(known, name != "reading_250hz_noisy.csv");
         let rate: f64 = name.split('_').find_map(|w| w.split("hz").next()?.parse().ok()).unwrap();
         assert_eq!(path.about().rate_hz, Some(rate));
-        // H63: lost and wild samples of real trackers give finite pixels in every frame after the first valid sample.
+        // H63: lost samples and outliers of real trackers give finite pixels in every frame after the first valid sample.
         let gaze = FrameGaze::new(&path, &view(), GazeMap::default_for(path.screen()), 0.0, 60.0).unwrap();
         let first_valid = path.samples().iter().find(|s| s.px.is_some()).unwrap().t_s;
         for i in 0..gaze.frames() {
@@ -91,7 +91,7 @@ fn the_fixture_is_what_the_generator_makes() {
     assert_eq!(read.about(), made.about());
     for (a, b) in read.samples().iter().zip(made.samples()) {
         let (p, q) = (a.px.unwrap(), b.px.unwrap());
-        // Not bit for bit: another platform's sines may differ in their last digit.
+        // Not bit for bit: sines may differ in the last digit on another platform.
         assert!(a.t_s == b.t_s && (p[0] - q[0]).abs() < 1e-2 && (p[1] - q[1]).abs() < 1e-2);
     }
     assert!(std::fs::metadata(fixture()).unwrap().len() < 100_000);
@@ -133,9 +133,9 @@ fn bad_files_are_refused_in_one_line_that_says_where() {
     }
     let whole: [(&[u8], &str); 8] = [
         (b"", "no column names"),
-        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" where the column names belong"),
-        (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
-        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is not known"),
+        (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" instead of the column names"),
+        (b"t_s,x_px,y_px,valid\n0,1,2,1\n", "size is missing"),
+        (b"# screen_px: unknown\nt_s,x_px,y_px,valid\n0,1,2,1\n", "size is missing"),
         (b"# screen_px: 0x768\n", "line 1: screen_px is \"0x768\""),
         (b"# screen_cm: 38x-1\n", "line 1: screen_cm is"),
         (b"# distance_cm: inf\n", "line 1: distance_cm is"),
@@ -154,7 +154,7 @@ fn missing_folder_and_oversized_files_are_refused_before_reading() {
     assert!(error(&dir.path().join("none.csv")).contains("none.csv: cannot be read"));
     assert!(error(dir.path()).contains("is a folder"));
     let big = dir.path().join("big.csv");
-    // Sparse: takes no space, and reading it would be seen as slow.
+    // A sparse file: takes no disk space, and reading it would take noticeable time.
     std::fs::File::create(&big).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
     assert!(error(&big).contains("larger than 256 MiB"));
 }
@@ -195,7 +195,7 @@ proptest! {
     ) {
         let about = About { task, rate_hz, notes: notes.into_iter().collect() };
         let Ok(path) = Scanpath::new("n", screen(known), about, samples) else {
-            return Ok(()); // All lost, or two notes alike after trimming.
+            return Ok(()); // All samples lost, or two equal keys after trimming.
         };
         prop_assert_eq!(parse_csv("n", &csv(&path)).unwrap(), path);
     }

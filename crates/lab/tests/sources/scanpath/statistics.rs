@@ -1,4 +1,4 @@
-//! The synthetic eye against the distributions it claims.
+//! Synthetic scanpaths against their documented distributions.
 //!
 //! Seeds are independent of one another and chosen before the first run. A test fails below p = 1e-4: with the ten
 //! p-values here, a correct generator with other seeds fails one time in a thousand.
@@ -41,7 +41,7 @@ fn check_z(what: &str, found: f64, expected: f64, sd: f64) {
     assert!(p > P_LEAST, "{what}: p = {p:e}");
 }
 
-/// All draws within the range, mean as of a uniform distribution, and its shape by chi-squared over ten bins.
+/// Tests for a uniform distribution: range, mean, and shape by chi-squared over ten bins.
 fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
     let slack = 1e-9;
     assert!(draws.iter().all(|d| (low - slack..=high + slack).contains(d)), "{what}");
@@ -68,7 +68,7 @@ fn fixations_landings_undershoot_and_microsaccades_are_distributed_as_claimed() 
     check_uniform("undershoot", &undershoot, [0.04, 0.12]);
     let micro: Vec<_> = of(EventKind::Microsaccade).iter().map(|e| e.amplitude_deg).collect();
     check_uniform("microsaccade / deg", &micro, [0.2, 1.0]);
-    // One per fixation with probability 2 Hz x length: a sum of independent yes-or-no draws.
+    // One per fixation with probability 2 Hz x length: a sum of independent Bernoulli draws.
     let chances: Vec<f64> = of(EventKind::Fixation).iter().map(|e| 2.0 * length_s(e)).collect();
     let sd = chances.iter().map(|p| p * (1.0 - p)).sum::<f64>().sqrt();
     let fixated_s = chances.iter().sum::<f64>() / 2.0;
@@ -117,7 +117,7 @@ fn events_tile_the_time_and_follow_the_grammar() {
     }
 }
 
-/// Ray of a sample, from the screen's centimetres: shares nothing with the generator.
+/// Ray of a sample, from the screen's size in centimetres: shares no code with the generator.
 fn ray(path: &Scanpath, sample: &Sample) -> [f64; 3] {
     let (screen, px) = (path.screen(), sample.px.unwrap());
     let cm = |i: usize| (f64::from(px[i]) / f64::from(screen.size_px[i]) - 0.5) * f64::from(screen.size_cm.unwrap()[i]);
@@ -126,13 +126,13 @@ fn ray(path: &Scanpath, sample: &Sample) -> [f64; 3] {
     v.map(|c| c / length)
 }
 
-/// Angle between unit vectors by their chord.
+/// Angle between unit vectors, from their chord.
 fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     let chord = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
     (2.0 * (0.5 * chord).asin()).to_degrees()
 }
 
-/// From the samples alone: the time for the middle 80 % of the way follows the main sequence. A minimum-jerk profile spends a
+/// From the samples alone: the duration of the middle 80 % of a saccade follows the main sequence. A minimum-jerk profile spends a
 /// fixed share of its time there, so time against amplitude has that share of the main sequence's slope and intercept.
 #[test]
 fn the_main_sequence_is_in_the_samples() {
@@ -169,11 +169,11 @@ fn the_main_sequence_is_in_the_samples() {
         1e3 * intercept / profile,
         1e3 * slope / profile
     );
-    // Nothing here is random: what is left is f32 pixels and linear interpolation between samples 0.2 ms apart.
+    // Not random: the remaining error is that of f32 pixels and of linear interpolation between samples 0.2 ms apart.
     assert!((slope / profile - 0.0022).abs() < 0.0022 * 5e-3 && (intercept / profile - 0.021).abs() < 0.021 * 5e-3);
 }
 
-/// Where 10 u^3 - 15 u^4 + 6 u^5 = 0.1, by bisection.
+/// Solution of 10 u^3 - 15 u^4 + 6 u^5 = 0.1, by bisection.
 fn time_of_a_tenth() -> f64 {
     let (mut low, mut high) = (0.0f64, 0.5f64);
     for _ in 0..60 {
@@ -220,7 +220,7 @@ fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
 fn gaze_stays_on_the_screen_and_visits_all_of_it() {
     for (size_cm, distance) in [([84.0, 47.3], 60.0), ([38.0, 30.0], 67.0), ([8.5, 8.5], 60.0)] {
         let screen = Screen { size_px: [1000, 800], size_cm: Some(size_cm), distance_cm: Some(distance) };
-        // Few samples a second and hours of them: what is looked for is rare.
+        // Many hours at a low rate, because excursions to the edge are rare.
         let made = generate(&SyntheticOptions { seed: 7, screen, duration_s: 20_000.0, rate_hz: 50.0 }).unwrap();
         let mut quarters = [0usize; 4];
         for sample in made.path.samples() {

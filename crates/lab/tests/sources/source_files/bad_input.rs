@@ -1,6 +1,6 @@
-//! What can be wrong with an input, and that the message names the file and the way out.
+//! Invalid inputs: the error names the file and a remedy.
 
-use super::{ALL, Extras, assert_says, error_of, folder_of, limits, picture, write_frame};
+use super::{ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, write_frame};
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::exr_file::{ExrHeader, FrameToWrite, write};
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open};
@@ -55,7 +55,7 @@ fn frames_that_do_not_fit_together() {
         write_frame(&folder.path().join("frame_0002.exr"), size, extras);
         let e = refused(folder.path());
         assert_says(&e, words);
-        assert!(e.subject.ends_with("frame_0002.exr"), "{what}: {e}");
+        assert!(e.message().subject.ends_with("frame_0002.exr"), "{what}: {e}");
     }
     let folder = folder_of(4, [8, 4], ALL);
     std::fs::remove_file(folder.path().join("frame_0002.exr")).unwrap();
@@ -83,7 +83,7 @@ fn a_sequence_needs_vectors_for_the_way_it_is_played() {
     assert_says(&e, &["frame_0001.exr", "has changed"]);
 }
 
-/// Every shorter version of a file is refused from its header, tables and last chunk alone.
+/// Every truncation of a file is detected from its header, tables and last chunk alone.
 #[test]
 fn every_truncation_is_noticed_before_decoding() {
     let folder = folder_of(1, [40, 40], ALL);
@@ -118,7 +118,7 @@ fn missing_color_lists_what_is_there() {
     );
 }
 
-/// Puts `value` in place of the data of attribute `name` of type `kind`.
+/// Overwrites the data of attribute `name` of type `kind` with `value`.
 fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
     let key = format!("{name}\0{kind}\0");
     let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
@@ -143,7 +143,8 @@ fn absurd_claims_are_refused_from_the_header() {
     };
     let both = ["dataWindow", "displayWindow"];
     let e = with(&both, [0, 0, 99_999, 99_999]);
-    assert_says(&e, &["frame_0000.exr", "100000x100000", "64 million", "--max-megapixels 10000"]);
+    assert_says(&e, &["frame_0000.exr", "100000x100000", "64 million"]);
+    assert_needs_megapixels(&e, 10_000);
     let e = with(&both, [0, 0, 1_000_000_000, 1_000_000_000]);
     assert_says(&e, &["frame_0000.exr", "1000000001"]);
     // Within the limit, but more chunks than the file has.
@@ -153,7 +154,7 @@ fn absurd_claims_are_refused_from_the_header() {
     assert_says(&e, &["8x4 at (0, 0)", "10x4 at (-1, 0)", "crop or overscan"]);
 
     let e = error_of(StillSource::open(&path, &ReadLimits { max_pixels: 0 }));
-    assert_says(&e, &["--max-megapixels 1"]);
+    assert_needs_megapixels(&e, 1);
     assert_eq!(ReadLimits::default().max_pixels, 64_000_000);
 }
 
@@ -173,7 +174,9 @@ fn one_huge_tile_is_refused() {
     assert!(StillSource::open(&path, &limits()).is_ok());
     let tight = ReadLimits { max_pixels: 64 * 64 };
     let e = error_of(StillSource::open(&path, &tight));
-    assert_says(&e, &["tile.exr", "smaller tiles", "--max-megapixels"]);
+    assert_says(&e, &["tile.exr", "smaller tiles", "raise the limit"]);
+    // 12 channels of 4 bytes for 4096 pixels, over 16 bytes a pixel.
+    assert!(matches!(&e, InputError::Limit { exceeded, .. } if exceeded.needed == Some(12 * 4 * 4096 / 16)), "{e:?}");
 }
 
 #[test]
@@ -183,7 +186,7 @@ fn subsampled_channels_are_refused() {
     let zeros = || FlatSamples::F32(vec![0.0; 64]);
     save(&path, vec![AnyChannel::new("Y", zeros())], (8, 8));
     let mut bytes = std::fs::read(&path).unwrap();
-    // Of the channel list: name, zero, type, flags, then the sampling in x and y.
+    // The channel list: name, zero, type, flags, then the sampling in x and y.
     let key = b"chlist\0";
     let at = bytes.windows(key.len()).position(|w| w == key).unwrap() + key.len() + 4 + 2 + 8;
     bytes[at..at + 8].copy_from_slice(&[2, 0, 0, 0, 2, 0, 0, 0]);
@@ -209,7 +212,9 @@ fn png_and_jpeg_keep_the_same_limits() {
     let crc = crc32(&bytes[12..29]);
     bytes[29..33].copy_from_slice(&crc.to_be_bytes());
     std::fs::write(&png, &bytes).unwrap();
-    assert_says(&refused(&png), &["a.png", "100000x90000", "64 million", "--max-megapixels 9000"]);
+    let e = refused(&png);
+    assert_says(&e, &["a.png", "100000x90000", "64 million"]);
+    assert_needs_megapixels(&e, 9000);
     bytes[16..20].copy_from_slice(&0u32.to_be_bytes());
     let crc = crc32(&bytes[12..29]);
     bytes[29..33].copy_from_slice(&crc.to_be_bytes());
@@ -222,7 +227,9 @@ fn png_and_jpeg_keep_the_same_limits() {
     let sof = bytes.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
     bytes[sof + 5..sof + 9].copy_from_slice(&[0xFF, 0xFE, 0xFF, 0xFD]);
     std::fs::write(&jpg, &bytes).unwrap();
-    assert_says(&refused(&jpg), &["a.jpg", "65533x65534", "--max-megapixels 4295"]);
+    let e = refused(&jpg);
+    assert_says(&e, &["a.jpg", "65533x65534"]);
+    assert_needs_megapixels(&e, 4295);
 }
 
 #[test]
@@ -277,7 +284,7 @@ fn truncated_png_and_jpeg_are_refused() {
         let path = folder.path().join(name);
         DynamicImage::ImageRgb8(noisy.clone()).save(&path).unwrap();
         let whole = std::fs::read(&path).unwrap();
-        // A PNG ends with an empty chunk of 12 bytes that holds nothing, a JPEG with a marker of 2.
+        // A PNG ends with an empty chunk of 12 bytes, a JPEG with a marker of 2.
         for length in (0..whole.len() - 13).step_by(7).chain([whole.len() - 14]) {
             std::fs::write(&path, &whole[..length]).unwrap();
             assert_says(&refused(&path), &[name]);

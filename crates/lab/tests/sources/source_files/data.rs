@@ -1,4 +1,4 @@
-//! Against frames of another renderer: names, counts, and that every sign is right.
+//! Frames of another renderer: names, counts, and all sign conventions.
 
 use super::{limits, recorded};
 use afterimage::{Image, ViewGeometry};
@@ -22,7 +22,7 @@ fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
     std::array::from_fn(|i| (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy)
 }
 
-/// Where the point behind a pixel was according to depth and cameras, and at which distance.
+/// Previous position and depth of a pixel's surface point, from depth and cameras.
 fn by_camera(frame: &SourceFrame, view: &ViewGeometry, x: usize, y: usize) -> ([f32; 2], f32) {
     let rows = frame.previous_from_current.unwrap();
     let matrix = Mat4::from_cols_array_2d(&rows).transpose();
@@ -31,8 +31,8 @@ fn by_camera(frame: &SourceFrame, view: &ViewGeometry, x: usize, y: usize) -> ([
     (view.project(point.into()).unwrap(), point.z)
 }
 
-/// Mean over steps of the PSNR of `previous` fetched at `p + sign * motion`. The same pixels for every sign: those that
-/// were visible before, and whose motion is at least `min_px`.
+/// Mean over steps of the PSNR of `previous` fetched at `p + sign * motion`. All signs use the same pixels: those
+/// that were visible before and have a motion of at least `min_px`.
 fn reprojected_db(
     source: &mut SequenceSource,
     indices: std::ops::Range<u64>,
@@ -128,7 +128,7 @@ fn the_repacked_frame_is_the_raw_one() {
     }
 }
 
-/// The table of the data's README, forwards and backwards; flipped signs must be clearly worse.
+/// The table in the data's README, forwards and backwards; flipped signs must be clearly worse.
 #[test]
 fn vectors_reproject_as_published() {
     let cases = [("sponza_lateral", true, 0.0, 36.3, 24.8), ("sponza_object", false, 0.25, 34.8, 18.4)];
@@ -154,7 +154,7 @@ fn vectors_reproject_as_published() {
     }
 }
 
-/// In a scene at rest, depth and cameras say the same as the vectors, in both playing directions.
+/// In a static scene, depth and cameras agree with the motion vectors, in both directions of playback.
 #[test]
 fn cameras_agree_with_vectors() {
     let Some(folder) = recorded("sponza_lateral") else {
@@ -183,7 +183,7 @@ fn cameras_agree_with_vectors() {
     assert!(source.frame(0).unwrap().previous_from_current.is_none());
 }
 
-/// The frames at positions i and 2n-2-i are the same pictures; only the first of all is a cut.
+/// The frames at positions i and 2n-2-i are equal; only frame 0 is a cut.
 #[test]
 fn playback_turns_round() {
     let Some(folder) = recorded("sponza_object") else {

@@ -1,4 +1,4 @@
-//! Every kind of file that is read, written here pixel by pixel and read back.
+//! Every supported kind of file, written here pixel by pixel and read back.
 
 use super::{ALL, Extras, folder_of, limits, picture, vectors};
 use afterimage::Image;
@@ -199,7 +199,7 @@ fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
                 encoding(compression, blocks),
                 AnyChannels::sort(channels),
             );
-            // A window away from the origin, on both sides of it.
+            // Data windows away from the origin, on both sides of it.
             let mut exr = exr::prelude::Image::from_layer(layer);
             exr.attributes.display_window = attribute::IntegerBounds::new(Vec2(-12, -7), Vec2(w, h));
             exr.write().to_file(&path).unwrap();

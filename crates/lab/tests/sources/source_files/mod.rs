@@ -1,4 +1,4 @@
-//! File sources: stills, EXR sequences, their vectors and cameras, and everything that can be wrong with a file.
+//! File sources: stills, EXR sequences, their motion vectors and cameras, and damaged files.
 
 mod bad_input;
 mod data;
@@ -13,13 +13,13 @@ use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The folder of a recorded sequence; says loudly when it is not there.
+/// Folder of a recorded sequence; prints a message if it is absent.
 fn recorded(name: &str) -> Option<PathBuf> {
     let path = afterimage_testing::workspace().join("../shared/data/sequences").join(name);
     if path.is_dir() {
         return Some(path);
     }
-    // Not eprintln: the harness would swallow it.
+    // Not eprintln: the test harness captures it.
     let _ = writeln!(std::io::stderr(), "SKIPPED: no recorded frames at {}", path.display());
     None
 }
@@ -28,7 +28,7 @@ fn limits() -> ReadLimits {
     ReadLimits::default()
 }
 
-/// A small picture whose pixels all differ.
+/// A small image whose pixels all differ.
 fn picture(size: [u32; 2]) -> Image<[f32; 3]> {
     Image::from_fn(size, |[x, y]| [x as f32 / 8.0, y as f32 / 4.0, (x * y % 7) as f32])
 }
@@ -38,7 +38,7 @@ fn vectors(size: [u32; 2], offset: f32) -> Image<[f32; 2]> {
     Image::from_fn(size, |[x, y]| [x as f32 * 0.25 + offset, y as f32 * -0.5 - offset])
 }
 
-/// What a frame of a synthetic sequence has besides color.
+/// Images of a synthetic frame other than color.
 #[derive(Clone, Copy)]
 struct Extras {
     depth: bool,
@@ -73,18 +73,27 @@ fn folder_of(n: u32, size: [u32; 2], extras: Extras) -> tempfile::TempDir {
     folder
 }
 
-/// Checks that an error is one line, names its subject, and holds every one of the words.
+/// Checks that an error is one line, has a remedy, and contains all words.
 #[track_caller]
 fn assert_says(error: &InputError, words: &[&str]) {
     let text = error.to_string();
     assert!(!text.contains('\n'), "more than one line: {text:?}");
-    assert!(!error.remedy.is_empty(), "no remedy: {text}");
+    assert!(!error.message().remedy.is_empty(), "no remedy: {text}");
     for word in words {
         assert!(text.contains(word), "{word:?} is not in: {text}");
     }
 }
 
-/// The error of a result whose value cannot be shown.
+/// Checks that an error is a limit of pixels that needs this many megapixels.
+#[track_caller]
+fn assert_needs_megapixels(error: &InputError, megapixels: u64) {
+    match error {
+        InputError::Limit { exceeded, .. } => assert_eq!(exceeded.needed_megapixels(), Some(megapixels), "{error}"),
+        _ => panic!("not a limit: {error}"),
+    }
+}
+
+/// The error of a result whose value has no `Debug`.
 #[track_caller]
 fn error_of<T>(result: Result<T, InputError>) -> InputError {
     match result {

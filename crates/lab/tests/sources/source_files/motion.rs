@@ -1,4 +1,4 @@
-//! The convention detector on scenes whose convention is known.
+//! The convention detector on scenes with known conventions.
 
 use afterimage::{Image, MotionConvention};
 use afterimage_lab::source::motion_check::{Verdict, conventions, detect};
@@ -33,7 +33,7 @@ impl Texture {
     }
 }
 
-/// Previous frame, current frame, vectors in the internal form: an affine motion with both components.
+/// Previous frame, current frame, motion vectors in the library's convention: an affine motion with both components.
 fn scene(rng: &mut Pcg64) -> (Picture, Picture, Image<[f32; 2]>) {
     let texture = Texture::random(rng);
     let mut part = || {

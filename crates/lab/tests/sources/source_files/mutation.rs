@@ -1,4 +1,4 @@
-//! Damaged files: flipped, inserted and lost bytes must give an error or a picture, never a panic or a flood of memory.
+//! Damaged files: flipped, inserted and removed bytes must give an error or an image, never a panic or excessive memory.
 
 use super::{picture, vectors};
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Small enough that a file which gets through at its claimed size still takes little.
+/// Small, so that a damaged file that is accepted at its claimed size takes little memory.
 const LIMITS: ReadLimits = ReadLimits { max_pixels: 1 << 20 };
 
 /// Name and bytes of a small valid file of every kind and every compression.
@@ -66,7 +66,7 @@ fn save(path: &Path, compression: Compression, blocks: Blocks) {
     Image::from_layer(layer).write().to_file(path).unwrap();
 }
 
-/// Largest resident memory of this process so far, in MB, where the system tells.
+/// Peak resident memory of this process in MB, where the system provides it.
 fn peak_mb() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
@@ -78,7 +78,7 @@ fn mutate(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8)]) {
         if bytes.is_empty() {
             return;
         }
-        // Headers are where the harm is: half of the edits go there.
+        // Headers are the most sensitive part: half of the edits go there.
         let span = if how % 2 == 0 { bytes.len().min(420) } else { bytes.len() };
         let i = at.index(span);
         match how / 2 % 8 {
@@ -106,13 +106,13 @@ fn the_samples_are_sound() {
     }
 }
 
-/// A DWA chunk starts with counters that its decoder believes: one of 32 GB would end the process.
+/// A DWA chunk starts with counters that its decoder trusts: one of 32 GB would abort the process.
 #[test]
 fn dwa_counters_do_not_set_memory_aside() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dwaa_lines.exr");
     let (_, whole) = samples().iter().find(|s| s.0 == "dwaa_lines.exr").unwrap();
-    // The only chunk follows the table whose only entry points at it; its data follow the line and size.
+    // The only chunk is at the offset in the table's only entry; its data follows the line number and the size.
     let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
     let chunk = (8..whole.len() - 8).find(|&at| word(at - 8) == at as u64).unwrap();
     for counter in 1..10 {
@@ -153,7 +153,7 @@ proptest! {
                 let text = e.to_string();
                 prop_assert!(text.contains(name.as_str()), "{}", text);
                 prop_assert!(!text.contains('\n'), "{}", text);
-                prop_assert!(!e.remedy.is_empty());
+                prop_assert!(!e.message().remedy.is_empty());
             }
             Ok(mut source) => {
                 let frame = source.frame(0).unwrap();
@@ -162,8 +162,8 @@ proptest! {
             }
         }
         if let (Some(before), Some(after)) = (before, peak_mb()) {
-            // The largest allowed picture takes 16 MB as color and depth, its decoding about as much again; other tests
-            // of this process run meanwhile.
+            // The largest allowed image takes 16 MB as color and depth, and its decoder about as much again; other tests run
+            // in this process at the same time.
             prop_assert!(after - before < 300, "{} took {} MB", name, after - before);
         }
     }

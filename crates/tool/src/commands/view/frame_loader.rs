@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::source::{FrameSource, Stance};
+use afterimage_lab::source::{CameraPose, FrameSource};
 use glam::DMat4;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
@@ -21,7 +21,7 @@ struct Request {
 /// A frame, and the camera that it was rendered with.
 pub struct LoadedFrame {
     pub frame: SourceFrame,
-    pub stance: Option<Stance>,
+    pub stance: Option<CameraPose>,
     generation: u64,
 }
 
@@ -86,14 +86,14 @@ fn serve(
     let mut steered: Option<DMat4> = None;
     while let Ok(request) = requests.recv() {
         // A steered camera moves from its previous pose. Back on its own path it jumps, which is a cut.
-        let before = steered.or_else(|| Some(source.stance(request.index.saturating_sub(1))?.world_from_camera));
+        let before = steered.or_else(|| Some(source.camera_pose(request.index.saturating_sub(1))?.world_from_camera));
         let steps = before.zip(request.pose).map(|(before, now)| [before, now]);
         let cut = steered.is_some() && steps.is_none();
         source.steer(request.index, steps);
         steered = steps.map(|[_, now]| now);
         let loaded = source.frame(request.index).map(|frame| {
             let frame = SourceFrame { cut: frame.cut || cut, ..resized(frame, request.size) };
-            LoadedFrame { frame, stance: source.stance(request.index), generation: request.generation }
+            LoadedFrame { frame, stance: source.camera_pose(request.index), generation: request.generation }
         });
         if frames.send(loaded.map_err(Failure::from)).is_err() {
             break;

@@ -15,7 +15,7 @@ use super::state::{Action, Effect, State};
 use super::surface::Acquired;
 use super::times::Pass;
 use crate::failure::Failure;
-use afterimage_lab::source::Stance;
+use afterimage_lab::source::CameraPose;
 use glam::DMat4;
 use std::sync::Arc;
 use std::time::Duration;
@@ -52,7 +52,7 @@ pub struct Viewer {
     /// Gaze of the frames since the last history reset.
     record: Record,
     /// Camera of the current frame.
-    stance: Option<Stance>,
+    stance: Option<CameraPose>,
     /// Pose (world from camera) to which the user steers the camera.
     pose: Option<DMat4>,
     /// The window does not show the current state yet.
