@@ -1,5 +1,5 @@
 //! Planted errors in the passes: each must be seen by the comparison that the passes are held to. Errors in the mathematics are
-//! planted in tests/shader_twins/controls.rs.
+//! planted in tests/gpu/twins/controls.rs.
 
 use super::rig::*;
 use afterimage::shader::SHADERS;

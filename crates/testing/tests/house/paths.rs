@@ -114,7 +114,11 @@ fn missing_paths(tree: &BTreeSet<String>, path: &str, text: &str) -> Vec<String>
             }
         }
         if path.ends_with(".md") {
-            let broken = links(line).filter(|l| !exists(tree, &normalized(&format!("{folder}{l}")), false));
+            let leads_nowhere = |link: &&str| {
+                let target = normalized(&format!("{folder}{link}"));
+                !tree.contains(&target) && !tree.contains(&format!("{target}/"))
+            };
+            let broken = links(line).filter(leads_nowhere);
             missing.extend(broken.map(|l| format!("{path}:{number}: link to {l}")));
         }
     }
@@ -153,6 +157,6 @@ fn a_path_that_names_nothing_is_found() {
         ["src/lib.rs:1: src/cpu/", "src/lib.rs:1: src/cpu/*.rs"]
     );
     assert_eq!(missing("x.toml", "a = \"tests/none.sh\" # tests/run.sh"), ["x.toml:1: tests/none.sh"]);
-    let page = "[a](method.md#part) [b](../src/gpu/mod.rs) [c](https://x.y/z.md) [d](none.md)";
+    let page = "[a](method.md#part) [b](../src/gpu/mod.rs) [src](../src) [c](https://x.y/z.md) [d](none.md)";
     assert_eq!(missing("docs/a.md", page), ["docs/a.md:1: link to none.md"]);
 }

@@ -38,7 +38,7 @@ impl Shader {
     /// What the comment at the top names as the twin, if anything.
     fn twin(&self) -> String {
         let header = self.header();
-        let phrases = ["win of ", "win on the CPU is ", "win on the CPU: "];
+        let phrases = ["CPU twin: ", "Twin on the CPU: ", "Twin of "];
         let rest = phrases.iter().find_map(|p| header.split_once(p)).map_or("", |(_, rest)| rest);
         let twin = rest.split(' ').next().unwrap_or_default().trim_end_matches(['.', ',', ';', ':']);
         if twin.is_empty() { String::new() } else { format!("`{twin}`") }
@@ -69,7 +69,8 @@ impl Shader {
         let binding = |line: &str| {
             let (group, rest) = line.strip_prefix("@group(")?.split_once(") @binding(")?;
             let (binding, rest) = rest.split_once(") var")?;
-            let name = rest.split_once(' ')?.1.split(':').next()?;
+            // After `<storage, read>`, if that is there.
+            let name = rest.split_once("> ").map_or(rest, |(_, name)| name).trim().split(':').next()?;
             Some(format!("{group}.{binding} `{name}`"))
         };
         self.text.lines().filter_map(binding).collect()
@@ -158,10 +159,9 @@ fn tables_of_shaders_are_those_of_the_sources() {
         // A folder without a table.
         let listed: BTreeSet<String> =
             page.lines().filter_map(marked).map(|(_, folder)| full_folder(path, folder)).collect();
-        let folders: BTreeSet<&str> = tree
-            .files(&full_folder(path, "."), &[".wgsl"])
-            .map(|f| &f[..f.rfind('/').expect("a shader is in a folder") + 1])
-            .collect();
+        let all = full_folder(path, ".");
+        let folders: BTreeSet<&str> =
+            tree.files(&all, &[".wgsl"]).map(|f| &f[..f.rfind('/').expect("a shader is in a folder") + 1]).collect();
         violations.extend(folders.iter().filter(|f| !listed.contains(**f)).map(|f| format!("{path}: no table of {f}")));
     }
     expect_none("tables of shaders", &violations);
@@ -169,7 +169,7 @@ fn tables_of_shaders_are_those_of_the_sources() {
 
 #[test]
 fn a_table_follows_its_sources() {
-    let text = "//#use a\n//#use b\n// Blends levels. Its twin on the\n// CPU is src/mix.rs, which counts.\n\noverride AXIS: u32 = 0u;\noverride QUESTION: u32;\n\
+    let text = "//#use a\n//#use b\n// Blends levels. CPU twin:\n// src/mix.rs, which counts.\n\noverride AXIS: u32 = 0u;\noverride QUESTION: u32;\n\
         @group(0) @binding(1) var full: texture_2d<f32>;\n@group(2) @binding(0) var<storage, read> plan: array<u32>;\n\
         // a fn of c\nfn first(x: f32) {\n}\n@compute @workgroup_size(64)\nfn main() {\n}\n\
         @fragment fn shade() {\n}\nfn second() {}\n";
