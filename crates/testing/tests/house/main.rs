@@ -3,6 +3,7 @@
 //! Each rule is a function from text to a list of violations. One test applies it to the workspace, another to a small input
 //! with planted violations.
 
+mod commands;
 mod manifests;
 mod modules;
 mod paths;
