@@ -1,4 +1,4 @@
-//! What is the least that I must write? Two frames in, one image out, without a window.
+//! The smallest program: two frames in, one image out, without a window.
 //!
 //! `cargo run --example 01_smallest` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
@@ -12,14 +12,14 @@ use wgpu::{TextureFormat, TextureUsages};
 const SIZE: [u32; 2] = [256, 64];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Yours: a device, the frame that your renderer wrote, and what the user will see.
+    // From your renderer: a device, the texture of the foveated frame, and the texture of the output.
     let gpu = Headless::new()?;
     let (read, write) = (TextureUsages::TEXTURE_BINDING, TextureUsages::STORAGE_BINDING);
     let color = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, read | TextureUsages::COPY_DST);
     let output = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, write | TextureUsages::COPY_SRC);
 
     let mut post = Afterimage::new(&gpu.device, &ContextDesc::new(SIZE), output.format())?;
-    // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the left is blurred.
+    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are blurred.
     for (index, gaze_x, sharp) in [(0, 50.0, true), (1, 200.0, false)] {
         gpu.write(&color, 0, |x, _| [if sharp { (x % 2) as f32 } else { 0.5 }; 3]);
         let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0)?, Gaze::At { px: [gaze_x, 32.0] })];

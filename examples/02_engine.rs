@@ -1,5 +1,5 @@
-//! Where does each call go in an engine? A loop with a window that is resized and minimised, a cut, a pause, a lost gaze, and an
-//! output in a format that the device can write.
+//! An engine's loop, and where each call goes in it: a window that is resized and minimised, a cut, a pause, a lost gaze, a change of
+//! exposure, and an output in a format that compute shaders can write.
 //!
 //! `cargo run --example 02_engine` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
@@ -10,7 +10,7 @@ use afterimage::{COUNTERS_BYTES, ContextDesc, Exposure, FrameStats, Gaze, Reset,
 use headless::Headless;
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
-/// What a frame of the engine is told by the world outside.
+/// Event of the application before a frame.
 #[derive(Clone, Copy)]
 enum Event {
     Nothing,
@@ -30,7 +30,7 @@ struct Engine {
     size: Option<[u32; 2]>,
 }
 
-/// A swapchain's own format is rarely one that a compute shader may write: write this, and draw it to the screen.
+/// Output format. Compute shaders can rarely write a swapchain's format: write this one, and draw it to the screen.
 const OUTPUT: TextureFormat = TextureFormat::Rgba16Float;
 
 fn targets(gpu: &Headless, size: [u32; 2]) -> (Texture, Texture) {
@@ -48,7 +48,7 @@ impl Engine {
     }
 
     fn resize(&mut self, gpu: &Headless, size: [u32; 2]) -> Result<(), Box<dyn std::error::Error>> {
-        // A minimised window is 0x0: skip its frames, and keep what there is.
+        // A minimised window is 0x0: skip its frames, and keep the context and its history.
         if size.contains(&0) {
             self.size = None;
         } else if self.post.desc().size_px == size {
@@ -61,14 +61,14 @@ impl Engine {
         Ok(())
     }
 
-    /// One frame. What the history may be trusted with is decided here, by what happened since the last one.
+    /// Processes one frame. The event decides whether history is valid.
     fn frame(&mut self, gpu: &Headless, index: u64, event: Event) -> Result<String, Box<dyn std::error::Error>> {
         if let Event::Resized(size) = event {
             self.resize(gpu, size)?;
         }
         let Some(size) = self.size else { return Ok("minimised: nothing to draw".into()) };
         let mut encoder = gpu.encoder();
-        // Here your renderer would draw the foveated frame into `color`. This one clears it.
+        // Your renderer would draw the foveated frame into `color` here. This example clears it.
         draw(&mut encoder, &self.color, if let Event::Brighter(ratio) = event { 0.2 * f64::from(ratio) } else { 0.2 });
         let gaze = match event {
             Event::GazeLost => Gaze::Lost,
@@ -78,7 +78,7 @@ impl Engine {
         let frame = Frame {
             reset: match event {
                 Event::Cut => Reset::All,
-                // After a while anything may have moved.
+                // After a pause anything may have moved.
                 Event::ResumedAfter(seconds) if seconds > 0.5 => Reset::All,
                 _ => Reset::None,
             },
@@ -90,10 +90,10 @@ impl Engine {
         };
         let target = Target { counters: Some(&self.counters), ..Target::new(&self.output) };
         let recorded = self.post.record(&gpu.device, &mut encoder, &frame, target)?;
-        // Then your tone mapping would draw `output` to the screen, and the frame goes out.
+        // Your tone mapping would draw `output` to the screen here.
         gpu.submit(encoder);
         let warnings: Vec<String> = recorded.warnings().map(|w| w.to_string()).collect();
-        // An engine would read the counters a few frames late, or never.
+        // An engine would read the counters a few frames later, or not at all.
         let stats = FrameStats::from_counters(&gpu.read_buffer(&self.counters)).ok_or("too few counters")?;
         let kept = 100 * stats.valid() / stats.pixels;
         Ok(format!("{}x{}, history for {kept:3} % {}", size[0], size[1], warnings.join("; ")))

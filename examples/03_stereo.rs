@@ -1,4 +1,4 @@
-//! How do two eyes share one context? Array textures, one gaze each, one dispatch.
+//! Stereo: two views in one context, with array textures, one gaze for each view, and one dispatch.
 //!
 //! `cargo run --example 03_stereo` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
@@ -15,13 +15,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
     let mut post = Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba32Float)?;
 
-    // Two layers: the left eye's, then the right eye's.
+    // Two array layers: left eye, right eye.
     let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
     let write = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
     let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
     let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
 
-    // Each eye of a headset sees more towards its temple; both look at one point, first to the left, then to the right.
+    // Each eye of a headset has a wider field of view on its outer side. Both look at one point, first on the left, then on the right.
     let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
     let stripes = |eye: u32, sharp: bool, x: u32| {
         let light = if sharp { (x % 2) as f32 } else { 0.5 };

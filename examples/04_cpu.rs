@@ -1,4 +1,4 @@
-//! How do I do the same without a GPU? Two frames in, one image out.
+//! The smallest program without a GPU: two frames in, one image out.
 //!
 //! `cargo run --features cpu --example 04_cpu`
 
@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
     let mut output = [Image::filled(size, [0.0; 3])];
 
-    // Frame 0: the eye looks left and sees sharp stripes there. Frame 1: it looks right, and the renderer saves work on the left.
+    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are blurred.
     let sharp = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
     let blurred = Image::filled(size, [0.5; 3]);
     for (index, color, gaze_x) in [(0, &sharp, 60.0), (1, &blurred, 260.0)] {

@@ -1,7 +1,7 @@
-//! What is the least that an application with a window needs? Its renderer makes a foveated frame, `record` writes what is shown into a
-//! texture, a blit takes that to the swapchain. The mouse is the gaze.
+//! The smallest application with a window: a renderer draws a foveated frame, `record` writes the output texture, and a blit copies that
+//! to the swapchain. The mouse is the gaze.
 //!
-//! What the post-process adds to an application are the fields `post`, `output` and `gaze` of `App` and the four lines marked (1) to (4).
+//! The post-process adds to an application the fields `post`, `output` and `gaze` of `App` and the lines marked (1) to (4).
 //!
 //! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
@@ -15,7 +15,7 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowId};
 
-/// A swapchain's own format is rarely one that a compute shader may write: write this, and draw it to the screen.
+/// Output format. Compute shaders can rarely write a swapchain's format: write this one, and draw it to the screen.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 /// The application: a window, its device, and the post-process.
@@ -33,7 +33,7 @@ struct App {
     index: u64,
 }
 
-/// Stands in for your renderer: a pattern, made coarse where the eye does not look.
+/// Placeholder for your renderer: a pattern, foveated by the simulator.
 struct Renderer {
     pattern: wgpu::Texture,
     foveation: GpuSimulator,
@@ -97,13 +97,13 @@ impl App {
     }
 
     fn resize(&mut self, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
-        // A minimised window is 0x0: keep what there is.
+        // A minimised window is 0x0: keep the context and its history.
         if !size.contains(&0) && size != [self.config.width, self.config.height] {
             [self.config.width, self.config.height] = size;
             self.surface.configure(&self.device, &self.config);
             self.renderer = Renderer::new(&self.device, &self.queue, size)?;
             self.output = texture(&self.device, size, FORMAT);
-            // (2) The history starts afresh.
+            // (2) Discards history.
             self.post.resize(&self.device, size)?;
         }
         Ok(())
@@ -122,13 +122,13 @@ impl App {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let geometry = ViewGeometry::flat([self.config.width, self.config.height], 70.0)?;
         let views = [ViewFrame::new(geometry, self.gaze)];
-        // Here your renderer draws the foveated frame.
+        // Your renderer would draw the foveated frame here.
         let Renderer { pattern, foveation, color } = &mut self.renderer;
         foveation.record(&self.device, &mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
         // (3) The post-process.
         let frame = Frame::new(color, &views, self.index);
         self.post.record(&self.device, &mut encoder, &frame, &self.output)?;
-        // Here is your tone mapping.
+        // Your tone mapping would come here.
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&self.device, &mut encoder, &output, &screen);
         self.queue.submit([encoder.finish()]);
@@ -138,7 +138,7 @@ impl App {
     }
 }
 
-/// The window's events.
+/// Handler of the window's events.
 #[derive(Default)]
 struct Shell {
     app: Option<App>,

@@ -148,7 +148,7 @@ pub enum FrameError {
         input: &'static str,
         /// Format of the texture.
         format: String,
-        /// What is wrong.
+        /// Problem with the texture.
         problem: String,
         /// Supported textures.
         expected: &'static str,
@@ -158,7 +158,7 @@ pub enum FrameError {
     Buffer {
         /// Name of the buffer.
         input: &'static str,
-        /// What is wrong.
+        /// Problem with the buffer.
         problem: String,
         /// Supported buffers.
         expected: &'static str,

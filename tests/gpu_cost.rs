@@ -1,5 +1,5 @@
-//! What a turn of the head costs on the device: hard case H60. Alone in its process, whose CPU time a software device spends; a real one
-//! takes none of it, and there the time until it is done counts.
+//! Cost of a turn of the head on the device: hard case H60. A process of its own, because a software device spends its CPU time; a real one
+//! spends none, and there the elapsed time counts.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::{ContextDesc, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
@@ -54,7 +54,7 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
         let mut times = [vec![], vec![]];
         let mut draws = Draws::new("cost on the device");
         for index in 0..42 {
-            // A normal frame and a turn by turns, each of another picture.
+            // A normal frame and a turn alternate, each of another picture.
             let is_turn = index % 2 == 1;
             let pixels: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(|_| [0; 4].map(|_| draws.uniform())).collect();
             afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&pixels));
@@ -67,7 +67,7 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             post.record(&device, &mut encoder, &frame, &output).unwrap();
             queue.submit([encoder.finish()]);
             wait();
-            // The first of both make pipelines, and have no past.
+            // The first frames compile pipelines and have no history.
             if index > 1 {
                 times[usize::from(is_turn)].push(clock_ns(is_software) - from);
             }

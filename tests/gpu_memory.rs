@@ -1,4 +1,4 @@
-//! Ten thousand frames with resizes leak nothing. Alone in its file, for a process of its own.
+//! Ten thousand frames with resizes leak no memory. A file of its own, for a process of its own.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};

@@ -1,5 +1,5 @@
-//! A device without a window, and pixels to and from it: what an engine has, and an example lacks.
-#![allow(dead_code, reason = "each example uses its part")]
+//! A device without a window, with uploads and downloads of textures, for the examples.
+#![allow(dead_code, reason = "no example uses all of it")]
 
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
 
@@ -10,7 +10,7 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Any adapter; software Vulkan: mesa-vulkan-drivers.
+    /// A device on the default adapter. Software Vulkan is in the package mesa-vulkan-drivers.
     pub fn new() -> Result<Self, Box<dyn std::error::Error>> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
@@ -45,7 +45,7 @@ impl Headless {
         self.queue.submit([encoder.finish()]);
     }
 
-    /// Fills a layer of an `Rgba32Float` texture with `color` of each pixel.
+    /// Fills a layer of an `Rgba32Float` texture with `color(x, y)` at each pixel.
     pub fn write(&self, texture: &Texture, layer: u32, color: impl Fn(u32, u32) -> [f32; 3]) {
         let (width, height) = (texture.width(), texture.height());
         let pixels: Vec<[f32; 4]> = (0..width * height)
@@ -75,7 +75,7 @@ impl Headless {
         bytemuck::cast_slice(&self.map(&buffer)).to_vec()
     }
 
-    /// The bytes of a buffer that can be copied from.
+    /// The bytes of a buffer with the usage `COPY_SRC`.
     pub fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
         let buffer = self.buffer(from.size(), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.encoder();

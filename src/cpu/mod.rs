@@ -176,7 +176,11 @@ impl CpuAfterimage {
         let pass = Pass { desc: &self.desc, history: &mut self.history, frame, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
-            Method::Taa | Method::Smr => surface_pass::run(pass),
+            Method::Taa => surface_pass::run(pass, taa_pass::pixel),
+            Method::Smr => {
+                let smr = smr_pass::Smr::new(&self.desc.settings);
+                surface_pass::run(pass, |view, x, y, stats| smr.pixel(view, x, y, stats))
+            }
             Method::Wrs => wrs_pass::run(pass),
         };
         if self.history.layout() == HistoryLayout::Nothing {

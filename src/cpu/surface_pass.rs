@@ -2,12 +2,9 @@
 
 use super::Pass;
 use super::inputs::Inputs;
-use super::smr_pass::Smr;
 use super::surface_history::SurfaceHistory;
-use super::taa_pass;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
-use crate::settings::Method;
 use crate::stats::FrameStats;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -31,11 +28,13 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
+/// Runs `process_pixel`, a method, for every pixel of every view. It adds what it counts to the statistics.
+pub(super) fn run(
+    pass: Pass<'_, '_>,
+    process_pixel: impl Fn(&SurfaceHistory<'_>, u32, u32, &mut FrameStats) -> Pixel + Sync,
+) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
-    let settings = &desc.settings;
     let has_history = history.is_filled();
-    let smr = Smr::new(settings);
     let width = desc.size_px[0] as usize;
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -62,11 +61,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let row = |(y, row): (usize, &mut Row<'_>)| {
             let mut stats = FrameStats::default();
             for x in 0..width {
-                let pixel = if settings.method == Method::Taa {
-                    taa_pass::pixel(&view, x as u32, y as u32, &mut stats)
-                } else {
-                    smr.pixel(&view, x as u32, y as u32, &mut stats)
-                };
+                let pixel = process_pixel(&view, x as u32, y as u32, &mut stats);
                 row.out[x] = pixel.output.to_array();
                 row.surfaces[x] = pixel.surface;
                 if let Some(noise) = &mut row.noise {

@@ -1,4 +1,4 @@
-//! Small frames of any bit patterns, for properties of whole passes on either executor.
+//! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
 use afterimage::{Bias, Filter, Foveation, Gaze, Image, Method, Sampler, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
@@ -32,12 +32,12 @@ pub fn all_settings() -> Vec<Settings> {
     ]
 }
 
-/// Any bits with probability `wild`, else a number in [low, high).
+/// Arbitrary bits with probability `wild`, else a number in [low, high).
 fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
     if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
 }
 
-/// Numbers of an engine, of which a share `wild` is any bit pattern. Vectors are whole pixels, or those bits.
+/// Plausible inputs of an engine, a share `wild` of them arbitrary bits. Motion vectors are whole pixels, or such bits.
 pub fn any_frame(draws: &mut Draws, wild: f32) -> AnyFrame {
     let d = draws;
     let gaze = Gaze::At { px: [number(d, wild, 0.0, 8.0), number(d, wild, 0.0, 6.0)] };

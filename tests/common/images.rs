@@ -1,4 +1,4 @@
-//! Images of frames, view by view, as the CPU executor takes them.
+//! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::Frame;
 use afterimage::{Image, ViewFrame};
@@ -22,7 +22,7 @@ impl<'a> OneView<'a> {
     }
 }
 
-/// The images of all views, input by input. An input is of all views or of none.
+/// Images of all views, input by input. All views have an input, or none.
 pub struct Images<'a> {
     views: Vec<ViewFrame>,
     color: Vec<&'a Image<[f32; 3]>>,

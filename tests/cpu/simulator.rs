@@ -110,7 +110,7 @@ fn the_fovea_is_copied_bit_for_bit_and_the_rest_is_coarser() {
                 let e = geometry.eccentricity_deg([x as f32, y as f32], gaze);
                 let same = out.at(x, y) == image.at(x, y);
                 if e < 2.4 {
-                    // Blocks are decided by their centres.
+                    // Centres decide whether blocks are used.
                     assert!(same || filter == Filter::Block && e > 1.0, "{filter:?} at {e} degrees");
                 }
                 outside_same += usize::from(same && e > 8.0);
@@ -151,7 +151,7 @@ fn h71_the_level_of_detail_is_continuous_and_monotone() {
 
 #[test]
 fn h71_the_image_has_no_seam_at_the_rings() {
-    // A smooth ramp: neighbouring pixels may differ by its own step and what the blend adds, never by a jump.
+    // A smooth ramp: neighbouring pixels may differ by its step and the slope of the blend, never by a jump.
     let image = Image::from_fn([640, 360], |[x, y]| [x as f32 / 640.0, y as f32 / 360.0, 0.5]);
     let mut worst = 0.0_f32;
     for filter in [Filter::Mip, Filter::Gauss] {
@@ -254,7 +254,7 @@ fn h62_angles_follow_rays_not_the_screen() {
         assert_abs_diff_eq!(f64::from(got), (angle(b) - angle(a)).abs(), epsilon = 1e-3);
         worst = worst.max((f64::from(got) - (angle(b) - angle(a)).abs()).abs());
     }
-    // Every pixel of the row, for an eye off the middle: the planted error, distance on the screen, is tens of degrees off.
+    // Every pixel of the row, for a gaze off the middle. Planted error: distance on the screen, which is tens of degrees off.
     let map = geometry.eccentricity_map([900.0, 249.5]);
     let mut by_screen = 0.0_f64;
     for x in 0..1000 {
@@ -314,7 +314,7 @@ fn a_bad_pixel_does_not_spread() {
             assert!(c.iter().all(|v| v.is_finite()) || i == 20 * 64 + 33, "{filter:?}");
         }
     }
-    // Where the frame is coarse, wherever the eye looks, the pixel itself is black or blurred, too.
+    // In coarse regions of any gaze the pixel itself is black or blurred, too.
     for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
         for x in 0..64 {
             let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };

@@ -1,4 +1,4 @@
-//! Same surface or not: hard cases H41-H45, H48 and H49 on the depth kernel.
+//! Depth test: hard cases H41-H45, H48 and H49 on the depth kernel.
 
 use afterimage::DepthConvention as Depth;
 use afterimage::kernel::depth;
@@ -18,7 +18,7 @@ const CONVENTIONS: [(&str, Depth); 8] = [
     ("orthographic from behind", Depth::Orthographic { near: -10.0, far: 1000.0 }),
 ];
 
-/// What a depth buffer of the convention stores for distance `z`, in f64.
+/// Value that a depth buffer of the convention stores for distance `z`, in f64.
 fn stored(convention: Depth, z: f64) -> f64 {
     match convention {
         Depth::Linear => z,
@@ -32,7 +32,7 @@ fn stored(convention: Depth, z: f64) -> f64 {
     }
 }
 
-/// Distance that a stored value stands for, in conventions that store distances.
+/// Distance of a stored value, in conventions that store distances.
 fn stored64(convention: Depth, value: f32) -> f64 {
     match convention {
         Depth::Orthographic { near, far } => f64::from(near) + f64::from(value.clamp(0.0, 1.0)) * f64::from(far - near),
@@ -55,7 +55,7 @@ fn every_convention_gives_the_disparity() {
         let map = convention.disparity_map();
         for z in [1.0, 2.5, 10.0, 80.0, 400.0] {
             let got = f64::from(depth::disparity(stored(convention, z) as f32, map));
-            // A forward buffer holds 24 bits of 1 - near / z: far away little is left of them.
+            // A forward buffer stores 24 bits of 1 - near / z, few of which distinguish large distances.
             let rounding = if name.starts_with("forward") { 1e-6 * z } else { 1e-5 };
             assert!((got * z - 1.0).abs() < rounding.max(2e-6), "{name}, z = {z}: {got}");
         }
@@ -74,11 +74,11 @@ fn h41_the_sky_is_the_same_sky_and_never_an_object() {
     for (convention, value) in sky {
         let d = depth::disparity(value, convention.disparity_map());
         assert_eq!(d, 0.0, "{convention:?}");
-        let remembered = disparity_value(disparity_code(d));
-        assert!(same(d, remembered));
+        let stored_disparity = disparity_value(disparity_code(d));
+        assert!(same(d, stored_disparity));
         for z in [0.1, 1.0, 1e3, 1e6] {
             let object = depth::disparity(stored(convention, z) as f32, convention.disparity_map());
-            assert!(!same(object, remembered) && !same(d, disparity_value(disparity_code(object))));
+            assert!(!same(object, stored_disparity) && !same(d, disparity_value(disparity_code(object))));
             objects += 1;
         }
     }
@@ -111,13 +111,13 @@ proptest! {
     }
 
     #[test]
-    fn h43_storage_neither_flushes_nor_accepts_for_ever(z in 1e-3f32..1e5) {
+    fn h43_storage_neither_rejects_nor_accepts_for_ever(z in 1e-3f32..1e5) {
         let d = depth::disparity(z, Depth::Linear.disparity_map());
-        let remembered = disparity_value(disparity_code(d));
-        prop_assert!(same(d, remembered), "the stored surface is recognised at every distance");
+        let stored_disparity = disparity_value(disparity_code(d));
+        prop_assert!(same(d, stored_disparity), "the stored surface is recognised at every distance");
         for factor in [0.97_f32, 1.03] {
             let other = depth::disparity(z * factor, Depth::Linear.disparity_map());
-            prop_assert!(!same(other, remembered), "3 % is another surface at every distance");
+            prop_assert!(!same(other, stored_disparity), "3 % is another surface at every distance");
         }
     }
 
@@ -134,7 +134,7 @@ proptest! {
         if z_previous > 0.1 {
             prop_assert!((depth::previous_disparity(now, stretch, step) * z_previous - 1.0).abs() < 1e-4);
         }
-        // Without the prediction a metre at three metres is a flush.
+        // Without the prediction, history is rejected for a metre at three metres.
         if z < 3.0 && step > 0.9 {
             prop_assert!(!same(now, 1.0 / (z + step)));
         }
@@ -156,7 +156,7 @@ fn h45_a_metre_towards_a_wall_is_predicted_to_rounding() {
     holds!(
         "H45",
         Cpu,
-        "1.5 to 101 m, 1 m nearer: off by {worst:.1e}, none flushed; {unpredicted} of 10000 unpredicted"
+        "1.5 to 101 m, 1 m nearer: off by {worst:.1e}, none rejected; {unpredicted} of 10000 unpredicted"
     );
 }
 
@@ -179,7 +179,7 @@ fn h42_values_just_outside_the_buffer_s_range_are_clamped() {
 }
 
 #[test]
-fn h43_half_float_depth_neither_flushes_nor_accepts_for_ever() {
+fn h43_half_float_depth_neither_rejects_nor_accepts_for_ever() {
     let half = |v: f32| half_value(half_bits(v));
     let step = |v: f32| half_value(half_bits(v) + 1) - half(v);
     assert_eq!((step(100.0), step(1000.0)), (0.0625, 0.5));
@@ -190,9 +190,9 @@ fn h43_half_float_depth_neither_flushes_nor_accepts_for_ever() {
         let distances = (0..50_000).map(|i| 10_f32.powf(5.0 * i as f32 / 50_000.0));
         let bad = distances.clone().find(|&z| {
             let bits = half_bits(stored(z));
-            let remembered = disparity_value(disparity_code(read(bits)));
-            let still = [bits - 1, bits, bits + 1].into_iter().all(|b| same(read(b), remembered));
-            let other = [0.97, 1.03].into_iter().any(|k| same(read(half_bits(stored(z * k))), remembered));
+            let stored_disparity = disparity_value(disparity_code(read(bits)));
+            let still = [bits - 1, bits, bits + 1].into_iter().all(|b| same(read(b), stored_disparity));
+            let other = [0.97, 1.03].into_iter().any(|k| same(read(half_bits(stored(z * k))), stored_disparity));
             !still || other
         });
         bad.unwrap_or(1e5)
@@ -209,12 +209,12 @@ fn h43_half_float_depth_neither_flushes_nor_accepts_for_ever() {
     holds!(
         "H43",
         Cpu,
-        "steps of 6.25 cm at 100 m, 0.5 m at 1 km; 1 step never flushes, 3 % always, to {linear_km:.1} km (reversed {reversed_km:.1})"
+        "steps of 6.25 cm at 100 m, 0.5 m at 1 km; 1 step is never rejected, 3 % always, to {linear_km:.1} km (reversed {reversed_km:.1})"
     );
 }
 
 #[test]
-fn h44_a_grazing_plane_is_never_flushed_by_jitter() {
+fn h44_a_grazing_plane_is_never_rejected_under_jitter() {
     // A plane at up to 89.9 degrees between its normal and the view's axis, rolled any way: disparity is linear over pixels. The depth
     // sample moves by up to half a pixel from frame to frame, and reprojection rounds by up to half a pixel, along both axes.
     let mut draws = Draws::new("grazing");
@@ -238,8 +238,8 @@ fn h44_a_grazing_plane_is_never_flushed_by_jitter() {
             without_slope += usize::from(!depth::same_surface(d(x, y), before, 0.02, 0.0));
         }
     }
-    assert!(seen > 50_000 && without_slope > 1_000, "{seen}; the planted error, no slope, flushes {without_slope}");
-    holds!("H44", Cpu, "{seen} jittered samples at 0 to 89.9 degrees: none flushed ({without_slope} without slope)");
+    assert!(seen > 50_000 && without_slope > 1_000, "{seen}; the planted error, no slope, rejects {without_slope}");
+    holds!("H44", Cpu, "{seen} jittered samples at 0 to 89.9 degrees: none rejected ({without_slope} without slope)");
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn a_silhouette_is_not_slope() {
     let step = |x: u32, _: u32| if x < 4 { 1.0 } else { 0.1 };
     assert_eq!(depth::slope(3, 1, [9, 3], step), 0.0);
     assert_eq!(depth::slope(4, 1, [9, 3], step), 0.0);
-    // A wire, and a single pixel, are no slope either.
+    // A wire, and a single pixel, do not count as slope either.
     assert_eq!(depth::slope(4, 1, [9, 3], |x, _| if x == 4 { 1.0 } else { 0.1 }), 0.0);
     assert_eq!(depth::slope(4, 1, [9, 3], |x, y| if (x, y) == (4, 1) { 0.1 } else { 1.0 }), 0.0);
     // Invalid neighbours and borders are ignored.
@@ -281,7 +281,7 @@ fn h49_orthographic_depth_is_a_distance() {
             let z = f64::from(far) * f64::from(i) / 1000.0;
             let value = stored(convention, z) as f32;
             let got = f64::from(depth::disparity(value, convention.disparity_map()));
-            // Distances that near and far are rounded to.
+            // Distances between near and far that rounding merges with them.
             worst = worst.max((got * stored64(convention, value) - 1.0).abs());
         }
         // The planted error: read as a perspective buffer of the same planes.

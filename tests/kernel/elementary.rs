@@ -198,7 +198,7 @@ fn h64_a_fovea_of_nothing_has_weight_1_at_the_gaze_point_alone() {
     let inv = 1.0 / acuity::cell_density(0.0);
     let w = |e: f32| acuity::candidate_weight(e, 0.0, inv);
     assert_eq!(w(0.0), 1.0);
-    // As near as f32 tells the weight from 1: a fall of 2 / 1.058 a degree.
+    // To the precision of f32 near a weight of 1, which falls by 2 / 1.058 a degree.
     let nearest = (0..1000).map(|i| 1e-9 * 1.02_f32.powi(i)).find(|&e| w(e) < 1.0).unwrap();
     assert!(nearest < 2e-7, "{nearest}");
     assert!((0..=180_000).all(|i| w(i as f32 * 1e-3).is_normal() && (i == 0 || w(i as f32 * 1e-3) < 1.0)));

@@ -1,4 +1,4 @@
-//! The kernel's functions: each computes its formula, and the model that they make is right.
+//! The kernel's functions: each computes its formula, and their model has the properties it promises.
 
 mod color;
 mod depth;

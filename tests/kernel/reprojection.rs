@@ -1,4 +1,4 @@
-//! Where a pixel was: hard cases H51, H54, H55 and H57 on the reprojection kernel.
+//! Previous positions of pixels: hard cases H51, H54, H55 and H57 on the reprojection kernel.
 
 use afterimage::Verdict;
 use afterimage::kernel::pack::{half_bits, half_value};
@@ -16,7 +16,7 @@ fn h57_the_border_is_where_it_should_be() {
     assert_eq!(at(0, 0, -0.5, 0.0), Ok([0, 0]));
     assert_eq!(at(0, 0, -0.51, 0.0), Err(Verdict::OffScreen));
     assert_eq!(at(0, 49, 0.0, 0.51), Err(Verdict::OffScreen));
-    // Everywhere, to the last float: the edge is half a pixel beyond the last centre.
+    // At every pixel, to the last float: the edge is half a pixel beyond the last centre.
     for len in [1_u32, 2, 63, 1920, 16384] {
         let at = |to: f32| reproject::nearest(0, 0, [to, 0.0], [len, 1]);
         assert_eq!(at(len as f32 - 1.0), Ok([len - 1, 0]));
@@ -87,7 +87,7 @@ fn h55_half_float_motion_drifts_by_its_quantum() {
     assert_eq!(quantum(0.5) * 3840.0, 1.875);
     assert_eq!(quantum(1000.0), 0.5);
     assert!(quantum(60.0) < 0.04, "motion of 60 px in pixels: a thirtieth of a pixel");
-    // What a vector is off by at most: half a step, so that nearest reprojection drifts by a texel a frame at 0.5 uv of 3840.
+    // Largest error of a vector: half a step, so that nearest reprojection drifts by a texel a frame at 0.5 uv of 3840.
     let off_px = |px: f32, scale: f32| (half_value(half_bits(px / scale)) * scale - px).abs();
     let sweep = |from: f32, to: f32| (0..100_000).map(move |i| from + (to - from) * i as f32 / 1e5);
     let uv = sweep(1920.0, 3840.0).map(|px| off_px(px, 3840.0)).fold(0.0, f32::max);

@@ -27,7 +27,7 @@ fn h23_draws_stay_below_1() {
     assert_eq!(rng::unit_draw(0), 0.0);
     assert!(rng::unit_draw(u32::MAX) < 1.0);
     assert_eq!(f64::from(rng::unit_draw(u32::MAX)), 1.0 - 1.0 / 16_777_216.0);
-    // The planted error: straight scaling rounds the top 128 values up.
+    // Planted error: scaling without the shift rounds the top 128 values to 1.
     let rounded_up = (0..1000).filter(|k| (u32::MAX - k) as f32 * (1.0 / 4_294_967_296.0) == 1.0).count();
     assert!((0..1000).all(|k| rng::unit_draw(u32::MAX - k) < 1.0));
     assert_eq!(rounded_up, 128);
@@ -35,7 +35,7 @@ fn h23_draws_stay_below_1() {
     holds!("H23", Cpu, "largest draw 1 - {largest:.2e}; by x2^-32 the top {rounded_up} values would be 1");
 }
 
-/// p-value of pairs of uniform numbers falling into 16 x 16 cells: sees any dependence of that scale, not only a linear one.
+/// p-value of pairs of uniform numbers falling into 16 x 16 cells: detects any dependence at that scale, not only a linear one.
 fn p_of_cells(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
     let mut counts = vec![0_u64; 256];
     for (a, b) in pairs {
@@ -45,7 +45,7 @@ fn p_of_cells(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
     p_of_counts(&counts, &[n as f64 / 256.0; 256])
 }
 
-/// Accepts pairs as independent, by both.
+/// Asserts that pairs are independent, by both tests.
 fn independent<I: Iterator<Item = (f32, f32)>>(name: &str, pairs: impl Fn() -> I) -> f64 {
     let p = [p_of_correlation(pairs()), p_of_cells(pairs())];
     accept(&format!("{name}, correlation"), p[0]);
@@ -113,7 +113,7 @@ fn h25_draws_are_uniform_and_neighbours_independent() {
 #[test]
 fn h24_no_frame_is_the_last_one_shifted() {
     let at = |x: u32, y: u32, t: u64| draw(x, y, 0, t, Purpose::Select);
-    // Every shift of a frame against the next one, over a smaller picture: 31 x 31 shifts.
+    // Every shift of a frame against the next one, over a smaller image: 31 x 31 shifts.
     let side = 128_u32;
     let (n, mut worst) = (f64::from(side * side), 0.0_f64);
     for sy in 0..31 {
@@ -184,7 +184,7 @@ fn h26_no_period_at_the_row_length_nor_at_the_wrap_of_the_frame_counter() {
             })
         }));
     }
-    // The planted error: a generator of 32-bit frames starts again.
+    // Planted error: a generator with a 32-bit frame counter repeats itself.
     let key = rng::stream_key(KEY_SEED, 0, Purpose::Select, 3);
     let short = |frame: u64| move |x, y| rng::unit_draw(rng::bits(x, y, frame as u32, key));
     let pairs = (0..256).flat_map(|y| (0..256).map(move |x| (short(3)(x, y), short(wrap + 4)(x, y))));

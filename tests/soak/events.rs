@@ -1,31 +1,31 @@
-//! What happens to a stream: drawn anew for every frame, the same on every machine.
+//! Random events of a stream, drawn for every frame, the same on every machine.
 
 use afterimage_testing::Draws;
 
 /// Length of a stretch, in frames.
 const STRETCH: u64 = 100;
-/// Every so many stretches nothing happens but frames.
+/// One of so many stretches has no events.
 const QUIET: u64 = 4;
 
-/// What happens before or in a frame.
+/// Events before or in a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Event {
     pub reset: bool,
     pub size: Option<[u32; 2]>,
     pub exposure: Option<f32>,
-    /// Pixels of color, depth or motion are broken.
+    /// Some pixels of color, depth or motion are not finite or out of range.
     pub is_broken: bool,
-    /// The eye is not tracked.
+    /// The gaze is lost.
     pub is_lost: bool,
-    /// Depth and motion are given, and what they say is arbitrary.
+    /// The frame has depth and motion inputs, with arbitrary values.
     pub moves: bool,
-    /// First frame of a stretch in which nothing else happens.
+    /// First frame of a stretch without events.
     pub begins_quiet: bool,
 }
 
-/// Where a stream is: which picture, where the eye looks, how bright.
+/// State of a stream: picture, gaze and exposure.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct StreamState {
     pub frame: u64,
     pub picture: u32,
     pub gaze: u32,
@@ -37,28 +37,28 @@ pub struct Moment {
 pub struct Stream {
     draws: Draws,
     full: [u32; 2],
-    moment: Moment,
+    state: StreamState,
 }
 
 impl Stream {
     pub fn new(name: &str, full: [u32; 2]) -> Self {
-        let moment = Moment { frame: 0, picture: 0, gaze: 0, exposure: 1.0, is_quiet: false };
-        Self { draws: Draws::new(name), full, moment }
+        let state = StreamState { frame: 0, picture: 0, gaze: 0, exposure: 1.0, is_quiet: false };
+        Self { draws: Draws::new(name), full, state }
     }
 
-    pub fn moment(&self) -> Moment {
-        self.moment
+    pub fn state(&self) -> StreamState {
+        self.state
     }
 
     pub fn next(&mut self) -> Event {
-        let frame = self.moment.frame;
-        self.moment.frame += 1;
+        let frame = self.state.frame;
+        self.state.frame += 1;
         let is_quiet = frame / STRETCH % QUIET == QUIET - 1;
-        self.moment.is_quiet = is_quiet;
+        self.state.is_quiet = is_quiet;
         if is_quiet {
             let begins_quiet = frame.is_multiple_of(STRETCH);
-            // Colors that a factor has moved off halves would not equal what is stored of them.
-            self.moment.exposure = 1.0;
+            // After a factor colors are no exact halves, and would differ from their stored values.
+            self.state.exposure = 1.0;
             return Event { reset: begins_quiet, begins_quiet, ..Event::default() };
         }
         let mut one_in = |n: u32| self.draws.bits().is_multiple_of(n);
@@ -78,15 +78,15 @@ impl Stream {
             event.size = Some(self.full);
         }
         if steps {
-            let wanted = 2.0_f32.powi(self.draws.bits() as i32 % 4);
-            event.exposure = Some(wanted / self.moment.exposure);
-            self.moment.exposure = wanted;
+            let exposure = 2.0_f32.powi(self.draws.bits() as i32 % 4);
+            event.exposure = Some(exposure / self.state.exposure);
+            self.state.exposure = exposure;
         }
         if looks {
-            self.moment.gaze = self.draws.bits() % 8;
+            self.state.gaze = self.draws.bits() % 8;
         }
         if changes {
-            self.moment.picture = self.draws.bits() % 3;
+            self.state.picture = self.draws.bits() % 3;
         }
         event
     }

@@ -1,4 +1,4 @@
-//! Frames without end, on both executors in lockstep: whatever happens to a stream, nothing drifts, leaks, or shows what is no number.
+//! Long streams of frames on both executors in lockstep: whatever the events, nothing drifts, leaks or shows NaN.
 //!
 //! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a process of its own.
 
@@ -19,7 +19,7 @@ use witness::Witness;
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// What a soak found.
+/// Findings of a soak test.
 #[derive(Debug, Default)]
 struct Found {
     frames: u64,
@@ -30,7 +30,7 @@ struct Found {
     above: u64,
     /// Fovea pixels of smr that were not the candidate, bit for bit.
     not_candidate: u64,
-    /// Quiet stretches that were held against the recurrence in f64, and the largest difference as a share of what storage may round.
+    /// Number of quiet stretches compared with the recurrence in f64, and the largest difference as a share of storage's rounding.
     stretches: u64,
     drift: f64,
     resident_mib: Vec<f64>,
@@ -44,7 +44,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
     let mut pictures = Pictures::default();
     let mut witness = Witness::default();
     let mut found = Found { frames, ..Found::default() };
-    // The brightest that history may hold.
+    // Largest value that history may contain.
     let mut brightest = 0.0_f32;
     for index in 0..frames {
         let event = stream.next();
@@ -52,7 +52,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
         if let Some(size) = event.size {
             rig.resize(size);
         }
-        let view = pictures.view(rig.context.size_px, &event, stream.moment());
+        let view = pictures.view(rig.context.size_px, &event, stream.state());
         let reset = if event.reset { Reset::All } else { Reset::None };
         rig.exposure = event.exposure.map_or(Exposure::Same, |ratio| Exposure::Changed { ratio });
         let (made, _) = rig.both(index, reset, std::slice::from_ref(&view));
@@ -60,7 +60,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
         brightest = brightest_of(&view).max(if event.reset || event.size.is_some() { 0.0 } else { brightest });
         check(&mut found, method, &event, &view, &made, brightest);
         if method == Method::Wrs {
-            witness.step(&mut found, stream.moment().is_quiet, &event, &view, &made.words);
+            witness.step(&mut found, stream.state().is_quiet, &event, &view, &made.words);
         }
         if frames >= 10 && index % (frames / 10) == frames / 20 {
             found.resident_mib.extend(afterimage_testing::resident::resident_mib());
@@ -81,7 +81,7 @@ fn check(found: &mut Found, method: Method, event: &Event, view: &View, made: &M
     let color: &Image<[f32; 3]> = &view.color;
     for value in made.shown.iter().flatten().map(|&bits| f32::from_bits(bits)) {
         found.nonfinite += u64::from(!value.is_finite());
-        // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to what the candidate is.
+        // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to the candidate's level.
         found.above += u64::from(method == Method::Wrs && value > brightest * 1.002 + 1e-6);
     }
     if method == Method::Smr && !event.is_broken {
@@ -101,7 +101,7 @@ fn assert_sound(method: Method, found: &Found) {
     if method == Method::Wrs {
         assert!(found.stretches > 0 && found.drift < 1.0, "{found:?}");
     }
-    // A leak of a kilobyte a frame would be 1 MiB each time; what the driver makes late, it makes once.
+    // A leak of a kilobyte a frame would be 1 MiB each time; late allocations of the driver happen once.
     let late = &found.resident_mib[found.resident_mib.len().min(2)..];
     if found.frames >= 10_000 && late.len() > 2 {
         let growth = afterimage_testing::resident::least_growth_mib(late);
@@ -121,7 +121,7 @@ fn a_short_stream_is_sound() {
     }
 }
 
-/// The oracles notice what they are there for.
+/// The checks find planted errors.
 #[test]
 fn damage_is_noticed() {
     let view = View::still(Image::filled([4, 3], [0.5; 3]), [1.0, 1.0]);

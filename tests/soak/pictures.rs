@@ -1,6 +1,6 @@
-//! Frames of a stream: foveated pictures, and what is wrong with them.
+//! Frames of a stream: foveated pictures with planted defects.
 
-use super::events::{Event, Moment};
+use super::events::{Event, StreamState};
 use super::rig::View;
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::simulator::Pyramid;
@@ -23,15 +23,15 @@ type Foveated = (Image<[f32; 3]>, Image<f32>);
 pub struct Pictures(HashMap<([u32; 2], u32, u32), Foveated>);
 
 impl Pictures {
-    /// The frame of a moment, with what an event does to it.
-    pub fn view(&mut self, size: [u32; 2], event: &Event, moment: Moment) -> View {
+    /// The frame of a state of the stream, with an event applied.
+    pub fn view(&mut self, size: [u32; 2], event: &Event, state: StreamState) -> View {
         if self.0.len() > 64 {
             self.0.clear();
         }
-        let gaze_px = gaze(size, moment.gaze);
-        let foveated = self.0.entry((size, moment.picture, moment.gaze));
-        let (color, lod) = foveated.or_insert_with(|| foveate(size, moment.picture, gaze_px)).clone();
-        let color = color.map(|c| c.map(|v| v * moment.exposure));
+        let gaze_px = gaze(size, state.gaze);
+        let foveated = self.0.entry((size, state.picture, state.gaze));
+        let (color, lod) = foveated.or_insert_with(|| foveate(size, state.picture, gaze_px)).clone();
+        let color = color.map(|c| c.map(|v| v * state.exposure));
         let facts = ViewFrame {
             geometry: ViewGeometry::flat(size, 70.0).unwrap(),
             gaze: if event.is_lost { Gaze::Lost } else { Gaze::At { px: gaze_px } },
@@ -40,19 +40,19 @@ impl Pictures {
         let mut view = View { lod: Some(lod), ..View::still(color, gaze_px) };
         view.facts = facts;
         if event.moves {
-            let t = moment.frame as f32;
+            let t = state.frame as f32;
             view.motion = Some(Image::filled(size, [(t * 0.37).sin() * 3.0, (t * 0.21).cos() * 2.0]));
             view.depth =
                 Some(Image::from_fn(size, |[x, y]| 2.0 + 0.05 * x as f32 + if y % 9 == 0 { 4.0 } else { 0.0 }));
         }
         if event.is_broken {
-            spoil(&mut view, moment.frame);
+            spoil(&mut view, state.frame);
         }
         view
     }
 }
 
-/// One of eight places.
+/// One of eight gaze positions.
 fn gaze([width, height]: [u32; 2], place: u32) -> [f32; 2] {
     [(0.5 + (place % 4) as f32) * 0.25 * width as f32, (0.5 + (place / 4) as f32) * 0.5 * height as f32]
 }

@@ -1,4 +1,4 @@
-//! Weight sums of wrs against the recurrence in f64: over a stretch in which nothing changes, nothing may drift.
+//! Weight sums of wrs against the recurrence in f64: they must not drift over a stretch in which nothing changes.
 
 use super::Found;
 use super::events::Event;
@@ -7,7 +7,7 @@ use super::rig::View;
 use afterimage::kernel::acuity::{candidate_weight, cell_density};
 use afterimage::kernel::pack::unpack;
 
-/// Some pixels that are followed.
+/// Pixels whose weight sums are followed.
 #[derive(Default)]
 pub struct Witness {
     /// Pixel, weight of its candidates, expected sum.
@@ -28,7 +28,7 @@ impl Witness {
             let n = words.len();
             self.followed = (0..32).map(|k| follow(k * (n - 1) / 31, view)).collect();
         } else if !is_quiet {
-            // Elsewhere the eye and the picture change without an event.
+            // In other stretches gaze and picture change without an event.
             self.followed.clear();
         } else {
             // Eqs. 5 and 7 with equal colors.
@@ -57,7 +57,7 @@ fn follow(pixel: usize, view: &View) -> (usize, f64, f64) {
     (pixel, weight, weight)
 }
 
-/// Relative difference, as a share of what storage may have rounded in so many frames.
+/// Relative difference, as a share of the largest rounding error of storage after so many frames.
 pub fn drift(found: f64, expected: f64, frames: u32) -> f64 {
     (found - expected).abs() / expected / (f64::from(frames) * ROUNDING)
 }

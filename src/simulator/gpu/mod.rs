@@ -210,12 +210,7 @@ impl GpuSimulator {
             check_texture(desc, input, texture, TextureUsages::STORAGE_BINDING)?;
             if texture.format() != format {
                 let found = format!("{:?}", texture.format());
-                return Err(FrameError::Texture {
-                    input,
-                    format: found,
-                    problem: "which is not the format that is written".into(),
-                    expected,
-                });
+                return Err(FrameError::Texture { input, format: found, problem: "the wrong format".into(), expected });
             }
         }
         Ok(())

@@ -8,7 +8,7 @@ fn two_walls(split: u32, near: f32, far: f32) -> Image<f32> {
 }
 
 #[test]
-fn a_disoccluded_wall_is_flushed_and_only_it() {
+fn a_disoccluded_wall_is_rejected_and_only_it() {
     let mut post = context(Settings { gate: None, ..Settings::paper() });
     let first = Input { depth: Some(two_walls(32, 1.0, 5.0)), ..Input::still(noise(SIZE, "x")) };
     one(&mut post, 0, &first);
@@ -25,8 +25,8 @@ fn a_disoccluded_wall_is_flushed_and_only_it() {
 }
 
 #[test]
-fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
-    // Planes at up to 89.9 degrees from their normal, whose disparity grows from the horizon on; the depth sample moves by half a pixel.
+fn h44_a_grazing_plane_under_jitter_is_not_rejected() {
+    // Planes seen at up to 89.9 degrees from their normal, from the horizon on; the depth sample moves by half a pixel.
     let focal_px = 32.0 / 35_f32.to_radians().tan();
     let mut seen = 0;
     for method in METHODS {
@@ -43,7 +43,7 @@ fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
                 Input { depth: Some(depth), ..Input::still(noise(SIZE, "floor")) }
             };
             let mut post = context_of(method);
-            // Where the rows around are the plane, too, wherever the sample is: the horizon is a silhouette.
+            // Only where the neighbouring rows are on the plane for any sample position: the horizon is a silhouette.
             let plane = |y: usize| row(y as f32 - 1.5) > 0.0;
             for index in 0..20 {
                 let (_, _, trace) = one(&mut post, index, &frame(index));
@@ -58,11 +58,11 @@ fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
             assert!(one(&mut post, 20, &frame(20)).1.rejected() > 0 || angle_deg < 89.0);
         }
     }
-    holds!("H44", Cpu, "wrs and smr, 60 to 89.9 degrees, 20 jittered frames: 0 of {seen} pixels flushed");
+    holds!("H44", Cpu, "wrs and smr, 60 to 89.9 degrees, 20 jittered frames: 0 of {seen} pixels rejected");
 }
 
 #[test]
-fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
+fn h45_driving_at_a_wall_keeps_history_when_camera_motion_is_known() {
     let step_m = 1.0;
     let camera = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, step_m], [0.0, 0.0, 0.0, 1.0]];
     let frame = |z: f32, camera| {
@@ -81,18 +81,18 @@ fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
         });
         assert_eq!([known, unknown], [0, 64 * 48], "{method:?}");
     }
-    holds!("H45", Cpu, "wrs and smr, from 6 to 5 m: 0 of 3072 pixels flushed; 3072 where no camera is told");
+    holds!("H45", Cpu, "wrs and smr, from 6 to 5 m: 0 of 3072 pixels rejected; 3072 without camera motion");
 }
 
 #[test]
-fn h46_a_jittering_wire_flushes_itself_alone() {
+fn h46_a_jittering_wire_rejects_its_own_history_alone() {
     let [wall, wire] = [[0.25; 3], [0.9; 3]];
     let mut shares = vec![];
     for method in METHODS {
         let mut post = context_of(method);
-        let (mut flushed, mut blinks, mut before) = (vec![], 0.0_f64, None::<Color>);
+        let (mut rejected, mut blinks, mut before) = (vec![], 0.0_f64, None::<Color>);
         for index in 0..60 {
-            // One pixel wide at 1 m over a wall at 10 m, hopping between two columns with the jitter.
+            // A wire one pixel wide at 1 m in front of a wall at 10 m, moved between two columns by the jitter.
             let column = 30 + (index % 2) as u32;
             let input = Input {
                 depth: Some(Image::from_fn(SIZE, |[x, _]| if x == column { 1.0 } else { 10.0 })),
@@ -107,29 +107,29 @@ fn h46_a_jittering_wire_flushes_itself_alone() {
                     blinks += if [30, 31].contains(&(i % 64)) { 0.0 } else { f64::from((a[0] - b[0]).powi(2)) };
                 }
             }
-            flushed.push(stats.rejected());
+            rejected.push(stats.rejected());
         }
-        assert!(flushed[1..].iter().all(|&n| n == 2 * 48), "the two columns, and only they: {flushed:?}");
-        // Against what the wire's own columns do, which are two, by 0.65 each, frame after frame.
+        assert!(rejected[1..].iter().all(|&n| n == 2 * 48), "the two columns, and only they: {rejected:?}");
+        // Compared with the change in the wire's own two columns: 0.65 each, in every frame.
         let share = blinks / (58.0 * 2.0 * 48.0 * 0.65_f64.powi(2));
         shares.push(share);
     }
-    // smr's coarser levels see the wire come and go.
+    // The wire appears in smr's mip chain and disappears from it.
     assert!(shares[0] == 0.0 && shares[1] < 1e-3, "{shares:?}");
     let smr = shares[1];
     holds!(
         "H46",
         Cpu,
-        "wrs and smr: 96 px a frame flushed, always; blinking beside them {smr:.1e} of the wire's (wrs 0)"
+        "wrs and smr: 96 px a frame rejected, always; blinking beside them {smr:.1e} of the wire's (wrs 0)"
     );
 }
 
 #[test]
-fn h47_a_nan_depth_flushes_its_pixel_alone() {
+fn h47_a_nan_depth_rejects_its_pixel_alone() {
     let hurt_at = 20 * 64 + 20;
     for method in METHODS {
         let (mut clean, mut hurt) = (context_of(method), context_of(method));
-        let mut flushed = vec![];
+        let mut rejected = vec![];
         for index in 0..4 {
             let input =
                 Input { depth: Some(Image::filled(SIZE, 4.0)), ..Input::still(noise(SIZE, &format!("d {index}"))) };
@@ -139,8 +139,8 @@ fn h47_a_nan_depth_flushes_its_pixel_alone() {
             }
             let (a, _, a_trace) = one(&mut clean, index, &input);
             let (b, stats, b_trace) = one(&mut hurt, index, &broken);
-            flushed.push(stats.rejected());
-            // smr's coarser levels of a pixel that has forgotten reach its neighbours a frame later.
+            rejected.push(stats.rejected());
+            // A pixel without history affects its neighbours through smr's mip chain a frame later.
             let unchanged = |i: usize| i == hurt_at || method == Method::Smr && index > 1;
             for i in (0..64 * 48).filter(|&i| !unchanged(i)) {
                 assert_eq!(a.pixels()[i], b.pixels()[i], "{method:?}, frame {index}: a neighbour changed");
@@ -148,15 +148,15 @@ fn h47_a_nan_depth_flushes_its_pixel_alone() {
             }
             assert_eq!(b_trace.pixels()[hurt_at].verdict == Verdict::Disoccluded, [1, 2].contains(&index));
         }
-        // What was stored there has no depth: flushed once more, then all is well.
-        assert_eq!(flushed, [0, 1, 1, 0]);
+        // The stored sample has no depth: its history is rejected once more, then it is valid again.
+        assert_eq!(rejected, [0, 1, 1, 0]);
     }
-    holds!("H47", Cpu, "wrs and smr: its pixel flushed in 2 frames, then kept; {} others: same bits", 64 * 48 - 1);
+    holds!("H47", Cpu, "wrs and smr: its pixel rejected in 2 frames, then kept; {} others: same bits", 64 * 48 - 1);
 }
 
 #[test]
 fn h48_history_outlives_a_change_of_planes() {
-    // Planes belong to a context. What is stored does not depend on them: it goes on under others.
+    // Near and far planes belong to a context. History does not depend on them: it is valid under other planes.
     let planes = |near: f32, far: f32| DepthConvention::Reversed { near, far };
     let stored = |d: f32, near: f32, far: f32| (d - 1.0 / far) / (1.0 / near - 1.0 / far);
     let frame = |near: f32, far: f32| {
@@ -173,13 +173,13 @@ fn h48_history_outlives_a_change_of_planes() {
     after.restore_history(before.history().words());
     let (_, stats, _) = one(&mut after.clone(), 1, &frame(0.3, 5000.0));
     assert_eq!(stats.rejected(), 0);
-    // The planted error: values of the old planes read as the new ones'.
+    // Planted error: depth of the old planes read with the new planes.
     let (_, wrong, _) = one(&mut after, 1, &frame(0.1, 1000.0));
     assert!(wrong.rejected() > 3000);
     holds!(
         "H48",
         Cpu,
-        "1 to 64 m, near 0.1 to 0.3 m, far 1 to 5 km: none flushed ({} with the old planes)",
+        "1 to 64 m, near 0.1 to 0.3 m, far 1 to 5 km: none rejected ({} with the old planes)",
         wrong.rejected()
     );
 }
@@ -198,18 +198,18 @@ fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
                 CpuAfterimage::new(&ContextDesc { settings: Settings { method, ..Settings::paper() }, ..desc })
                     .unwrap();
             let frame = |split| Input { depth: Some(two_walls(split, wall, sky)), ..Input::still(noise(SIZE, "sky")) };
-            // The wall's edge goes to the left and back: sky on wall, then wall on sky.
-            for (index, split, flushed) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
-                assert_eq!(one(&mut post, index, &frame(split)).1.rejected(), flushed, "{method:?}, {depth:?}");
+            // The wall's edge moves to the left and back: sky replaces wall, then wall replaces sky.
+            for (index, split, rejected) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
+                assert_eq!(one(&mut post, index, &frame(split)).1.rejected(), rejected, "{method:?}, {depth:?}");
             }
         }
     }
     holds!(
         "H41",
         Cpu,
-        "wrs and smr, 3 skies: sky on sky keeps 1536 of 1536, sky on wall and wall on sky flush 96 of 96"
+        "wrs and smr, 3 skies: sky on sky keeps 1536 of 1536, sky on wall and wall on sky reject 96 of 96"
     );
-    holds!("H49", Cpu, "wrs and smr through the pass: the edge's 96 pixels flushed each way, no other of 3072");
+    holds!("H49", Cpu, "wrs and smr through the pass: the edge's 96 pixels rejected each way, no other of 3072");
 }
 
 #[test]
@@ -234,7 +234,7 @@ fn h58_nothing_bleeds_over_a_depth_edge() {
 #[test]
 fn h50_z_fighting_shows_only_what_was_presented() {
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
-    // The same colors without depths that fight: all must be as there.
+    // Reference: the same colors with constant depth. Both must be equal.
     let (mut post, mut plain) = (context(Settings::paper()), context(Settings::paper()));
     let mut draws = Draws::new("z-fighting");
     let mut oldest = 0;

@@ -1,4 +1,4 @@
-//! Determinism, reset, resize, refusals.
+//! Determinism, reset, resize, errors.
 
 use super::*;
 use afterimage_testing::holds;
@@ -62,11 +62,11 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
         assert_eq!((&out[0], &out[0]), (&fresh[0], &input.color), "reset two frames running");
     }
     assert_eq!(run(&mut cut, 21..30), fresh[1..]);
-    let mut told = context(settings);
-    step(&mut told, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
-    let mut untold = context(settings);
-    run(&mut untold, 0..1);
-    assert_eq!(run(&mut told, 1..10), run(&mut untold, 1..10), "a reset at frame 0");
+    let mut with_reset = context(settings);
+    step(&mut with_reset, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
+    let mut without_reset = context(settings);
+    run(&mut without_reset, 0..1);
+    assert_eq!(run(&mut with_reset, 1..10), run(&mut without_reset, 1..10), "a reset at frame 0");
     holds!("H77", Cpu, "wrs: the first frame after a cut is the candidate, bit for bit; 9 more as of a fresh context");
     holds!("H78", Cpu, "wrs: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit");
 }

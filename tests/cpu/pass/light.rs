@@ -51,7 +51,7 @@ fn h72_with_the_ratio_history_follows_the_exposure_at_once() {
             let expected = if index < 20 { before.0 } else { scaled(&before.0, ratio) };
             assert_eq!((after.0, after.1, after.2), (expected, before.1, before.2), "x{ratio}, frame {index}");
         }
-        // With the gate: a still picture passes it as if nothing had happened.
+        // With the gate: a still picture is unaffected by it.
         let mut post = gated(true);
         for index in 0..10 {
             one(&mut post, index, &Input::still(frame(0, 1.0)));
@@ -70,7 +70,7 @@ fn h72_with_the_ratio_history_follows_the_exposure_at_once() {
     holds!(
         "H72",
         Cpu,
-        "wrs, x256 and /256 told: 20 frames the same as unexposed ones times the ratio, bit for bit; 0 flushed"
+        "wrs, x256 and /256 declared: 20 frames the same as unexposed ones times the ratio, bit for bit; 0 rejected"
     );
 }
 
@@ -88,8 +88,8 @@ fn h72_an_exposed_color_stays_within_halves() {
 
 #[test]
 fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
-    // Brighter: at once, all history is too dark to be true. Darker: what happens to look alike stays a little longer. Without the
-    // gate history dies of age.
+    // Brighter: all history is too dark, and rejected at once. Darker: history that happens to look alike stays a little longer. Without the
+    // gate, history is replaced only by chance.
     let mut took = vec![];
     for (ratio, gate, frames, all) in [(EXPOSED, true, 0, 0), (1.0 / EXPOSED, true, 3, 20), (EXPOSED, false, 60, 100)] {
         let mut post = gated(gate);
@@ -114,7 +114,7 @@ fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
     holds!(
         "H72",
         Cpu,
-        "wrs, not told: 1 % stale after {} frames (x256), {} (/256); without a gate {}",
+        "wrs, undeclared: 1 % stale after {} frames (x256), {} (/256); without a gate {}",
         took[0],
         took[1],
         took[2]
@@ -135,7 +135,7 @@ fn flash(gate: bool, light: f32, frames: u64) -> Vec<u64> {
 
 #[test]
 fn h73_a_firefly_lives_one_frame() {
-    // The gate lets go of history that differs so much, and then of the firefly: out comes what went in.
+    // The gate rejects history that differs so much, and then the firefly: the output is the input.
     let lit = flash(true, 65504.0, 100);
     assert_eq!((lit[0], lit[1..].iter().sum()), (64 * 48, 0_u64));
     holds!("H73", Cpu, "wrs, gated: 65504 in 1/32 is shown for 1 frame of 101, in all 3072 pixels");
@@ -216,7 +216,7 @@ fn h75_black_and_white_by_turns_keep_their_mean() {
     for index in 0..40 {
         assert_eq!(one(&mut post, index, &Input::still(picture(index))).0, picture(index));
     }
-    // Without: every pixel is one of the two, and after the first frames are forgotten, half of the time each.
+    // Without a gate: every pixel is one of the two, and in the long run each for half of the time.
     let mut post = gated(false);
     let mut white = vec![0_u32; 64 * 48];
     let measured = 64;

@@ -1,4 +1,4 @@
-//! The pass as a whole on the CPU: conventions, flushes, determinism, lifecycle; hard cases H19, H22, H29, H46-H60, H63, H66, H77-H79.
+//! Whole passes on the CPU: conventions, history rejection, determinism, lifecycle; hard cases H19, H22, H29, H46-H60, H63, H66, H77-H79.
 
 mod depth;
 mod lifecycle;
@@ -22,7 +22,7 @@ use afterimage_testing::Draws;
 use proptest::prelude::*;
 
 const SIZE: [u32; 2] = [64, 48];
-/// Those that find the past by the same rules, each in its own history.
+/// Methods that find history by the same rules, each with its own storage.
 const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
 type Color = Image<[f32; 3]>;
 
@@ -36,7 +36,7 @@ fn noise(size: [u32; 2], name: &str) -> Color {
     Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }
 
-/// One view with everything given.
+/// A view with all optional inputs.
 #[derive(Clone)]
 struct Input {
     color: Color,
@@ -68,7 +68,7 @@ impl Input {
     }
 }
 
-/// Without a gate, so that only the test in question takes history away.
+/// Settings without a gate, so that only the test in question rejects history.
 fn context_of(method: Method) -> CpuAfterimage {
     context(Settings { method, gate: None, ..Settings::paper() })
 }
@@ -77,7 +77,7 @@ fn context(settings: Settings) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
-/// Keeps history for certain while its weight is this large: a draw of 2^-24 steps never reaches the candidate's share.
+/// Weight of history with which it is always kept: the candidate's share is below the smallest draw, 2^-24.
 fn sticky(post: &mut CpuAfterimage) {
     use afterimage::kernel::pack;
     let words: Vec<_> =

@@ -27,7 +27,7 @@ proptest! {
                 prop_assert_eq!(b.at(x, y), [0.0; 3]);
             }
         }
-        // Once there is a history, it is shown instead.
+        // With history, history is shown instead.
         prop_assert!(hurt.history().is_filled());
     }
 
@@ -61,7 +61,7 @@ fn h79_poisoned_fresh_history_is_never_read() {
 }
 
 #[test]
-fn h18_a_broken_candidate_shows_what_was_remembered() {
+fn h18_a_nonfinite_candidate_shows_history() {
     let mut post = context(Settings::paper());
     let good = noise(SIZE, "good");
     one(&mut post, 0, &Input::still(good.clone()));

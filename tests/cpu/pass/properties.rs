@@ -1,5 +1,5 @@
-//! Whole small frames of any bit patterns through every method: what is shown is finite, comes from what was presented, and one view
-//! knows nothing of the other.
+//! Small frames of arbitrary bit patterns through every method: the output is finite and comes from the inputs, and no view affects
+//! another one.
 
 use super::*;
 use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
@@ -33,14 +33,14 @@ fn show(post: &mut CpuAfterimage, index: u64, frames: &[&AnyFrame]) -> (Vec<Colo
     (out, trace)
 }
 
-/// All that is remembered, view after view.
+/// Stored history, view after view.
 fn words(post: &CpuAfterimage) -> Vec<u32> {
     let h = post.history();
     let surfaces = h.surfaces().iter().flatten().chain(h.noise());
     h.words().iter().flatten().chain(surfaces).copied().collect()
 }
 
-/// A color as it comes out: itself, and as wrs stores it.
+/// Possible outputs of a color: itself, and its stored value in wrs.
 fn presented(c: [f32; 3]) -> [[u32; 3]; 2] {
     let (color, _) = afterimage::kernel::sanitize::color(glam::Vec3::from(c));
     let stored = pack::unpack(pack::pack(pack::Stored { color, disparity: 1.0, w_sum: 1.0, age: 0 })).color;
@@ -84,7 +84,7 @@ proptest! {
                         _ => {}
                     }
                 }
-                // What is kept is finite, and packing what was unpacked changes nothing.
+                // Stored values are finite, and packing unpacked ones gives the same words.
                 for s in post.history().surfaces().iter().map(|&w| unpack_surface(w)) {
                     prop_assert!(s.color.is_finite() && s.color.min_element() >= 0.0 && s.color.max_element() <= 65504.0);
                 }
@@ -128,7 +128,7 @@ proptest! {
                 }
                 for (i, (p, q)) in a[0].pixels().iter().zip(b[0].pixels()).enumerate() {
                     let far = (i % 8).abs_diff(at % 8).max((i / 8).abs_diff(at / 8));
-                    // taa looks at 3x3 candidates; smr at four that lie 3/4 of a block off, at twice that where blocks are point
+                    // taa reads 3x3 candidates; smr at four that lie 3/4 of a block off, at twice that where blocks are point
                     // samples, and where candidates are noisy at means of the 8x8 around them.
                     let reach = match settings.method {
                         Method::None | Method::Wrs => 0,
@@ -139,7 +139,7 @@ proptest! {
                     prop_assert!(p == q || far <= reach, "{:?}: {} pixels off", settings.method, far);
                 }
             }
-            // Nothing of it is left that is no number; and what is empty was filled again.
+            // No non-finite value is left, and empty pixels are filled again.
             prop_assert!(hurt.history().surfaces().iter().all(|&w| unpack_surface(w).lod >= 0.0));
             prop_assert!(words(&hurt).len() == words(&clean).len());
             prop_assert!(hurt.history().words().iter().all(|&w| pack::unpack(w).w_sum > 0.0));

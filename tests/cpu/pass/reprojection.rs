@@ -5,7 +5,7 @@ use afterimage_testing::holds;
 
 #[test]
 fn h51_a_thousand_still_frames_never_move_a_sample() {
-    // Every frame another picture at the same depths: what is shown is the sample of some frame at its own pixel.
+    // Every frame has another picture at the same depths: each output pixel is the sample of some frame at that pixel.
     let mut post = context_of(Method::Wrs);
     let mut seen = vec![std::collections::HashSet::new(); 64 * 48];
     let depth = Image::from_fn(SIZE, |[x, y]| 1.0 + ((x / 5) * (y / 3)) as f32);
@@ -85,7 +85,7 @@ fn every_motion_convention_means_the_same_shift() {
             }
         }
     }
-    // By hand, not by the function under test: 3 px right to left in a 64 px wide frame.
+    // Computed by hand, not by the function under test: 3 px right to left in a 64 px wide frame.
     let uv =
         MotionConvention { unit: MotionUnit::Uv, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
     assert_eq!(uv.to_internal([64, 48]), [-64.0, 48.0]);
@@ -95,7 +95,7 @@ fn every_motion_convention_means_the_same_shift() {
 
 #[test]
 fn h53_half_pixel_motion_never_blurs() {
-    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one that was put in.
+    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the input colors.
     let mut post = context(Settings { gate: None, ..Settings::paper() });
     let mut known = std::collections::HashSet::new();
     let mut kept = 0;
@@ -193,7 +193,7 @@ fn thread_ns() -> f64 {
 #[test]
 fn h60_a_turn_costs_no_more_than_any_other_frame() {
     const LARGE: [u32; 2] = [256, 192];
-    // On one thread, whose time is counted; normal frames and turns by turns, so that both meet the same machine.
+    // On one thread, whose time is measured. Normal frames and turns alternate, so that both meet the same load.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let mut ratios = vec![];
     for method in METHODS {

@@ -1,10 +1,10 @@
-//! Reservoirs through the whole pass: corruption, broken candidates, and colors that are never invented.
+//! Reservoirs through the whole pass: corruption, non-finite candidates, and no color that was not an input.
 
 use super::*;
 use afterimage::kernel::pack;
 use afterimage_testing::holds;
 
-/// Words whose weight sum or color cannot be.
+/// Words with an impossible weight sum or color.
 fn corrupt(words: [u32; 3], kind: usize) -> [u32; 3] {
     let [rg, bd, age] = [words[0], words[1], words[2] & 0xff];
     match kind {
@@ -92,10 +92,10 @@ fn h22_every_shown_color_was_presented() {
             shown += out.pixels().len();
             assert!(index == 0 || stats.replaced < stats.valid(), "some history is shown");
         }
-        // The planted error: a mean of two presented colors is none of them.
+        // Planted error: a mean of two input colors is not an input color.
         let mean = std::array::from_fn::<_, 3, _>(|k| f32::midpoint(noise(SIZE, "h22 0").at(0, 0)[k], 0.123));
         assert!(!known.contains(&mean.map(f32::to_bits)));
-        // What halves do not hold exactly is remembered as the nearest half.
+        // A color that halves do not represent exactly is stored as the nearest half.
         let (third, stored) = (1.0_f32 / 3.0, pack::half_value(pack::half_bits(1.0 / 3.0)));
         let mut post = context(Settings { sampler, bias, ..Settings::paper() });
         assert_eq!(one(&mut post, 0, &Input::still(Image::filled(SIZE, [third; 3]))).0.at(9, 9), [third; 3]);

@@ -1,4 +1,4 @@
-//! The trust mask: how far history may be believed.
+//! The trust mask: confidence in history.
 
 use super::*;
 use afterimage::kernel::pack;

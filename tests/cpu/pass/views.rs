@@ -47,7 +47,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     assert_eq!(held(&[at([9.0, 9.0]), Gaze::Lost, at([f32::INFINITY, 3.0])]), there);
     assert_eq!(held(&[Gaze::Lost]), held(&[at([31.5, 23.5])]));
     held(&[at([-5000.0, 1e30])]);
-    // smr and taa: what is shown depends on where the eye is taken to look, and on that alone.
+    // smr and taa: the output depends on the resolved gaze position, and on that alone.
     for method in [Method::Wrs, Method::Smr] {
         let shown = |gazes: &[Gaze]| {
             let mut post = context_of(method);
@@ -100,7 +100,7 @@ fn h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says() {
             *a = *a * *a / (*a + b) + b;
             *s *= 1.0 - b / *a;
         }
-        // Of one of the 18 frames: at least as old as the saccade.
+        // The sample is from one of the 18 frames, so at least as old as the saccade.
         let kept = fovea.iter().filter(|&&i| u64::from(trace.pixels()[i].age) >= n).count() as f64;
         let (mean, variance) = alive.iter().fold((0.0, 0.0), |(m, v), s| (m + s, v + s * (1.0 - s)));
         if [1, 10, 30, 63, 100].contains(&n) {
@@ -110,7 +110,7 @@ fn h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says() {
             );
         }
         if n == 63 {
-            // Plain sums, which never forget: 18 of 18 + n b.
+            // Plain sums, without decay: 18 of 18 + n b.
             let plain: Vec<f64> = b.iter().map(|b| 18.0 / (18.0 + 63.0 * b)).collect();
             let (mean, variance) = plain.iter().fold((0.0, 0.0), |(m, v), s| (m + s, v + s * (1.0 - s)));
             afterimage_testing::reject("without bias", afterimage_testing::p_of_z((kept - mean) / f64::sqrt(variance)));

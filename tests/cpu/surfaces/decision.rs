@@ -1,4 +1,4 @@
-//! The decision of a pixel over random evidence: S4 to S7.
+//! The decision of a pixel for random inputs: S4 to S7.
 
 use super::rig::*;
 use afterimage::kernel::matched::{Evidence, Matched, SmrParams, decide, root_difference};
@@ -54,7 +54,7 @@ fn params(draws: &mut Draws) -> SmrParams {
     }
 }
 
-/// Runs a check over 200,000 draws; how many of them it concerned is printed and must not be few.
+/// Runs a check over 200,000 draws, prints to how many of them it applied, and asserts that these are not few.
 fn over(name: &str, mut check: impl FnMut(&mut Draws) -> bool) {
     let mut draws = Draws::new(name);
     let concerned = (0..200_000).filter(|_| check(&mut draws)).count();
@@ -85,7 +85,7 @@ fn s4_the_level_of_detail_lies_between_both_and_falls_with_the_share() {
         assert!(m.lod >= e.history_lod, "never finer than what was seen");
         let less = decide(&Evidence { trust: 0.5 * e.trust, ..e }, &p);
         assert!(less.lod >= m.lod && less.share <= m.share);
-        // From the candidate's level to the history's, as far as history is believed.
+        // From the candidate's level to the history's, by history's acceptance.
         let finer = ((e.lod - e.history_lod) / 0.1).min(1.0);
         let expected = e.lod - (e.lod - e.history_lod) * finer * m.fit * e.trust;
         assert!((m.lod - expected).abs() < 1e-5, "{} for {expected}", m.lod);
@@ -129,7 +129,7 @@ fn s5_each_channel_lies_between_the_candidate_and_the_relit_history() {
     });
 }
 
-/// History that explains the candidate but for the light.
+/// History that explains the candidate except for the light.
 fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
     let matched = color(draws) * 0.9 + 0.1;
     let coarser = (matched + (color(draws) - 0.5) * 0.05).max(Vec3::splat(0.05));
@@ -155,7 +155,7 @@ fn s6_a_step_of_light_from_a_fifth_to_five_keeps_detail() {
         let step = [0.2, 0.3, 0.45, 0.5, 2.0, 3.0, 5.0][draws.bits() as usize % 7];
         let e = relit(draws, Vec3::splat(step));
         let m = decide(&e, &PARAMS);
-        // The regulariser of 0.002 holds the gain back by up to 0.002 |step - 1| / 0.05.
+        // The constant of 0.002 that keeps ratios finite reduces the gain by up to 0.002 |step - 1| / 0.05.
         let expected = e.history * step;
         let bound = 0.05 * (step - 1.0).abs() * e.history.max_element() + 1e-5;
         assert_eq!((m.share, m.lod), (1.0, 0.0), "step {step}");

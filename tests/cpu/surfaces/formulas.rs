@@ -42,7 +42,7 @@ fn twelve_taps_are_the_sixteen_without_corners() {
     assert_eq!(taps, expected);
 }
 
-/// Twelve surfaces at `fraction`, those of `other` another surface.
+/// Twelve taps at `fraction`; those in `other` are on another surface.
 fn read(
     fraction: [f32; 2],
     other: u32,
@@ -72,7 +72,7 @@ fn reading_keeps_constants_and_ramps_whatever_is_missing() {
         assert!((r.smooth - c).abs().max_element() <= 4e-6 * c.max_element());
         assert!((r.lod - 1.5).abs() < 1e-5);
         if other == 0 {
-            // A ramp is read where it was asked for; the missing corners' weight of up to 1/64 is made up for by the others.
+            // A ramp is reproduced; the other taps make up for the missing corners' weight of up to 1/64.
             let ramp = |[x, y]: [u32; 2]| Surface { color: Vec3::splat(10.0 + x as f32 + 2.0 * y as f32), ..flat };
             let (_, r) = read(fraction, 0, ramp);
             let expected = 10.0 + 1.0 + fraction[0] + 2.0 * (1.0 + fraction[1]);
@@ -128,7 +128,7 @@ fn root_difference_is_a_distance_of_a_hundred_from_black_to_white() {
 }
 
 #[test]
-fn smooth_step_gain_and_wanted_agree_with_f64() {
+fn smooth_step_gain_and_reuse_weight_agree_with_f64() {
     let mut draws = Draws::new("smr formulas");
     let step = |from: f64, width: f64, x: f64| {
         let t = ((x - from) / width).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Surfaces that come, go, move and fight, and gaze that moves: hard cases H50, H59, H60, H66, H67 for smr.
+//! Surfaces that appear, disappear, move and z-fight, and gaze that moves: hard cases H50, H59, H60, H66, H67 for smr.
 
 use super::rig::*;
 use afterimage::Verdict;
@@ -14,7 +14,7 @@ fn smr(size: [u32; 2], settings: Settings) -> CpuAfterimage {
 
 #[test]
 fn h50_z_fighting_stays_next_to_the_colors_presented() {
-    // Two surfaces that fight pixel by pixel, as a renderer of quarter resolution delivers them.
+    // Two surfaces that z-fight pixel by pixel, as a renderer of quarter resolution delivers them.
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
     let (mut post, mut plain) = (context(Method::Smr), context(Method::Smr));
     let lods = Image::filled(SIZE, 2.0);
@@ -45,13 +45,13 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
     let before = noise(SIZE, "zoom of surfaces").map(|c| c.map(|v| 0.5 + 0.125 * (8.0 * v).floor() / 8.0));
     let low_pass = LowPass::new(&before, 4);
     let zoomed = |factor: f32| {
-        // Samples as they are, not in another light.
+        // Samples without relighting.
         let plain = afterimage::Smr { relight: false, ..Default::default() };
         let mut post = smr(SIZE, Settings { smr: plain, ..settings(Method::Smr) });
         step(&mut post, 0, &Input::sharp(before.clone()));
         let shift = |v: u32, middle: f32| (v as f32 - middle) * (factor - 1.0);
         let motion = Image::from_fn(SIZE, |[x, y]| [shift(x, 26.0), shift(y, 20.0)]);
-        // What a renderer of quarter resolution delivers of it then.
+        // The frame as a renderer of quarter resolution delivers it.
         let color = Image::from_fn(SIZE, |[x, y]| {
             low_pass.at([f64::from(x) + f64::from(shift(x, 26.0)), f64::from(y) + f64::from(shift(y, 20.0))], 2.0)
         });
@@ -71,7 +71,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
                     assert_eq!(shown, later.color.at(x, y));
                     continue;
                 }
-                // On texels the sample itself, with its quality; between them what the lobes of the resampling make of their range.
+                // On texels the sample itself, with its quality; between texels within the overshoot of the resampling.
                 if qx.fract() == 0.0 && qy.fract() == 0.0 && t.survival == 1.0 {
                     assert_eq!(shown, before.at(qx as usize, qy as usize));
                     assert_eq!(made.surfaces()[y * 52 + x].lod, 0.0);
@@ -122,7 +122,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
     let old: Vec<usize> = (0..320 * 40)
         .filter(|i| view.eccentricity_deg([(i % 320) as f32, (i / 320) as f32], at(-10.0)) < 2.4)
         .collect();
-    // 20 degrees to the right, for two seconds: no frame takes a pixel of it away.
+    // 20 degrees to the right, for two seconds: no frame loses a pixel of it.
     for index in 3..123 {
         let made = step(&mut post, index, &foveated(&picture, at(10.0), &settings));
         let kept = old.iter().filter(|&&i| made.shown.pixels()[i] == stored.pixels()[i]).count();
@@ -143,7 +143,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
 #[test]
 fn h67_microsaccades_enlarge_what_is_shown_sharp() {
     const WIDE: [u32; 2] = [240, 120];
-    // Levels are stored in sevenths: what is finer than one and a half is stored as sharp, or next to it.
+    // Levels are stored in sevenths: those finer than one and a half sevenths are stored as 0 or 1.
     const SHARP: f32 = 1.5 / 7.0;
     let settings = settings(Method::Smr);
     let view = ViewGeometry::flat(WIDE, 40.0).unwrap();

@@ -1,4 +1,4 @@
-//! Numbers that are none, and light beyond measure.
+//! NaN, infinity and extreme radiance.
 
 use super::rig::*;
 use afterimage::Verdict;
@@ -24,7 +24,7 @@ proptest! {
             let a = step(&mut clean, index, &Input::at_lod(coarse.clone(), 1.5));
             let b = step(&mut hurt, index, &Input::at_lod(broken, 1.5));
             prop_assert_eq!(b.stats.nonfinite, u64::from(index == 1));
-            // What was remembered is shown, there as well.
+            // History is shown at non-finite pixels, too.
             prop_assert_eq!(&a.shown, &b.shown);
             prop_assert_eq!(&a.words, &b.words);
         }
@@ -32,7 +32,7 @@ proptest! {
 
     #[test]
     fn h18_a_broken_pixel_is_not_taken_for_black_by_its_neighbours(x in 0u32..52, y in 0u32..41, bad in prop::sample::select(BAD.to_vec())) {
-        // Plain surfaces under changed light: neighbours are asked how the light changed (smr), and what colors may be (taa).
+        // Uniform surfaces under changed light: neighbours show the change of light (smr) and the range of colors (taa).
         for method in METHODS {
             let mut clean = context(method);
             step(&mut clean, 0, &Input::sharp(Image::filled(SIZE, [0.5, 0.4, 0.3])));
@@ -62,7 +62,7 @@ proptest! {
             prop_assert_eq!(b.shown.at(x as usize, y as usize), [0.0; 3]);
             prop_assert_eq!(b.surfaces()[i], Surface::EMPTY);
             prop_assert!(a.shown.pixels().iter().zip(b.shown.pixels()).enumerate().all(|(k, (p, q))| p == q || k == i));
-            // The hole counts for nothing in coarser levels, so that the neighbours' history still fits.
+            // The empty pixel has no weight in the mip chain, so that the neighbours' history still fits.
             let coarse = LowPass::new(&a.stored(), 4).render(&Image::filled(SIZE, 1.5));
             let (a, b) = (step(&mut clean, 1, &Input::at_lod(coarse.clone(), 1.5)), step(&mut hurt, 1, &Input::at_lod(coarse.clone(), 1.5)));
             prop_assert_eq!(b.trace.at(x as usize, y as usize).verdict, Verdict::Empty);
@@ -72,7 +72,7 @@ proptest! {
     }
 }
 
-/// Any bits, or plausible numbers, as `wild` has it.
+/// Arbitrary bits with probability `wild`, else a plausible number.
 fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
     if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
 }
@@ -120,7 +120,7 @@ proptest! {
 
 #[test]
 fn resampled_and_relit_highlights_stay_within_halves() {
-    // A lobe beside the brightest half, and a gain of five on it, both ask for more.
+    // The overshoot next to the brightest half, and a gain of five on it, both exceed the range.
     let bright = Image::from_fn(SIZE, |[x, y]| [if x / 4 % 2 == 0 || y % 8 == 0 { 65504.0 } else { 100.0 }; 3]);
     for method in METHODS {
         let mut post = context(method);

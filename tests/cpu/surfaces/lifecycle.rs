@@ -4,7 +4,7 @@ use super::rig::*;
 use afterimage::{Filter, Verdict};
 use afterimage_testing::holds;
 
-/// Frames of a picture that fades, half coarse, so that all they show depends on what came before.
+/// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> Input {
     let picture = noise(SIZE, "run").map(|c| c.map(|v| v * (1.0 + 0.02 * index as f32)));
     let lods = Image::from_fn(SIZE, |[x, _]| if (u64::from(x) + 5 * index) % 26 < 13 { 0.0 } else { 1.5 });
@@ -55,11 +55,11 @@ fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
             assert_eq!(made, fresh[0], "reset two frames running");
         }
         assert_eq!(run(&mut cut, 11..14), fresh[1..]);
-        let mut told = context(method);
-        step(&mut told, 0, &Input { reset: Reset::All, ..frame(0) });
-        let mut untold = context(method);
-        run(&mut untold, 0..1);
-        assert_eq!(run(&mut told, 1..4), run(&mut untold, 1..4), "{method:?}: a reset at frame 0");
+        let mut with_reset = context(method);
+        step(&mut with_reset, 0, &Input { reset: Reset::All, ..frame(0) });
+        let mut without_reset = context(method);
+        run(&mut without_reset, 0..1);
+        assert_eq!(run(&mut with_reset, 1..4), run(&mut without_reset, 1..4), "{method:?}: a reset at frame 0");
     }
     holds!(
         "H76",
@@ -187,7 +187,7 @@ fn half_the_trust_is_half_the_history() {
         // Half way from level 0 to 2, in sevenths.
         assert_eq!(made.surfaces()[i].lod, 1.0);
     }
-    // taa takes the larger one of its own share of the candidate and what trust leaves.
+    // taa uses the larger one of its own share of the candidate and 1 - trust.
     let mut post = context(Method::Taa);
     step(&mut post, 0, &frame(0));
     let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..frame(1) };

@@ -4,28 +4,32 @@ use super::rig::*;
 use afterimage_testing::holds;
 
 #[test]
-fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
-    let mut worst_untold = 0.0_f32;
+fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_declared() {
+    let mut worst_undeclared = 0.0_f32;
     for ratio in [256.0, 1.0 / 256.0] {
         let mut post = context(Method::Smr);
         let made = step(&mut post, 0, &Input::sharp(noise(SIZE, "h72").map(|c| c.map(|v| 0.25 + 0.5 * v))));
         let coarse = LowPass::new(&made.stored(), 4).render(&Image::filled(SIZE, 2.0));
         let exposed =
             Input { exposure: Exposure::Changed { ratio }, ..Input::at_lod(coarse.map(|c| c.map(|v| v * ratio)), 2.0) };
-        let told = step(&mut post.clone(), 1, &exposed);
-        assert_eq!(told.shown, made.stored().map(|c| c.map(|v| v * ratio)), "x{ratio}");
-        assert_eq!(told.stats.rejected(), 0);
-        // Not told, it is another picture: what came is shown until nothing is left of the old one.
-        let untold = Input { exposure: Exposure::Same, ..exposed };
+        let declared = step(&mut post.clone(), 1, &exposed);
+        assert_eq!(declared.shown, made.stored().map(|c| c.map(|v| v * ratio)), "x{ratio}");
+        assert_eq!(declared.stats.rejected(), 0);
+        // Undeclared, it is another picture: the new one is shown at once.
+        let undeclared = Input { exposure: Exposure::Same, ..exposed };
         for index in 1..20 {
-            let shown = step(&mut post, index, &untold).shown;
-            let pairs = shown.pixels().iter().flatten().zip(untold.color.pixels().iter().flatten());
-            worst_untold = pairs.fold(worst_untold, |w, (a, b)| w.max((a / b - 1.0).abs()));
+            let shown = step(&mut post, index, &undeclared).shown;
+            let pairs = shown.pixels().iter().flatten().zip(undeclared.color.pixels().iter().flatten());
+            worst_undeclared = pairs.fold(worst_undeclared, |w, (a, b)| w.max((a / b - 1.0).abs()));
         }
     }
-    println!("not told: off by {worst_untold}");
-    assert!(worst_untold < 0.05, "{worst_untold}");
-    holds!("H72", Cpu, "smr, x256 and /256 told: detail kept bit for bit; not told: within {worst_untold:.3} at once");
+    println!("undeclared: off by {worst_undeclared}");
+    assert!(worst_undeclared < 0.05, "{worst_undeclared}");
+    holds!(
+        "H72",
+        Cpu,
+        "smr, x256 and /256 declared: detail kept bit for bit; undeclared: within {worst_undeclared:.3} at once"
+    );
 }
 
 #[test]
@@ -41,7 +45,7 @@ fn h73_a_firefly_is_gone_with_the_frame_after() {
         let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
         println!("{method:?}: at the most {brightest} a frame after 65504");
         assert!(brightest < 0.011);
-        // What is left of its light, over all pixels and the frames that follow.
+        // Remaining light of the firefly, over all pixels and the following frames.
         let mut extra = 0.0_f64;
         for index in 2..30 {
             let made = step(&mut post, index, &Input::at_lod(dark.clone(), 2.0));
@@ -74,7 +78,7 @@ fn h74_a_strobe_leaves_nothing_behind() {
                     off.push(made.shown.pixels().iter().flatten().fold(0.0, furthest));
                 }
             }
-            // Accumulation stalls where a tenth of what is missing is less than half a step of storage.
+            // Accumulation stalls where a tenth of the difference is less than half a step of storage.
             let stall = 1.5 / 1024.0 / (1.0 - Settings::default().smr.accumulate);
             let frames = off.iter().rposition(|&v| v > stall).map_or(0, |last| last + 1);
             let last = off[99];

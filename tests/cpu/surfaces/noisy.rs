@@ -1,5 +1,5 @@
-//! Noisy candidates: the mean of many frames is as confidence as its weights promise and neither darker nor brighter than the truth; noise is
-//! no change, and change is not noise.
+//! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not pass for a
+//! change, nor a change for noise.
 
 use super::rig::{Draws, Input, SIZE, settings, step};
 use afterimage::cpu::CpuAfterimage;
@@ -49,7 +49,7 @@ fn promised(frames: usize, most: f64) -> f64 {
 }
 
 #[test]
-fn a_still_view_becomes_as_sure_as_its_weights_promise() {
+fn a_still_view_has_the_variance_that_its_weights_predict() {
     let even = |d: &mut Draws, _| d.range(0.2, 0.8);
     let of_one_frame = 0.6 * 0.6 / 12.0 / 2.0;
     for (frames, accumulate) in [(5, 0.9), (60, 0.9), (60, 0.5)] {
@@ -59,7 +59,7 @@ fn a_still_view_becomes_as_sure_as_its_weights_promise() {
         let (mean, variance) = moments(&shown);
         let expected = of_one_frame * promised(frames as usize, f64::from(accumulate));
         println!("{frames} frames, share {accumulate}: variance {variance:.2e}, promised {expected:.2e}");
-        // Rounding of what is stored adds less than a thousandth of the color each frame.
+        // Rounding in storage adds less than a thousandth of the color each frame.
         let rounding = f64::from(2.0_f32.powi(-10)).powi(2) * 0.25;
         let z = (variance - expected) / (expected * (2.0 / PIXELS).sqrt());
         let allowed = rounding / (1.0 - f64::from(accumulate)).powi(2) / (expected * (2.0 / PIXELS).sqrt());
@@ -72,7 +72,7 @@ fn a_still_view_becomes_as_sure_as_its_weights_promise() {
     }
 }
 
-/// A lamp that one sample in 32 finds: most pixels look dark and confidence.
+/// A lamp that one sample in 32 hits: most pixels look dark and free of noise.
 fn rare(d: &mut Draws, _: [u32; 2]) -> f32 {
     if d.bits().is_multiple_of(32) { 8.0 } else { 0.05 }
 }
@@ -93,7 +93,7 @@ fn rare_bright_samples_are_neither_lost_nor_doubled() {
     let mean: f64 = sum / frames;
     let error = ((squares / frames - mean * mean) / (frames - 1.0)).sqrt();
     println!("shown {mean:.4}, truth {truth:.4}, standard error {error:.4}");
-    // Where the gate lets go of history by chance, nothing is lost: the candidate is as right on average.
+    // Where the gate rejects history by chance, there is no bias: the candidate has the same mean.
     assert!((mean - truth).abs() < 5.0 * error + 0.01 * truth, "{mean} for {truth}");
 }
 
@@ -134,7 +134,7 @@ fn a_picture_without_noise_is_a_fixed_point_and_nan_stays_where_it_is() {
     let first = step(&mut post, 0, &input);
     for index in 1..8 {
         let made = step(&mut post, index, &input);
-        // As it is stored: what is shown afterwards is a mean of the color and its rounding.
+        // The stored value: later output is a mean of the color and its rounding.
         let off = |a: [f32; 3], b: [f32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
         assert!(made.shown.pixels().iter().zip(color.pixels()).all(|(a, b)| off(*a, *b) <= 1.5e-3));
         assert_eq!(made.surfaces().len(), first.surfaces().len());

@@ -4,7 +4,7 @@ use super::rig::*;
 use afterimage::Verdict;
 use afterimage::kernel::surface::MAX_LOD;
 
-/// Coarse, moving, partly distrusted: whatever an engine may hand over. Motion in quarters of a pixel, the same over large areas.
+/// Coarse, moving, partly distrusted frames, as engines may deliver. Motion in quarters of a pixel, constant over large areas.
 fn busy(name: &str) -> Input {
     let mut draws = Draws::new(name);
     let size = SIZE;
@@ -33,7 +33,7 @@ fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
         for (i, lod) in input.lod.as_ref().unwrap().pixels().iter().enumerate().filter(|(_, l)| **l == 0.0) {
             assert_eq!(bits(made.shown.pixels()[i]), bits(input.color.pixels()[i]), "frame {index}, pixel {i}");
             foveal += 1;
-            // Stored as sharp, but where a vector leads nowhere.
+            // Stored as sharp, except where the motion vector is on a silhouette.
             assert!(surfaces[i].lod == 0.0 || surfaces[i].lod == MAX_LOD && lod == &0.0);
         }
         assert!(index == 0 || made.trace.pixels().iter().any(|t| t.survival > 0.0), "history is used elsewhere");
@@ -90,7 +90,7 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
             assert!(made.trace.pixels().iter().all(|t| t.verdict == *verdict), "{verdict:?}");
             assert_eq!(made.shown, input.color, "{method:?} {verdict:?}");
             for (s, &lod) in made.surfaces().iter().zip(lods.pixels()) {
-                // A vector that is NaN is like none of its neighbours'.
+                // A NaN vector is unlike its neighbours'.
                 let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
                 let expected = match method {
                     Method::Taa => 0.0,
@@ -108,7 +108,7 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
     let mut post = context(Method::Smr);
     let picture = noise(SIZE, "coherent");
     step(&mut post, 0, &Input::sharp(picture.clone()));
-    // Alone; and a row of three, of which the first two share a block of 2x2 pixels and the last has no friend in its own.
+    // A single pixel; and a row of three, of which the first two share a 2x2 block and the last has no neighbour in its own.
     let odd = [[10, 10], [20, 10], [21, 10], [22, 10]];
     let motion = Image::from_fn(SIZE, |at| if odd.contains(&at) { [2.0, 0.0] } else { [0.0; 2] });
     let input = Input {
@@ -132,15 +132,15 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
     }
 }
 
-/// A few frames, all colors times `ratio` from frame `from` on; `told` says so as an exposure.
-fn exposed(method: Method, ratio: f32, from: u64, told: bool) -> Vec<Made> {
+/// A few frames with all colors times `ratio` from frame `from` on; `is_declared`: the frame's exposure says so.
+fn exposed(method: Method, ratio: f32, from: u64, is_declared: bool) -> Vec<Made> {
     let mut post = context(method);
     let frame = |index: u64| {
         let mut input = busy(&format!("exposure {index}"));
         if index >= from {
             input.color = input.color.map(|c| c.map(|v| v * ratio));
         }
-        if told && index == from {
+        if is_declared && index == from {
             input.exposure = Exposure::Changed { ratio };
         }
         input
@@ -149,19 +149,19 @@ fn exposed(method: Method, ratio: f32, from: u64, told: bool) -> Vec<Made> {
 }
 
 #[test]
-fn s6_an_exposure_that_is_told_is_as_if_it_had_always_been() {
+fn s6_a_declared_exposure_is_as_if_it_had_always_been() {
     for method in METHODS {
         // Powers of two shift exponents alone, and before the change there was a first frame only, in which nothing is compared: the
         // gate's differences grow with the square root of light, so that later frames decide by their own exposure.
         for ratio in [0.25, 0.5, 2.0, 16.0] {
             let always = exposed(method, ratio, 0, false);
-            let told = exposed(method, ratio, 1, true);
-            let untold = exposed(method, ratio, 1, false);
+            let declared = exposed(method, ratio, 1, true);
+            let undeclared = exposed(method, ratio, 1, false);
             for index in 1..6 {
-                assert_eq!(told[index].shown, always[index].shown, "{method:?}, {ratio}, frame {index}");
-                assert_eq!(told[index].words, always[index].words);
+                assert_eq!(declared[index].shown, always[index].shown, "{method:?}, {ratio}, frame {index}");
+                assert_eq!(declared[index].words, always[index].words);
             }
-            assert_ne!(untold[1].shown, always[1].shown, "the planted error: not told");
+            assert_ne!(undeclared[1].shown, always[1].shown, "the planted error: undeclared");
         }
     }
 }

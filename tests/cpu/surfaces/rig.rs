@@ -1,4 +1,4 @@
-//! Frames of one view for the methods that remember surfaces, and what became of them.
+//! Frames of one view for the methods that store surfaces, and their results.
 
 pub use crate::images::{Images, OneView};
 pub use afterimage::cpu::{CpuAfterimage, Frame};
@@ -13,7 +13,7 @@ pub const SIZE: [u32; 2] = [52, 41];
 pub const METHODS: [Method; 2] = [Method::Smr, Method::Taa];
 pub type Color = Image<[f32; 3]>;
 
-/// Four pixels a block at the most: levels 0 to 4 of the chain, so that positions 16 pixels apart are alike.
+/// Four pixels a block at the most: levels 0 to 4 of the mip chain, so that positions 16 pixels apart are alike.
 pub fn settings(method: Method) -> Settings {
     let foveation = Foveation { rate_mid: 4, rate_far: 4, ..Foveation::default() };
     Settings { method, foveation, ..Settings::default() }
@@ -82,7 +82,7 @@ impl Input {
     }
 }
 
-/// What became of a view.
+/// Result of a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
     pub shown: Color,
@@ -121,7 +121,7 @@ pub fn step(post: &mut CpuAfterimage, index: u64, input: &Input) -> Made {
     step_views(post, index, &[input]).remove(0)
 }
 
-/// Box mip levels of an image in f64, read trilinearly: written down again from the definition of the foveation.
+/// Mip levels of an image in f64, with trilinear lookup: a second implementation, from the definition of the foveation.
 pub struct LowPass(pub Vec<Image<[f64; 3]>>);
 
 impl LowPass {
@@ -163,7 +163,7 @@ impl LowPass {
         [0, 1, 2].map(|c| (fine[c] + (coarse[c] - fine[c]) * t) as f32)
     }
 
-    /// What a renderer that foveates would deliver.
+    /// The image as a foveating renderer would deliver it.
     pub fn render(&self, lods: &Image<f32>) -> Color {
         Image::from_fn(lods.size(), |[x, y]| self.at([f64::from(x), f64::from(y)], lods.at(x as usize, y as usize)))
     }
@@ -173,7 +173,7 @@ pub fn bits(color: [f32; 3]) -> [u32; 3] {
     color.map(f32::to_bits)
 }
 
-/// The level of detail as it is stored: in sevenths, up to 62 of them.
+/// Stored level of detail: in sevenths, up to 62 of them.
 pub fn stored_lod(lod: f32) -> f32 {
     (lod * 7.0).round().min(62.0) / 7.0
 }

@@ -4,7 +4,7 @@ use super::rig::*;
 use afterimage::Verdict;
 use afterimage_testing::holds;
 
-/// Levels of detail at which sharp history counts wholly: a tenth and more.
+/// Levels of detail at which sharp history replaces the candidate fully: a tenth and more.
 fn coarse_lods(name: &str) -> Image<f32> {
     let mut draws = Draws::new(name);
     Image::from_fn(SIZE, |_| draws.range(0.11, 2.0))
@@ -39,10 +39,10 @@ fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
 
 #[test]
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
-    // Smooth pictures have next to no contrast to be tolerant of, so history fits only if the same low-pass is compared: a slope of
-    // 1.5 % a pixel is told from the same one further on.
+    // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is compared: a slope of
+    // 1.5 % a pixel is distinguished from its shifted copy.
     let mut post = context(Method::Smr);
-    // Nor may it be taken for a change of light.
+    // Nor may it pass for a change of light.
     post.set_settings(Settings {
         smr: afterimage::Smr { relight: false, ..Default::default() },
         ..settings(Method::Smr)
@@ -109,7 +109,7 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
         pairs.fold(0.0_f32, |worst, (shown, given)| worst.max((shown - given).abs() / given))
     };
     println!("off by {:.5} of the color after a frame, {:.5} after 29", off(&frames[1]), off(&frames[29]));
-    // Measured: 0.0043 and 0.0068, and nothing moves any more from the 10th frame on.
+    // Measured: 0.0043 and 0.0068, and nothing changes from the 10th frame on.
     assert!(off(&frames[29]) < 0.01);
     assert!(frames[10..].iter().all(|made| made.words == frames[10].words));
 }

@@ -1,4 +1,4 @@
-//! Two words a surface.
+//! Storage of a surface in two words.
 
 use super::rig::*;
 use afterimage::kernel::pack::disparity_value;

@@ -1,4 +1,4 @@
-//! Where the eye looks, on the device: hard cases H61 to H66.
+//! Gaze and eccentricity on the device: hard cases H61 to H66.
 
 use super::rig::{Rig, View, noise};
 use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, ViewGeometry};
@@ -8,7 +8,7 @@ const SIZE: [u32; 2] = [64, 48];
 
 #[test]
 fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
-    // As wide as 170 degrees, one eye of a headset, a fovea of nothing, an eye in a corner.
+    // 170 degrees wide, one eye of a headset, a fovea of 0 degrees, a gaze in a corner.
     let views = [
         ViewGeometry::flat(SIZE, 110.0).unwrap(),
         ViewGeometry::flat(SIZE, 170.0).unwrap(),
@@ -39,7 +39,7 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
                     assert_eq!(trace[0].pixels().iter().filter(|t| t.weight == 1.0).count(), 1);
                     only += 1;
                 }
-                // Angles from weights, by f64: bisected, where the fovea is nothing and weights fall everywhere.
+                // Angles from weights, by bisection in f64, for a fovea of 0 degrees, where weights fall everywhere.
                 if fovea_deg == 0.0 {
                     for (i, t) in trace[0].pixels().iter().enumerate().step_by(97) {
                         let [g, r] = [px, [(i % 64) as f32, (i / 64) as f32]]
@@ -84,7 +84,7 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
     );
 }
 
-/// Watson's density in f64, but for constants.
+/// Watson's density in f64, up to constant factors.
 fn density64(e_deg: f64) -> f64 {
     (0.9851 / (1.0 + e_deg / 1.058).powi(2) + 0.0149 * (-e_deg / 22.14).exp()) / (1.0 + e_deg / 41.03)
 }
@@ -109,7 +109,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     assert_eq!(weights(&[at([9.0, 9.0]), at([f32::NAN, 3.0]), at([f32::INFINITY, 3.0])]).as_ref(), Some(&there));
     assert_eq!(weights(&[Gaze::Lost]), weights(&[at([31.5, 23.5])]));
     assert_ne!(weights(&[at([-5000.0, 1e30])]), Some(there));
-    // smr: what it shows follows the gaze that is held.
+    // smr: its output depends on the held gaze.
     let shown = |gazes: &[Gaze]| -> Option<Vec<_>> {
         let mut rig = Rig::new(ContextDesc::new(SIZE), Settings { method: Method::Smr, ..Settings::paper() })?;
         let frame = |(index, &gaze): (usize, &Gaze)| {

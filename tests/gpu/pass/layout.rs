@@ -1,4 +1,4 @@
-//! The structs that Rust fills are the structs that shaders read: names, order, offsets, sizes.
+//! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
 use afterimage::gpu::uniforms::{FrameUniforms, MAX_VIEWS, ViewUniforms};
 use afterimage::shader::SHADERS;

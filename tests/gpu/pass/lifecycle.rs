@@ -1,4 +1,4 @@
-//! Views, refusals, several frames in one submission, poison, resizing for ever.
+//! Views, errors, several frames in one submission, corrupt history, resizing, device loss.
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
@@ -29,7 +29,7 @@ fn h27_stereo_is_one_dispatch_without_a_leak() {
     agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::paper(), 12);
     let settings = Settings { sampler: Sampler::AEs, ..Settings::paper() };
     agree(ContextDesc { view_count: 4, ..ContextDesc::new([33, 17]) }, settings, 12);
-    // The planted error: the other eye's history. Layers swapped in the past must show.
+    // Planted error: the other eye's history. Swapped layers of history must make a difference.
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
     let views = |index: u64| -> Vec<View> { (0..2).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect() };
@@ -116,7 +116,7 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
     }
     assert!(run(&mut resized, 20..26) == expected);
 
-    // A pause or a cut, said twice; the first of them at once shows nothing but the candidate.
+    // A pause or a cut, declared twice; already the first shows only the candidate.
     let mut cut = used();
     let views = [noise_view("run 20", &cut.context)];
     for _ in 0..2 {
@@ -127,10 +127,13 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
     assert!(run(&mut cut, 21..26) == expected[1..]);
 
     let Some(mut from_zero) = fresh() else { return };
-    let Some(mut told) = fresh() else { return };
-    let views = [noise_view("run 0", &told.context)];
-    assert!(told.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0], "a reset at frame 0 changes nothing");
-    assert!(run(&mut told, 1..4) == run(&mut from_zero, 1..4));
+    let Some(mut with_reset) = fresh() else { return };
+    let views = [noise_view("run 0", &with_reset.context)];
+    assert!(
+        with_reset.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0],
+        "a reset at frame 0 changes nothing"
+    );
+    assert!(run(&mut with_reset, 1..4) == run(&mut from_zero, 1..4));
     holds!("H76", Gpu, "wrs: 4 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit");
     holds!("H77", Gpu, "wrs: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit");
     holds!("H78", Gpu, "wrs: reset twice running, and at frame 0: as a fresh context, bit for bit");
@@ -162,9 +165,9 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() });
         let Some(mut lost) = fresh() else { return };
         let reason = Arc::new(OnceLock::new());
-        let told = reason.clone();
+        let lost_reason = reason.clone();
         lost.device.set_device_lost_callback(move |why, _| {
-            let _ = told.set(why);
+            let _ = lost_reason.set(why);
         });
         run(&mut lost, 0..4);
         let desc = wgpu::BufferDescriptor {
@@ -175,7 +178,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         };
         let buffer = lost.device.create_buffer(&desc);
         lost.device.destroy();
-        // Until the caller hears of it, recording goes on without a panic, whatever the context has to make for it.
+        // Until the caller learns of it, recording continues without a panic, whatever the context has to create.
         let facts = [noise_view("lost", &lost.context).facts];
         let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
         let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
@@ -184,7 +187,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         lost.queue.submit([encoder.finish()]);
         lost.gpu.resize(&lost.device, [33, 17]).unwrap();
         lost.gpu.forget();
-        // What it hears are typed errors of wgpu's: the reason, and a readback that does not map.
+        // The caller gets typed errors of wgpu: the reason, and a readback that does not map.
         let mapped = Arc::new(OnceLock::new());
         let result = mapped.clone();
         buffer.map_async(wgpu::MapMode::Read, .., move |r| {
@@ -194,7 +197,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         assert!(matches!(mapped.get(), Some(Err(wgpu::BufferAsyncError))), "{mapped:?}");
         assert_eq!(reason.get(), Some(&wgpu::DeviceLostReason::Destroyed));
         drop(lost);
-        // A new context on a new device knows nothing of the old one's frames: it starts with the candidate.
+        // A new context on a new device has no history: it starts with the candidate.
         let mut again = fresh().unwrap();
         let made = run(&mut again, 4..8);
         let candidate = noise_view("run 4", &again.context).color;

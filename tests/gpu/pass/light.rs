@@ -1,5 +1,5 @@
-//! Light that changes, on the device: hard cases H72 to H75. The CPU's tests hold the frames and the laws; here the device does the
-//! same in every bit, and the promises are kept.
+//! Changing light on the device: hard cases H72 to H75. The CPU's tests check frames and laws; here the device agrees
+//! in every bit, and the properties hold.
 
 use super::rig::{Rig, View, noise};
 use afterimage::{ContextDesc, Exposure, Image, Reset, Settings};
@@ -31,13 +31,13 @@ fn h72_exposure_up_and_down_by_256() {
         for index in 0..10 {
             rig.both(index, Reset::None, &[view("still", 1.0)]);
         }
-        // With the ratio: nothing is flushed, nothing flashes, history is kept.
+        // With the ratio: no history is rejected, nothing flashes.
         rig.exposure = Exposure::Changed { ratio };
         let (made, trace) = rig.both(10, Reset::None, &[view("still", ratio)]);
         let expected: Vec<[u32; 3]> = view("still", ratio).color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
         assert!(made.shown == expected && made.stats.rejected() == 0);
         assert!(trace[0].pixels().iter().filter(|t| !t.take).count() > 64 * 48 / 2);
-        // Back, and nobody says so: after 3 frames the gate has let go of all but a hundredth, which happens to look alike.
+        // Back, undeclared: after 3 frames the gate has rejected all history but a hundredth, which happens to look alike.
         rig.exposure = Exposure::Same;
         for index in 11..31 {
             let (made, trace) = rig.both(index, Reset::None, &[view(&format!("h72 {index}"), 1.0)]);
@@ -56,7 +56,7 @@ fn h72_exposure_up_and_down_by_256() {
     holds!(
         "H72",
         Gpu,
-        "wrs, x256 and /256 told: the frame itself, 0 of 3072 flushed; not told: 1 % stale after 3 frames"
+        "wrs, x256 and /256 declared: the frame itself, 0 of 3072 rejected; undeclared: 1 % stale after 3 frames"
     );
 }
 

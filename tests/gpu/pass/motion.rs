@@ -1,4 +1,4 @@
-//! Surfaces that move, on the device: hard cases H51 to H60.
+//! Moving surfaces on the device: hard cases H51 to H60.
 
 use super::rig::{Rig, View, with_w_sum};
 use super::surfaces::{METHODS, PIXELS, SIZE, bits, one, sticky, still, ungated, ungated_of, with_depth, with_motion};
@@ -8,7 +8,7 @@ use afterimage_testing::holds;
 
 #[test]
 fn h51_a_thousand_still_frames_never_move_a_sample() {
-    // Pictures by turns: what is shown is one of them at its own pixel, bit for bit.
+    // Alternating pictures: each output pixel is that of one of them, bit for bit.
     let Some(mut rig) = ungated() else { return };
     let views: Vec<View> = (0..8).map(|i| with_motion(&format!("still {i}"), |_| [0.0; 2])).collect();
     let pictures: Vec<Vec<[u32; 3]>> =
@@ -119,10 +119,10 @@ fn h57_the_last_texel_is_inside_and_a_hundredth_beyond_its_edge_is_not() {
             one(&mut rig, 0, still("border"));
             let (_, trace) = one(&mut rig, 1, with_motion("border", |[x, _]| [to - x as f32, 0.0]));
             for (i, t) in trace.pixels().iter().enumerate() {
-                // smr believes no vector that is unlike its neighbour's: these grow by a pixel from one to the next.
-                let believed = if method == Method::Smr && t.verdict == Verdict::Disoccluded { None } else { Some(t) };
+                // smr rejects vectors that are unlike their neighbours': these grow by a pixel from one to the next.
+                let accepted = if method == Method::Smr && t.verdict == Verdict::Disoccluded { None } else { Some(t) };
                 let verdict = if inside { Verdict::Valid } else { Verdict::OffScreen };
-                assert!(believed.is_none_or(|t| t.verdict == verdict), "{method:?}: pixel {i} to column {to}");
+                assert!(accepted.is_none_or(|t| t.verdict == verdict), "{method:?}: pixel {i} to column {to}");
                 assert!(inside || t.verdict == Verdict::OffScreen);
             }
         }

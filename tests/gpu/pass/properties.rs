@@ -1,5 +1,5 @@
-//! Whole small frames of any bit patterns, and histories of any bit patterns, on the device: as the CPU in every bit where it has the
-//! same past, finite wherever it comes from, healed in a frame, and one view never the other's.
+//! Small frames and histories of arbitrary bit patterns on the device: equal to the CPU in every bit where it has the
+//! same history, finite for any history, valid again after a frame, and without effect of one view on another.
 
 use super::rig::{Rig, View};
 use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};

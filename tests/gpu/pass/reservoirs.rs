@@ -1,4 +1,4 @@
-//! Reservoirs on the device: what they can hold, the law by which they choose, and damage. Hard cases H05 to H07, H11, H12, H15,
+//! Reservoirs on the device: range, probabilities and corruption. Hard cases H05 to H07, H11, H12, H15,
 //! H17 to H19, H22, H26, H29.
 
 use super::rig::{Rig, View, noise, with_w_sum};
@@ -8,7 +8,7 @@ use afterimage::{Bias, ContextDesc, Foveation, Image, Reset, Sampler, Settings};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 
-/// Every candidate has weight 1, and nothing but chance decides.
+/// Settings in which every candidate has weight 1, without gate and depth test.
 fn even() -> Settings {
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
     Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() }
@@ -19,7 +19,7 @@ fn plain(size: [u32; 2], light: f32) -> View {
     View::still(Image::filled(size, [light; 3]), [0.0; 2])
 }
 
-/// The sum that the pass, on both executors, keeps after `frames` more candidates of weight 1 on a history of sum `start`, and the
+/// Weight sum that the pass stores, on both executors, after `frames` more candidates of weight 1 on a history of sum `start`, and the
 /// one of the frame before.
 fn sum_after(rig: &mut Rig, words: &[[u32; 3]], start: f32, frames: u64) -> [f32; 2] {
     let size = rig.context.size_px;
@@ -245,7 +245,7 @@ fn h29_the_same_bytes_in_workgroups_of_any_size() {
 fn h26_the_frame_counter_goes_on_beyond_32_bits() {
     let size = [256, 64];
     let Some(mut rig) = Rig::new(ContextDesc::new(size), even()) else { return };
-    // Each frame of its own color; what is kept of eight frames around the wrap follows the same law as ever.
+    // Each frame has its own color; the samples of eight frames around the wrap follow the same law.
     let first = u64::from(u32::MAX) - 3;
     let mut counts = [0_u64; 8];
     for k in 0..8 {

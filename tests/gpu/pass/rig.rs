@@ -1,4 +1,4 @@
-//! The same frames through both executors, and what comes back from the device.
+//! Frames through both executors, and the device's results.
 
 use crate::images::{Images, OneView};
 use afterimage::cpu::CpuAfterimage;
@@ -21,7 +21,7 @@ pub struct View {
     pub depth: Option<Image<f32>>,
     pub motion: Option<Image<[f32; 2]>>,
     pub trust: Option<Image<f32>>,
-    /// Levels of detail, where the renderer tells them.
+    /// Level-of-detail input, if any.
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
@@ -79,7 +79,7 @@ impl Textures {
     }
 }
 
-/// What an executor made of a frame: shown colors and packed reservoirs, view after view.
+/// Result of a frame: output colors and packed history, view after view.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Made {
     pub shown: Vec<[u32; 3]>,
@@ -88,7 +88,7 @@ pub struct Made {
 }
 
 impl Rig {
-    /// `None`, after saying so, without an adapter.
+    /// `None`, after a message, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
         let pass = format!("{}_pass", settings.method.name());
         Self::with_shader(context, settings, &SHADERS.compose(&pass).source)
@@ -130,7 +130,7 @@ impl Rig {
         self.textures.motion = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, usage);
     }
 
-    /// Gives both executors a past.
+    /// Sets the history of both executors.
     pub fn restore(&mut self, words: &[[u32; 3]]) {
         self.cpu.restore_history(words);
         let (textures, len) = (self.gpu.history_textures(), words.len() / self.context.view_count as usize);
@@ -142,7 +142,7 @@ impl Rig {
         }
     }
 
-    /// The frame on both, which must agree in every bit of what they show, keep and count.
+    /// Processes a frame on both executors, which must agree in every bit of output, history and counters.
     #[track_caller]
     pub fn both(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
         let (cpu, trace) = self.on_cpu(index, reset, views);
@@ -181,7 +181,7 @@ impl Rig {
         self.read()
     }
 
-    /// What both say of a frame that they must refuse.
+    /// Errors of both executors for a frame that they must reject.
     pub fn refusal(&mut self, view: &View) -> String {
         self.upload(std::slice::from_ref(view));
         let frame = Frame {
@@ -204,7 +204,7 @@ impl Rig {
         self.read()
     }
 
-    /// What `on_gpu` would decide; shown colors alone.
+    /// Debug view of the decisions of `on_gpu`; output colors only.
     pub fn decisions(&mut self, index: u64, reset: Reset, views: &[View], view: DebugView) -> Vec<[u32; 3]> {
         self.record(index, reset, views, true, Some(view));
         self.read().shown
@@ -234,7 +234,7 @@ impl Rig {
         });
     }
 
-    /// The same images twice, with different facts, recorded into one encoder.
+    /// The same images twice, with different descriptions, recorded into one encoder.
     pub fn on_gpu_in_one_submission(&mut self, view: &View, facts: &[ViewFrame]) -> Made {
         self.upload(std::slice::from_ref(view));
         let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -251,7 +251,7 @@ impl Rig {
         self.read()
     }
 
-    /// Fills the past, all its levels, with words that are NaN as whatever they are read.
+    /// Fills history, all its levels, with words that are NaN in any format.
     pub fn poison(&self) {
         for texture in self.gpu.history_textures() {
             for level in 0..texture.mip_level_count() {
@@ -260,7 +260,7 @@ impl Rig {
         }
     }
 
-    /// Gives each of two views the other's past, on the GPU alone.
+    /// Swaps the history of two views, on the GPU alone.
     pub fn swap_past_layers(&mut self) {
         let mut words = self.read().words;
         let half = words.len() / 2;
@@ -270,7 +270,7 @@ impl Rig {
         self.cpu = cpu;
     }
 
-    /// Shown colors and stored reservoirs as they are on the device.
+    /// Output colors and stored history, read back from the device.
     pub fn read(&self) -> Made {
         let shown = self.read_texture(&self.textures.output);
         let held: Vec<_> =
@@ -305,7 +305,7 @@ impl Rig {
         self.device.create_buffer(&desc)
     }
 
-    /// What a readback buffer holds after what was recorded.
+    /// Contents of a readback buffer after the recorded commands.
     fn bytes(&self, encoder: wgpu::CommandEncoder, buffer: &Buffer) -> Vec<u8> {
         self.queue.submit([encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
@@ -370,7 +370,7 @@ pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }
 
-/// Packed reservoirs, or packed surfaces and their noise, 0 where there is none.
+/// Packed reservoirs, or packed surfaces and their noise (0 without noise).
 fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
     let history = cpu.history();
     let noise = history.noise().iter().copied().chain(std::iter::repeat(0));

@@ -1,4 +1,4 @@
-//! Surfaces that come and go, on the device: hard cases H41, H42, H44 to H47, H49 and H50.
+//! Occlusion and disocclusion on the device: hard cases H41, H42, H44 to H47, H49 and H50.
 
 use super::rig::{Made, Rig, View, noise, with_w_sum};
 use afterimage::kernel::debug_view::PixelTrace;
@@ -29,7 +29,7 @@ pub fn ungated_of(method: Method) -> Option<Rig> {
     Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() })
 }
 
-/// Those that find the past by the same rules, each in its own history.
+/// Methods that find history by the same rules, each with its own storage.
 pub const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
 
 pub fn one(rig: &mut Rig, index: u64, view: View) -> (Made, Image<PixelTrace>) {
@@ -48,7 +48,7 @@ pub fn bits(color: [f32; 3]) -> [u32; 3] {
 }
 
 #[test]
-fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
+fn h44_a_grazing_plane_under_jitter_is_not_rejected() {
     let focal_px = 32.0 / 35_f32.to_radians().tan();
     let mut seen = 0;
     for method in METHODS {
@@ -66,7 +66,7 @@ fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
             let Some(mut rig) = ungated_of(method) else { return };
             for index in 0..8 {
                 let (_, trace) = one(&mut rig, index, frame(index));
-                // Where the rows around are the plane, too, wherever the sample is: the horizon is a silhouette.
+                // Only where the neighbouring rows are on the plane for any sample position: the horizon is a silhouette.
                 for (i, t) in trace.pixels().iter().enumerate().filter(|(i, _)| row((i / 64) as f32 - 1.5) > 0.0) {
                     assert!(t.verdict != Verdict::Disoccluded, "{method:?}, {angle_deg} degrees, row {}", i / 64);
                     seen += 1;
@@ -81,14 +81,14 @@ fn h44_a_grazing_plane_under_jitter_is_not_flushed() {
     let floor = |jitter: f32| with_depth("floor", move |[_, y]| 1000.0 / (y as f32 + 1.0 + jitter));
     one(&mut strict, 0, floor(0.0));
     assert!(one(&mut strict, 1, floor(0.5)).0.stats.rejected() > 0, "the planted error: no allowance for slope");
-    holds!("H44", Gpu, "wrs and smr, 60 to 89.9 degrees, 8 jittered frames: 0 of {seen} pixels flushed");
+    holds!("H44", Gpu, "wrs and smr, 60 to 89.9 degrees, 8 jittered frames: 0 of {seen} pixels rejected");
 }
 
 #[test]
-fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
+fn h45_driving_at_a_wall_keeps_history_when_camera_motion_is_known() {
     let camera = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]];
     for method in METHODS {
-        for (camera, flushes) in [(Some(camera), 0), (None, PIXELS)] {
+        for (camera, rejected) in [(Some(camera), 0), (None, PIXELS)] {
             let Some(mut rig) = ungated_of(method) else { return };
             for (index, z) in [(0, 6.0_f32), (1, 5.0)] {
                 let k = z / (z + 1.0) - 1.0;
@@ -96,15 +96,15 @@ fn h45_driving_at_a_wall_does_not_flush_when_the_camera_is_known() {
                 view.depth = Some(Image::filled(SIZE, z));
                 view.facts.previous_from_current = camera;
                 let disoccluded = one(&mut rig, index, view).0.stats.verdicts[Verdict::Disoccluded as usize];
-                assert_eq!(disoccluded, if index == 1 { flushes } else { 0 }, "{method:?}");
+                assert_eq!(disoccluded, if index == 1 { rejected } else { 0 }, "{method:?}");
             }
         }
     }
-    holds!("H45", Gpu, "wrs and smr, from 6 to 5 m: 0 of 3072 pixels flushed; 3072 where no camera is told");
+    holds!("H45", Gpu, "wrs and smr, from 6 to 5 m: 0 of 3072 pixels rejected; 3072 without camera motion");
 }
 
 #[test]
-fn h46_a_jittering_wire_flushes_itself_alone() {
+fn h46_a_jittering_wire_rejects_its_own_history_alone() {
     let [wall, wire] = [[0.25; 3], [0.9; 3]];
     let mut shares = vec![];
     for method in METHODS {
@@ -130,34 +130,34 @@ fn h46_a_jittering_wire_flushes_itself_alone() {
     holds!(
         "H46",
         Gpu,
-        "wrs and smr: 96 px a frame flushed, always; blinking beside them {smr:.1e} of the wire's (wrs 0)"
+        "wrs and smr: 96 px a frame rejected, always; blinking beside them {smr:.1e} of the wire's (wrs 0)"
     );
 }
 
 #[test]
-fn h47_a_nan_depth_flushes_its_pixel_alone() {
+fn h47_a_nan_depth_rejects_its_pixel_alone() {
     for method in METHODS {
         let (Some(mut clean), Some(mut hurt)) = (ungated_of(method), ungated_of(method)) else { return };
-        // What was stored there has no depth either, so it is flushed once more.
-        for (index, bad, flushed) in [(0, false, 0), (1, true, 1), (2, false, 1), (3, false, 0)] {
+        // The stored sample has no depth either, so its history is rejected once more.
+        for (index, bad, rejected) in [(0, false, 0), (1, true, 1), (2, false, 1), (3, false, 0)] {
             let view = |bad: bool| {
                 let depth = |at: [u32; 2]| if bad && at == [20, 21] { f32::NAN } else { 4.0 };
                 with_depth(&format!("nan depth {index}"), depth)
             };
             let (expected, _) = one(&mut clean, index, view(false));
             let (made, trace) = one(&mut hurt, index, view(bad));
-            assert_eq!((made.stats.rejected(), made.stats.bad_depth), (flushed, u64::from(bad)));
-            assert_eq!(trace.at(20, 21).verdict == Verdict::Disoccluded, flushed == 1);
-            // smr's coarser levels of a pixel that has forgotten reach its neighbours a frame later.
+            assert_eq!((made.stats.rejected(), made.stats.bad_depth), (rejected, u64::from(bad)));
+            assert_eq!(trace.at(20, 21).verdict == Verdict::Disoccluded, rejected == 1);
+            // A pixel without history affects its neighbours through smr's mip chain a frame later.
             let alike = |(i, (a, b))| i == 21 * 64 + 20 || method == Method::Smr && index > 1 || a == b;
             assert!(made.shown.iter().zip(&expected.shown).enumerate().all(alike), "{method:?}, frame {index}");
         }
     }
-    holds!("H47", Gpu, "wrs and smr: its pixel flushed in 2 frames, then kept; {} others: same bits", PIXELS - 1);
+    holds!("H47", Gpu, "wrs and smr: its pixel rejected in 2 frames, then kept; {} others: same bits", PIXELS - 1);
 }
 
 #[test]
-fn h41_h49_sky_and_orthographic_depth_flush_where_surfaces_change() {
+fn h41_h49_sky_and_orthographic_depth_are_rejected_where_surfaces_change() {
     for method in METHODS {
         for (depth, sky, wall) in [
             (DepthConvention::Reversed { near: 0.1, far: f32::INFINITY }, 0.0, 0.05),
@@ -167,18 +167,18 @@ fn h41_h49_sky_and_orthographic_depth_flush_where_surfaces_change() {
         ] {
             let settings = Settings { method, ..Settings::paper() };
             let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
-            for (index, split, flushed) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
+            for (index, split, rejected) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
                 let view = with_depth("sky", |[x, _]| if x < split { wall } else { sky });
-                assert_eq!(one(&mut rig, index, view).0.stats.rejected(), flushed, "{depth:?}, frame {index}");
+                assert_eq!(one(&mut rig, index, view).0.stats.rejected(), rejected, "{depth:?}, frame {index}");
             }
         }
     }
     holds!(
         "H41",
         Gpu,
-        "wrs and smr, 3 skies: sky on sky keeps 1536 of 1536, sky on wall and wall on sky flush 96 of 96"
+        "wrs and smr, 3 skies: sky on sky keeps 1536 of 1536, sky on wall and wall on sky reject 96 of 96"
     );
-    holds!("H49", Gpu, "wrs and smr: the edge's 96 pixels flushed each way, no other of 3072");
+    holds!("H49", Gpu, "wrs and smr: the edge's 96 pixels rejected each way, no other of 3072");
 }
 
 #[test]
@@ -213,5 +213,5 @@ fn h50_z_fighting_shows_only_what_was_presented() {
         oldest = trace.pixels().iter().map(|t| t.age).max().unwrap().max(oldest);
     }
     assert!(oldest < 40);
-    holds!("H50", Gpu, "wrs, 40 frames: none flushed, ages to {oldest}, no third color");
+    holds!("H50", Gpu, "wrs, 40 frames: none rejected, ages to {oldest}, no third color");
 }

@@ -1,5 +1,5 @@
 //! smr on the device in the hard cases that wrs has in `surfaces`, `gaze` and `light`: H50 to H53, H58, H59, H66, H72 to H75. The CPU
-//! does the same in every bit; here the promises are kept on what the device shows.
+//! agrees in every bit; here the properties are checked on the device's output.
 
 use super::rig::{Made, Rig, View, noise};
 use afterimage::kernel::debug_view::PixelTrace;
@@ -20,13 +20,13 @@ fn rig(size: [u32; 2]) -> Option<Rig> {
     Rig::new(ContextDesc::new(size), settings())
 }
 
-/// A view that tells its level of detail.
+/// A view with a level-of-detail input.
 fn at_lod(color: Color, lod: f32) -> View {
     let size = color.size();
     View { lod: Some(Image::filled(size, lod)), ..View::still(color, [20.0, 20.0]) }
 }
 
-/// What a renderer that foveates delivers of a picture.
+/// A picture as a foveating renderer delivers it.
 fn coarse(picture: &Color, lod: f32) -> Color {
     settings().foveation.render(&Pyramid::new(picture.clone(), 4), &Image::filled(picture.size(), lod))
 }
@@ -63,7 +63,7 @@ fn h50_z_fighting_stays_next_to_the_colors_presented() {
         }
     }
     assert!(beyond < 0.01, "{beyond}");
-    holds!("H50", Gpu, "smr, 40 frames: none flushed, at the most {beyond:.4} beyond 0.25 to 0.75");
+    holds!("H50", Gpu, "smr, 40 frames: none rejected, at the most {beyond:.4} beyond 0.25 to 0.75");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
 #[test]
 fn h52_a_whole_shift_moves_history_exactly_and_the_border_is_new() {
     for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
-        // Samples as they are, not in another light.
+        // Samples without relighting.
         let plain = Smr { relight: false, ..Smr::default() };
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { smr: plain, ..settings() }) else { return };
         let before = noise(SIZE, "h52 on the device");
@@ -102,7 +102,7 @@ fn h52_a_whole_shift_moves_history_exactly_and_the_border_is_new() {
                 kept += 1;
             }
         }
-        // Blocks of another phase are not quite what the chain makes of history: some of it is let go of.
+        // Blocks of another phase differ from the mip chain of history: some history is rejected.
         assert_eq!(wrong == 0 && kept > 2000, right, "{kept} kept, {wrong} wrong; the planted error: the other sign");
         if right {
             holds!("H52", Gpu, "smr: {kept} samples moved bit for bit, {} of the border new", 64 * 48 - 61 * 46);
@@ -207,7 +207,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
 }
 
 #[test]
-fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
+fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_declared() {
     let mut worst = 0.0_f32;
     for ratio in [256.0, 1.0 / 256.0] {
         let Some(mut rig) = rig(SIZE) else { return };
@@ -219,7 +219,7 @@ fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
         let (made, _) = one(&mut rig, 1, at_lod(after, 2.0));
         assert_eq!(shown(&made), scaled(&picture).pixels(), "x{ratio}");
         assert_eq!(made.stats.rejected(), 0);
-        // Back, and nobody says so.
+        // Back, undeclared.
         rig.exposure = Exposure::Same;
         let back = coarse(&picture, 2.0);
         for index in 2..12 {
@@ -227,7 +227,7 @@ fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_told() {
         }
     }
     assert!(worst < 0.05, "{worst}");
-    holds!("H72", Gpu, "smr, x256 and /256 told: detail kept bit for bit; not told: within {worst:.3} at once");
+    holds!("H72", Gpu, "smr, x256 and /256 declared: detail kept bit for bit; undeclared: within {worst:.3} at once");
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn h73_h74_fireflies_and_strobes_leave_nothing_behind() {
         }
         left.push(last);
     }
-    // Accumulation stalls at half a step of storage over what it leaves of the candidate.
+    // Accumulation stalls at half a step of storage divided by the candidate's share.
     assert!(left[0] == 0.0 && left[1] < 1.5 / 1024.0 / 0.1, "{left:?}");
     holds!(
         "H74",

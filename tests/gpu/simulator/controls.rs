@@ -1,4 +1,4 @@
-//! Planted errors in the passes: each must be seen by the comparison that the passes are held to. Errors in the mathematics are
+//! Planted errors in the passes: the comparison of the executors must find each. Errors in the mathematics are
 //! planted in tests/gpu/twins/controls.rs.
 
 use super::rig::*;
@@ -9,7 +9,7 @@ use afterimage::{Filter, Foveation};
 fn caught(filter: Filter, right: &str, wrong: &str) {
     // Even and odd: the one reads beyond the last texel's centre, the other has texels of one pixel.
     let size = [96, 61];
-    // A fovea wide enough to have broken pixels in it.
+    // A fovea wide enough to contain non-finite pixels.
     let foveation = Foveation { fovea_deg: 15.0, mid_deg: 30.0, ..foveation(filter, [2, 16]) };
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
     let planted = std::cell::Cell::new(0);

@@ -1,4 +1,4 @@
-//! Every filter, size, rate and gaze, over frames with everything in them that frames should not have.
+//! Every filter, size, rate and gaze, over frames with NaN, infinity and extreme values.
 
 use super::rig::*;
 use afterimage::{Filter, Foveation};

@@ -1,4 +1,4 @@
-//! Several frames in one submission, lost gazes, formats, refusals.
+//! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
 use afterimage::gpu::Timestamps;
@@ -113,7 +113,7 @@ fn what_does_not_fit_is_refused_and_nothing_recorded() {
     for (frame, words) in [
         (SimulatorFrame { full: &scalar, ..good }, "the full-rate frame is a texture of format R32Float"),
         (SimulatorFrame { full: &output, ..good }, "TEXTURE_BINDING"),
-        (SimulatorFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, not what is written"),
+        (SimulatorFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, the wrong format"),
         (SimulatorFrame { lod: Some(&scalar), ..good }, "STORAGE_BINDING"),
         (SimulatorFrame { lod: Some(&half), ..good }, "levels of detail is a texture of format Rgba16Float"),
     ] {

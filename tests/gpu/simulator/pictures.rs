@@ -1,4 +1,4 @@
-//! What the filters owe a picture, on the GPU itself: hard cases H69, H70, H71.
+//! Properties of the filters' output on the GPU: hard cases H69, H70, H71.
 
 use super::rig::*;
 use afterimage::{Filter, Foveation, Image};

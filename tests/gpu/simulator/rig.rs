@@ -1,4 +1,4 @@
-//! The same frame through the simulators on both sides, and what comes back.
+//! A frame through the simulators of both executors, and their results.
 
 use afterimage::shader::SHADERS;
 use afterimage::simulator::Pyramid;
@@ -7,7 +7,7 @@ use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFram
 use afterimage_testing::Draws;
 use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 
-/// Full-rate frames and eyes, one a view.
+/// Full-rate frames and gazes, one a view.
 #[derive(Clone)]
 pub struct Scene {
     pub images: Vec<Image<[f32; 3]>>,
@@ -73,7 +73,7 @@ impl Scene {
 }
 
 impl Rig {
-    /// `None`, after saying so, without an adapter.
+    /// `None`, after a message, without an adapter.
     pub fn new(desc: &ContextDesc) -> Option<Self> {
         Self::with_format(desc, FORMAT)
     }
@@ -149,7 +149,7 @@ pub fn texture(device: &Device, context: &ContextDesc, format: TextureFormat, us
     })
 }
 
-/// Noise from dark to the brightest half, with broken pixels.
+/// Noise from dark to the brightest half, with non-finite pixels.
 pub fn nasty(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     let mut draws = Draws::new(&format!("nasty {name}"));
     let broken = [f32::NAN, -f32::NAN, f32::from_bits(0x7fc1_2345), f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30];

@@ -13,7 +13,7 @@ fn errors_name_file_and_line() {
     let error = validate(&types).unwrap_err();
     assert!(error.starts_with("(the caller's text):3: "), "{error}");
 
-    // One that sits in a library file: the same text with a hole in it.
+    // An error in a library file: its text with a part removed.
     let mut broken = SHADERS.compose_with(&["wrs"], "");
     broken.source = broken.source.replacen("return 0.2126 *", "return 0.2126 * *", 1);
     let error = validate(&broken).unwrap_err();

@@ -1,4 +1,4 @@
-//! Planted errors in the shaders: each must be seen by the comparison that its function is held to.
+//! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
 use super::{decisions, foveation, matching, mathematics, state, surfaces};

@@ -1,4 +1,4 @@
-//! Functions that decide about a pixel, and show what was decided: wrs, debug_view.
+//! Functions of a pixel's decision and of its debug views: wrs, debug_view.
 
 use super::probe::{Out, Probe, Row, Rows};
 use super::state::draw;
@@ -41,7 +41,7 @@ fn step(r: &Row<'_>, o: &mut Out) {
 
 fn step_rows() -> Rows {
     let color = floats(&[0.0, 0.5, 1.0, 65504.0, -0.01]);
-    // As scrub and unpack leave them: zero, or from the smallest normal number to 2^100.
+    // Sanitized and unpacked weights: 0, or from the smallest normal number to 2^100.
     let sums: Vec<u32> = normal().into_iter().filter(|&x| f32::from_bits(x) <= pack::MAX_W_SUM).collect();
     let keys = floats(&[0.0, -1e-8, -1.0, -50.0, -1e30, f32::MIN]);
     let codes: [&[u32]; 3] = [&[0, 1], &[0, 1, 2], &[0, 1, 2]];

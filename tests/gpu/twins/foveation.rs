@@ -1,10 +1,10 @@
-//! Functions of levels of detail and of the filters that show them: foveate.
+//! Functions of levels of detail and of the foveation filters: foveate.
 
 use super::probe::{Probe, Rows};
 use super::values::*;
 use afterimage::kernel::foveate;
 
-/// Widths of a blur from none to the widest.
+/// Widths of a blur from 0 to the widest.
 fn sigma(d: &mut afterimage_testing::Draws) -> u32 {
     if d.bits() & 1 == 0 { range(d, 0.0, 2.0) } else { range(d, 0.0, 127.5) }
 }

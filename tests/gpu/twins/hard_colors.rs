@@ -1,4 +1,4 @@
-//! Hard cases of color on the device: what it makes of each, which Rust makes in every bit, too.
+//! Hard cases of color on the device: its results, equal to Rust's in every bit.
 
 use super::probe::named;
 use super::values::floats;
@@ -15,7 +15,7 @@ fn on_device(name: &str, rows: &[Vec<f32>]) -> Option<Vec<Vec<f32>>> {
     Some(out.into_iter().map(|o| o.into_iter().map(f32::from_bits).collect()).collect())
 }
 
-/// Delta E 94 of pairs of linear colors, the first being the reference, as the gate asks for it.
+/// Delta E 94 of pairs of linear colors, as the gate computes it; the first is the reference.
 fn differences(pairs: &[[[f32; 3]; 2]]) -> Option<Vec<f32>> {
     let row = |[a, b]: &[[f32; 3]; 2]| [floats(a), floats(b), vec![1]].concat();
     let out = named(decisions::PROBES, "difference").outputs(&pairs.iter().map(row).collect::<Vec<_>>())?;
@@ -93,7 +93,7 @@ fn h38_cbrt_is_within_4_ulp_and_no_power_is_called() {
     });
     assert!(worst <= 4.0, "{worst}");
     assert_eq!(on_device("cbrt", &[vec![0.0], vec![1.0], vec![-1.0]]).unwrap(), [[0.0], [1.0], [-1.0]]);
-    // Powers and logarithms of the device itself are as exact as it likes.
+    // The accuracy of the device's own powers and logarithms is implementation-defined.
     for pass in ["wrs_pass", "smr_pass", "taa_pass"] {
         let source = SHADERS.compose(pass).source;
         let code: String = source.lines().map(|l| l.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");

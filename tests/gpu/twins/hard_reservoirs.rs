@@ -1,4 +1,4 @@
-//! Hard cases of reservoirs and random numbers on the device: what it makes of each, which Rust makes in every bit, too.
+//! Hard cases of reservoirs and random numbers on the device: its results, equal to Rust's in every bit.
 
 use super::probe::{Probe, Rows, named};
 use super::values::floats;
@@ -18,20 +18,20 @@ fn step_row(sampler: u32, candidate: [f32; 3], weight: f32, color: [f32; 3], w_s
     [vec![sampler, 2, 1], floats(&numbers)].concat()
 }
 
-/// What `step` decides on the device: taken, weight sum, log key, gate, survival.
+/// Result of `step` on the device: taken, weight sum, log key, gate, survival.
 fn steps(rows: &[Vec<u32>]) -> Option<Vec<(bool, [f32; 4])>> {
     let out = named(decisions::PROBES, "step").outputs(rows)?;
     Some(out.iter().map(|o| (o[0] != 0, [1, 2, 3, 4].map(|k| f32::from_bits(o[k])))).collect())
 }
 
-/// What `combine` keeps on the device: the second, weight sum, count.
+/// Result of `combine` on the device: whether the second is kept, weight sum, count.
 fn combined(rows: &[([f32; 2], f32)]) -> Option<Vec<(bool, f32, u32)>> {
     let words = |&([a, b], draw): &([f32; 2], f32)| vec![a.to_bits(), 7, b.to_bits(), 1, draw.to_bits()];
     let out = named(state::PROBES, "combine").outputs(&rows.iter().map(words).collect::<Vec<_>>())?;
     Some(out.iter().map(|o| (o[0] != 0, f32::from_bits(o[1]), o[2])).collect())
 }
 
-/// What `update` makes of a sum of 2 and a count: taken, weight sum, count.
+/// Result of `update` on a sum of 2 and a count: taken, weight sum, count.
 fn updated(w_sum: f32, count: u32, weights: &[f32], draw: f32) -> Option<Vec<(bool, f32, u32)>> {
     let words = |w: &f32| vec![w_sum.to_bits(), count, w.to_bits(), draw.to_bits()];
     let out = named(state::PROBES, "update").outputs(&weights.iter().map(words).collect::<Vec<_>>())?;
@@ -137,7 +137,7 @@ fn h04_denormal_weights_count_as_0() {
     };
     assert_eq!(merged, [(true, 0.0, 8), (true, 1.0, 8), (false, 1.0, 8)]);
     assert_eq!(updated(0.0, 0, &[tiny], 0.0), Some(vec![(false, 0.0, 1)]));
-    // What survival makes so small is gone, whether or not the device flushes it.
+    // A denormal product of survival counts as 0, whether or not the device flushes denormals.
     let sum = 4.0 * f32::MIN_POSITIVE;
     let decided = steps(&[step_row(0, [0.3; 3], 0.5, [0.3; 3], sum, LARGEST_DRAW)]).unwrap();
     assert!(decided[0].0 && decided[0].1[0] == 0.5);

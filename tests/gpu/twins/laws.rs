@@ -1,4 +1,4 @@
-//! The law by which the device keeps samples: histograms of streams that its own generator and its own reservoirs make.
+//! Probabilities of samples on the device: histograms of streams from its own generator and reservoirs.
 
 use super::probe::{Probe, Rows};
 use super::values::floats;
@@ -66,8 +66,8 @@ const STREAMS: Probe = Probe {
     rows: || Rows::new(12),
 };
 
-/// p-value of the histogram of `trials` streams of `weights` on the device against the law of `told`.
-fn p_of_streams(how: u32, weights: &[f32], told: &[f32], trials: u32) -> Option<f64> {
+/// p-value of the histogram of `trials` streams of `weights` on the device against the law of `law_weights`.
+fn p_of_streams(how: u32, weights: &[f32], law_weights: &[f32], trials: u32) -> Option<f64> {
     const ROWS: u32 = 1 << 16;
     let key = seed(&format!("streams {how} {weights:?}")) as u32;
     let mut eight = weights.to_vec();
@@ -77,9 +77,9 @@ fn p_of_streams(how: u32, weights: &[f32], told: &[f32], trials: u32) -> Option<
     let count = |i: usize| out.iter().map(|o| u64::from(o[i])).sum::<u64>();
     assert!((weights.len()..8).all(|i| count(i) == 0), "a sample of weight 0");
     let counts: Vec<u64> = (0..weights.len()).map(count).collect();
-    let (all, total) = (counts.iter().sum::<u64>() as f64, told.iter().sum::<f32>());
+    let (all, total) = (counts.iter().sum::<u64>() as f64, law_weights.iter().sum::<f32>());
     assert!(all >= f64::from(trials));
-    Some(p_of_counts(&counts, &told.iter().map(|w| all * f64::from(w / total)).collect::<Vec<_>>()))
+    Some(p_of_counts(&counts, &law_weights.iter().map(|w| all * f64::from(w / total)).collect::<Vec<_>>()))
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
     lists.into_iter().flatten()
 }
 
-/// Words that lie before the rows of a module's probes: what it loads.
+/// Words in front of the rows of a module's probes: data that it loads.
 pub fn table_data(_module: &str) -> Vec<u32> {
     vec![]
 }

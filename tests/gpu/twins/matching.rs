@@ -7,13 +7,13 @@ use afterimage::kernel::matched::{Evidence, SmrParams};
 use afterimage_testing::Draws;
 use glam::Vec4;
 
-/// Channels of colors as scrubbing leaves them: nothing, dark, negative, the largest half.
+/// Channels of sanitized colors: 0, dark, negative, the largest half.
 pub fn channels() -> Vec<u32> {
     floats(&[0.0, -0.0, 6e-8, 0.002, -0.002, 0.18, 1.0, -0.01, -65504.0, 65504.0])
 }
 
-/// A color that is remembered: at least 0, of all magnitudes a half has.
-pub fn remembered(d: &mut Draws) -> [f32; 3] {
+/// A stored color: at least 0, of any magnitude of a half.
+pub fn stored_color(d: &mut Draws) -> [f32; 3] {
     let scale = [1.0, 1.0, 1.0, 0.01, 100.0, 65504.0][d.bits() as usize % 6];
     [0; 3].map(|_| if d.bits().is_multiple_of(16) { 0.0 } else { scale * d.uniform() })
 }
@@ -40,7 +40,7 @@ fn lod(d: &mut Draws) -> f32 {
 fn pair_rows(name: &str) -> Rows {
     let c = channels();
     Rows::new(6).mixed(name, &[&c, &c, &c, &c, &c, &c]).random(name, |d, row| {
-        let a = remembered(d);
+        let a = stored_color(d);
         let b = like(d, a);
         push(row, &[a, b].concat());
     })
@@ -50,7 +50,7 @@ fn vec4(r: &Row<'_>, k: usize) -> Vec4 {
     r.v(k).extend(r.f(k + 3))
 }
 
-/// Texels of the chain: colors times coverage, and coverage.
+/// Texels of the mip chain: color times coverage, and coverage.
 fn chain_rows(name: &str, fractions: usize) -> Rows {
     let width = 16 + fractions;
     let (c, cover) = (floats(&[0.0, 0.18, 1.0, 65504.0, 6e-5]), floats(&[0.0, 0.25, 0.5, 1.0]));
@@ -69,7 +69,7 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
     Rows::new(width).mixed(name, &lists).random(name, |d, row| {
         for _ in 0..4 {
             let covered = [0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0][d.bits() as usize % 8];
-            push(row, &remembered(d).map(|x| x * covered));
+            push(row, &stored_color(d).map(|x| x * covered));
             push(row, &[covered]);
         }
         (0..fractions).for_each(|_| row.push(range(d, 0.0, 1.0)));
@@ -135,7 +135,7 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
         &confidence,
     ]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
-        let candidate = remembered(d);
+        let candidate = stored_color(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
         let lit = [1.0, 1.0, 1.2, 0.4, 2.0][d.bits() as usize % 5];
         let [coarser, history, matched, whole, dimmer] = [0; 5].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
@@ -269,7 +269,7 @@ pub const PROBES: &[Probe] = &[
         rows: || {
             let h = floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0]);
             Rows::new(3).cross(&[&channels(), &h, &floats(&[0.0, 0.5, 1.0])]).random("gain", |d, row| {
-                let [h, ..] = remembered(d);
+                let [h, ..] = stored_color(d);
                 let [c, ..] = like(d, [h; 3]);
                 push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
             })
@@ -297,7 +297,7 @@ pub const PROBES: &[Probe] = &[
         rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9), r.u(12) != 0)),
         rows: || {
             Rows::new(13).random("is_changed", |d, row| {
-                let compared = remembered(d);
+                let compared = stored_color(d);
                 let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
                 push(row, &[compared, matched, level, next].concat());
                 row.push(d.bits() & 1);

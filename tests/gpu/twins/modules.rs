@@ -35,7 +35,7 @@ fn every_module_composes_and_is_valid() {
     let names: Vec<_> = SHADERS.module_names().collect();
     assert!(names.len() >= 11);
     for name in names {
-        // What a module's users provide: where the scene buffer is, which hits count.
+        // Functions that a module's users provide: storage of the scene buffer, acceptance of hits.
         let source = SHADERS.compose(name).source;
         let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
         let storages: &[Option<&str>] =

@@ -26,7 +26,7 @@ fn texel(r: &Row<'_>, k: usize) -> Vec4 {
     r.v(k).extend(r.f(k + 3))
 }
 
-/// Samples and variance of one, as they are stored or told.
+/// Samples and variance, as stored or from a frame's input.
 fn noise(d: &mut Draws) -> [f32; 2] {
     let variance = match d.bits() % 4 {
         0 => 0.0,
@@ -59,7 +59,7 @@ fn pair_rows(name: &str, more: &[&[u32]]) -> Rows {
     })
 }
 
-/// Four texels of the candidates' chain, some of which nothing is known of, and `fractions` numbers in [0, 1].
+/// Four texels of the candidates' mip chain, some unusable, and `fractions` numbers in [0, 1].
 fn texel_rows(name: &str, fractions: usize) -> Rows {
     let width = 16 + fractions;
     let (c, alpha, at) = (channels(), floats(&[-1.0, 0.0, -0.0, 0.5, 65504.0]), floats(&[0.0, 0.25, 0.5, 1.0]));
@@ -86,7 +86,7 @@ pub const PROBES: &[Probe] = &[
         module: "noise",
         words: [1, 1],
         wgsl: "out_f(positive(in_f(0u)));",
-        // By what it is for: the function is no one else's.
+        // The Rust function is private; this is its definition.
         rust: |r, o| o.f(if r.f(0).is_nan() || r.f(0).is_sign_negative() { 0.0 } else { r.f(0) }),
         rows: || Rows::new(1).cross(&[&any()]).random("positive", |d, row| row.push(bits(d))),
     },

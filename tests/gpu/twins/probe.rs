@@ -13,7 +13,7 @@ pub struct Probe {
     /// WGSL statements that read `in_u`, `in_f`, `in_v` (word, float, three floats; by index) and call `out_u`, `out_f`,
     /// `out_v`, `out_b` in order.
     pub wgsl: &'static str,
-    /// The same with the Rust twin.
+    /// Calls the Rust twin on a row.
     pub rust: fn(&Row<'_>, &mut Out),
     /// The table.
     pub rows: fn() -> Rows,
@@ -98,7 +98,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         self.differences_of(device, queue, source, &(self.rows)())
     }
 
-    /// The same for `rows`.
+    /// Rows of `rows`, and a line for each whose results differ.
     pub fn differences_of(
         &self,
         device: &wgpu::Device,
@@ -125,7 +125,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         (count, lines)
     }
 
-    /// What the device makes of each row, on a fresh device; Rust makes the same in every bit. `None` without an adapter.
+    /// Results of each row on a fresh device, after a check that Rust's are equal in every bit. `None` without an adapter.
     #[track_caller]
     pub fn outputs(&self, rows: &[Vec<u32>]) -> Option<Vec<Vec<u32>>> {
         let (device, queue) = afterimage_testing::gpu::device()?;

@@ -1,4 +1,4 @@
-//! Functions of bits and reservoirs: scrub, rng, pack, reproject, reservoir.
+//! Functions of bits and reservoirs: sanitize, rng, pack, reproject, reservoir.
 
 use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
@@ -326,7 +326,7 @@ pub const PROBES: &[Probe] = &[
             let survivals = [around(&[1e-30, 0.5]), floats(&[0.0, -0.0, f32::MIN_POSITIVE, 1.0])].concat();
             Rows::new(2)
                 .cross(&[&keys, &survivals])
-                // What is no key.
+                // Invalid keys.
                 .cross(&[&floats(&[f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-3, f32::MAX]), &survivals])
                 .random("a_es_decay", |d, row| row.extend([scaled(d, -20, 20) | 1 << 31, range(d, 0.0, 1.0)]))
         },

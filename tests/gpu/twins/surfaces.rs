@@ -1,6 +1,6 @@
-//! Functions of remembered surfaces and of antialiasing along the motion: surface, resample, taa.
+//! Functions of stored surfaces and of temporal antialiasing: surface, resample, taa.
 
-use super::matching::{channels, like, push, remembered};
+use super::matching::{channels, like, push, stored_color};
 use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
 use afterimage::kernel::resample;
@@ -34,7 +34,7 @@ fn put_resampled(o: &mut Out, r: &Resampled) {
     o.f(r.lod);
 }
 
-/// Two words of any bits; with every code of a level of detail, the one for nothing among them.
+/// Two words of arbitrary bits; with every code of a level of detail, also that of an empty texel.
 fn packed_rows(name: &str) -> Rows {
     let edges = [words(), vec![0x3dff, 0x3e00, 0x3fff, 0xc000, 0xf7ff_fdff, 0xffff_0000]].concat();
     let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([bits(d) | 0xf000_0000, bits(d) | 0xc000]);
@@ -44,7 +44,7 @@ fn packed_rows(name: &str) -> Rows {
         .random(&format!("{name}, empty"), empty)
 }
 
-/// Where between texels: on one, at every quarter, anywhere.
+/// Fractions between texels: 0, every quarter, random.
 fn fraction(d: &mut Draws) -> f32 {
     match d.bits() % 4 {
         0 => (d.bits() % 4) as f32 / 4.0,
@@ -199,7 +199,7 @@ pub const PROBES: &[Probe] = &[
         rust: |r, o| put_gathered(o, &resample::gather(gathered(r), stored(r, 10), r.u(15) != 0, r.f(16), r.f(17))),
         rows: || {
             Rows::new(18).random("gather", |d, row| {
-                let (past, color) = (remembered(d), remembered(d));
+                let (past, color) = (stored_color(d), stored_color(d));
                 push(row, &[past.map(|x| x * d.range(-0.1, 1.1)), [d.uniform(); 3]].concat()[..4]);
                 push(row, &[past.map(|x| x * d.uniform()), [d.uniform(); 3]].concat()[..4]);
                 push(row, &[d.range(0.0, MAX_LOD)]);
@@ -227,7 +227,7 @@ pub const PROBES: &[Probe] = &[
         rust: read_twelve,
         rows: || {
             let mut rows = Rows::new(READING).random("resolve", |d, row| {
-                let (center, share) = (remembered(d), d.bits() % 4);
+                let (center, share) = (stored_color(d), d.bits() % 4);
                 push(row, &[fraction(d), fraction(d)]);
                 for _ in 0..12 {
                     push(row, &like(d, center).map(|x| x.max(0.0)));
@@ -324,7 +324,7 @@ pub const PROBES: &[Probe] = &[
         rust: |r, o| o.v(taa::blend_clipped(r.v(0), r.v(3), r.v(6), r.v(9), r.f(12))),
         rows: || {
             Rows::new(13).random("blend_clipped", |d, row| {
-                let candidate = remembered(d);
+                let candidate = stored_color(d);
                 let history = like(d, candidate);
                 push(row, &like(d, candidate));
                 push(row, &history.map(|x| x.max(0.0)));

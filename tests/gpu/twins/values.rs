@@ -1,4 +1,4 @@
-//! Tables of nasty numbers.
+//! Tables of edge-case numbers.
 
 use super::probe::{Row, Rows};
 use afterimage_testing::Draws;
@@ -133,7 +133,7 @@ pub fn scaled(d: &mut Draws, low: i32, high: i32) -> u32 {
     ((exponent + 127) as u32) << 23 | d.bits() >> 9
 }
 
-/// The same with either sign.
+/// Any sign, with an exponent in `low..high` and any mantissa.
 pub fn signed(d: &mut Draws, low: i32, high: i32) -> u32 {
     scaled(d, low, high) | d.bits() & 0x8000_0000
 }

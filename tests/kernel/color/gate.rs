@@ -1,16 +1,16 @@
-//! The gate: what it lets pass, and what it must not see.
+//! The gate: differences that it must and must not react to.
 
 use super::*;
 use afterimage::kernel::reservoir::bernoulli_survival;
 use afterimage::kernel::wrs::{BiasCode, Past, SamplerCode, WrsParams};
 use afterimage_testing::holds;
 
-/// The published gate: closed by a difference of 100.
+/// The published gate: a gate value of 0 at a difference of 100.
 fn gate(candidate: Vec3, sample: Vec3) -> f32 {
     wrs::gate(wrs::difference(candidate, sample, DELTA_E), 0.0, 0.01)
 }
 
-/// What becomes of a history of color `sample` and sum `w_sum`, with a gate that is open up to `offset`.
+/// Decision for a history of color `sample` and sum `w_sum`, with a gate of `offset`.
 fn step(candidate: Vec3, weight: f32, sample: Vec3, w_sum: f32, offset: f32, draw: f32) -> wrs::Decision {
     let params = WrsParams {
         sampler: SamplerCode::AChao,
@@ -74,13 +74,13 @@ fn h34_a_gate_with_an_offset_for_noise_does_not_see_dark_noise() {
     // Three standard deviations of the difference of two such candidates.
     let (published, offset, ungated) = (run(0.0), run(7.7), run(f32::MAX));
     println!("open, all but shut, kept: published {published:?}, with an offset {offset:?}, ungated {ungated:?}");
-    assert_eq!((published.1, offset.1), (0, 0), "never flushed");
+    assert_eq!((published.1, offset.1), (0, 0), "never rejected");
     assert!(offset.0 > 0.99 && (offset.2 - ungated.2).abs() < 1e-3, "as if there were no noise");
     assert!(published.2 < ungated.2 - 0.05, "the case must really occur");
     holds!(
         "H34",
         Cpu,
-        "dL* {one_sigma:.2}, no flush; {:.1} % kept for 25 frames with offset 7.7, {:.1} % without, {:.1} % ungated",
+        "dL* {one_sigma:.2}, none rejected; {:.1} % kept for 25 frames with offset 7.7, {:.1} % without, {:.1} % ungated",
         100.0 * offset.2,
         100.0 * published.2,
         100.0 * ungated.2
@@ -142,7 +142,7 @@ fn h39_equal_colors_differ_by_exactly_0() {
         Ok(())
     });
     result.unwrap();
-    // One ulp apart is not equal, and may be told apart.
+    // Colors one ulp apart are not equal; a difference above 0 is allowed.
     let near = wrs::difference(Vec3::splat(0.5), Vec3::splat(0.5_f32.next_up()), DELTA_E);
     assert!(near < 1e-4);
     holds!("H39", Cpu, "exactly 0 and factor 1 for {cases} colors of any bits");

@@ -65,7 +65,7 @@ fn h04_denormal_weights_count_as_0_everywhere() {
     let mut r = Reservoir::default();
     assert!(!reservoir::update(&mut r, 1e-40, 0.0) && r.w_sum == 0.0);
     assert_eq!(pack::unpack(pack::pack(stored(1e-40, 0))).w_sum, 0.0);
-    // What survival makes so small is gone for any draw, not only on devices that flush it.
+    // A denormal product of survival counts as 0 for any draw, not only on devices that flush denormals.
     let d = step(&PAPER, 4.0 * f32::MIN_POSITIVE, 0.5, 16_777_215.0 / 16_777_216.0);
     assert!(d.take && d.w_sum == 0.5);
     holds!("H04", Cpu, "1e-40 counts as 0 in update, combine, storage and survival");
@@ -80,7 +80,7 @@ fn h17_h18_bad_weights_leave_the_reservoir_as_it_was() {
         let (merged, second) =
             reservoir::combine(Reservoir { w_sum: 2.0, count: 7 }, Reservoir { w_sum: bad, count: 1 }, 0.0);
         assert!(!second && merged.w_sum == 2.0);
-        // H19: a corrupt history is as good as none.
+        // H19: a corrupt history counts as empty.
         let (merged, second) =
             reservoir::combine(Reservoir { w_sum: bad, count: 9 }, Reservoir { w_sum: 0.5, count: 1 }, 0.999);
         assert!(second && merged.w_sum == 0.5);
@@ -89,7 +89,7 @@ fn h17_h18_bad_weights_leave_the_reservoir_as_it_was() {
     holds!("H18", Cpu, "NaN and +-Inf count as 0: w_sum stays 2, the first is kept at a draw of 0");
 }
 
-/// A stored key that no key can pass would keep its sample for ever.
+/// A stored key that no candidate's key can exceed would keep its sample for ever.
 #[test]
 fn h19_a_corrupt_key_loses_to_the_next_candidate() {
     let params = WrsParams { sampler: SamplerCode::AEs, ..PAPER };

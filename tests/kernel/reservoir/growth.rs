@@ -1,4 +1,4 @@
-//! Weight sums over long streams: where they stall, and that they follow their closed forms until then.
+//! Weight sums over long streams: the values where they stop growing, and their closed forms until then.
 
 use super::*;
 use afterimage_testing::holds;
@@ -12,12 +12,12 @@ fn recur_half(a: f32, w: f32) -> f32 {
     half(half(a * half(1.0 - half(w / half(a + w)))) + w)
 }
 
-/// What is stored of a sum.
+/// A weight sum as it is stored.
 fn keep(w_sum: f32) -> f32 {
     pack::unpack(pack::pack(stored(w_sum, 0))).w_sum
 }
 
-/// The sum that `next` no longer changes, from `a` in the first frame, and the frame in which that shows.
+/// Fixed point of `next`, starting with `a` in the first frame, and the frame that reaches it.
 fn stall(mut a: f32, next: impl Fn(f32) -> f32) -> (f32, u32) {
     let mut frames = 2;
     while next(a) != a {
@@ -32,7 +32,7 @@ fn stall(mut a: f32, next: impl Fn(f32) -> f32) -> (f32, u32) {
 fn h05_weight_sums_saturate() {
     assert_eq!(half(65504.0 + 1.0), 65504.0, "a half stays where it is");
     assert!(half(f32::MAX).is_finite());
-    // What is stored here has a larger range: nothing happens at 65504, and at the end it saturates, too.
+    // Stored weight sums have a larger range: nothing happens at 65504, and they saturate at their own limit.
     assert_eq!(keep(65504.0 + 1.0), 65505.0);
     assert_eq!(keep(pack::MAX_W_SUM + 1.0), pack::MAX_W_SUM);
     assert_eq!([f32::MAX, f32::INFINITY].map(keep), [pack::MAX_W_SUM; 2]);
@@ -121,7 +121,7 @@ fn h10_a_billion_frames_follow_the_closed_form() {
         a = recur64(a, 1.0, 1.0);
         single = recur(single, 1.0, 1.0);
         n += 1.0;
-        // How long single precision stays within the same bound.
+        // Number of frames for which f32 stays within the same bound.
         held = if held == n - 1.0 && (f64::from(single) / a - 1.0).abs() < 1e-3 { n } else { held };
     }
     worst = worst.max((a / closed(n, 4.0) - 1.0).abs());

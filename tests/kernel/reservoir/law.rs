@@ -15,7 +15,7 @@ fn stream(weights: &[f32], draws: &mut Draws) -> usize {
     sample
 }
 
-/// The same through `combine` with one-candidate reservoirs.
+/// Index of the sample after a stream of `weights` through `combine` with one-candidate reservoirs.
 fn stream_by_combine(weights: &[f32], draws: &mut Draws) -> usize {
     let mut r = Reservoir::default();
     let mut sample = 0;
@@ -27,7 +27,7 @@ fn stream_by_combine(weights: &[f32], draws: &mut Draws) -> usize {
     sample
 }
 
-/// The same through A-ES keys.
+/// Index of the sample after a stream of `weights`, by A-ES keys.
 fn stream_by_keys(weights: &[f32], draws: &mut Draws) -> usize {
     let keys = weights.iter().map(|&w| reservoir::a_es_log_key(draws.uniform(), w));
     keys.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0
@@ -131,7 +131,7 @@ fn biased_counts(params: &WrsParams, weights: &[f32], trials: usize, draws: &mut
     counts
 }
 
-/// p-value of counts against a law, but for samples that it all but forbids, which must not occur.
+/// p-value of counts against a law. Samples of negligible probability are left out and must not occur.
 fn p_of_law(counts: &[u64], law: &[f64]) -> f64 {
     let trials = counts.iter().sum::<u64>() as f64;
     let (possible, forbidden): (Vec<_>, Vec<_>) = counts.iter().zip(law).partition(|(_, p)| **p * trials >= 5.0);
@@ -173,7 +173,7 @@ fn h13_order_is_forgotten_without_bias_and_recency_wins_with_it() {
         let law = weights.map(|w| f64::from(w) / 10.0);
         *p = p_of_law(&biased_counts(&unbiased, &weights, 1_000_000, &mut draws), &law);
         accept(&format!("weights {weights:?}, no bias"), *p);
-        // With bias the same weights in that order are not kept in proportion.
+        // With bias, the same weights are not kept in proportion.
         reject("biased", p_of_law(&biased_counts(&PAPER, &weights, 100_000, &mut draws), &law));
     }
     // Bernoulli survival, weights 1: acceptance of frame k is more than 1 / k, so later ones are likelier.
@@ -274,7 +274,7 @@ fn p8_survival_follows_the_half_life_formula() {
         // Without eq. 5 the history keeps its sum and lives longer.
         let unbiased = a / (a + b * formula.round());
         reject("survival without eq. 5", p_of_rate(alive, pixels, unbiased));
-        // The formula itself is good to a frame.
+        // The formula itself is exact to a frame.
         let per_frame = b / (a + b);
         assert!((alive_exact - 0.5).abs() < 1.2 * per_frame, "{name}: {alive_exact}");
     }

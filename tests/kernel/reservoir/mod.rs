@@ -30,7 +30,7 @@ fn recur(a: f32, b: f32, g: f32) -> f32 {
     a * (reservoir::bernoulli_survival(a, b) * g) + b
 }
 
-/// The same in f64, from the formula of eq. 7 as printed.
+/// History sum after one frame in f64, from eq. 7 as printed.
 fn recur64(a: f64, b: f64, g: f64) -> f64 {
     g * a * (1.0 - b / (a + b)) + b
 }

@@ -1,4 +1,4 @@
-//! Laws that hold for any number, and for any bits.
+//! Properties that hold for any number, and for any bit pattern.
 
 use super::*;
 use afterimage::kernel::sanitize;
@@ -65,7 +65,7 @@ fn any_params() -> impl Strategy<Value = WrsParams> {
 proptest! {
     #![proptest_config(afterimage_testing::property("reservoir, any bits", 20_000))]
 
-    /// One pixel's frame on whatever bits color, weight, trust, key and the stored words have.
+    /// One frame of a pixel for any bit pattern of color, weight, trust, key and stored words.
     #[test]
     fn any_bits_give_finite_output(color in any::<[u32; 3]>(), others in any::<[u32; 3]>(), words in any::<[u32; 3]>(), draw in 0u32..1 << 24, params in any_params()) {
         let [weight, trust, key] = others.map(f32::from_bits);
@@ -110,7 +110,7 @@ proptest! {
         }
     }
 
-    /// Each sample's probability is its share of the weights, wherever it stands: the later acceptances telescope.
+    /// Each sample's probability is its share of the weights, at any position: the later acceptances telescope.
     #[test]
     fn order_is_forgotten_without_bias(weights in prop::collection::vec(1e-3f32..1., 2..20).prop_shuffle()) {
         let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();

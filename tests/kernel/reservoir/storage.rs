@@ -48,7 +48,7 @@ proptest! {
         let s = pack::unpack(words);
         prop_assert!(s.color.is_finite() && s.w_sum.is_finite() && s.w_sum >= 0.0 && s.disparity.is_finite());
         prop_assert!(s.color.abs().max_element() <= 65504.0 && s.age <= 255);
-        // Packing what was unpacked changes nothing more.
+        // Packing an unpacked reservoir gives the same words.
         let again = pack::unpack(pack::pack(s));
         prop_assert_eq!(again, s);
     }
