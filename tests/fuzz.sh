@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes what reads the files of strangers, with libFuzzer: SECONDS_EACH (default 600) for every target, or for those named.
+# Fuzzes the readers of untrusted files with libFuzzer: all targets or those named, SECONDS_EACH (default 600) each.
 #   tests/fuzz.sh [TARGET...]
-# Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz). What is found lies in tests/fuzz/artifacts: fix it, then keep it
-# in fixtures/fuzz/TARGET, which tests/fuzz_replay.rs reads on stable Rust.
+# Needs a nightly compiler and cargo-fuzz (cargo install cargo-fuzz). libFuzzer writes findings to crates/tool/tests/fuzz/artifacts:
+# fix the cause, then keep the input in fixtures/fuzz/TARGET, which crates/tool/tests/fuzz_replay.rs reads on stable Rust.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 targets=("$@")
@@ -10,6 +10,6 @@ targets=("$@")
 for target in "${targets[@]}"; do
     printf '\n== %s\n' "$target"
     mkdir -p "target/fuzz-corpus/$target"
-    cargo +nightly fuzz run --fuzz-dir tests/fuzz "$target" "target/fuzz-corpus/$target" "fixtures/fuzz/$target" -- \
+    cargo +nightly fuzz run --fuzz-dir crates/tool/tests/fuzz "$target" "target/fuzz-corpus/$target" "fixtures/fuzz/$target" -- \
         -max_total_time="${SECONDS_EACH:-600}" -timeout=20 -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1
 done

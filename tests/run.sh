@@ -1,27 +1,33 @@
 #!/usr/bin/env bash
-# All checks: format, lints, tests, documentation. Needs Rust; installs a software Vulkan driver if the machine has none and
-# may (Debian, root). Real frames and scanpaths are read from ../shared/data where that folder exists, and missed loudly where not.
+# All checks: format, lints, tests, examples, documentation. Needs Rust. Installs a software Vulkan driver and a virtual display if
+# they are missing and it may (Debian, root). Tests on rendered sequences and recorded scanpaths need ../shared/data; a warning
+# says so if it is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-step() { printf '\n== %s\n' "$*"; }
+step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
+# Every package with every feature: one set of features, so that tests, examples and documentation share compiled dependencies.
+everything=(--locked --workspace --all-features)
+target="${CARGO_TARGET_DIR:-target}"
+# Incremental compilation pays off in later builds only, and costs time in this one.
+export CARGO_INCREMENTAL=0
 
-step "a Vulkan driver"
+step "Vulkan driver"
 has_icd() { ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json "${VK_DRIVER_FILES:-/nonexistent}" 2>/dev/null | grep -q .; }
 if ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' && has_icd; then
-    echo "there is one"
+    echo "found"
 elif command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
     apt-get update -qq
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libvulkan1 mesa-vulkan-drivers
 else
     echo "none found: install one (Debian: mesa-vulkan-drivers); tests that need it will fail" >&2
 fi
-# Tests that need an adapter fail without one. The other silences a line of Mesa's about windows.
+# Tests that need an adapter fail without one. NODEVICE_SELECT silences a message of Mesa's about windows.
 export AFTERIMAGE_GPU=require NODEVICE_SELECT=1
 
-step "a display without a screen, for the viewer"
+step "virtual display, for the viewer"
 if command -v Xvfb >/dev/null && command -v xdotool >/dev/null && command -v openbox >/dev/null; then
-    echo "there is one"
+    echo "found"
 elif command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
     { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
         xvfb xauth xdotool openbox libxkbcommon-x11-0 libxcursor1 libxi6; } || echo "not installed: the test of the viewer's window is SKIPPED" >&2
@@ -32,39 +38,44 @@ fi
 step "format"
 cargo fmt --check
 
-step "lints, in every combination of features that users meet"
-cargo clippy --locked --all-targets --all-features -- -D warnings
-cargo clippy --locked -- -D warnings
-cargo clippy --locked --no-default-features -- -D warnings
-cargo clippy --locked --no-default-features --features lab -- -D warnings
+step "lints: every target, and the combinations of features that users build"
+cargo clippy "${everything[@]}" --all-targets -- -D warnings
+cargo clippy --locked -p afterimage -- -D warnings
+cargo clippy --locked -p afterimage --no-default-features --features cpu -- -D warnings
+# What `cargo demo` builds.
+cargo clippy --locked -p afterimage-cli --no-default-features -- -D warnings
 
-step "the library alone against wgpu 29"
+step "the drop-in against wgpu 29"
 tests/wgpu29.sh
 
 if [ ! -d ../shared/data ]; then
-    printf '\nWARNING: no ../shared/data here: tests on real frames and recorded scanpaths are SKIPPED\n'
+    printf '\nWARNING: no ../shared/data here: tests on rendered sequences and recorded scanpaths are SKIPPED\n'
 fi
 
 step "tests"
-# What they measure of the hard cases is left here, and compared with the table in docs/stability.md when all have run.
+# Tests of hard cases write what they measure here. When all have run, it is compared with the table in docs/stability.md.
 export AFTERIMAGE_STABILITY="$PWD/target/stability"
 rm -rf "$AFTERIMAGE_STABILITY"
-cargo test --locked --all-features
-cargo test --locked --all-features --test stability -- --ignored
+cargo test "${everything[@]}"
+cargo test "${everything[@]}" --test stability -- --ignored
 
 step "examples"
-# With the features of the tests, so that nothing is compiled twice. 05 is a long experiment.
-for example in 01_smallest 02_moving_camera 03_scanpath 04_stereo 06_gpu_headless 07_gpu_moving_camera 08_gpu_scanpath \
-    09_gpu_stereo 10_cpu_fallback 11_debug_views 12_engine 16_path_trace; do
-    cargo run --locked --quiet --all-features --example "$example"
+# `cargo test` has compiled them. Not here: long experiments (lab 07, 08, 09, 11, 12).
+for example in 01_smallest 02_engine 03_stereo 04_cpu 05_cpu_stereo \
+    01_moving_camera 02_gpu_moving_camera 03_scanpath 04_gpu_scanpath 05_cpu_fallback 06_debug_views 10_path_trace; do
+    printf '\n-- %s\n' "$example"
+    "$target/debug/examples/$example"
 done
 if command -v xvfb-run >/dev/null; then
-    AFTERIMAGE_FRAMES=20 xvfb-run -a cargo run --locked --quiet --all-features --example viewer_in_your_app
+    AFTERIMAGE_FRAMES=20 xvfb-run -a "$target/debug/examples/06_window"
 else
-    echo "no xvfb-run: the example viewer_in_your_app is SKIPPED" >&2
+    echo "no xvfb-run: the example 06_window is SKIPPED" >&2
 fi
 
 step "documentation"
-RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --all-features
+RUSTDOCFLAGS="-D warnings" cargo doc "${everything[@]}" --no-deps
+items=$(grep -o '<li><a href=' "$target/doc/afterimage/all.html" | wc -l)
+echo "the drop-in documents $items items; at most 45"
+[ "$items" -le 45 ]
 
 step "all checks passed"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Writes docs/stability.md: runs all tests, collects what they measured of the hard cases, and prints the table.
+# Writes docs/stability.md: runs all tests, collects what they measured for the hard cases, and prints the table.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export AFTERIMAGE_GPU=require NODEVICE_SELECT=1 AFTERIMAGE_STABILITY="$PWD/target/stability"
 rm -rf "$AFTERIMAGE_STABILITY"
-cargo test --locked --all-features
-AFTERIMAGE_BLESS=1 cargo test --locked --all-features --test stability -- --ignored
+cargo test --locked --workspace --all-features
+AFTERIMAGE_BLESS=1 cargo test --locked --workspace --all-features --test stability -- --ignored

@@ -31,7 +31,7 @@ impl Drop for Running {
 struct Display {
     name: String,
     _server: Running,
-    _manager: Running,
+    manager: Running,
 }
 
 impl Display {
@@ -51,10 +51,16 @@ impl Display {
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let (name, server) = (format!(":{}", number.trim()), Running(server));
-        let manager = Command::new("openbox").env("DISPLAY", &name).stderr(Stdio::null()).spawn().unwrap();
-        let display = Self { name, _server: server, _manager: Running(manager) };
-        // The window manager may ignore a window that opens while it starts.
-        wait_for("the window manager", || display.xdotool(&["get_num_desktops"]).status.success().then_some(()));
+        let start = |name| Running(Command::new("openbox").env("DISPLAY", name).stderr(Stdio::null()).spawn().unwrap());
+        let manager = start(&name);
+        let mut display = Self { name, _server: server, manager };
+        // The window manager may ignore a window that opens while it starts, and ends if it finds the display too early.
+        wait_for("the window manager", || {
+            if display.manager.0.try_wait().unwrap().is_some() {
+                display.manager = start(&display.name);
+            }
+            display.xdotool(&["get_num_desktops"]).status.success().then_some(())
+        });
         Some(display)
     }
 

@@ -105,7 +105,7 @@ impl Headless {
         })
     }
 
-    /// A buffer for [`Frame::counters`](afterimage::gpu::Frame::counters).
+    /// A buffer for [`Target::counters`](afterimage::gpu::Target::counters).
     pub fn counters(&self) -> Buffer {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         self.buffer(COUNTERS_BYTES, usage)

@@ -131,7 +131,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
 /// Expected values: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7 dB in the last
 /// one by angle, +2.2 and +3.6 dB by fit.
 #[test]
-#[ignore = "two minutes; cargo test --release --features lab --test real_data -- --ignored"]
+#[ignore = "two minutes; cargo test --release -p afterimage-lab --test sources -- --ignored real_data"]
 fn the_oracle_agrees_with_an_independent_measurement() {
     let Some(path) = data("sequences/sponza_still") else {
         return;

@@ -1,8 +1,7 @@
 //! The contract of hard cases: a test proves every row, and docs/stability.md lists the test and what it measured.
 //!
 //! Tests call `holds!("H08", Cpu, "s = {s}")`, which writes a record to the folder named by `AFTERIMAGE_STABILITY`.
-//! `AFTERIMAGE_BLESS=1 cargo test --all-features --test stability -- --ignored` writes the table from the records; `tests/run.sh`
-//! compares.
+//! `tests/stability.sh` writes the table from the records; `tests/run.sh` compares them.
 
 mod rows;
 mod table;

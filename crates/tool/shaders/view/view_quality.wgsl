@@ -1,9 +1,9 @@
 //#use acuity
 //#use color
 // Squared error of what is shown against the full-rate frame, beyond an eccentricity: a sum and a count for each tile of 64x16 pixels.
-// Its twin on the CPU is src/metric/score.rs: Scorer::push_errors.
+// CPU twin: Scorer::push_errors in crates/lab/src/metric/score.rs.
 
-// src/bin/afterimage/view/quality.rs: QualityConstants, which explains them
+// src/commands/view/quality.rs: QualityConstants, which explains them
 struct QualityConstants {
     ray_scale: vec2<f32>,
     ray_offset: vec2<f32>,

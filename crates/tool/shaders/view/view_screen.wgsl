@@ -3,7 +3,7 @@
 // window. What branches hang on is constant when the pipeline is made: software devices compute all branches of a shader, and lavapipe
 // compiles it anew at every bind if they hang on a uniform.
 
-// src/bin/afterimage/view/screen.rs: ScreenConstants, which explains them
+// src/commands/view/screen.rs: ScreenConstants, which explains them
 struct ScreenConstants {
     gaze_direction: vec4<f32>,
     corner: vec2<f32>,

@@ -1,0 +1,13 @@
+//! The rules of the house: checks over the files of the workspace.
+//!
+//! Each rule is a function from text to a list of violations. One test applies it to the workspace, another to a small input
+//! with planted violations.
+
+mod commands;
+mod manifests;
+mod modules;
+mod paths;
+mod prose;
+mod shader_tables;
+mod tree;
+mod words;
