@@ -1,17 +1,18 @@
-//! How fast memory is where the post-process runs: no pass that moves as many bytes can be faster.
+//! Memory bandwidth of the backend: a lower bound for the time of a pass that moves a given number of bytes.
 
 use super::Backend;
 use crate::clock::{Quartiles, Stopwatch};
 use rayon::prelude::*;
 use wgpu::BufferUsages;
 
-/// Bytes that a copy reads, and as many that it writes: more than any cache holds.
+/// Bytes that a copy reads; it writes as many. Larger than last-level caches.
 const BYTES: usize = 1 << 26;
-/// Copies that the median is of.
+/// Copies whose median time is taken.
 const COPIES: usize = 7;
 
-/// Milliseconds that one byte takes to be read or written by a copy, by the clock that passes are timed with
-/// ([`MethodOutput::cost_ms`](crate::pipeline::MethodOutput::cost_ms)); on a GPU by wall time, which over 64 MiB is as good.
+/// Milliseconds per byte that a copy reads or writes. CPU time of the process on CPUs and software devices, as in
+/// [`MethodOutput::cost_ms`](crate::pipeline::MethodOutput::cost_ms); wall time on hardware GPUs, where a copy of 64 MiB takes much
+/// longer than its submission.
 pub fn copy_ms_per_byte(backend: &Backend) -> f64 {
     let mut times = vec![];
     match backend {
@@ -41,6 +42,6 @@ pub fn copy_ms_per_byte(backend: &Backend) -> f64 {
             }
         }
     }
-    // The first one finds fresh memory.
+    // The first copy is a warm-up: it also pays for page faults.
     Quartiles::of(&times[1..]).map_or(0.0, |q| q.median) / (2 * BYTES) as f64
 }

@@ -1,5 +1,5 @@
-//! A device without a window, and frames between it and memory. For experiments; an engine keeps its frames on its device and
-//! calls [`Afterimage`](afterimage::gpu::Afterimage) itself.
+//! A device without a window, with uploads and readbacks. For experiments only: an engine keeps its frames on its own device and
+//! calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
 
 use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
 use std::sync::Arc;
@@ -9,11 +9,11 @@ use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 /// A device without a window.
 #[derive(Debug)]
 pub struct Headless {
-    /// With default limits unless others were asked for, and timestamp queries where the adapter has them.
+    /// Device with default limits unless others were requested, and with timestamp queries where the adapter has them.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Queue of the device.
     pub queue: wgpu::Queue,
-    /// Adapter, driver, version and kind of device.
+    /// Adapter name, driver, driver version and device type.
     pub info: wgpu::AdapterInfo,
     is_lost: Arc<AtomicBool>,
 }
@@ -25,13 +25,13 @@ impl Headless {
         pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
     }
 
-    /// The first real GPU; with `software`, a software adapter if there is none. `None` if there is nothing of the kind or it
-    /// gives no device with default limits.
+    /// The first hardware GPU; with `software`, a software adapter if there is none. `None` if no such adapter creates a device
+    /// with default limits.
     pub fn find(software: bool) -> Option<Arc<Self>> {
         Self::find_with(software, |_| wgpu::Limits::default())
     }
 
-    /// As [`find`](Self::find), with textures and buffers as large as the adapter offers: for scenes.
+    /// As [`find`](Self::find), with the adapter's largest limits on textures and buffers: for scenes.
     pub fn find_roomy(software: bool) -> Option<Arc<Self>> {
         Self::find_with(software, |offered| wgpu::Limits {
             max_texture_dimension_2d: offered.max_texture_dimension_2d,
@@ -54,10 +54,10 @@ impl Headless {
         adapters.iter().find_map(|adapter| Self::on(adapter, limits(&adapter.limits())).ok())
     }
 
-    /// A device of this adapter.
+    /// Creates a device of this adapter.
     ///
     /// # Errors
-    /// If the adapter gives none with these limits.
+    /// If the adapter cannot create a device with these limits.
     pub fn on(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Arc<Self>, wgpu::RequestDeviceError> {
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("afterimage"),
@@ -67,31 +67,31 @@ impl Headless {
         });
         let (device, queue) = pollster::block_on(request)?;
         let is_lost = Arc::new(AtomicBool::new(false));
-        let told = is_lost.clone();
-        device.set_device_lost_callback(move |_, _| told.store(true, Ordering::Relaxed));
+        let lost_flag = is_lost.clone();
+        device.set_device_lost_callback(move |_, _| lost_flag.store(true, Ordering::Relaxed));
         Ok(Arc::new(Self { device, queue, info: adapter.get_info(), is_lost }))
     }
 
-    /// Whether the device is a program on the CPU.
+    /// Whether the device is a software renderer on the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// To be called after reading: what is read from a lost device is zeros.
+    /// Whether the device is still usable. Call it after each readback: readbacks from a lost device are zeros.
     ///
     /// # Errors
-    /// [`FrameError::DeviceLost`], from then on.
+    /// [`FrameError::DeviceLost`] once the device is lost.
     pub fn check(&self) -> Result<(), FrameError> {
         if self.is_lost.load(Ordering::Relaxed) { Err(FrameError::DeviceLost) } else { Ok(()) }
     }
 
-    /// Waits until the device has done all that was submitted.
+    /// Waits until all submitted work is complete.
     pub fn wait(&self) {
-        // A lost device shows at the next map.
+        // A lost device is reported by the next map.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// A texture of `layers` layers.
+    /// A 2D texture of `size` pixels with `layers` array layers and one mip level.
     pub fn texture(&self, size: [u32; 2], layers: u32, format: TextureFormat, usage: TextureUsages) -> Texture {
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("afterimage frame"),
@@ -111,12 +111,12 @@ impl Headless {
         self.buffer(COUNTERS_BYTES, usage)
     }
 
-    /// Writes a layer of a texture whose texels are laid out like the image's pixels.
+    /// Writes a layer of a texture whose texels have the memory layout of the image's pixels.
     pub fn write<T: bytemuck::NoUninit>(&self, texture: &Texture, layer: u32, image: &Image<T>) {
         self.write_bytes(texture, layer, bytemuck::cast_slice(image.pixels()));
     }
 
-    /// Writes a layer of a texture from the bytes of its texels, row after row.
+    /// Writes a layer of a texture from the bytes of its texels, in row order without padding.
     pub fn write_bytes(&self, texture: &Texture, layer: u32, bytes: &[u8]) {
         let mut to = texture.as_image_copy();
         to.origin.z = layer;
@@ -134,12 +134,12 @@ impl Headless {
         self.write(texture, layer, &image.map(|[r, g, b]| [r, g, b, 1.0]));
     }
 
-    /// Waits for all that was submitted, and reads a layer of an `Rgba32Float` texture.
+    /// Waits for submitted work and reads a layer of an `Rgba32Float` texture.
     pub fn read_rgb(&self, texture: &Texture, layer: u32) -> Image<[f32; 3]> {
         self.read::<[f32; 4]>(texture, layer).map(|[r, g, b, _]| [r, g, b])
     }
 
-    /// Waits for all that was submitted, and reads a layer of a texture whose texels are laid out like `T`.
+    /// Waits for submitted work and reads a layer of a texture whose texels have the memory layout of `T`.
     pub(crate) fn read<T: bytemuck::Pod>(&self, texture: &Texture, layer: u32) -> Image<T> {
         let [width, height] = [texture.width(), texture.height()];
         let padded = (width * size_of::<T>() as u32).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -159,15 +159,15 @@ impl Headless {
         image
     }
 
-    /// Waits for all that was submitted, and reads what was counted.
+    /// Waits for submitted work and reads the counters.
     pub fn read_counters(&self, counters: &Buffer) -> FrameStats {
         let bytes = self.read_back(COUNTERS_BYTES, |encoder, buffer| {
             encoder.copy_buffer_to_buffer(counters, 0, buffer, 0, COUNTERS_BYTES);
         });
-        FrameStats::from_counters(&bytes).expect("as many bytes as counters have")
+        FrameStats::from_counters(&bytes).expect("the readback has COUNTERS_BYTES bytes")
     }
 
-    /// Waits for all that was submitted, and reads a buffer that can be copied from.
+    /// Waits for submitted work and reads a buffer with usage `COPY_SRC`.
     pub(crate) fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
         self.read_back(from.size(), |encoder, to| encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size()))
     }
@@ -178,7 +178,7 @@ impl Headless {
     }
 
     fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {
-        // A buffer of a lost device is none, and mapping it an error that nobody else would catch.
+        // On a lost device the buffer is invalid, and mapping it would be an uncaptured error, which panics.
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let buffer = self.buffer(size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
         let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -190,7 +190,7 @@ impl Headless {
         let bytes = buffer.slice(..).get_mapped_range().map(|bytes| bytes.to_vec());
         bytes.unwrap_or_else(|missing| {
             let is_lost = self.is_lost.load(Ordering::Relaxed);
-            assert!(is_lost, "{missing}, {error:?}: a mistake in this package");
+            assert!(is_lost, "{missing}, {error:?}: a bug in this package");
             vec![0; size as usize]
         })
     }

@@ -1,4 +1,4 @@
-//! What computes: the CPU, or a device without a window.
+//! Backends: the CPU, or a device without a window.
 
 #[cfg(feature = "full")]
 mod bandwidth;
@@ -21,13 +21,13 @@ pub use timestamps::DeviceClock;
 #[cfg(feature = "full")]
 use std::sync::Arc;
 
-/// What the post-process runs on.
+/// Executor of the post-process.
 #[derive(Clone, Debug, Default)]
 pub enum Backend {
     /// The CPU executor.
     #[default]
     Cpu,
-    /// The wgpu executor on this device. Frames are uploaded and read back; times are of the pass alone.
+    /// The wgpu executor on this device. Frames are uploaded and read back; reported times exclude these transfers.
     #[cfg(feature = "full")]
     Gpu(Arc<Headless>),
 }

@@ -1,4 +1,4 @@
-//! Times of passes by the device's own clock.
+//! Times of passes from timestamp queries.
 
 use super::Headless;
 use afterimage::gpu::Timestamps;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::{Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, Features, QuerySet};
 
-/// Timestamps before and after each of a number of spans.
+/// Timestamp queries at the begin and the end of each span.
 #[derive(Debug)]
 pub struct DeviceClock {
     queries: QuerySet,
@@ -17,7 +17,7 @@ pub struct DeviceClock {
 }
 
 impl DeviceClock {
-    /// A clock of `spans` spans. `None` if the device has no timestamps, or a query set cannot hold that many.
+    /// A clock with `spans` spans. `None` if the device has no timestamp queries or a query set cannot hold two for each span.
     pub fn new(gpu: &Headless, spans: u32) -> Option<Self> {
         let count = spans.checked_mul(2).filter(|n| (1..=wgpu::QUERY_SET_MAX_QUERIES).contains(n))?;
         gpu.device.features().contains(Features::TIMESTAMP_QUERY).then(|| Self {
@@ -32,7 +32,7 @@ impl DeviceClock {
         })
     }
 
-    /// Queries of a span, for a pass of the drop-in.
+    /// Queries of a span, for a pass of [`Afterimage`](afterimage::gpu::Afterimage).
     pub fn timestamps(&self, span: u32) -> Timestamps<'_> {
         Timestamps { queries: &self.queries, begin: 2 * span, end: 2 * span + 1 }
     }
@@ -46,14 +46,15 @@ impl DeviceClock {
         }
     }
 
-    /// Records the resolution of `spans`, whose passes were recorded before.
+    /// Resolves the queries of `spans`. Record it after their passes.
     pub fn resolve(&self, encoder: &mut CommandEncoder, spans: Range<u32>) {
         let bytes = u64::from(spans.end - spans.start) * 16;
         encoder.resolve_query_set(&self.queries, 2 * spans.start..2 * spans.end, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, u64::from(spans.start) * 16, bytes);
     }
 
-    /// Starts to read what was resolved and submitted. The flag is set when [`take_ms`](Self::take_ms) may be called.
+    /// Starts the readback of the resolved queries, after their submission. The flag becomes true when [`take_ms`](Self::take_ms) may
+    /// be called.
     pub fn start_reading(&self) -> Arc<AtomicBool> {
         let done = Arc::new(AtomicBool::new(false));
         let mapped = done.clone();
@@ -61,7 +62,7 @@ impl DeviceClock {
         done
     }
 
-    /// Milliseconds of every span, of which only those that were resolved mean anything; empty on a lost device.
+    /// Milliseconds of every span. Values of spans that were not resolved are undefined. Empty on a lost device.
     pub fn take_ms(&self) -> Vec<f64> {
         let ticks: Vec<u64> = match self.readback.slice(..).get_mapped_range() {
             Ok(mapped) => mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect(),
@@ -72,7 +73,7 @@ impl DeviceClock {
         spans.iter().map(|[begin, end]| end.saturating_sub(*begin) as f64 * self.period_ms).collect()
     }
 
-    /// Waits for all that was submitted, and gives the milliseconds of every span.
+    /// Waits for submitted work and returns the milliseconds of every span.
     pub fn wait_ms(&self, gpu: &Headless) -> Vec<f64> {
         self.start_reading();
         gpu.wait();

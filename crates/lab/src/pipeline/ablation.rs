@@ -1,4 +1,5 @@
-//! Passes with a part left out, to see what the part costs and buys. For measurements alone: what is left out is there for a reason.
+//! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without a part may
+//! contain errors that the part prevents.
 
 use afterimage::Method;
 use afterimage::shader::SHADERS;
@@ -6,13 +7,13 @@ use afterimage::shader::SHADERS;
 /// A part of the passes that can be left out.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Part {
-    /// As it is named on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What is then done instead.
+    /// Behaviour of the pass without the part.
     pub instead: &'static str,
-    /// The methods that have it.
+    /// Methods whose pass contains the part.
     pub methods: &'static [Method],
-    /// Texts of the shaders that are replaced. Those that a method's pass does not hold are another method's.
+    /// Shader texts and their replacements. Each method's pass contains at least one of them; the others belong to other methods.
     replaced: &'static [(&'static str, &'static str)],
 }
 
@@ -23,7 +24,7 @@ const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr];
 pub const PARTS: &[Part] = &[
     Part {
         name: "sanitize",
-        instead: "NaN and infinity are taken as they come",
+        instead: "NaN and infinity are accepted as colors and weights",
         methods: HISTORIES,
         replaced: &[
             ("if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {", "if true {"),
@@ -32,7 +33,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "clamp",
-        instead: "colors and gains have no limits, sharp filters may undershoot",
+        instead: "colors and gains are not clamped; Catmull-Rom may undershoot",
         methods: HISTORIES,
         replaced: &[
             (
@@ -49,7 +50,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "exact-color",
-        instead: "cube roots are guessed from the bits, a few percent off (one of the two Halley steps alone changes no pixel)",
+        instead: "cube roots without Halley steps, a few percent off (removing only one of the two steps changes no pixel)",
         methods: &[Method::Wrs],
         replaced: &[(
             "for (var i = 0u; i < 2u; i++) {\n        let r3",
@@ -58,7 +59,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "catmull-rom",
-        instead: "history is read bilinearly",
+        instead: "history is resampled bilinearly",
         methods: RESAMPLED,
         replaced: &[
             ("let sharp_x = catmull_rom(source.fraction.x);", "let sharp_x = linear_weights(source.fraction.x);"),
@@ -67,7 +68,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "fine-history",
-        instead: "history keeps 6 bits of a color's fraction, as 11-bit floats do, instead of 9 (taa, smr) or 10 (wrs)",
+        instead: "history stores colors with 6 mantissa bits, as 11-bit floats have, instead of 9 (taa, smr) or 10 (wrs)",
         methods: HISTORIES,
         replaced: &[
             ("return min((h + ((h >> 1u) & 1u)) >> 1u, 0x3dffu);", "return min(((h + 8u) & 0xfff0u) >> 1u, 0x3dffu);"),
@@ -84,15 +85,15 @@ pub const PARTS: &[Part] = &[
 ];
 
 impl Part {
-    /// By its name.
+    /// The part with this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         PARTS.iter().find(|part| part.name == name)
     }
 
-    /// The text of a method's pass without it.
+    /// Shader text of a method's pass without this part.
     ///
     /// # Panics
-    /// If the pass holds nothing of it: a mistake in this file, which a test of all parts finds.
+    /// If the pass contains none of the part's texts: a bug in this file, which a test of all parts finds.
     pub fn shader_without(&self, method: Method) -> String {
         let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
         let replaced = self.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
