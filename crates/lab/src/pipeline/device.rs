@@ -1,5 +1,5 @@
-//! The pipeline on a device: frames are uploaded or rendered there once, foveated there, and given to the methods there. `run`, the
-//! window and benches share it.
+//! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device. `run`, `view` and
+//! `bench` share this code.
 
 use super::needs_lod;
 use crate::device::Headless;
@@ -15,23 +15,23 @@ use wgpu::{BindingResource, Buffer, BufferUsages, CommandEncoder, Texture, Textu
 /// Formats of a pipeline's textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceFormats {
-    /// Of the full-rate frame, the foveated frame and outputs: `Rgba32Float` or `Rgba16Float`.
+    /// Format of the full-rate frame, the foveated frame and outputs: `Rgba32Float` or `Rgba16Float`.
     pub color: TextureFormat,
-    /// Of motion vectors: `Rg32Float` or `Rg16Float`.
+    /// Format of motion vectors: `Rg32Float` or `Rg16Float`.
     pub motion: TextureFormat,
 }
 
 impl DeviceFormats {
-    /// Full floats: the numbers of frames in memory, exactly.
+    /// 32-bit floats: exactly the values of frames in memory.
     pub const EXACT: Self = Self { color: TextureFormat::Rgba32Float, motion: TextureFormat::Rg32Float };
-    /// Halves, as engines have them.
+    /// 16-bit floats, as engines use.
     pub const ENGINE: Self = Self { color: TextureFormat::Rgba16Float, motion: TextureFormat::Rg16Float };
 }
 
 const WRITTEN: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::STORAGE_BINDING).union(TextureUsages::COPY_SRC);
 
-/// Inputs of the methods on a device: one full-rate frame, and the foveated one that a simulator makes of it.
+/// Inputs of the methods on a device: the full-rate frame, and the foveated frame that a simulator computes from it.
 #[derive(Debug)]
 pub struct DeviceInputs {
     gpu: Arc<Headless>,
@@ -40,7 +40,7 @@ pub struct DeviceInputs {
     full: Texture,
     depth: Texture,
     motion: Texture,
-    /// All zero, for a frame that is shown again.
+    /// Motion vectors of zero, for a repeated frame.
     no_motion: Texture,
     trust: Texture,
     lod: Texture,
@@ -62,10 +62,10 @@ struct Given {
 }
 
 impl DeviceInputs {
-    /// Textures of `desc`'s size, and a simulator of the foveation in its settings.
+    /// Creates textures of `desc`'s size and a simulator of the foveation in its settings.
     ///
     /// # Errors
-    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
+    /// [`CreateError`] if a setting is out of range or the device does not support it.
     pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, formats: DeviceFormats) -> Result<Self, CreateError> {
         let texture = |format, usage| gpu.texture(desc.size_px, 1, format, usage);
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
@@ -87,7 +87,7 @@ impl DeviceInputs {
         })
     }
 
-    /// Follows another foveation.
+    /// Replaces the simulator if the foveation in `desc`'s settings differs from its own.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -104,8 +104,8 @@ impl DeviceInputs {
         self.upload_geometry(frame);
     }
 
-    /// Takes a full-rate frame that was rendered on this device: the same numbers as [`upload`](Self::upload) of the frame that is read
-    /// back. Records into `encoder`.
+    /// Imports a full-rate frame that was rendered on this device. The values equal those of a readback followed by
+    /// [`upload`](Self::upload). Records into `encoder`.
     pub fn import(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame) {
         let device = &self.gpu.device;
         let import = self.import.get_or_insert_with(|| {
@@ -131,7 +131,7 @@ impl DeviceInputs {
         self.given = Given { depth: true, motion: true, ..Given::default() };
     }
 
-    /// Uploads a frame that its source foveated, with what the full-rate frame `frame` knows besides color.
+    /// Uploads a frame that its source foveated, with the depth, motion and trust of the full-rate frame `frame`.
     pub fn upload_foveated(
         &mut self,
         frame: &SourceFrame,
@@ -167,7 +167,7 @@ impl DeviceInputs {
         };
     }
 
-    /// Uploads bytes of texels to the full-rate frame, its depth and its motion, in the formats of the textures.
+    /// Uploads texel bytes of color, depth and motion of a full-rate frame, in the formats of the textures.
     pub fn upload_bytes(&mut self, color: &[u8], depth: &[u8], motion: &[u8]) {
         for (texture, bytes) in [(&self.full, color), (&self.depth, depth), (&self.motion, motion)] {
             self.gpu.write_bytes(texture, 0, bytes);
@@ -175,10 +175,10 @@ impl DeviceInputs {
         self.given = Given { depth: true, motion: true, ..Given::default() };
     }
 
-    /// Records the simulator: foveates the full-rate frame for the gaze of `views`.
+    /// Records the simulator, which foveates the full-rate frame for the gaze of `views`.
     ///
     /// # Errors
-    /// [`FrameError`] if a view does not fit.
+    /// [`FrameError`] if a view does not match the simulator's size or view count.
     pub fn foveate(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -193,7 +193,7 @@ impl DeviceInputs {
         Ok(())
     }
 
-    /// The foveated frame, for the methods. `use_trust`: with the trust mask, if there is one.
+    /// The foveated frame as input of the methods. `use_trust`: include the trust mask, if the frame has one.
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
         let given = self.given;
         Frame {
@@ -207,7 +207,7 @@ impl DeviceInputs {
         }
     }
 
-    /// The same frame once more: nothing has moved since.
+    /// `frame` repeated, with motion vectors of zero.
     pub fn again<'a>(&'a self, frame: Frame<'a>) -> Frame<'a> {
         Frame { motion: frame.motion.map(|_| &self.no_motion), ..frame }
     }
@@ -223,7 +223,7 @@ impl DeviceInputs {
     }
 }
 
-/// A method's run on a device: its context, its output and its counters.
+/// Run of a method on a device: context, output and counters.
 #[derive(Debug)]
 pub struct DeviceRun {
     gpu: Arc<Headless>,
@@ -234,15 +234,15 @@ pub struct DeviceRun {
 }
 
 impl DeviceRun {
-    /// A run with `desc`'s settings and outputs of the format of `formats`.
+    /// Creates a run with `desc`'s settings; its output has the color format of `formats`.
     ///
     /// # Errors
-    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
+    /// [`CreateError`] if a setting is out of range or the device does not support it.
     pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, formats: DeviceFormats) -> Result<Self, CreateError> {
         Ok(Self::of(gpu, Afterimage::new(&gpu.device, desc, formats.color)?, formats))
     }
 
-    /// A run with another text of the method's pass.
+    /// Creates a run with `source` as shader text of the method's pass.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -260,12 +260,12 @@ impl DeviceRun {
         Self { post, output, counters: gpu.counters(), debug: None, gpu: gpu.clone() }
     }
 
-    /// The context.
+    /// Context of the post-process.
     pub fn post(&self) -> &Afterimage {
         &self.post
     }
 
-    /// The context, to change its settings or to empty its history.
+    /// Context of the post-process, to change its settings or to empty its history.
     pub fn post_mut(&mut self) -> &mut Afterimage {
         &mut self.post
     }
@@ -273,7 +273,7 @@ impl DeviceRun {
     /// Records the method's pass.
     ///
     /// # Errors
-    /// [`FrameError`] if the frame does not fit.
+    /// [`FrameError`] if the frame does not match the context.
     pub fn record(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -284,8 +284,9 @@ impl DeviceRun {
         self.post.record(&self.gpu.device, encoder, frame, target)
     }
 
-    /// Records a debug view of the decisions that [`record`](Self::record) of the same frame would make, and counts them for
-    /// [`stats`](Self::stats). Call it before. Counting within `record` itself would make its time a fifth longer.
+    /// Records a debug view of the decisions that [`record`](Self::record) of this frame makes, and counts them for
+    /// [`stats`](Self::stats). Call it before `record`, which replaces the history. Counting is separate because it would make `record` a
+    /// fifth slower.
     ///
     /// # Errors
     /// As for `record`.
@@ -301,17 +302,17 @@ impl DeviceRun {
         self.post.record_view(&gpu.device, encoder, frame, target, view)
     }
 
-    /// The frame that the user sees.
+    /// Output of the last [`record`](Self::record).
     pub fn output(&self) -> &Texture {
         &self.output
     }
 
-    /// The picture of the last [`record_view`](Self::record_view).
+    /// Debug view of the last [`record_view`](Self::record_view).
     pub fn debug(&self) -> Option<&Texture> {
         self.debug.as_ref()
     }
 
-    /// Waits for all that was submitted, and reads the counts of the last [`record_view`](Self::record_view).
+    /// Waits for submitted work and reads the counters of the last [`record_view`](Self::record_view).
     pub fn stats(&self) -> FrameStats {
         self.gpu.read_counters(&self.counters)
     }

@@ -1,4 +1,4 @@
-//! What a noisy lane's history knows of the frame that comes next, for sampling that is guided by it.
+//! Guided sampling: the noise of a run's history, reprojected to the next frame.
 
 use crate::frame::Guide;
 use crate::frame::SourceFrame;
@@ -8,39 +8,40 @@ use afterimage::kernel::reproject;
 use afterimage::{Image, ViewGeometry};
 use glam::Vec3;
 
-/// Relative difference of distance that still is the same surface: the least that the post-process tells apart is 2 %.
+/// Largest relative difference of distance within one surface: the least tolerance of the post-process's depth test.
 const SAME_SURFACE: f32 = 0.02;
 
-/// What was known when the last frame had been shown.
+/// State after the last frame.
 #[derive(Clone, Debug)]
-pub(super) struct Knowledge {
+pub(super) struct HistoryNoise {
     noise: Image<Noise>,
-    /// Share of a new frame in the mean at the least: the mean forgets, so that no more than this share of what it holds is counted.
+    /// Least weight of a new frame in the accumulated mean. Only this share of the history's samples counts, because the mean forgets
+    /// old frames.
     new_share: f32,
-    shown: Image<[f32; 3]>,
+    output: Image<[f32; 3]>,
     depth: Option<Image<f32>>,
 }
 
-impl Knowledge {
-    /// Of a frame: what the history holds and the least share of a new frame in it, what was shown, and how far it was.
-    pub fn new(noise: Image<Noise>, new_share: f32, shown: Image<[f32; 3]>, frame: &SourceFrame) -> Self {
-        Self { noise, new_share, shown, depth: frame.depth.clone() }
+impl HistoryNoise {
+    /// State after `frame`: noise of the history, least weight of a new frame in its mean, and the method's output.
+    pub fn new(noise: Image<Noise>, new_share: f32, output: Image<[f32; 3]>, frame: &SourceFrame) -> Self {
+        Self { noise, new_share, output, depth: frame.depth.clone() }
     }
 
-    /// For the frame that follows: where its surfaces were, samples that are held of them and their scatter in square roots of luma, which
-    /// is what differences are judged in; nothing where a surface was hidden or off the screen.
+    /// Guide for the next frame: for each pixel, the number of samples in its surface's history, and their standard deviation in square
+    /// roots of luma, the unit in which smr compares colors. Disoccluded and off-screen surfaces have 0 samples and NaN.
     pub fn guide(&self, frame: &SourceFrame, geometry: &ViewGeometry) -> Guide {
         let known = Image::from_fn_parallel(self.noise.size(), |pixel| match self.source(frame, geometry, pixel) {
             None => [0.0, f32::NAN],
             Some([x, y]) => {
-                let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.shown.at(x, y))));
+                let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.output.at(x, y))));
                 [noise.samples * self.new_share, noise.variance.sqrt() * root_slope(luma)]
             }
         });
         Guide { known: known.map(|[samples, _]| samples), deviation: known.map(|[_, deviation]| deviation) }
     }
 
-    /// The pixel that showed the surface of a pixel.
+    /// Position of the pixel's surface in the previous frame; `None` if it was off the screen or fails the depth test.
     fn source(&self, frame: &SourceFrame, geometry: &ViewGeometry, [x, y]: [u32; 2]) -> Option<[usize; 2]> {
         let (px, py) = (x as usize, y as usize);
         let motion = frame.motion.as_ref().map_or([0.0; 2], |m| m.at(px, py));
@@ -49,8 +50,8 @@ impl Knowledge {
         let (now, before) = (now.at(px, py), before.at(qx, qy));
         let point = (Vec3::from(geometry.ray([x as f32, y as f32])) * now).extend(1.0);
         let expected = frame.previous_from_current.map_or(now, |m| glam::Vec4::from(m[2]).dot(point));
-        let is_nothing = |z: f32| z.is_nan() || z >= 1e9;
-        let same = match (is_nothing(now), is_nothing(before)) {
+        let is_background = |z: f32| z.is_nan() || z >= 1e9;
+        let same = match (is_background(now), is_background(before)) {
             (false, false) => (expected - before).abs() <= SAME_SURFACE * expected.abs().max(before.abs()),
             (now, before) => now == before,
         };
@@ -79,21 +80,21 @@ mod tests {
     fn guided(before: &SourceFrame, now: &SourceFrame) -> Guide {
         let noise = Image::from_fn(SIZE, |[x, y]| Noise { samples: (1 + x + 8 * y) as f32, variance: 0.01 });
         let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-        Knowledge::new(noise, 0.5, before.color.clone(), before).guide(now, &geometry)
+        HistoryNoise::new(noise, 0.5, before.color.clone(), before).guide(now, &geometry)
     }
 
     #[test]
-    fn knowledge_follows_the_motion() {
+    fn samples_follow_the_motion() {
         let guide = guided(&frame(2.0, [0.0; 2]), &frame(2.0, [-1.0, 1.0]));
         // Pixel (3, 1) was at (2, 2).
         assert_eq!(guide.known.at(3, 1), 9.5);
-        assert_eq!((guide.known.at(0, 1), guide.known.at(3, 3)), (0.0, 0.0), "was off the screen");
+        assert_eq!((guide.known.at(0, 1), guide.known.at(3, 3)), (0.0, 0.0), "off the screen");
         let expected = 0.1 * 50.0 / 0.252_f32.sqrt();
         assert!((guide.deviation.at(3, 1) - expected).abs() < 1e-4 && guide.deviation.at(0, 1).is_nan());
     }
 
     #[test]
-    fn nothing_is_known_of_what_was_hidden() {
+    fn disoccluded_surfaces_have_no_samples() {
         for (before, now, known) in [
             (2.0, 2.03, true),
             (2.0, 2.1, false),

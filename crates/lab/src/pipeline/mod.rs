@@ -1,4 +1,4 @@
-//! The pipeline of a clip: each frame is foveated for a gaze and given to each method; what metrics need is kept.
+//! Pipeline of a clip: foveates each frame for a gaze, runs each method on it, and tracks surfaces for the metrics.
 
 #[cfg(feature = "ablation")]
 pub mod ablation;
@@ -27,59 +27,59 @@ use afterimage::{
     ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings,
     ViewFrame, ViewGeometry,
 };
-use guide::Knowledge;
+use guide::HistoryNoise;
 #[cfg(feature = "full")]
 use std::sync::Arc;
 
-/// A run of the pipeline: what is done with the foveated frames.
+/// Kind of a run: how it processes the foveated frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RunKind {
-    /// The post-process with these settings; their foveation is replaced by the pipeline's.
+    /// The post-process with these settings. The pipeline's foveation replaces theirs.
     PostProcess(Settings),
-    /// The post-process with a part of the pass left out, on a device only: to see what the part costs and buys.
+    /// The post-process without a part of its pass, on a device only: measures the part's cost and benefit.
     #[cfg(feature = "ablation")]
     Without(Settings, &'static ablation::Part),
-    /// Every pixel at the best level of detail that it was ever shown at: the upper bound of temporal reuse. Defined for stills only.
+    /// Every pixel at its finest level of detail so far: the upper bound of temporal reuse. Defined for stills only.
     Oracle,
 }
 
 /// A run's output for one frame.
 #[derive(Clone, Debug)]
 pub struct MethodOutput {
-    /// The frame that the user sees, linear.
+    /// Displayed frame, linear.
     pub image: Image<[f32; 3]>,
     /// Wall time of the pass in milliseconds.
     pub wall_ms: f64,
-    /// CPU time of the process during the pass in milliseconds, where the system tells.
+    /// CPU time of the process during the pass in milliseconds; `None` if the system does not measure it.
     pub cpu_ms: Option<f64>,
-    /// Time of the pass by the device's clock, in milliseconds; `None` on software devices and the CPU.
+    /// Time of the pass by timestamp queries, in milliseconds; `None` on software devices and the CPU.
     pub device_ms: Option<f64>,
-    /// Counts of the pass; empty for the oracle.
+    /// Counters of the pass; all 0 for the oracle.
     pub stats: FrameStats,
-    /// Bytes that the pass reads and writes a pixel; `None` for the oracle.
+    /// Bytes per pixel that the pass reads and writes; `None` for the oracle.
     pub traffic_bytes_per_pixel: Option<u32>,
-    /// Debug views, linear, in the order in which they were asked for; none for the oracle.
+    /// Debug views, linear, in the order of the request; empty for the oracle.
     pub debug: Vec<Image<[f32; 3]>>,
 }
 
 impl MethodOutput {
-    /// Cost of the pass in milliseconds: the device's own time, else CPU time, which other work on the machine disturbs less than wall
-    /// time.
+    /// Cost of the pass in milliseconds: timestamp queries if available, otherwise CPU time, which other processes disturb less than
+    /// wall time.
     pub fn cost_ms(&self) -> f64 {
         self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
     }
 }
 
-/// One frame, foveated, and the output of each run.
+/// Result of one frame: the foveation, and the output of each run.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Position that the eye is taken to look at, in pixels.
+    /// Gaze that the foveation used, in pixels.
     pub gaze_px: [f32; 2],
     /// Eccentricity of every pixel in degrees.
     pub ecc_deg: Image<f32>,
     /// Level of detail of every pixel of the foveated frame.
     pub lods: Image<f32>,
-    /// Correspondence and retention.
+    /// Correspondence with the previous frame, and retained pixels.
     pub tracked: Tracked,
     /// Outputs in the order of the runs.
     pub outputs: Vec<MethodOutput>,
@@ -90,7 +90,7 @@ pub struct Step {
 /// A foveated frame in memory.
 struct Candidate<'a> {
     color: &'a Image<[f32; 3]>,
-    /// Levels of detail that the methods are given, if any.
+    /// Levels of detail as an input of the methods, if any.
     lod_given: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
 }
@@ -111,11 +111,11 @@ struct Device {
     gpu: Arc<Headless>,
     inputs: DeviceInputs,
     clock: PassClock,
-    /// Whether the picture of a still is on the device.
+    /// Whether the frame of a still is already on the device.
     has_still: bool,
 }
 
-/// The pipeline of a clip: state of all runs, and of the foveation.
+/// Pipeline of a clip: state of the foveation and of all runs.
 pub struct Pipeline {
     geometry: ViewGeometry,
     foveation: Foveation,
@@ -129,18 +129,18 @@ pub struct Pipeline {
     debug: Vec<DebugView>,
     use_trust: bool,
     /// For guided sampling.
-    knowledge: Option<Knowledge>,
+    history_noise: Option<HistoryNoise>,
     is_guided: bool,
     #[cfg(feature = "ablation")]
     poison: f32,
 }
 
 impl Pipeline {
-    /// A pipeline for frames of `geometry`'s size. `is_still`: all frames are the same picture, whose mip levels are then built once.
+    /// Creates a pipeline for frames of `geometry`'s size. `is_still`: all frames are equal, so that the mip chain is built once.
     /// `debug`: debug views to draw.
     ///
     /// # Errors
-    /// [`CreateError`] if a setting is out of range, or the device cannot do it.
+    /// [`CreateError`] if a setting is out of range or the device does not support it.
     pub fn new(
         geometry: ViewGeometry,
         foveation: Foveation,
@@ -172,39 +172,39 @@ impl Pipeline {
             is_still,
             debug: debug.to_vec(),
             use_trust: false,
-            knowledge: None,
+            history_noise: None,
             is_guided: false,
             #[cfg(feature = "ablation")]
             poison: 0.0,
         })
     }
 
-    /// Gives the methods the trust masks of sources that have them.
+    /// Passes the source's trust masks, if any, to the methods.
     #[must_use]
     pub fn with_trust(self) -> Self {
         Self { use_trust: true, ..self }
     }
 
-    /// Replaces a share of the foveated pixels of every frame by renderers' mistakes: NaN, infinite, huge, negative.
+    /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
     #[cfg(feature = "ablation")]
     #[must_use]
     pub fn with_poison(self, share: f32) -> Self {
         Self { poison: share, ..self }
     }
 
-    /// Keeps after each frame what the history of the first noisy run of smr knows, for [`guide`](Self::guide).
+    /// Stores the noise of the first noisy smr run's history after each frame, for [`guide`](Self::guide).
     #[must_use]
     pub fn with_guidance(self) -> Self {
         Self { is_guided: true, ..self }
     }
 
-    /// Guide for sampling a frame that is about to be foveated. `None` before the first frame, after a cut, and without
-    /// [`with_guidance`](Self::with_guidance) or a noisy run of smr.
+    /// Sampling guide for the next frame. `None` before the first frame, after a cut, without
+    /// [`with_guidance`](Self::with_guidance), and without a noisy smr run.
     pub fn guide(&self, frame: &SourceFrame) -> Option<Guide> {
-        self.knowledge.as_ref().filter(|_| !frame.cut).map(|k| k.guide(frame, &self.geometry))
+        self.history_noise.as_ref().filter(|_| !frame.cut).map(|k| k.guide(frame, &self.geometry))
     }
 
-    /// Foveates frame `index` and gives it to all runs. A lost gaze holds the last position; before the first, the middle of the view.
+    /// Foveates frame `index` and runs all methods on it. [`look`](Self::look) says where a lost gaze is.
     ///
     /// # Errors
     /// [`FrameError::Size`] if the frame's size is not the pipeline's.
@@ -218,7 +218,7 @@ impl Pipeline {
         )
     }
 
-    /// As [`step`](Self::step), of a frame that also lies on a device: if that is the pipeline's, it is not uploaded again.
+    /// As [`step`](Self::step), for a frame that is also on a device. If that is the pipeline's device, the frame is not uploaded again.
     ///
     /// # Errors
     /// As for `step`.
@@ -249,7 +249,7 @@ impl Pipeline {
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
         let lods = self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg);
         let view = self.view(frame, gaze_px);
-        // On a device a simulator of its own foveates, bit for bit like this one on software devices.
+        // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
         let pyramid = self.foveates_in_memory().then(|| match self.still.take() {
             Some(pyramid) => pyramid,
             None => Pyramid::new(frame.color.clone(), self.foveation.max_level()),
@@ -271,8 +271,8 @@ impl Pipeline {
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
-    /// As [`step`](Self::step), of a frame that its source foveated for the gaze that [`look`](Self::look) gave. The runs' settings
-    /// must be [`noisy`](Settings::noisy); there is no oracle of such frames.
+    /// As [`step`](Self::step), for a frame that its source foveated for the gaze of [`look`](Self::look). The runs' settings must be
+    /// [`noisy`](Settings::noisy). The oracle does not support such frames.
     ///
     /// # Errors
     /// As for `step`.
@@ -298,14 +298,14 @@ impl Pipeline {
         if self.is_guided {
             let noise =
                 self.runs.iter().zip(&outputs).find_map(|(run, output)| Some((self.noise(run)?, &output.image)));
-            self.knowledge = noise.map(|((noise, settings), image)| {
-                Knowledge::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
+            self.history_noise = noise.map(|((noise, settings), image)| {
+                HistoryNoise::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
             });
         }
         Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, outputs, foveation_ms: 0.0 })
     }
 
-    /// Position that the eye is taken to look at: a lost gaze holds the last one; before the first, the middle of the view.
+    /// Gaze of the frame in pixels. A lost gaze holds the last position; before the first, it is the center of the view.
     pub fn look(&mut self, gaze: Option<[f32; 2]>) -> [f32; 2] {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.held_gaze, self.geometry.size_px());
@@ -313,7 +313,7 @@ impl Pipeline {
         gaze_px
     }
 
-    /// Bytes that run `index` keeps between frames.
+    /// Bytes of history that run `index` keeps between frames.
     pub fn memory_bytes(&self, index: usize) -> usize {
         match &self.runs[index] {
             Run::Cpu(post) => post.memory_bytes(),
@@ -328,7 +328,7 @@ impl Pipeline {
         ViewFrame { previous_from_current: frame.previous_from_current, ..view }
     }
 
-    /// Whether frames are foveated in memory: for runs on the CPU, the oracle, and to spoil pixels.
+    /// Whether frames are foveated in memory: for runs on the CPU, for the oracle, and for poisoned pixels.
     fn foveates_in_memory(&self) -> bool {
         #[cfg(feature = "ablation")]
         if self.poison > 0.0 {
@@ -370,7 +370,7 @@ impl Pipeline {
         gpu.check()
     }
 
-    /// Gives the foveated frame to all runs. `still` is what the oracle needs: mip levels, and the frame's levels of detail.
+    /// Runs all methods on the foveated frame. `still`: mip chain and levels of detail of the frame, for the oracle.
     fn run(
         &mut self,
         index: u64,
@@ -381,18 +381,18 @@ impl Pipeline {
     ) -> Result<Vec<MethodOutput>, FrameError> {
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
-        // Another run first in every frame: the first finds the caches as the foveation left them.
+        // Rotate the order of runs each frame: the first run finds caches as the foveation left them.
         let first = index as usize % self.runs.len().max(1);
         for i in (first..self.runs.len()).chain(0..first) {
             outputs[i] = Some(match &mut self.runs[i] {
                 Run::Cpu(post) => {
-                    let candidate = candidate.expect("runs on the CPU have frames in memory");
+                    let candidate = candidate.expect("frames are foveated in memory for runs on the CPU");
                     let trust = frame.trust.as_ref().filter(|_| self.use_trust);
                     on_cpu(post, frame, trust, candidate, view, index, reset, &self.debug)?
                 }
                 #[cfg(feature = "full")]
                 Run::Device(run) => {
-                    let device = self.device.as_ref().expect("runs on a device have one");
+                    let device = self.device.as_ref().expect("a pipeline with device runs has a device");
                     let views = std::slice::from_ref(view);
                     let frame = device.inputs.frame(views, index, reset, self.use_trust);
                     on_device(device, run, &frame, &self.debug)?
@@ -411,13 +411,14 @@ impl Pipeline {
         Ok(outputs.into_iter().flatten().collect())
     }
 
-    /// Noise of what a run's history holds, if that is noisy, and its settings.
+    /// Noise of a run's history, and the run's settings; `None` unless the run is a noisy smr run.
     fn noise<'a>(&'a self, run: &'a Run) -> Option<(Image<Noise>, &'a Settings)> {
         let (words, settings) = match run {
             Run::Cpu(post) => {
                 let words = post.history().noise().to_vec();
                 let size_px = post.desc().size_px;
-                let image = (!words.is_empty()).then(|| Image::from_pixels(size_px, words).expect("a word a pixel"));
+                let image = (!words.is_empty())
+                    .then(|| Image::from_pixels(size_px, words).expect("one noise word for each pixel"));
                 (image?, &post.desc().settings)
             }
             #[cfg(feature = "full")]
@@ -433,8 +434,8 @@ impl Pipeline {
     }
 }
 
-/// Whether methods must be given the levels of detail of a simulated frame. `Filter::Block` decides a block by its center, which a
-/// method cannot derive from the gaze.
+/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at the center of a
+/// block, which a method cannot derive from the gaze.
 pub fn needs_lod(filter: Filter) -> bool {
     filter == Filter::Block
 }
@@ -457,7 +458,7 @@ impl Run {
             #[cfg(feature = "ablation")]
             RunKind::Without(settings, part) => {
                 let Backend::Gpu(gpu) = backend else {
-                    let expected = "a device: parts are left out of shaders".into();
+                    let expected = "a device: parts are removed from shaders".into();
                     Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })?
                 };
                 let shader = part.shader_without(settings.method);
@@ -468,12 +469,12 @@ impl Run {
     }
 }
 
-/// A share of the pixels replaced by what renderers' mistakes leave.
+/// `color` with a random share of its pixels replaced by invalid colors.
 #[cfg(feature = "ablation")]
 fn poisoned(mut color: Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3]> {
     use afterimage::kernel::rng;
     const POISONS: [f32; 5] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -5.0];
-    /// No purpose of the methods' draws.
+    /// Purpose of these random numbers, distinct from those of the methods.
     const PURPOSE: u32 = 0x706f_6973;
     if share == 0.0 {
         return color;
@@ -488,7 +489,7 @@ fn poisoned(mut color: Image<[f32; 3]>, share: f32, index: u32) -> Image<[f32; 3
     color
 }
 
-#[allow(clippy::too_many_arguments, reason = "each is a different thing")]
+#[allow(clippy::too_many_arguments, reason = "a private helper with unrelated arguments")]
 fn on_cpu(
     post: &mut CpuAfterimage,
     source: &SourceFrame,
@@ -543,15 +544,15 @@ fn on_device(
 ) -> Result<MethodOutput, FrameError> {
     let gpu = &device.gpu;
     let encoder = || gpu.device.create_command_encoder(&Default::default());
-    let mut pictures = vec![];
-    // A debug view also counts; without one, its picture stays where it is.
+    let mut debug_views = vec![];
+    // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
     for &view in if debug.is_empty() { &[DebugView::Rejection] } else { debug } {
         let mut encoder = encoder();
         run.record_view(&mut encoder, frame, view)?;
         gpu.queue.submit([encoder.finish()]);
-        pictures.extend(run.debug().filter(|_| !debug.is_empty()).map(|picture| gpu.read_rgb(picture, 0)));
+        debug_views.extend(run.debug().filter(|_| !debug.is_empty()).map(|texture| gpu.read_rgb(texture, 0)));
     }
-    // Nothing else is under way when the watch starts.
+    // The device is idle when the watch starts.
     gpu.wait();
     let watch = Stopwatch::start();
     let mut encoder = encoder();
@@ -569,7 +570,7 @@ fn on_device(
         device_ms,
         stats: run.stats(),
         traffic_bytes_per_pixel: Some(run.post().desc().settings.traffic_bytes_per_pixel(given)),
-        debug: pictures,
+        debug: debug_views,
     };
     gpu.check().map(|()| output)
 }

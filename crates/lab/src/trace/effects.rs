@@ -19,7 +19,7 @@ macro_rules! effects {
             /// All effects.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// Name in `--effects`.
+            /// Name in commands and reports, such as `base-color`.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$name => $text,)* }
             }
