@@ -1,7 +1,7 @@
-//! What an adapter's arithmetic does, and whether the passes compute there what they compute on the CPU.
+//! Self-test of an adapter: its floating-point behaviour, and equality of its passes with the CPU's.
 //!
-//! WGSL leaves much open: NaN may be assumed away, denormals flushed, products and sums fused. Nothing here depends on the answers but the
-//! twins; the rest tells why they differ where they do.
+//! WGSL leaves much open: compilers may assume that NaN does not occur, flush denormals to zero, and fuse products with sums. The passes
+//! need only that NaN keeps its bits. The other findings explain differences between the executors.
 
 use crate::device::{Backend, Headless};
 use crate::error::InputError;
@@ -13,19 +13,19 @@ use std::sync::Arc;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
 const SHADER: &str = include_str!("../shaders/self_test.wgsl");
-/// Rows of questions that are answered by a largest error.
+/// Input rows of probes that report a largest error.
 const ROWS: u32 = 4096;
 const SIZE: [u32; 2] = [96, 54];
 const FRAMES: u64 = 6;
 
-/// A question and its answer.
+/// Result of one probe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// What was looked at.
+    /// Subject of the probe.
     pub what: String,
-    /// What was found.
+    /// Observed behaviour.
     pub found: String,
-    /// Whether it is as this library needs it; `None` where it needs nothing.
+    /// Whether the behaviour meets this library's requirement; `None` if there is no requirement.
     pub holds: Option<bool>,
 }
 
@@ -39,7 +39,7 @@ impl Finding {
     }
 }
 
-/// Numbers as in `shaders/self_test.wgsl`.
+/// Probes, numbered as in `shaders/self_test.wgsl`.
 #[derive(Clone, Copy)]
 enum Question {
     IsNanEqual,
@@ -59,13 +59,13 @@ enum Question {
     FromHalf,
 }
 
-/// Takes rows of three numbers and gives a word for each.
+/// Runs a probe: one 32-bit result for each row of three inputs.
 type Ask<'a> = &'a dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>;
 
-/// Asks everything of an adapter. Takes seconds on software devices.
+/// Runs all probes on an adapter. Takes seconds on software devices.
 ///
 /// # Errors
-/// If the twins cannot be made on the device.
+/// If the passes cannot be created or run on the device.
 pub fn self_test(gpu: &Arc<Headless>) -> Result<Vec<Finding>, SelfTestError> {
     let mut findings = arithmetic(&|question, rows| ask(gpu, question, rows));
     findings.push(formats(gpu));
@@ -75,21 +75,21 @@ pub fn self_test(gpu: &Arc<Headless>) -> Result<Vec<Finding>, SelfTestError> {
     Ok(findings)
 }
 
-/// The twins could not be compared.
+/// Failure to compare the two executors.
 #[derive(Debug, thiserror::Error)]
 pub enum SelfTestError {
-    /// The passes cannot be made on the device.
+    /// The device cannot create the passes.
     #[error(transparent)]
     Create(#[from] CreateError),
-    /// The scene cannot be made.
+    /// The test scene cannot be created.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A frame was refused.
+    /// A frame was rejected.
     #[error(transparent)]
     Frame(#[from] afterimage::FrameError),
 }
 
-/// What the answers say.
+/// Findings of all arithmetic probes.
 fn arithmetic(ask: Ask<'_>) -> Vec<Finding> {
     let one = |question, row: [f32; 3]| ask(question, &[row])[0];
     let value = |question, row| f32::from_bits(one(question, row));
@@ -102,7 +102,11 @@ fn arithmetic(ask: Ask<'_>) -> Vec<Finding> {
         Finding::need("bits of NaN through a variable", yes(is_kept, "kept", "changed"), is_kept),
         Finding::fact(
             "NaN == NaN",
-            yes(one(Question::IsNanEqual, [payload; 3]) == 1, "true: NaN is assumed away", "false"),
+            yes(
+                one(Question::IsNanEqual, [payload; 3]) == 1,
+                "true: the compiler assumes that NaN does not occur",
+                "false",
+            ),
         ),
         Finding::fact("max(NaN, 1)", format!("{}", value(Question::MaxOfNan, [payload, 1.0, 0.0]))),
         Finding::fact(
@@ -131,20 +135,20 @@ fn arithmetic(ask: Ask<'_>) -> Vec<Finding> {
     ]
 }
 
-/// Largest error in units of the last place over rows in (0, 8).
+/// Largest error over inputs in (0, 8], in units of the last place.
 fn error_of(ask: Ask<'_>, what: &'static str, question: Question, exact: fn([f64; 2]) -> f64) -> Finding {
     let rows: Vec<[f32; 3]> =
         (0..ROWS).map(|i| [(i + 1) as f32 * (8.0 / ROWS as f32), 0.1 + (i * 37 % ROWS) as f32 * 1e-3, 0.0]).collect();
     let worst = ask(question, &rows).iter().zip(&rows).fold(0.0_f64, |worst, (&word, row)| {
         let exact = exact([f64::from(row[0]), f64::from(row[1])]);
-        // Of the logarithm near 1 and the sine near pi, the place is that of 1.
-        let place = f64::from(f32::EPSILON) * 2.0_f64.powi(exact.abs().max(1.0).log2().floor() as i32);
-        worst.max((f64::from(f32::from_bits(word)) - exact).abs() / place)
+        // Results below 1 are measured in the last place of 1, because log2 near 1 and sin near pi are close to 0.
+        let ulp = f64::from(f32::EPSILON) * 2.0_f64.powi(exact.abs().max(1.0).log2().floor() as i32);
+        worst.max((f64::from(f32::from_bits(word)) - exact).abs() / ulp)
     });
     Finding::fact(what, format!("within {worst:.1} units of the last place"))
 }
 
-/// Whether halves are made and read as on the CPU, which rounds to the nearest even.
+/// Compares conversions to and from 16-bit floats with the CPU's, which round to nearest even.
 fn halves(ask: Ask<'_>) -> Finding {
     let rows: Vec<[f32; 3]> = (0..ROWS)
         .map(|i| {
@@ -153,17 +157,18 @@ fn halves(ask: Ask<'_>) -> Finding {
         })
         .filter(|row| row[0].abs() < 65504.0)
         .collect();
-    let made = ask(Question::ToHalf, &rows);
-    let wrong = made.iter().zip(&rows).filter(|(word, row)| (*word & 0xffff) != half_bits(row[0])).count();
+    let packed = ask(Question::ToHalf, &rows);
+    let wrong = packed.iter().zip(&rows).filter(|(word, row)| (*word & 0xffff) != half_bits(row[0])).count();
     let codes: Vec<u32> = (0..0x7c00).collect();
     let given: Vec<[f32; 3]> = codes.iter().map(|&c| [f32::from_bits(c), 0.0, 0.0]).collect();
-    let read = ask(Question::FromHalf, &given);
-    let misread = codes.iter().zip(&read).filter(|(code, word)| half_value(**code).to_bits() != **word).count();
-    let found = format!("{wrong} of {} made otherwise, {misread} of {} read otherwise", rows.len(), codes.len());
-    Finding::fact("halves against the CPU's", found)
+    let unpacked = ask(Question::FromHalf, &given);
+    let misread = codes.iter().zip(&unpacked).filter(|(code, word)| half_value(**code).to_bits() != **word).count();
+    let found =
+        format!("{wrong} of {} packed differently, {misread} of {} unpacked differently", rows.len(), codes.len());
+    Finding::fact("16-bit floats against the CPU's", found)
 }
 
-/// Texture formats that engines hand over or ask for.
+/// Output texture formats that the device can write.
 fn formats(gpu: &Headless) -> Finding {
     let able = |format: TextureFormat, usage: TextureUsages| {
         format.guaranteed_format_features(gpu.device.features()).allowed_usages.contains(usage)
@@ -177,7 +182,7 @@ fn formats(gpu: &Headless) -> Finding {
     )
 }
 
-/// Some frames of a moving scene through a method, here and on the CPU.
+/// Compares a method's output on the device with that on the CPU, for a few frames of a moving scene.
 fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0)?;
     let foveation = Foveation { rate_mid: 4, rate_far: 8, filter: Filter::Mip, ..Foveation::default() };
@@ -185,16 +190,16 @@ fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> 
     let pipeline = |backend: &Backend| {
         Pipeline::new(*source.view(), foveation, &[RunKind::PostProcess(settings)], false, &[], backend)
     };
-    let mut lanes = [pipeline(&Backend::Cpu)?, pipeline(&Backend::Gpu(gpu.clone()))?];
+    let mut pipelines = [pipeline(&Backend::Cpu)?, pipeline(&Backend::Gpu(gpu.clone()))?];
     let (mut differ, mut largest) = (0, 0.0_f32);
     for index in 0..FRAMES {
         let frame = source.frame(index)?;
         let gaze = Some([20.0 + 10.0 * index as f32, 27.0]);
-        let mut shown = Vec::new();
-        for lane in &mut lanes {
-            shown.push(lane.step(index, &frame, gaze)?.outputs.swap_remove(0).image);
+        let mut outputs = Vec::new();
+        for pipeline in &mut pipelines {
+            outputs.push(pipeline.step(index, &frame, gaze)?.outputs.swap_remove(0).image);
         }
-        let (pixels, most) = difference(&shown[0], &shown[1]);
+        let (pixels, most) = difference(&outputs[0], &outputs[1]);
         (differ, largest) = (differ + pixels, largest.max(most));
     }
     let all = u64::from(SIZE[0] * SIZE[1]) * FRAMES;
@@ -202,10 +207,10 @@ fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> 
         0 => format!("equal bits in all {all} pixels"),
         _ => format!("{differ} of {all} pixels differ, by up to {largest:.1e}"),
     };
-    Ok(Finding::need(format!("{} against its twin", method.name()), found, differ == 0))
+    Ok(Finding::need(format!("{} against the CPU", method.name()), found, differ == 0))
 }
 
-/// Pixels that differ in any bit, and the largest difference.
+/// Number of pixels that differ in any bit, and the largest difference.
 fn difference(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> (u64, f32) {
     let pairs = a.pixels().iter().zip(b.pixels());
     pairs.fold((0, 0.0), |(count, most), (a, b)| {
@@ -219,7 +224,7 @@ fn yes(is: bool, so: &str, otherwise: &str) -> String {
     if is { so } else { otherwise }.to_owned()
 }
 
-/// One word for each row.
+/// Runs a probe on the device: one 32-bit result for each row.
 fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -265,9 +270,9 @@ mod tests {
     use afterimage::Image;
     use afterimage::kernel::pack::{half_bits, half_value};
 
-    /// An adapter that computes as IEEE 754 says, or in the ways that WGSL admits besides.
+    /// A simulated adapter: one that follows IEEE 754 (`is_strict`), or one with the deviations that WGSL permits.
     fn adapter(is_strict: bool) -> impl Fn(Question, &[[f32; 3]]) -> Vec<u32> {
-        let loosely = move |question, [a, b, c]: [f32; 3]| match (question, is_strict) {
+        let compute = move |question, [a, b, c]: [f32; 3]| match (question, is_strict) {
             (Question::IsNanEqual, strict) => u32::from(!strict),
             (Question::MaxOfNan, true) => 1.0_f32.to_bits(),
             (Question::Denormal | Question::TwoSum, false) => 0,
@@ -290,18 +295,19 @@ mod tests {
             (Question::Bits, false) => 0x7fc0_0000,
             _ => a.to_bits(),
         };
-        move |question, rows| rows.iter().map(|&row| loosely(question, row)).collect()
+        move |question, rows| rows.iter().map(|&row| compute(question, row)).collect()
     }
 
     #[test]
-    fn adapters_that_compute_otherwise_are_told_apart() {
-        let said =
+    fn strict_and_loose_adapters_get_different_findings() {
+        let findings =
             |is_strict| arithmetic(&adapter(is_strict)).into_iter().map(|f| (f.what, f.found)).collect::<Vec<_>>();
-        let (strict, loose) = (said(true), said(false));
-        let of = |said: &[(String, String)], what: &str| said.iter().find(|f| f.0.contains(what)).unwrap().1.clone();
+        let (strict, loose) = (findings(true), findings(false));
+        let of =
+            |findings: &[(String, String)], what: &str| findings.iter().find(|f| f.0.contains(what)).unwrap().1.clone();
         for (what, one, other) in [
             ("bits of NaN", "kept", "changed"),
-            ("NaN == NaN", "false", "assumed away"),
+            ("NaN == NaN", "false", "does not occur"),
             ("denormals", "kept", "flushed"),
             ("a * b + c", "twice", "fused"),
             ("two-sum", "exact", "lost"),
@@ -310,9 +316,9 @@ mod tests {
             assert!(of(&strict, what).contains(one) && of(&loose, what).contains(other), "{what}");
         }
         assert!(of(&strict, "a / b").contains(" 0.5 units") && !of(&loose, "a / b").contains(" 0.5 units"));
-        assert!(of(&strict, "halves").starts_with("0 of") && !of(&loose, "halves").starts_with("0 of"));
+        assert!(of(&strict, "16-bit").starts_with("0 of") && !of(&loose, "16-bit").starts_with("0 of"));
         let kept: Vec<_> = arithmetic(&adapter(false)).into_iter().filter_map(|f| f.holds).collect();
-        assert_eq!(kept, [false], "NaN has to keep its bits: sanitizing tests them");
+        assert_eq!(kept, [false], "NaN must keep its bits: sanitizing tests them");
     }
 
     #[test]

@@ -15,11 +15,11 @@ fn passes_give_the_bits_of_the_cpu_and_the_adapter_says_how_it_computes() {
     }
     let of = |what: &str| &findings.iter().find(|f| f.what == what).unwrap().found;
     for what in
-        ["NaN == NaN", "denormals", "a * b + c", "two-sum", "exp2", "pow", "halves against the CPU's", "outputs"]
+        ["NaN == NaN", "denormals", "a * b + c", "two-sum", "exp2", "pow", "16-bit floats against the CPU's", "outputs"]
     {
         assert!(!of(what).is_empty());
     }
-    let (wrs, smr) = (of("wrs against its twin"), of("smr against its twin"));
+    let (wrs, smr) = (of("wrs against the CPU"), of("smr against the CPU"));
     assert!(wrs.starts_with("equal bits") && wrs == smr);
     let name = &device.info.name;
     holds!("H84", Gpu, "{name}: wrs, smr {wrs}; denormals {}, two-sum {}", of("denormals"), of("two-sum"));

@@ -22,7 +22,7 @@ fn scanpath_writes_what_run_reads_and_info_explains_both() {
     refuses(&["info", "analytic:lateral", "--self-test"], &["--self-test", "expected the word adapters"]);
     let text = succeeds(&["info", "adapters", "--self-test"]);
     let required = std::env::var("AFTERIMAGE_GPU").is_ok_and(|v| v == "require");
-    for line in ["bits of NaN through a variable", "two-sum", "smr against its twin"] {
+    for line in ["bits of NaN through a variable", "two-sum", "smr against the CPU"] {
         assert!(text.contains(line) || !required, "{text}");
     }
 }

@@ -104,7 +104,7 @@ struct PatternReport {
     samples: f64,
     /// Mean rays of all kinds per frame.
     rays: f64,
-    /// Samples divided by those of regions.
+    /// Samples divided by those of the pattern regions.
     samples_of_regions: f64,
     #[serde(flatten)]
     scores: Scores,
@@ -142,10 +142,10 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
     let out = Output::create(&args.out, &[], "patterns.md")?;
     let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
-    out.root_picture("reference.png", &to_rgb8(&stage.shown(&linear)))?;
+    out.root_picture("reference.png", &to_rgb8(&stage.display(&linear)))?;
     let path = args.out.join("reference.exr");
     exr_file::write(&path, &FrameToWrite::color(&linear)).map_err(|e| Failure::writing(&path, e))?;
-    let reports = stage.compare(&patterns, &stage.shown(&linear), args.frames, &out)?;
+    let reports = stage.compare(&patterns, &stage.display(&linear), args.frames, &out)?;
     let table = markdown(&reports);
     out.text("patterns.md", &table)?;
     let report = Report {
@@ -200,7 +200,7 @@ impl Stage {
         self.view.geometry()
     }
 
-    /// Uniformly sampled, a few samples at a time.
+    /// Reference: the frame with `samples` per pixel, traced in steps of [`REFERENCE_STEP`].
     fn converged(&self, samples: u32) -> Image<[f32; 3]> {
         let [w, h] = self.geometry().size_px();
         let mut film = Film::new([w, h]);
@@ -212,7 +212,7 @@ impl Stage {
     }
 
     /// Tone maps by x / (1 + x) and encodes as sRGB, like `trace`.
-    fn shown(&self, linear: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+    fn display(&self, linear: &Image<[f32; 3]>) -> Image<[f32; 3]> {
         encode(&linear.map(|c| c.map(|v| v * self.exposure / (1.0 + v * self.exposure))), 0.0)
     }
 
@@ -239,7 +239,7 @@ impl Stage {
                 let done = plan.trace(&self.tracer, &self.world, &self.view, frame);
                 samples += done.samples.iter().sum::<u64>();
                 rays += done.rays;
-                let shown = self.shown(&done.color);
+                let shown = self.display(&done.color);
                 scorer.push(&full, &shown, &tracked, &ecc_deg);
                 if frame == 0 {
                     let map = flip.map(reference, &shown).map(|v| heat(v).to_array());
@@ -247,14 +247,14 @@ impl Stage {
                     out.root_picture(&format!("{}_flip.png", pattern.name), &to_rgb8(&map))?;
                 }
             }
-            let a_frame = |sum: u64| sum as f64 / frames as f64;
-            let of_regions = reports.first().map_or(a_frame(samples), |r| r.samples);
+            let per_frame = |sum: u64| sum as f64 / frames as f64;
+            let of_regions = reports.first().map_or(per_frame(samples), |r| r.samples);
             reports.push(PatternReport {
                 pattern: pattern.name,
                 settings: pattern.settings.clone(),
-                samples: a_frame(samples),
-                rays: a_frame(rays),
-                samples_of_regions: a_frame(samples) / of_regions,
+                samples: per_frame(samples),
+                rays: per_frame(rays),
+                samples_of_regions: per_frame(samples) / of_regions,
                 scores: scorer.scores(),
             });
         }
@@ -262,7 +262,7 @@ impl Stage {
     }
 }
 
-/// The table.
+/// Table with one row for each pattern.
 fn markdown(reports: &[PatternReport]) -> String {
     let mut table = String::from(
         "| pattern | samples | weighted dB | PSNR dB: all, fovea, mid, periphery | SSIM | FLIP: all, fovea, mid, periphery |\n\

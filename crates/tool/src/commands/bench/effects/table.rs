@@ -1,4 +1,4 @@
-//! Costs of effects as Markdown.
+//! Costs of effects as Markdown tables.
 
 use super::{Price, Report, SceneReport};
 use crate::failure::Failure;
@@ -8,8 +8,8 @@ use afterimage_lab::whole_file::write_whole;
 use std::fmt::Write;
 use std::path::Path;
 
-const BEGIN: &str = "<!-- what `afterimage bench effects` wrote -->";
-const END: &str = "<!-- end of what it wrote -->";
+const BEGIN: &str = "<!-- begin of the output of `afterimage bench effects` -->";
+const END: &str = "<!-- end of the output of `afterimage bench effects` -->";
 
 /// Replaces the text between the markers of a file, or writes a new file.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
@@ -27,7 +27,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
     write_whole(path, |file| std::io::Write::write_all(file, whole.as_bytes())).map_err(|e| Failure::writing(path, e))
 }
 
-/// All tables.
+/// All tables, between the markers.
 pub fn markdown(report: &Report) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -38,9 +38,9 @@ pub fn markdown(report: &Report) -> String {
 fn tables(report: &Report, out: &mut String) -> std::fmt::Result {
     let [w, h] = report.size;
     writeln!(out, "{BEGIN}")?;
-    writeln!(out, "{w}x{h}, 1 sample a pixel, depth {}, {} frames a figure;", report.max_depth, report.frames)?;
+    writeln!(out, "{w}x{h}, 1 sample per pixel, depth {}, {} frames per value;", report.max_depth, report.frames)?;
     let names: Vec<_> = report.backends.iter().map(|b| format!("{}: {} ({})", b.kind, b.name, b.driver)).collect();
-    writeln!(out, "{}; {}. Kernels are compiled {}.\n", report.machine, names.join("; "), cold(report))?;
+    writeln!(out, "{}; {}. Kernels are compiled {}.\n", report.machine, names.join("; "), cache_state(report))?;
     summary(report, out)?;
     for scene in &report.scenes {
         writeln!(out, "\n### {}\n", scene.scene)?;
@@ -51,11 +51,11 @@ fn tables(report: &Report, out: &mut String) -> std::fmt::Result {
     write!(out, "{END}")
 }
 
-fn cold(report: &Report) -> &'static str {
-    if report.compiled_cold { "cold: the driver's cache is switched off" } else { "as the driver's cache has them" }
+fn cache_state(report: &Report) -> &'static str {
+    if report.compiled_cold { "without the driver's shader cache" } else { "with the driver's shader cache" }
 }
 
-/// Noise: largest distance from 1 of the interval of `again`.
+/// Noise: largest distance from 1 within the interval of `again`.
 fn noise(prices: &[Price]) -> f64 {
     let again = prices.iter().find(|p| p.what == "again").and_then(|p| p.interval);
     again.map_or(0.0, |[low, high]| (1.0 - low).max(high - 1.0).max(0.0))
@@ -69,7 +69,7 @@ fn is_beyond_noise(price: &Price, noise: f64) -> bool {
 /// Summary with one row per effect and one column per scene.
 fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
     for (b, backend) in report.backends.iter().enumerate() {
-        writeln!(out, "More time a frame, {}, in percent; bold beyond noise:\n", backend.kind)?;
+        writeln!(out, "Increase of the frame time, {}, in percent; bold beyond noise:\n", backend.kind)?;
         let names: Vec<_> = report.scenes.iter().map(|s| s.scene.as_str()).collect();
         writeln!(out, "| effect added | {} |", names.join(" | "))?;
         writeln!(out, "|---|{}", "---|".repeat(names.len()))?;
@@ -90,7 +90,7 @@ fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
         writeln!(out, "| all of them | {} |", cells("all").join(" | "))?;
         let noise = |s: &SceneReport| format!("{:.1}", 100.0 * noise(&s.prices[b]));
         let noise: Vec<_> = report.scenes.iter().map(noise).collect();
-        writeln!(out, "| noise: none added | {} |\n", noise.join(" | "))?;
+        writeln!(out, "| noise: no effect added | {} |\n", noise.join(" | "))?;
     }
     Ok(())
 }
@@ -98,7 +98,7 @@ fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
 fn one_scene(report: &Report, scene: &SceneReport, out: &mut String) -> std::fmt::Result {
     write!(out, "| kernels |")?;
     for backend in &report.backends {
-        write!(out, " {0}, ms | quartiles | {0}, of auto |", backend.kind)?;
+        write!(out, " {0}, ms | quartiles | {0}, ratio to auto |", backend.kind)?;
         if backend.kind == "gpu" {
             write!(out, " compile ms |")?;
         }
@@ -133,16 +133,16 @@ fn removals(report: &Report, out: &mut String) -> std::fmt::Result {
     if report.scenes.iter().all(|s| s.removals.is_empty()) {
         return Ok(());
     }
-    writeln!(out, "\n### Switched off against cut out\n")?;
+    writeln!(out, "\n### Switched off or removed\n")?;
     writeln!(
         out,
-        "A frame of kernels in which the effect is switched off, over one of kernels without its text; gpu.\n"
+        "Frame time with the effect switched off by an `override` constant, divided by that with its text removed; gpu.\n"
     )?;
-    writeln!(out, "| scene | effect | off over cut out | quartiles | 99.9 % interval of the median |")?;
+    writeln!(out, "| scene | effect | off / removed | quartiles | 99.9 % interval of the median |")?;
     writeln!(out, "|---|---|---|---|---|")?;
     for scene in &report.scenes {
         for price in &scene.removals {
-            let name = if price.what == "again" { "none cut out" } else { price.what.as_str() };
+            let name = if price.what == "again" { "none removed" } else { price.what.as_str() };
             let quartiles = price.ratio.map_or("-".into(), |q| format!("{:.3} to {:.3}", q.p25, q.p75));
             let interval = price.interval.map_or("-".into(), |[low, high]| format!("{low:.3} to {high:.3}"));
             let ratio = median(price.ratio, 3);

@@ -32,7 +32,7 @@ pub fn candidates(geometry: &ViewGeometry, gaze_px: [f32; 2], region_spp: [u32; 
     let samples = (target / pixels).ceil().max(1.0) as u32;
     let share = (target / pixels / f64::from(samples)) as f32;
     let uniform = Sampling::Acuity(Acuity { fovea_deg: 1e-3, least: share, falloff: 1e3 });
-    let settings = format!("{samples} samples of {:.1} % of the pixels", 100.0 * share);
+    let settings = format!("{} in {:.1} % of the pixels", counted(samples), 100.0 * share);
     all.push(Candidate { name: "uniform", sampling: uniform, samples, settings });
     // Layers: the number of samples per target that is closest with the thesis' radii; then scale the radii.
     let layers = |scale: f64| {
@@ -41,12 +41,12 @@ pub fn candidates(geometry: &ViewGeometry, gaze_px: [f32; 2], region_spp: [u32; 
     };
     let samples = (target / count(&layers(1.0), 1)).round().max(1.0) as u32;
     let scale = fit(0.05, 8.0, target, |scale| count(&layers(scale), samples));
-    let settings = format!("{samples} samples a target, radii times {scale:.2}");
+    let settings = format!("{} per target, radii times {scale:.2}", counted(samples));
     all.push(Candidate { name: "layers", sampling: layers(scale), samples, settings });
     // Acuity: as many samples per pixel in the fovea as regions; then fit the diameter of the fovea.
     let acuity = |fovea_deg: f64| Sampling::Acuity(Acuity { fovea_deg: fovea_deg as f32, ..Acuity::default() });
     let fovea_deg = fit(0.01, 40.0, target, |fovea_deg| count(&acuity(fovea_deg), a));
-    let settings = format!("{a} samples, in full within {fovea_deg:.2} degrees");
+    let settings = format!("{} per pixel within {fovea_deg:.2} degrees", counted(a));
     all.push(Candidate { name: "acuity", sampling: acuity(fovea_deg), samples: a, settings });
     for candidate in &all {
         let taken = count(&candidate.sampling, candidate.samples);
@@ -58,6 +58,11 @@ pub fn candidates(geometry: &ViewGeometry, gaze_px: [f32; 2], region_spp: [u32; 
         }
     }
     Ok(all)
+}
+
+/// A number of samples with its noun.
+fn counted(samples: u32) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
 /// Bisection: the value between `low` and `high`, both above 0, for which the monotonic `count` is closest to `target`.
