@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let none = Settings { method: Method::None, ..Settings::default() };
-    let lanes = [none, Settings::default()].map(RunKind::PostProcess);
-    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Cpu)?;
+    let runs = [none, Settings::default()].map(RunKind::PostProcess);
+    let mut pipeline = Pipeline::new(geometry, foveation, &runs, info.still, &[], &Backend::Cpu)?;
     let mut scorers = [Scorer::default(), Scorer::default()];
     let mut references = References::default();
     for index in 0..60 {

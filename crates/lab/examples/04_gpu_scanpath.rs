@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Without the gate: on a still it can only lose detail.
     let none = Settings { method: Method::None, ..Settings::default() };
-    let lanes = [none, Settings::default()].map(RunKind::PostProcess);
+    let runs = [none, Settings::default()].map(RunKind::PostProcess);
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    let mut pipeline = Pipeline::new(geometry, foveation, &lanes, info.still, &[], &Backend::Gpu(gpu))?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &runs, info.still, &[], &Backend::Gpu(gpu))?;
     let mut last = None;
     for index in 0..120 {
         let frame = source.frame(index)?;

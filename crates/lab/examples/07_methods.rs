@@ -14,7 +14,7 @@ use afterimage_lab::source::{AnalyticSource, ReadLimits, SceneOptions};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [input, scanpath, ..] = &args[..] else {
-        return Err("usage: 13_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]".into());
+        return Err("usage: 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]".into());
     };
     let number = |i: usize, absent: u64| args.get(i).map_or(Ok(absent), |n| n.parse());
     let filter = match args.get(3).map(String::as_str) {
@@ -31,17 +31,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (hfov, fps) = (info.hfov_deg.unwrap_or(70.0), info.fps.unwrap_or(60.0));
     let geometry = ViewGeometry::flat(info.size, hfov)?;
     let gaze = FrameGaze::new(&read_csv(scanpath)?, &geometry, GazeMap::Angle, 1.0, fps.into())?;
-    let lanes = [
+    let runs = [
         ("none", Settings { method: Method::None, ..Settings::default() }),
         ("taa", Settings { method: Method::Taa, ..Settings::default() }),
         ("wrs", Settings::paper()),
         ("smr steady", Settings::steady()),
         ("smr responsive", Settings::responsive()),
     ];
-    let kinds = lanes.map(|lane| RunKind::PostProcess(lane.1));
+    let kinds = runs.map(|run| RunKind::PostProcess(run.1));
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let scene = input.strip_prefix("analytic:").map(|n| AnalyticSource::new(n, info.size, hfov, fps)).transpose()?;
-    let mut scorers = lanes.map(|_| Scorer::default());
+    let mut scorers = runs.map(|_| Scorer::default());
     let mut references = References::default();
     let mut worst = [f64::INFINITY; 5];
     let mut panel = [(0.0, 0.0); 5];
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("{input}, {filter:?} {rate_mid}/{rate_far}");
     println!("method             PSNR dB    SSIM  retained  flicker  least gain  panel dB");
-    for (i, (name, _)) in lanes.iter().enumerate() {
+    for (i, (name, _)) in runs.iter().enumerate() {
         let s = scorers[i].scores();
         let or = |v: Option<f64>| v.unwrap_or(f64::NAN);
         println!(

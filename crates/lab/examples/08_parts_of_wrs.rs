@@ -29,15 +29,15 @@ fn variants() -> Vec<(&'static str, RunKind)> {
         ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
         ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
     ];
-    let mut lanes: Vec<_> = list.map(|(name, s)| (name, RunKind::PostProcess(s))).into();
-    lanes.push(("oracle: upper bound of any reuse", RunKind::Oracle));
-    lanes
+    let mut runs: Vec<_> = list.map(|(name, s)| (name, RunKind::PostProcess(s))).into();
+    runs.push(("oracle: upper bound of any reuse", RunKind::Oracle));
+    runs
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [input, scanpath, ..] = &args[..] else {
-        return Err("usage: 05_ablation INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
+        return Err("usage: 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
     };
     let frames: u64 = args.get(3).map_or(Ok(300), |n| n.parse())?;
     let fovea_deg: f32 = args.get(4).map_or(Ok(5.0), |n| n.parse())?;
@@ -49,13 +49,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gaze = FrameGaze::new(&read_csv(scanpath)?, &geometry, map, 1.0, 60.0)?;
     let foveation = Foveation { fovea_deg, ..Foveation::default() };
 
-    let mut lanes = variants();
+    let mut runs = variants();
     if !info.still {
-        lanes.pop();
+        runs.pop();
     }
-    let kinds: Vec<_> = lanes.iter().map(|l| l.1).collect();
+    let kinds: Vec<_> = runs.iter().map(|run| run.1).collect();
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
-    let mut scorers = vec![Scorer::without_ssim(); lanes.len()];
+    let mut scorers = vec![Scorer::without_ssim(); runs.len()];
     let mut references = References::default();
     println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
     for index in 0..frames {
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if [60, 150, 300, 540].contains(&(index + 1)) || index + 1 == frames {
             println!("\nafter {} frames            PSNR dB   gain  last frame's gain  retained dB", index + 1);
             let base = scorers[0].scores().whole.psnr_db.unwrap_or(f64::NAN);
-            for (i, (name, _)) in lanes.iter().enumerate() {
+            for (i, (name, _)) in runs.iter().enumerate() {
                 let s = scorers[i].scores();
                 let psnr = s.whole.psnr_db.unwrap_or(f64::NAN);
                 println!(

@@ -22,15 +22,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let info = source.info().clone();
     let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
 
-    let lanes = [
+    let runs = [
         ("none", Settings { method: Method::None, ..Settings::default() }),
         ("taa", Settings { method: Method::Taa, ..Settings::default() }),
         ("smr", Settings::default()),
     ];
-    let kinds = lanes.map(|lane| RunKind::PostProcess(lane.1));
+    let kinds = runs.map(|run| RunKind::PostProcess(run.1));
     let backend = Backend::Gpu(device);
     let mut pipeline = Pipeline::new(geometry, Foveation::default(), &kinds, info.still, &[], &backend)?;
-    let mut scorers = lanes.map(|_| Scorer::default());
+    let mut scorers = runs.map(|_| Scorer::default());
     let mut references = References::default();
     let mut sheet = vec![];
     for index in 0..frames {
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!("method  PSNR dB  retained dB");
-    for ((name, _), scorer) in lanes.iter().zip(&scorers) {
+    for ((name, _), scorer) in runs.iter().zip(&scorers) {
         let scores = scorer.scores();
         let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
         println!("{name:6} {:>8} {:>12}", db(scores.whole.psnr_db), db(scores.retained_psnr_db));

@@ -9,12 +9,12 @@ use afterimage_lab::source::{AnalyticSource, FrameSource};
 const SIZE: [u32; 2] = [96, 64];
 const FRAMES: u64 = 8;
 
-/// What a lane shows of a picture that glides sideways, with broken pixels in every frame.
-fn shown(backend: &Backend, lane: RunKind) -> Vec<Image<[f32; 3]>> {
+/// Output of a run on an image that moves sideways, with poisoned pixels in every frame.
+fn shown(backend: &Backend, run: RunKind) -> Vec<Image<[f32; 3]>> {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let foveation = Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let mut pipeline = Pipeline::new(geometry, foveation, &[lane], false, &[], backend).unwrap().with_poison(0.01);
+    let mut pipeline = Pipeline::new(geometry, foveation, &[run], false, &[], backend).unwrap().with_poison(0.01);
     (0..FRAMES)
         .map(|index| {
             let frame = source.frame(index).unwrap();
@@ -66,8 +66,8 @@ fn leaving_a_part_out_changes_what_is_shown() {
 
 #[test]
 fn parts_cannot_be_left_out_on_the_cpu() {
-    let lane = RunKind::Without(Settings::default(), &PARTS[0]);
+    let run = RunKind::Without(Settings::default(), &PARTS[0]);
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-    let error = Pipeline::new(geometry, Foveation::default(), &[lane], false, &[], &Backend::Cpu).err().unwrap();
+    let error = Pipeline::new(geometry, Foveation::default(), &[run], false, &[], &Backend::Cpu).err().unwrap();
     assert!(error.to_string().contains("expected a device"), "{error}");
 }

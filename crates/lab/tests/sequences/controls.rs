@@ -1,4 +1,4 @@
-//! Errors planted in the pass, or in what it is given: whole sequences must show each of them.
+//! Negative controls of the wrs sequence tests: each error planted in the pass or in its inputs must make the executors differ.
 
 use super::rig::{Rig, View, noise, with_w_sum};
 use super::sequences::{SIZE, trust, view};
@@ -8,7 +8,7 @@ use afterimage::shader::SHADERS;
 use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Reset, Sampler, Settings};
 use afterimage_lab::source::AnalyticSource;
 
-/// The pass with one place of its text changed.
+/// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.
 #[track_caller]
 fn mutated(right: &str, wrong: &str) -> String {
     let source = SHADERS.compose("wrs_pass").source;
@@ -16,8 +16,8 @@ fn mutated(right: &str, wrong: &str) -> String {
     source.replace(right, wrong)
 }
 
-/// The frame from which on the device differs from the CPU, if it does within 12 frames of a thing that moves sideways; every other
-/// frame is shaken up and down.
+/// First of 12 frames in which the device differs from the CPU. The scene is an occluder that moves sideways; every other frame also has
+/// vertical motion.
 fn first_difference(settings: Settings, source: &str) -> Option<u64> {
     let mut scene = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
     let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, source)?;
@@ -40,30 +40,30 @@ fn every_planted_error_in_the_pass_is_caught() {
         assert_eq!(first_difference(settings, &SHADERS.compose("wrs_pass").source), None, "without an error");
     }
     for (right, wrong) in [
-        // Swapped images.
+        // Candidate and history swapped.
         (
             "select(history.past.color, candidate.color, decision.take)",
             "select(candidate.color, history.past.color, decision.take)",
         ),
         ("step(candidate.color, candidate_w, history.past,", "step(history.past.color, candidate_w, history.past,"),
-        // Flipped motion.
+        // Motion with the opposite sign.
         ("f32(x) + motion.x", "f32(x) - motion.x"),
         ("f32(y) + motion.y", "f32(y) - motion.y"),
-        // A weight 1 % off.
+        // Candidate weight 1 % too large.
         ("frame.inv_density_at_fovea);", "1.01 * frame.inv_density_at_fovea);"),
-        // The frame before last, in effect: nothing is stored.
+        // History weights not stored.
         (
             "textureStore(next_weights, px, view, vec4<u32>(words.z,",
             "textureStore(next_weights, px, view, vec4<u32>(0u,",
         ),
-        // Draws of another frame, and the same for all pixels.
+        // Random numbers of another frame, and equal ones in each row.
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(px.x, px.y, frame.frame_low + 1u, constants.key)"),
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(0u, px.y, frame.frame_low, constants.key)"),
-        // Inputs that are not read.
+        // Inputs ignored: trust, exposure, depth.
         ("past = scale_by_trust(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);", ""),
         ("past.color = expose(past.color, frame.exposure);", ""),
         ("if !is_same_surface(", "if false && !is_same_surface("),
-        // Counts.
+        // Wrong counters.
         ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
         ("count_if(!usable, COUNT_NONFINITE);", ""),
     ] {
@@ -81,13 +81,13 @@ fn every_planted_error_in_the_pass_is_caught() {
     assert!(caught.is_some());
 }
 
-/// A draw that meets its threshold exactly is one in 2^24: pixels are chosen that have one.
+/// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel with such a draw.
 #[test]
 fn a_lax_comparison_is_caught() {
     let size = [128, 64];
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
     let settings = Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() };
-    // With a sum of 2^k - 1 a candidate of weight 1 is taken below a draw of 2^-k, and not at it.
+    // With w_sum = 2^k - 1 a candidate of weight 1 is accepted for draws below 2^-k, and rejected for a draw of 2^-k.
     let power = |index: u64, x: u32, y: u32| {
         let key = rng::stream_key(settings.seed, 0, Purpose::Select, index);
         let draw = rng::unit_draw(rng::bits(x, y, index as u32, key));
@@ -128,8 +128,9 @@ fn swapped_and_shifted_inputs_are_caught() {
     let color = &second[0].color;
     mirrored[0].color = Image::from_fn(SIZE, |[x, y]| color.at((SIZE[0] - 1 - x) as usize, y as usize));
     rig.both(0, Reset::None, &first);
-    for (what, wrong) in [("the frame before", &first), ("flipped motion", &flipped), ("a mirrored image", &mirrored)] {
-        // A fresh pair for each: nothing of one error helps the next.
+    for (what, wrong) in [("the previous frame", &first), ("flipped motion", &flipped), ("a mirrored image", &mirrored)]
+    {
+        // A new rig for each error, so that errors do not accumulate.
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
         rig.both(0, Reset::None, &first);
         assert!(rig.on_gpu(1, Reset::None, wrong) != rig.on_cpu(1, Reset::None, &second).0, "{what}");

@@ -1,4 +1,4 @@
-//! Errors planted in taa and smr: whole sequences must show each of them.
+//! Negative controls of the taa and smr sequence tests: each error planted in a pass must make the executors differ.
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
@@ -16,7 +16,7 @@ fn settings(method: Method, filter: Filter) -> Settings {
     Settings { method, foveation, ..Settings::paper() }
 }
 
-/// The pass with one place of its text changed.
+/// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.
 #[track_caller]
 fn mutated(pass: &str, right: &str, wrong: &str) -> String {
     let source = SHADERS.compose(pass).source;
@@ -24,9 +24,9 @@ fn mutated(pass: &str, right: &str, wrong: &str) -> String {
     source.replace(right, wrong)
 }
 
-/// The frame from which on the device differs from the CPU, if it does within 12 frames of two eyes that see different things: one
-/// that moves sideways behind another, and a change of light. Every other frame is shaken up and down.
-fn first_difference(settings: Settings, source: &str, tells_lod: bool) -> Option<u64> {
+/// First of 12 frames in which the device differs from the CPU. The left view has an occluder that moves sideways, the right view a change
+/// of lighting; every other frame also has vertical motion. `has_lod`: the frame has a map of levels of detail.
+fn first_difference(settings: Settings, source: &str, has_lod: bool) -> Option<u64> {
     let mut scenes = ["occluder", "light-step"].map(|s| AnalyticSource::new(s, SIZE, 70.0, 60.0).unwrap());
     let mut rig = Rig::with_shader(eyes(), settings, source)?;
     (0..12).find(|&index| {
@@ -43,7 +43,7 @@ fn first_difference(settings: Settings, source: &str, tells_lod: bool) -> Option
                 if settings.noisy {
                     view = noisy(2 * index + eye as u64, view);
                 }
-                view.lod = tells_lod.then(|| Image::from_fn(SIZE, |[x, _]| (x / 16) as f32 / 3.0));
+                view.lod = has_lod.then(|| Image::from_fn(SIZE, |[x, _]| (x / 16) as f32 / 3.0));
                 view
             })
             .collect();
@@ -52,37 +52,37 @@ fn first_difference(settings: Settings, source: &str, tells_lod: bool) -> Option
 }
 
 #[track_caller]
-fn all_caught(pass: &str, settings: Settings, tells_lod: bool, errors: &[(&str, &str)]) {
+fn all_caught(pass: &str, settings: Settings, has_lod: bool, errors: &[(&str, &str)]) {
     if Rig::new(eyes(), settings).is_none() {
         return;
     }
     let right = SHADERS.compose(pass).source;
-    assert_eq!(first_difference(settings, &right, tells_lod), None, "without an error");
+    assert_eq!(first_difference(settings, &right, has_lod), None, "without an error");
     for (right, wrong) in errors {
-        let caught = first_difference(settings, &mutated(pass, right, wrong), tells_lod);
+        let caught = first_difference(settings, &mutated(pass, right, wrong), has_lod);
         println!("{pass}, '{right}' -> '{wrong}': {caught:?}");
         assert!(caught.is_some(), "planted error not caught: '{right}' -> '{wrong}'");
     }
 }
 
-/// Errors in what both methods share.
+/// Errors in the code that both methods share.
 const SHARED: &[(&str, &str)] = &[
-    // Flipped motion: of the nearest texel, and of the position between texels.
+    // Motion with the opposite sign: of the nearest texel, and of the resampling position.
     ("f32(x) + motion.x", "f32(x) - motion.x"),
     ("f32(y) + motion.y", "f32(y) - motion.y"),
     ("let at = vec2<f32>(px) + motion;", "let at = vec2<f32>(px) - motion;"),
-    // The other eye.
+    // Surfaces of the other view.
     ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
     ("textureStore(next_surfaces, px, view,", "textureStore(next_surfaces, px, 1u - view,"),
-    // Taps one column off, and weights of the other axis.
+    // Taps one texel off, and weights of the other axis.
     ("source.texel + vec2<i32>(at) - 1", "source.texel + vec2<i32>(at)"),
     ("catmull_rom(source.fraction.x)", "catmull_rom(source.fraction.y)"),
-    // Inputs that are not read, and tests that are not made.
+    // Inputs ignored (trust, exposure) and depth tests omitted.
     ("confidence = trust(textureLoad(trust_in, px, view, 0).x);", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
     ("if !is_same_surface(", "if false && !is_same_surface("),
     ("same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
-    // Counts.
+    // Wrong counters.
     ("count_if(!usable, COUNT_NONFINITE);", ""),
 ];
 
@@ -91,7 +91,7 @@ fn every_planted_error_in_taa_is_caught() {
     let errors = [
         SHARED,
         &[
-            // Swapped candidate and history; a share 1 % off.
+            // Candidate and history swapped; a blend factor 1 % too large.
             (
                 "clipped + (roots(candidate) - clipped) * alpha",
                 "roots(candidate) + (clipped - roots(candidate)) * alpha",
@@ -100,7 +100,7 @@ fn every_planted_error_in_taa_is_caught() {
                 "clipped + (roots(candidate) - clipped) * alpha",
                 "clipped + (roots(candidate) - clipped) * (1.01 * alpha)",
             ),
-            // A neighbour left out, a wider box, what is broken stored as if it were not.
+            // A neighbor omitted, a wider clipping box, non-finite candidates stored as valid.
             ("vec2<u32>(tap % 3u, tap / 3u)", "vec2<u32>(tap % 3u, min(tap / 3u, 1u))"),
             ("const BOX_SIGMAS: f32 = 2.0;", "const BOX_SIGMAS: f32 = 2.02;"),
             ("select(-1.0, 0.0, candidate.usable || valid)", "0.0"),
@@ -115,15 +115,15 @@ fn every_planted_error_in_smr_is_caught() {
     let errors = [
         SHARED,
         &[
-            // Swapped candidate and history, shown and compared.
+            // Candidate and history swapped: in the output, the comparison and the gain.
             ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
             ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
             ("(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)"),
-            // A fit, a tolerance, a gain 1 % off.
+            // Fit, gate and gain 1 % off.
             ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
             ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
             ("clamp((candidate + DARK)", "clamp(1.01 * (candidate + DARK)"),
-            // The other eye's chain, its levels and texels one off.
+            // Mip chain of the other view; levels and texels one off.
             (
                 "textureLoad(past_mips, four.low, view, level - 1u)",
                 "textureLoad(past_mips, four.low, 1u - view, level - 1u)",
@@ -136,12 +136,12 @@ fn every_planted_error_in_smr_is_caught() {
             ),
             ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
             ("texels_1 = select(texels_1, texel, i == 1u);", ""),
-            // Rules that are forgotten: coarse edges are not kept, broken pixels are empty, means weigh what is covered.
+            // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted by coverage.
             ("select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0)", "result.lod"),
             ("if source.verdict == VERDICT_VALID && !coherent_motion {", "if false {"),
             ("select(-1.0, lod, candidate.usable)", "lod"),
             ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
-            // Quality of what is stored.
+            // Relighting threshold, stored level of detail, counter of replaced pixels.
             ("return (relight.x + relight.y * contrast) + noise;", "return relight.x + noise;"),
             ("1.0 - reuse.finer * acceptance", "1.0 - acceptance"),
             ("count_if(valid && result.share == 0.0, COUNT_REPLACED);", ""),
@@ -167,8 +167,8 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
     );
     let gauss = [("if FILTER == FILTER_GAUSS {", "if false {")];
     all_caught("smr_pass", settings(Method::Smr, Filter::Gauss), false, &gauss);
-    let told = [("if HAS_LOD != 0u {", "if false {"), ("clamp(given, 0.0, MAX_LOD)", "clamp(given, 0.0, 1.0)")];
-    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), true, &told);
+    let given_lod = [("if HAS_LOD != 0u {", "if false {"), ("clamp(given, 0.0, MAX_LOD)", "clamp(given, 0.0, 1.0)")];
+    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), true, &given_lod);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn every_planted_error_in_noisy_smr_is_caught() {
         settings,
         false,
         &[
-            // The other eye's noise and candidates.
+            // Noise and candidates of the other view.
             (
                 "textureLoad(past_noise, source.nearest_at, view, 0)",
                 "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
@@ -189,10 +189,10 @@ fn every_planted_error_in_noisy_smr_is_caught() {
                 "textureLoad(candidate_mips, four.low, 1u - view, level - 1u)",
             ),
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
-            // Noise that exposure forgets, a mean of broken candidates, three sigmas that are two.
+            // Stored noise not scaled to the exposure; two sigmas instead of three.
             ("return expose_noise(stored, frame.exposure);", "return stored;"),
             ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
-            // Weights, and what a finer or a coarser history is worth.
+            // Weights of the mean, and confidence in a finer or a coarser history.
             ("history.samples / (history.samples + candidate.samples)", "0.5"),
             (
                 "let together = candidate.samples / max(1.0 - share",

@@ -17,7 +17,7 @@ const FOVEATION: Foveation = Foveation {
     rate_far: 8,
 };
 
-fn lane(method: Method) -> Settings {
+fn settings_of(method: Method) -> Settings {
     Settings { method, foveation: FOVEATION, ..Settings::default() }
 }
 
@@ -54,18 +54,18 @@ impl Moment<'_> {
     }
 }
 
-/// Plays `frames` frames of a scene to all `lanes`, all colors times `light` of the frame.
+/// Plays `frames` frames of a scene with each of `runs`; colors are multiplied by `light` of the frame.
 fn play(
     scene: &str,
     frames: u64,
     gaze: impl Fn(u64) -> [f32; 2],
     light: impl Fn(u64) -> f32,
-    lanes: &[Settings],
+    runs: &[Settings],
     mut look: impl FnMut(&Moment<'_>),
 ) {
     let mut source = AnalyticSource::new(scene, VIEW, 70.0, 60.0).unwrap();
     let geometry = *source.view();
-    let mut posts: Vec<_> = lanes
+    let mut posts: Vec<_> = runs
         .iter()
         .map(|&s| CpuAfterimage::new(&ContextDesc { settings: s, ..ContextDesc::new(VIEW) }).unwrap())
         .collect();
@@ -100,13 +100,13 @@ fn wandering(index: u64) -> [f32; 2] {
 
 #[test]
 fn a_still_scene_under_a_wandering_eye_comes_back_sharp() {
-    let lanes = [lane(Method::Smr), lane(Method::Taa)];
+    let runs = [settings_of(Method::Smr), settings_of(Method::Taa)];
     play(
         "still",
         60,
         wandering,
         |_| 1.0,
-        &lanes,
+        &runs,
         |m| {
             if m.index < 10 || m.index % 10 != 9 {
                 return;
@@ -126,7 +126,7 @@ fn a_still_scene_under_a_wandering_eye_comes_back_sharp() {
 
 #[test]
 fn h74_a_step_of_light_keeps_detail_and_never_shows_less_than_the_candidate() {
-    let relit = lane(Method::Smr);
+    let relit = settings_of(Method::Smr);
     let mut plain = relit;
     plain.smr.relight = false;
     for factor in [0.5, 2.0] {
@@ -156,7 +156,7 @@ fn a_moving_silhouette_leaves_no_trail() {
         60,
         |_| [128.0, 72.0],
         |_| 1.0,
-        &[lane(Method::Smr), lane(Method::Taa)],
+        &[settings_of(Method::Smr), settings_of(Method::Taa)],
         |m| {
             let past = m.tracked.past.pixels();
             let before = seen.clone();
@@ -222,7 +222,7 @@ fn under_a_moving_camera_both_flicker_less_than_the_foveated_frames() {
         60,
         wandering,
         |_| 1.0,
-        &[lane(Method::Smr), lane(Method::Taa)],
+        &[settings_of(Method::Smr), settings_of(Method::Taa)],
         |m| {
             if m.full.cut {
                 assert!(m.shown.iter().all(|s| s == m.candidate), "nothing is known at a cut");

@@ -54,18 +54,18 @@ struct Outcome {
     flushed: f64,
 }
 
-fn lane(method: Method) -> RunKind {
+fn run_of(method: Method) -> RunKind {
     RunKind::PostProcess(Settings { method, ..Settings::default() })
 }
 
-fn play(source: &mut dyn FrameSource, clip: &Clip, lanes: &[RunKind]) -> Outcome {
+fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome {
     let info = source.info().clone();
     let hfov = clip.hfov_deg.or(info.hfov_deg).unwrap();
     let view = ViewGeometry::flat(info.size, hfov).unwrap();
     let scanpath = read_csv(data(clip.scanpath).unwrap()).unwrap();
     let gaze = FrameGaze::new(&scanpath, &view, clip.map, clip.start_s, 60.0).unwrap();
-    let mut pipeline = Pipeline::new(view, clip.foveation, lanes, info.still, &[], &Backend::Cpu).unwrap();
-    let mut scorers = vec![Scorer::default(); lanes.len()];
+    let mut pipeline = Pipeline::new(view, clip.foveation, runs, info.still, &[], &Backend::Cpu).unwrap();
+    let mut scorers = vec![Scorer::default(); runs.len()];
     let mut references = References::default();
     let mut last = vec![];
     let (mut flushed, mut pixels) = (0, 0);
@@ -105,12 +105,12 @@ fn open(path: &Path) -> Box<dyn FrameSource + Send> {
     source::open(path.to_str().unwrap(), &ReadLimits::default(), &SceneOptions::default()).unwrap()
 }
 
-fn psnr(outcome: &Outcome, lane: usize) -> f64 {
-    outcome.scores[lane].whole.psnr_db.unwrap()
+fn psnr(outcome: &Outcome, run: usize) -> f64 {
+    outcome.scores[run].whole.psnr_db.unwrap()
 }
 
-fn retained(outcome: &Outcome, lane: usize) -> f64 {
-    outcome.scores[lane].retained_psnr_db.unwrap()
+fn retained(outcome: &Outcome, run: usize) -> f64 {
+    outcome.scores[run].retained_psnr_db.unwrap()
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
         return;
     };
     let outcome =
-        play(open(&path).as_mut(), &Clip::default(), &[lane(Method::None), lane(Method::Wrs), RunKind::Oracle]);
+        play(open(&path).as_mut(), &Clip::default(), &[run_of(Method::None), run_of(Method::Wrs), RunKind::Oracle]);
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");
     assert!(psnr(&outcome, 2) > psnr(&outcome, 1) && psnr(&outcome, 2) > psnr(&outcome, 0));
     assert!(retained(&outcome, 2) > 45.0, "the oracle shows what was seen");
@@ -138,7 +138,7 @@ fn the_oracle_agrees_with_an_independent_measurement() {
     };
     for (map, average, last) in [(GazeMap::Angle, 1.7, 2.7), (GazeMap::Fit, 2.2, 3.6)] {
         let clip = Clip { map, frames: 300, ..Clip::default() };
-        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), RunKind::Oracle]);
+        let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), RunKind::Oracle]);
         let gains = [psnr(&outcome, 1) - psnr(&outcome, 0), outcome.last_psnr_db[1] - outcome.last_psnr_db[0]];
         println!("{map:?}: oracle {:+.2} dB on average, {:+.2} dB in the last frame", gains[0], gains[1]);
         assert!((gains[0] - average).abs() < 0.3 && (gains[1] - last).abs() < 0.3);
@@ -170,12 +170,12 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
             ..Clip::default()
         };
         println!("{name}");
-        let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs)]);
+        let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
         println!("flushed {:.3}", outcome.flushed);
         assert!(outcome.flushed > 0.0 && outcome.flushed < most_flushed);
         assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0));
         // Planted error: vectors of the wrong sign lead to other surfaces, which the depth test rejects.
-        let flipped = play(&mut Flipped(open(&path)), &clip, &[lane(Method::None), lane(Method::Wrs)]);
+        let flipped = play(&mut Flipped(open(&path)), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
         println!("flushed with vectors of the wrong sign {:.3}", flipped.flushed);
         assert!(flipped.flushed > 1.5 * outcome.flushed, "{name}: the sign of motion must matter");
     }
@@ -188,6 +188,6 @@ fn a_4k_page_is_read_with_a_recorded_eye() {
     };
     let clip =
         Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
-    let outcome = play(open(&path).as_mut(), &clip, &[lane(Method::None), lane(Method::Wrs), RunKind::Oracle]);
+    let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), run_of(Method::Wrs), RunKind::Oracle]);
     assert!(psnr(&outcome, 2) >= psnr(&outcome, 0));
 }
