@@ -1,7 +1,7 @@
 //! Self-test of an adapter: its floating-point behaviour, and equality of its passes with the CPU's.
 //!
-//! WGSL leaves much open: compilers may assume that NaN does not occur, flush denormals to zero, and fuse products with sums. The passes
-//! need only that NaN keeps its bits. The other findings explain differences between the executors.
+//! WGSL leaves much open: compilers may assume that NaN does not occur, flush denormals to zero, and fuse products with
+//! sums. The passes need only that NaN keeps its bits. The other findings explain differences between the executors.
 
 use crate::device::{Backend, Headless};
 use crate::error::InputError;

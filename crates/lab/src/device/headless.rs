@@ -1,5 +1,5 @@
-//! A device without a window, with uploads and readbacks. For experiments only: an engine keeps its frames on its own device and
-//! calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
+//! A device without a window, with uploads and readbacks. For experiments only: an engine keeps its frames on its own
+//! device and calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
 
 use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
 use std::sync::Arc;
@@ -25,8 +25,8 @@ impl Headless {
         pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
     }
 
-    /// The first hardware GPU; with `software`, a software adapter if there is none. `None` if no such adapter creates a device
-    /// with default limits.
+    /// The first hardware GPU; with `software`, a software adapter if there is none. `None` if no such adapter creates
+    /// a device with default limits.
     pub fn find(software: bool) -> Option<Arc<Self>> {
         Self::find_with(software, |_| wgpu::Limits::default())
     }

@@ -17,7 +17,8 @@ pub struct DeviceClock {
 }
 
 impl DeviceClock {
-    /// A clock with `spans` spans. `None` if the device has no timestamp queries or a query set cannot hold two for each span.
+    /// A clock with `spans` spans. `None` if the device has no timestamp queries or a query set cannot hold two for
+    /// each span.
     pub fn new(gpu: &Headless, spans: u32) -> Option<Self> {
         let count = spans.checked_mul(2).filter(|n| (1..=wgpu::QUERY_SET_MAX_QUERIES).contains(n))?;
         gpu.device.features().contains(Features::TIMESTAMP_QUERY).then(|| Self {
@@ -53,8 +54,8 @@ impl DeviceClock {
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, u64::from(spans.start) * 16, bytes);
     }
 
-    /// Starts the readback of the resolved queries, after their submission. The flag becomes true when [`take_ms`](Self::take_ms) may
-    /// be called.
+    /// Starts the readback of the resolved queries, after their submission. The flag becomes true when
+    /// [`take_ms`](Self::take_ms) may be called.
     pub fn start_reading(&self) -> Arc<AtomicBool> {
         let done = Arc::new(AtomicBool::new(false));
         let mapped = done.clone();

@@ -1,5 +1,5 @@
-//! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without a part may
-//! contain errors that the part prevents.
+//! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without
+//! a part may contain errors that the part prevents.
 
 use afterimage::Method;
 use afterimage::shader::SHADERS;
@@ -13,7 +13,8 @@ pub struct Part {
     pub instead: &'static str,
     /// Methods whose pass contains the part.
     pub methods: &'static [Method],
-    /// Shader texts and their replacements. Each method's pass contains at least one of them; the others belong to other methods.
+    /// Shader texts and their replacements. Each method's pass contains at least one of them; the others belong to
+    /// other methods.
     replaced: &'static [(&'static str, &'static str)],
 }
 
@@ -50,7 +51,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "exact-color",
-        instead: "cube roots without Halley steps, a few percent off (removing only one of the two steps changes no pixel)",
+        instead: "cube roots without Halley steps, a few percent off (without only one of the two, no pixel changes)",
         methods: &[Method::Wrs],
         replaced: &[(
             "for (var i = 0u; i < 2u; i++) {\n        let r3",
@@ -68,7 +69,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "fine-history",
-        instead: "history stores colors with 6 mantissa bits, as 11-bit floats have, instead of 9 (taa, smr) or 10 (wrs)",
+        instead: "history stores 6 mantissa bits of colors, as 11-bit floats do, instead of 9 (taa, smr) or 10 (wrs)",
         methods: HISTORIES,
         replaced: &[
             ("return min((h + ((h >> 1u) & 1u)) >> 1u, 0x3dffu);", "return min(((h + 8u) & 0xfff0u) >> 1u, 0x3dffu);"),

@@ -1,5 +1,5 @@
-//! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device. `run`, `view` and
-//! `bench` share this code.
+//! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device.
+//! `run`, `view` and `bench` share this code.
 
 use super::needs_lod;
 use crate::device::Headless;
@@ -285,8 +285,8 @@ impl DeviceRun {
     }
 
     /// Records a debug view of the decisions that [`record`](Self::record) of this frame makes, and counts them for
-    /// [`stats`](Self::stats). Call it before `record`, which replaces the history. Counting is separate because it would make `record` a
-    /// fifth slower.
+    /// [`stats`](Self::stats). Call it before `record`, which replaces the history. Counting is separate because it
+    /// would make `record` a fifth slower.
     ///
     /// # Errors
     /// As for `record`.

@@ -15,8 +15,8 @@ const SAME_SURFACE: f32 = 0.02;
 #[derive(Clone, Debug)]
 pub(super) struct HistoryNoise {
     noise: Image<Noise>,
-    /// Least weight of a new frame in the accumulated mean. Only this share of the history's samples counts, because the mean forgets
-    /// old frames.
+    /// Least weight of a new frame in the accumulated mean. Only this share of the history's samples counts, because
+    /// the mean forgets old frames.
     new_share: f32,
     output: Image<[f32; 3]>,
     depth: Option<Image<f32>>,
@@ -28,8 +28,9 @@ impl HistoryNoise {
         Self { noise, new_share, output, depth: frame.depth.clone() }
     }
 
-    /// Guide for the next frame: for each pixel, the number of samples in its surface's history, and their standard deviation in square
-    /// roots of luma, the unit in which smr compares colors. Disoccluded and off-screen surfaces have 0 samples and NaN.
+    /// Guide for the next frame: for each pixel, the number of samples in its surface's history, and their standard
+    /// deviation in square roots of luma, the unit in which smr compares colors. Disoccluded and off-screen surfaces
+    /// have 0 samples and NaN.
     pub fn guide(&self, frame: &SourceFrame, geometry: &ViewGeometry) -> Guide {
         let known = Image::from_fn_parallel(self.noise.size(), |pixel| match self.source(frame, geometry, pixel) {
             None => [0.0, f32::NAN],

@@ -63,8 +63,8 @@ pub struct MethodOutput {
 }
 
 impl MethodOutput {
-    /// Cost of the pass in milliseconds: timestamp queries if available, otherwise CPU time, which other processes disturb less than
-    /// wall time.
+    /// Cost of the pass in milliseconds: timestamp queries if available, otherwise CPU time, which other processes
+    /// disturb less than wall time.
     pub fn cost_ms(&self) -> f64 {
         self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
     }
@@ -136,8 +136,8 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Creates a pipeline for frames of `geometry`'s size. `is_still`: all frames are equal, so that the mip chain is built once.
-    /// `debug`: debug views to draw.
+    /// Creates a pipeline for frames of `geometry`'s size. `is_still`: all frames are equal, so that the mip chain is
+    /// built once. `debug`: debug views to draw.
     ///
     /// # Errors
     /// [`CreateError`] if a setting is out of range or the device does not support it.
@@ -218,7 +218,8 @@ impl Pipeline {
         )
     }
 
-    /// As [`step`](Self::step), for a frame that is also on a device. If that is the pipeline's device, the frame is not uploaded again.
+    /// As [`step`](Self::step), for a frame that is also on a device. If that is the pipeline's device, the frame is
+    /// not uploaded again.
     ///
     /// # Errors
     /// As for `step`.
@@ -271,8 +272,8 @@ impl Pipeline {
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
-    /// As [`step`](Self::step), for a frame that its source foveated for the gaze of [`look`](Self::look). The runs' settings must be
-    /// [`noisy`](Settings::noisy). The oracle does not support such frames.
+    /// As [`step`](Self::step), for a frame that its source foveated for the gaze of [`look`](Self::look). The runs'
+    /// settings must be [`noisy`](Settings::noisy). The oracle does not support such frames.
     ///
     /// # Errors
     /// As for `step`.
@@ -305,7 +306,8 @@ impl Pipeline {
         Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, outputs, foveation_ms: 0.0 })
     }
 
-    /// Gaze of the frame in pixels. A lost gaze holds the last position; before the first, it is the center of the view.
+    /// Gaze of the frame in pixels. A lost gaze holds the last position; before the first, it is the center of the
+    /// view.
     pub fn look(&mut self, gaze: Option<[f32; 2]>) -> [f32; 2] {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.held_gaze, self.geometry.size_px());
@@ -434,8 +436,8 @@ impl Pipeline {
     }
 }
 
-/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at the center of a
-/// block, which a method cannot derive from the gaze.
+/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at
+/// the center of a block, which a method cannot derive from the gaze.
 pub fn needs_lod(filter: Filter) -> bool {
     filter == Filter::Block
 }

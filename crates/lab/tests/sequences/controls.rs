@@ -1,4 +1,5 @@
-//! Negative controls of the wrs sequence tests: each error planted in the pass or in its inputs must make the executors differ.
+//! Negative controls of the wrs sequence tests: each error planted in the pass or in its inputs must make the executors
+//! differ.
 
 use super::rig::{Rig, View, noise, with_w_sum};
 use super::sequences::{SIZE, trust, view};
@@ -16,8 +17,8 @@ fn mutated(right: &str, wrong: &str) -> String {
     source.replace(right, wrong)
 }
 
-/// First of 12 frames in which the device differs from the CPU. The scene is an occluder that moves sideways; every other frame also has
-/// vertical motion.
+/// First of 12 frames in which the device differs from the CPU. The scene is an occluder that moves sideways; every
+/// other frame also has vertical motion.
 fn first_difference(settings: Settings, source: &str) -> Option<u64> {
     let mut scene = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
     let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, source)?;
@@ -81,7 +82,8 @@ fn every_planted_error_in_the_pass_is_caught() {
     assert!(caught.is_some());
 }
 
-/// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel with such a draw.
+/// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel
+/// with such a draw.
 #[test]
 fn a_lax_comparison_is_caught() {
     let size = [128, 64];

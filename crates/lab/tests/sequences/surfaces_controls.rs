@@ -24,8 +24,9 @@ fn mutated(pass: &str, right: &str, wrong: &str) -> String {
     source.replace(right, wrong)
 }
 
-/// First of 12 frames in which the device differs from the CPU. The left view has an occluder that moves sideways, the right view a change
-/// of lighting; every other frame also has vertical motion. `has_lod`: the frame has a map of levels of detail.
+/// First of 12 frames in which the device differs from the CPU. The left view has an occluder that moves sideways, the
+/// right view a change of lighting; every other frame also has vertical motion. `has_lod`: the frame has a map of
+/// levels of detail.
 fn first_difference(settings: Settings, source: &str, has_lod: bool) -> Option<u64> {
     let mut scenes = ["occluder", "light-step"].map(|s| AnalyticSource::new(s, SIZE, 70.0, 60.0).unwrap());
     let mut rig = Rig::with_shader(eyes(), settings, source)?;
@@ -136,7 +137,8 @@ fn every_planted_error_in_smr_is_caught() {
             ),
             ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
             ("texels_1 = select(texels_1, texel, i == 1u);", ""),
-            // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted by coverage.
+            // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted
+            // by coverage.
             ("select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0)", "result.lod"),
             ("if source.verdict == VERDICT_VALID && !coherent_motion {", "if false {"),
             ("select(-1.0, lod, candidate.usable)", "lod"),

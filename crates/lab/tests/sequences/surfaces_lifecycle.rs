@@ -53,8 +53,8 @@ fn h79_poisoned_fresh_history_is_never_visible() {
                     if [0, 3, 5].contains(&index) {
                         rig.poison();
                     }
-                    let told = if index == 3 { Reset::All } else { Reset::None };
-                    let (made, _) = rig.both(index, told, &[noise_view("poison", &desc)]);
+                    let reset = if index == 3 { Reset::All } else { Reset::None };
+                    let (made, _) = rig.both(index, reset, &[noise_view("poison", &desc)]);
                     assert!(made.shown.iter().flatten().all(|&c| f32::from_bits(c).is_finite()));
                 }
             }
@@ -106,10 +106,10 @@ fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
             assert!(made.shown.iter().copied().eq(candidate) && made == expected[0]);
         }
         assert!(run(&mut cut, 23..26) == expected[1..]);
-        let (mut told, mut untold) = (fresh().unwrap(), fresh().unwrap());
-        let views = [noise_view("run 0", &told.context)];
-        assert!(told.both(0, Reset::All, &views).0 == run(&mut untold, 0..1)[0]);
-        assert!(run(&mut told, 1..3) == run(&mut untold, 1..3));
+        let (mut with_reset, mut without_reset) = (fresh().unwrap(), fresh().unwrap());
+        let views = [noise_view("run 0", &with_reset.context)];
+        assert!(with_reset.both(0, Reset::All, &views).0 == run(&mut without_reset, 0..1)[0]);
+        assert!(run(&mut with_reset, 1..3) == run(&mut without_reset, 1..3));
     }
     holds!(
         "H76",

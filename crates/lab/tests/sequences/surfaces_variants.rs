@@ -123,7 +123,7 @@ fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
 }
 
 /// Levels of detail that a renderer tells: whole, between, beyond the chain, and no numbers at all.
-fn told(index: u64, size: [u32; 2]) -> Image<f32> {
+fn lod_of(index: u64, size: [u32; 2]) -> Image<f32> {
     let values = [0.0, 1.0, 2.0, 3.0, 1.5, 2.71, 0.1, 8.0, 8.9, 100.0, -1.0, -0.0, 1e-20];
     let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
     Image::from_fn(size, |[x, y]| {
@@ -138,11 +138,11 @@ fn told_levels_of_detail_agree_bit_for_bit() {
     for filter in [Filter::Mip, Filter::Block, Filter::Off] {
         let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
         let desc = ContextDesc::new(SIZE);
-        agree("occluder", desc, settings, |index, v, _| View { lod: Some(told(index, SIZE)), ..v });
+        agree("occluder", desc, settings, |index, v, _| View { lod: Some(lod_of(index, SIZE)), ..v });
     }
     // taa knows nothing of them.
     agree("still", ContextDesc::new(SIZE), settings(Method::Taa), |index, v, _| View {
-        lod: Some(told(index, SIZE)),
+        lod: Some(lod_of(index, SIZE)),
         ..v
     });
 }
@@ -166,11 +166,11 @@ fn noise(index: u64, size: [u32; 2]) -> Image<[f32; 2]> {
     let mut draws = Draws::new(&format!("noise {index}"));
     let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, 0.0];
     Image::from_fn(size, |[x, y]| {
-        let told = [draws.range(0.0, 0.3), [1.0, 2.0, 8.0, 32.0][(x / 31 + y / 17) as usize % 4]];
+        let valid = [draws.range(0.0, 0.3), [1.0, 2.0, 8.0, 32.0][(x / 31 + y / 17) as usize % 4]];
         match (x + 3 * y) % 89 {
-            0 => [broken[draws.bits() as usize % broken.len()], told[1]],
-            1 => [told[0], broken[draws.bits() as usize % broken.len()]],
-            _ => told,
+            0 => [broken[draws.bits() as usize % broken.len()], valid[1]],
+            1 => [valid[0], broken[draws.bits() as usize % broken.len()]],
+            _ => valid,
         }
     })
 }
@@ -204,7 +204,7 @@ fn noisy_frames_agree_bit_for_bit() {
         }
         agree("lateral", desc, with(Filter::Off), |index, v, _| noisy(index, v));
         agree("still", desc, with(Filter::Block), |index, v, _| View {
-            lod: Some(told(index, SIZE)),
+            lod: Some(lod_of(index, SIZE)),
             trust: Some(trust(index)),
             ..noisy(index, v)
         });
@@ -269,7 +269,7 @@ fn odd_sizes_agree_bit_for_bit() {
                 for index in 0..6 {
                     // The same picture for three frames, so that history is of use.
                     let still = noise_view(&format!("odd {}", index / 3), &desc);
-                    let lod = (index % 2 == 1).then(|| told(index, size));
+                    let lod = (index % 2 == 1).then(|| lod_of(index, size));
                     rig.both(index, Reset::None, &[View { lod, ..still }]);
                 }
             }

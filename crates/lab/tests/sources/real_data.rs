@@ -51,7 +51,7 @@ impl Default for Clip {
 struct Outcome {
     scores: Vec<Scores>,
     last_psnr_db: Vec<f64>,
-    flushed: f64,
+    rejected: f64,
 }
 
 fn run_of(method: Method) -> RunKind {
@@ -68,7 +68,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
     let mut scorers = vec![Scorer::default(); runs.len()];
     let mut references = References::default();
     let mut last = vec![];
-    let (mut flushed, mut pixels) = (0, 0);
+    let (mut rejected, mut pixels) = (0, 0);
     for index in 0..clip.frames {
         let frame = source.frame(index).unwrap();
         assert_eq!(frame.nonfinite, 0);
@@ -81,7 +81,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
             let shown_encoded = encode(&shown.image, 0.0);
             let errors = scorer.push(&reference, &shown_encoded, &step.tracked, &step.ecc_deg);
             last.push(-10.0 * errors.mse.log10());
-            flushed += shown.stats.rejected();
+            rejected += shown.stats.rejected();
             pixels += shown.stats.pixels;
         }
     }
@@ -97,7 +97,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
     Outcome {
         scores: scorers.iter().map(Scorer::scores).collect(),
         last_psnr_db: last,
-        flushed: flushed as f64 / pixels as f64,
+        rejected: rejected as f64 / pixels as f64,
     }
 }
 
@@ -125,7 +125,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     assert!(retained(&outcome, 2) > 45.0, "the oracle shows what was seen");
     assert!(retained(&outcome, 1) > retained(&outcome, 0), "wrs keeps something of it");
     assert!(outcome.scores[1].flicker < outcome.scores[0].flicker);
-    assert_eq!(outcome.flushed, 0.0, "nothing moves");
+    assert_eq!(outcome.rejected, 0.0, "nothing moves");
 }
 
 /// Expected values: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7 dB in the last
@@ -162,7 +162,7 @@ impl FrameSource for Flipped {
 
 #[test]
 fn sponza_sequences_reproject_and_reject_history_as_they_should() {
-    for (name, most_flushed) in [("sequences/sponza_lateral", 0.05), ("sequences/sponza_object", 0.05)] {
+    for (name, most_rejected) in [("sequences/sponza_lateral", 0.05), ("sequences/sponza_object", 0.05)] {
         let Some(path) = data(name) else { return };
         let clip = Clip {
             frames: 40,
@@ -171,13 +171,13 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
         };
         println!("{name}");
         let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
-        println!("flushed {:.3}", outcome.flushed);
-        assert!(outcome.flushed > 0.0 && outcome.flushed < most_flushed);
+        println!("rejected {:.3}", outcome.rejected);
+        assert!(outcome.rejected > 0.0 && outcome.rejected < most_rejected);
         assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0));
         // Planted error: vectors of the wrong sign lead to other surfaces, which the depth test rejects.
         let flipped = play(&mut Flipped(open(&path)), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
-        println!("flushed with vectors of the wrong sign {:.3}", flipped.flushed);
-        assert!(flipped.flushed > 1.5 * outcome.flushed, "{name}: the sign of motion must matter");
+        println!("rejected with motion of the opposite sign {:.3}", flipped.rejected);
+        assert!(flipped.rejected > 1.5 * outcome.rejected, "{name}: the sign of motion must matter");
     }
 }
 

@@ -51,8 +51,8 @@ pub struct PatternsArgs {
     /// Gaze, pixels; default: the center
     #[arg(long, value_delimiter = ',', num_args = 1, value_name = "X,Y")]
     gaze: Option<Vec<f32>>,
-    /// Samples of the pattern regions: per pixel in the fovea, per 2x2 block in the middle, per 4x4 block outside. The other patterns are
-    /// fitted to the same total, within 2 %
+    /// Samples of the pattern regions: per pixel in the fovea, per 2x2 block in the middle, per 4x4 block outside. The
+    /// other patterns are fitted to the same total, within 2 %
     #[arg(long, value_delimiter = ',', default_value = "8,4,2", value_name = "A,B,C")]
     region_spp: Vec<u32>,
     /// Number of scored frames of each pattern
