@@ -5,7 +5,7 @@ use crate::clock::{Quartiles, Stopwatch};
 use rayon::prelude::*;
 use wgpu::BufferUsages;
 
-/// Bytes that a copy reads; it writes as many. Larger than last-level caches.
+/// Bytes that a copy reads; it writes as many. More than the last-level cache of most machines holds.
 const BYTES: usize = 1 << 26;
 /// Copies whose median time is taken.
 const COPIES: usize = 7;

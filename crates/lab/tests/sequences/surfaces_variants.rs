@@ -122,7 +122,7 @@ fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
     }
 }
 
-/// Levels of detail that a renderer tells: whole, between, beyond the chain, and no numbers at all.
+/// Levels of detail as an input: integers, fractions, levels beyond the mip chain, and non-finite values.
 fn lod_of(index: u64, size: [u32; 2]) -> Image<f32> {
     let values = [0.0, 1.0, 2.0, 3.0, 1.5, 2.71, 0.1, 8.0, 8.9, 100.0, -1.0, -0.0, 1e-20];
     let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];

@@ -1,5 +1,5 @@
-//! End to end on external data: Sponza from another renderer, a page of text, recorded scanpaths. Skipped with a message if
-//! `../shared/data` is absent.
+//! End to end on external data: Sponza from another renderer, a page of text, recorded scanpaths. Skipped with a
+//! message if `../shared/data` is absent.
 
 use afterimage::{Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
@@ -128,8 +128,8 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     assert_eq!(outcome.rejected, 0.0, "nothing moves");
 }
 
-/// Expected values: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7 dB in the last
-/// one by angle, +2.2 and +3.6 dB by fit.
+/// Expected values: an independent measurement gives the oracle +1.7 dB over none on average over 300 frames and +2.7
+/// dB in the last one by angle, +2.2 and +3.6 dB by fit.
 #[test]
 #[ignore = "two minutes; cargo test --release -p afterimage-lab --test sources -- --ignored real_data"]
 fn the_oracle_agrees_with_an_independent_measurement() {

@@ -136,7 +136,8 @@ fn removals(report: &Report, out: &mut String) -> std::fmt::Result {
     writeln!(out, "\n### Switched off or removed\n")?;
     writeln!(
         out,
-        "Frame time with the effect switched off by an `override` constant, divided by that with its text removed; gpu.\n"
+        "Frame time with the effect switched off by an `override` constant, divided by that with its text \
+         removed; gpu.\n"
     )?;
     writeln!(out, "| scene | effect | off / removed | quartiles | 99.9 % interval of the median |")?;
     writeln!(out, "|---|---|---|---|---|")?;
