@@ -31,6 +31,11 @@ pub enum DebugView {
     Motion = 6,
 }
 
+impl DebugView {
+    /// All views, in the order of their numbers.
+    pub const ALL: [Self; 6] = [Self::Quality, Self::Age, Self::Survival, Self::Rejection, Self::Gate, Self::Motion];
+}
+
 /// Decision at a pixel, from which debug views are drawn. `cpu::CpuAfterimage::process_traced` writes it:
 ///
 /// ```

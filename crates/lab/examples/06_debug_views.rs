@@ -11,9 +11,6 @@ use afterimage_lab::picture::{to_rgb8, write_png};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use wgpu::{TextureFormat, TextureUsages};
 
-const VIEWS: [DebugView; 6] =
-    [DebugView::Quality, DebugView::Age, DebugView::Survival, DebugView::Rejection, DebugView::Gate, DebugView::Motion];
-
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::find(true).ok_or("no adapter")?;
     println!("on {}", gpu.info.name);
@@ -44,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
         if index == 19 {
             // Before the frame itself is recorded, because that advances the history.
-            for view in VIEWS {
+            for view in DebugView::ALL {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 post.record_view(&gpu.device, &mut encoder, &frame, &output, view)?;
                 gpu.queue.submit([encoder.finish()]);
@@ -63,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     std::fs::create_dir_all("out")?;
     write_png("out/06_debug_views.png".as_ref(), &to_rgb8(&encode(&sheet, 0.0)))?;
-    println!("row by row {VIEWS:?}: out/06_debug_views.png");
+    println!("row by row {:?}: out/06_debug_views.png", DebugView::ALL);
     println!("quality and age: black is none; survival: black is forgotten; gate: black is shut");
     println!("rejection: grey valid, red disoccluded, orange off screen; motion: grey none, red to the right");
     Ok(())

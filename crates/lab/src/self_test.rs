@@ -22,7 +22,7 @@ const FRAMES: u64 = 6;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// What was looked at.
-    pub what: &'static str,
+    pub what: String,
     /// What was found.
     pub found: String,
     /// Whether it is as this library needs it; `None` where it needs nothing.
@@ -30,12 +30,12 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn fact(what: &'static str, found: impl Into<String>) -> Self {
-        Self { what, found: found.into(), holds: None }
+    fn fact(what: impl Into<String>, found: impl Into<String>) -> Self {
+        Self { what: what.into(), found: found.into(), holds: None }
     }
 
-    fn need(what: &'static str, found: impl Into<String>, holds: bool) -> Self {
-        Self { what, found: found.into(), holds: Some(holds) }
+    fn need(what: impl Into<String>, found: impl Into<String>, holds: bool) -> Self {
+        Self { what: what.into(), found: found.into(), holds: Some(holds) }
     }
 }
 
@@ -197,17 +197,12 @@ fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> 
         let (pixels, most) = difference(&shown[0], &shown[1]);
         (differ, largest) = (differ + pixels, largest.max(most));
     }
-    let what = match method {
-        Method::Wrs => "wrs against its twin",
-        Method::Smr => "smr against its twin",
-        _ => "taa against its twin",
-    };
     let all = u64::from(SIZE[0] * SIZE[1]) * FRAMES;
     let found = match differ {
         0 => format!("equal bits in all {all} pixels"),
         _ => format!("{differ} of {all} pixels differ, by up to {largest:.1e}"),
     };
-    Ok(Finding::need(what, found, differ == 0))
+    Ok(Finding::need(format!("{} against its twin", method.name()), found, differ == 0))
 }
 
 /// Pixels that differ in any bit, and the largest difference.
@@ -303,7 +298,7 @@ mod tests {
         let said =
             |is_strict| arithmetic(&adapter(is_strict)).into_iter().map(|f| (f.what, f.found)).collect::<Vec<_>>();
         let (strict, loose) = (said(true), said(false));
-        let of = |said: &[(&str, String)], what: &str| said.iter().find(|f| f.0.contains(what)).unwrap().1.clone();
+        let of = |said: &[(String, String)], what: &str| said.iter().find(|f| f.0.contains(what)).unwrap().1.clone();
         for (what, one, other) in [
             ("bits of NaN", "kept", "changed"),
             ("NaN == NaN", "false", "assumed away"),

@@ -147,22 +147,19 @@ pub const PROBES: &[Probe] = &[
         words: [8, 3],
         wgsl: "out_v(view_color(in_u(7u), PixelTrace(in_u(3u), 0.0, in_f(0u), in_u(1u), in_f(2u), in_f(4u), true, vec2<f32>(in_f(5u), in_f(6u)))));",
         rust: |r, o| {
-            let views = [
-                DebugView::Quality,
-                DebugView::Age,
-                DebugView::Survival,
-                DebugView::Rejection,
-                DebugView::Gate,
-                DebugView::Motion,
-            ];
-            let view = views[r.u(7) as usize - 1];
+            let view = DebugView::ALL[r.u(7) as usize - 1];
             assert_eq!(view as u32, r.u(7));
             o.v(debug_view::view_color(view, &traced(r)));
         },
         rows: || {
             Rows::new(8).random("view_color", |d, row| {
                 row.extend([scaled(d, -126, 100), d.bits() % 256, range(d, 0.0, 1.0), d.bits() % 7]);
-                row.extend([range(d, 0.0, 1.0), range(d, -20.0, 20.0), range(d, -20.0, 20.0), 1 + d.bits() % 6]);
+                row.extend([
+                    range(d, 0.0, 1.0),
+                    range(d, -20.0, 20.0),
+                    range(d, -20.0, 20.0),
+                    1 + d.bits() % DebugView::ALL.len() as u32,
+                ]);
             })
         },
     },

@@ -1,6 +1,6 @@
 //! A source whose first frame was read ahead.
 
-use super::{FrameSource, SourceInfo, CameraPose};
+use super::{CameraPose, FrameSource, SourceInfo};
 use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::DeviceFrame;

@@ -11,9 +11,6 @@ use afterimage::{
 use afterimage_lab::source::AnalyticSource;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
-const VIEWS: [DebugView; 6] =
-    [DebugView::Quality, DebugView::Age, DebugView::Survival, DebugView::Rejection, DebugView::Gate, DebugView::Motion];
-
 fn source(scene: &str) -> AnalyticSource {
     AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()
 }
@@ -41,11 +38,11 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
             rig.exposure = if index == 20 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
             undisturbed.exposure = rig.exposure;
             let views = [masked(&mut source, index)];
-            let pictures = VIEWS.map(|v| rig.decisions(index, reset(index), &views, v));
+            let pictures = DebugView::ALL.map(|v| rig.decisions(index, reset(index), &views, v));
             let counted = rig.read().stats;
             let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
             assert_eq!(counted, cpu.stats, "a view counts, too");
-            for (view, picture) in VIEWS.into_iter().zip(&pictures) {
+            for (view, picture) in DebugView::ALL.into_iter().zip(&pictures) {
                 let expected: Vec<[u32; 3]> =
                     trace[0].pixels().iter().map(|t| view_color(view, t).to_array().map(f32::to_bits)).collect();
                 assert!(*picture == expected, "{settings:?}, {view:?}, frame {index}");

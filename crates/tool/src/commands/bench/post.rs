@@ -90,7 +90,7 @@ fn all_passes() -> Vec<PassSpec> {
 /// A pass, created on the device.
 enum CreatedPass {
     Post(Box<DeviceRun>),
-    Foveate { simulator: GpuSimulator, output: Texture },
+    Foveate { simulator: Box<GpuSimulator>, output: Texture },
 }
 
 impl CreatedPass {
@@ -109,7 +109,7 @@ impl CreatedPass {
                 desc.settings.foveation.filter = filter;
                 let format = DeviceFormats::ENGINE.color;
                 Self::Foveate {
-                    simulator: GpuSimulator::new(&gpu.device, &desc, format)?,
+                    simulator: Box::new(GpuSimulator::new(&gpu.device, &desc, format)?),
                     output: gpu.texture(size, 1, format, TextureUsages::STORAGE_BINDING),
                 }
             }
