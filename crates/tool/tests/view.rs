@@ -51,7 +51,8 @@ impl Display {
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let (name, server) = (format!(":{}", number.trim()), Running(server));
-        let start = |name: &str| Running(Command::new("openbox").env("DISPLAY", name).stderr(Stdio::null()).spawn().unwrap());
+        let start =
+            |name: &str| Running(Command::new("openbox").env("DISPLAY", name).stderr(Stdio::null()).spawn().unwrap());
         let manager = start(&name);
         let mut display = Self { name, _server: server, manager };
         // The window manager may ignore a window that opens while it starts, and ends if it finds the display too early.
