@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let output = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, write | TextureUsages::COPY_SRC);
 
     let mut post = Afterimage::new(&gpu.device, &ContextDesc::new(SIZE), output.format())?;
-    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are blurred.
+    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are
+    // blurred.
     for (index, gaze_x, sharp) in [(0, 50.0, true), (1, 200.0, false)] {
         gpu.write(&color, 0, |x, _| [if sharp { (x % 2) as f32 } else { 0.5 }; 3]);
         let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0)?, Gaze::At { px: [gaze_x, 32.0] })];

@@ -1,5 +1,5 @@
-//! An engine's loop, and where each call goes in it: a window that is resized and minimised, a cut, a pause, a lost gaze, a change of
-//! exposure, and an output in a format that compute shaders can write.
+//! An engine's loop, and where each call goes in it: a window that is resized and minimised, a cut, a pause, a lost
+//! gaze, a change of exposure, and an output in a format that compute shaders can write.
 //!
 //! `cargo run --example 02_engine` (any adapter; software Vulkan: mesa-vulkan-drivers)
 

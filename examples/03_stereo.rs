@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
     let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
 
-    // Each eye of a headset has a wider field of view on its outer side. Both look at one point, first on the left, then on the right.
+    // Each eye of a headset has a wider field of view on its outer side. Both look at one point, first on the left,
+    // then on the right.
     let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
     let stripes = |eye: u32, sharp: bool, x: u32| {
         let light = if sharp { (x % 2) as f32 } else { 0.5 };

@@ -10,7 +10,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
     let mut output = [Image::filled(size, [0.0; 3])];
 
-    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are blurred.
+    // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are
+    // blurred.
     let sharp = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
     let blurred = Image::filled(size, [0.5; 3]);
     for (index, color, gaze_x) in [(0, &sharp, 60.0), (1, &blurred, 260.0)] {

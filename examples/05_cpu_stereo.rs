@@ -10,7 +10,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut post = CpuAfterimage::new(&ContextDesc { view_count: 2, ..ContextDesc::new(size) })?;
     let mut output = [Image::filled(size, [0.0; 3]), Image::filled(size, [0.0; 3])];
 
-    // Each eye of a headset has a wider field of view on its outer side. The eyes are 64 mm apart and look at one point 0.6 m ahead.
+    // Each eye of a headset has a wider field of view on its outer side. The eyes are 64 mm apart and look at one point
+    // 0.6 m ahead.
     let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
     let (left, right) = (Image::filled(size, [0.8, 0.3, 0.3]), Image::filled(size, [0.3, 0.3, 0.8]));
     for index in 0..10 {

@@ -1,7 +1,8 @@
-//! The smallest application with a window: a renderer draws a foveated frame, `record` writes the output texture, and a blit copies that
-//! to the swapchain. The mouse is the gaze.
+//! The smallest application with a window: a renderer draws a foveated frame, `record` writes the output texture, and a
+//! blit copies that to the swapchain. The mouse is the gaze.
 //!
-//! The post-process adds to an application the fields `post`, `output` and `gaze` of `App` and the lines marked (1) to (4).
+//! The post-process adds to an application the fields `post`, `output` and `gaze` of `App` and the lines marked (1) to
+//! (4).
 //!
 //! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 

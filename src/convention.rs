@@ -1,8 +1,8 @@
 //! Conventions of motion vectors and depth values, and their conversion to internal conventions.
 //!
-//! Internally, a motion vector is `previous - current` in pixels with y down: a pixel `p` was at `p + motion` in the previous frame.
-//! Depth is a **disparity** 1/z, with z the distance along the view axis: 0 is infinitely far, planes are linear in screen space, and
-//! every perspective depth buffer is an affine function of it.
+//! Internally, a motion vector is `previous - current` in pixels with y down: a pixel `p` was at `p + motion` in the
+//! previous frame. Depth is a **disparity** 1/z, with z the distance along the view axis: 0 is infinitely far, planes
+//! are linear in screen space, and every perspective depth buffer is an affine function of it.
 
 use crate::error::SettingsError;
 use crate::kernel::depth::DisparityMap;
@@ -90,7 +90,8 @@ impl MotionConvention {
 
 /// Convention of depth values. Default: [`Linear`](Self::Linear).
 ///
-/// Distances are along the view axis, in any unit that also [`ViewFrame::previous_from_current`](crate::ViewFrame) uses.
+/// Distances are along the view axis, in any unit that also [`ViewFrame::previous_from_current`](crate::ViewFrame)
+/// uses.
 ///
 /// ```
 /// use afterimage::{ContextDesc, DepthConvention};

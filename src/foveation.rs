@@ -1,5 +1,5 @@
-//! Description of a renderer's foveation: level of detail by eccentricity, and the filter by which coarse regions are shaded. A level
-//! of detail `l` means blocks of 2^l pixels a side.
+//! Description of a renderer's foveation: level of detail by eccentricity, and the filter by which coarse regions are
+//! shaded. A level of detail `l` means blocks of 2^l pixels a side.
 
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
@@ -8,23 +8,25 @@ use crate::kernel::foveate;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Filter {
-    /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels and upscale.
+    /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels
+    /// and upscale.
     #[default]
     Mip,
     /// Gaussian blur whose width grows linearly with eccentricity.
     Gauss,
-    /// One point sample a block: coarse shading hardware (variable rate shading). Blends between regions become steps by powers of
-    /// two.
+    /// One point sample a block: coarse shading hardware (variable rate shading). Blends between regions become steps
+    /// by powers of two.
     Block,
     /// Full rate everywhere; no foveation.
     Off,
 }
 
-/// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual angles.
+/// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual
+/// angles.
 ///
 /// Set it as your renderer foveates: it tells the post-process the level of detail of each pixel
-/// ([`Settings::foveation`](crate::Settings::foveation)). The simulators ([`simulator`](crate::simulator)) foveate a full-rate frame by
-/// the same description.
+/// ([`Settings::foveation`](crate::Settings::foveation)). The simulators ([`simulator`](crate::simulator)) foveate a
+/// full-rate frame by the same description.
 ///
 /// ```
 /// use afterimage::{Filter, Foveation};
@@ -143,7 +145,8 @@ impl Foveation {
         }
     }
 
-    /// Coarseness of the middle region and of the periphery: levels of detail, or largest standard deviations of a blur in pixels.
+    /// Coarseness of the middle region and of the periphery: levels of detail, or largest standard deviations of a blur
+    /// in pixels.
     #[cfg(feature = "gpu")]
     pub(crate) fn coarseness(&self) -> [f32; 2] {
         match self.filter {

@@ -15,14 +15,15 @@ pub enum Gaze {
         /// Position in pixels: (0, 0) is the centre of the top-left pixel, y down.
         px: [f32; 2],
     },
-    /// Unknown in this frame (blink, lost tracking): the last known position is used; before the first one, the middle of the view.
+    /// Unknown in this frame (blink, lost tracking): the last known position is used; before the first one, the middle
+    /// of the view.
     #[default]
     Lost,
 }
 
 impl Gaze {
-    /// Position to use: this one if it is known and finite, else `held`, else the middle of a view of `size_px`. Clamped to +-1e6
-    /// pixels, so that angles stay finite.
+    /// Position to use: this one if it is known and finite, else `held`, else the middle of a view of `size_px`.
+    /// Clamped to +-1e6 pixels, so that angles stay finite.
     #[doc(hidden)]
     pub fn resolve(self, held: Option<[f32; 2]>, size_px: [u32; 2]) -> [f32; 2] {
         let middle = size_px.map(|s| 0.5 * s as f32 - 0.5);
@@ -51,9 +52,9 @@ pub struct ViewFrame {
     pub geometry: ViewGeometry,
     /// Gaze position.
     pub gaze: Gaze,
-    /// Camera motion: the matrix that transforms a point from this frame's view space (x right, y down, z forward) to the previous
-    /// frame's. Row-major, for column vectors; perspective views only. `None`: the depth test expects unchanged distances, so that
-    /// history is rejected on surfaces that the camera approaches or leaves fast.
+    /// Camera motion: the matrix that transforms a point from this frame's view space (x right, y down, z forward) to
+    /// the previous frame's. Row-major, for column vectors; perspective views only. `None`: the depth test expects
+    /// unchanged distances, so that history is rejected on surfaces that the camera approaches or leaves fast.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
 }
 
@@ -106,8 +107,8 @@ pub enum Reset {
     All,
 }
 
-/// Change of exposure between the previous frame and this one, for renderers whose colors are multiplied by an exposure. Stored
-/// colors are scaled by the ratio. Default: [`Same`](Self::Same). `examples/02_engine.rs` uses it.
+/// Change of exposure between the previous frame and this one, for renderers whose colors are multiplied by an
+/// exposure. Stored colors are scaled by the ratio. Default: [`Same`](Self::Same). `examples/02_engine.rs` uses it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Exposure {
@@ -147,8 +148,9 @@ impl Exposure {
 
 /// Executor of the post-process: types of its input images.
 ///
-/// Implemented by `gpu::Afterimage`, whose inputs are textures with one array layer a view, and by `cpu::CpuAfterimage`, whose inputs
-/// are slices with one `Image` a view. It only makes [`Frame`] generic; there is no need to implement or to name it.
+/// Implemented by `gpu::Afterimage`, whose inputs are textures with one array layer a view, and by
+/// `cpu::CpuAfterimage`, whose inputs are slices with one `Image` a view. It only makes [`Frame`] generic; there is no
+/// need to implement or to name it.
 pub trait Executor {
     /// Images with three channels (color).
     type Colors<'a>: Copy + Debug;
@@ -160,8 +162,8 @@ pub trait Executor {
 
 /// A frame: its input images, all of the context's size, and descriptions of its views.
 ///
-/// `gpu::Frame` and `cpu::Frame` are this type for either executor. Create it with [`new`](Self::new) and `..`, so that later versions
-/// can add fields:
+/// `gpu::Frame` and `cpu::Frame` are this type for either executor. Create it with [`new`](Self::new) and `..`, so that
+/// later versions can add fields:
 ///
 /// ```
 /// # #[cfg(feature = "gpu")]
@@ -174,22 +176,24 @@ pub trait Executor {
 /// # }
 /// ```
 pub struct Frame<'a, E: Executor> {
-    /// Foveated frame: linear scene-referred color in Rec. 709 primaries, before tone mapping. Pixels that are NaN or infinite show
-    /// their history, or black, and are counted. On a GPU any float format.
+    /// Foveated frame: linear scene-referred color in Rec. 709 primaries, before tone mapping. Pixels that are NaN or
+    /// infinite show their history, or black, and are counted. On a GPU any float format.
     pub color: E::Colors<'a>,
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
     /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: no motion.
     pub motion: Option<E::Vectors<'a>>,
-    /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for what changes without motion vectors (video panels,
-    /// particles, reflections). About 1 minus FSR2's reactive mask. On a GPU any float or normalised format. `None`: 1 everywhere.
+    /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for what changes without motion vectors
+    /// (video panels, particles, reflections). About 1 minus FSR2's reactive mask. On a GPU any float or normalised
+    /// format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
-    /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`: computed from gaze
-    /// and [`Settings::foveation`]. With this input, too, `foveation.rate_far` must be the coarsest block edge: history is not matched
-    /// at coarser levels.
+    /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
+    /// computed from gaze and [`Settings::foveation`]. With this input, too, `foveation.rate_far` must be the coarsest
+    /// block edge: history is not matched at coarser levels.
     pub lod: Option<E::Scalars<'a>>,
-    /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at its level of
-    /// detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set, otherwise `None`.
+    /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at
+    /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
+    /// otherwise `None`.
     pub noise: Option<E::Vectors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
@@ -268,8 +272,8 @@ impl<'a, E: Executor> Frame<'a, E> {
     }
 }
 
-/// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can be changed later
-/// (`resize` and `set_settings` of either executor).
+/// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can
+/// be changed later (`resize` and `set_settings` of either executor).
 ///
 /// Create it with [`new`](Self::new) and change fields, so that later versions can add fields:
 ///

@@ -6,10 +6,11 @@ use crate::image::Image;
 use crate::kernel::acuity;
 use glam::Vec2;
 
-/// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a headset).
+/// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
+/// headset).
 ///
-/// View space has x to the right, y **down** and z forward. Rays have z = 1, so that their x and y are tangents of view angles, affine
-/// in pixel coordinates. Pixel centres have integer coordinates.
+/// View space has x to the right, y **down** and z forward. Rays have z = 1, so that their x and y are tangents of view
+/// angles, affine in pixel coordinates. Pixel centres have integer coordinates.
 ///
 /// ```
 /// use afterimage::ViewGeometry;
@@ -50,8 +51,8 @@ impl ViewGeometry {
         Self::off_axis(size_px, [-half_width, half_width], [-half_height, half_height])
     }
 
-    /// A view of `size_px` from the tangents of the angles at its edges: `tan_x` left and right, `tan_y` top and bottom. y is down, so
-    /// that the top is usually negative.
+    /// A view of `size_px` from the tangents of the angles at its edges: `tan_x` left and right, `tan_y` top and
+    /// bottom. y is down, so that the top is usually negative.
     ///
     /// # Errors
     /// [`SettingsError`] if a range is empty, reversed or not finite.
@@ -84,8 +85,8 @@ impl ViewGeometry {
         (Vec2::from(px) * self.scale + self.offset).extend(1.0).to_array()
     }
 
-    /// Position in pixels of a point or direction in view space (x right, y down, z forward). May lie outside the view. `None` unless
-    /// z > 0.
+    /// Position in pixels of a point or direction in view space (x right, y down, z forward). May lie outside the view.
+    /// `None` unless z > 0.
     pub fn project(&self, direction: [f32; 3]) -> Option<[f32; 2]> {
         let [x, y, z] = direction;
         (z > 0.0).then(|| {

@@ -1,9 +1,9 @@
 //! Temporal post-process for foveated rendering: keeps the detail that the renderer shaded at earlier gaze positions.
 //!
-//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it, before tone mapping: it stores the
-//! sharpest sample of every surface point, follows it along the motion vectors, and shows it as long as it explains the foveated frame
-//! ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et al., MIG 2025; [`Method::Wrs`]) and temporal
-//! antialiasing ([`Method::Taa`]).
+//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it, before tone mapping:
+//! it stores the sharpest sample of every surface point, follows it along the motion vectors, and shows it as long as
+//! it explains the foveated frame ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et al., MIG
+//! 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]).
 //!
 //! # Example
 //!
@@ -58,17 +58,20 @@
 //!
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
 #![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
-//!   (feature `gpu`, on by default) records compute passes into your wgpu command encoder. The application chooses wgpu's backends.
+//!   (feature `gpu`, on by default) records compute passes into your wgpu command encoder. The application chooses
+//!   wgpu's backends.
 #![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
 #![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
 //!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
 //!
 //! # Determinism
 //!
-//! Random numbers are a hash of [`Settings::seed`], view, frame index and pixel. The same seed and the same frames give the same bytes,
-//! whatever the number of threads or the size of workgroups. Different GPUs and drivers may round differently.
+//! Random numbers are a hash of [`Settings::seed`], view, frame index and pixel. The same seed and the same frames give
+//! the same bytes, whatever the number of threads or the size of workgroups. Different GPUs and drivers may round
+//! differently.
 //!
-//! The crate `afterimage-lab` has research tools around this one: scenes, a path tracer, foveation along scanpaths, and metrics.
+//! The crate `afterimage-lab` has research tools around this one: scenes, a path tracer, foveation along scanpaths, and
+//! metrics.
 
 #[cfg(not(any(feature = "cpu", feature = "gpu")))]
 compile_error!("afterimage has no executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");

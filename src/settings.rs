@@ -19,27 +19,30 @@ pub enum Method {
     None,
     /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
-    /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated frame.
+    /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated
+    /// frame.
     #[default]
     Smr,
-    /// Weighted reservoirs (Cantory et al., MIG 2025): a random sample of each surface point, weighted by retinal acuity.
+    /// Weighted reservoirs (Cantory et al., MIG 2025): a random sample of each surface point, weighted by retinal
+    /// acuity.
     Wrs,
 }
 
-/// Sampler of [`Method::Wrs`]: rule by which a reservoir chooses between its sample and the candidate. Both give the same probability
-/// to each candidate. Default: [`AChao`](Self::AChao). Example: [`Settings`].
+/// Sampler of [`Method::Wrs`]: rule by which a reservoir chooses between its sample and the candidate. Both give the
+/// same probability to each candidate. Default: [`AChao`](Self::AChao). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Sampler {
     /// A-Chao, as in the paper: each frame draws anew against the ratio of weight sums.
     #[default]
     AChao,
-    /// A-ES, for comparison: each candidate draws a key once. Needs 8 more bytes of memory and of memory traffic a pixel.
+    /// A-ES, for comparison: each candidate draws a key once. Needs 8 more bytes of memory and of memory traffic a
+    /// pixel.
     AEs,
 }
 
-/// Bias of [`Method::Wrs`]: decay of history's weight, without which new candidates would hardly ever be taken. Default:
-/// [`Bernoulli`](Self::Bernoulli). Example: [`Settings`].
+/// Bias of [`Method::Wrs`]: decay of history's weight, without which new candidates would hardly ever be taken.
+/// Default: [`Bernoulli`](Self::Bernoulli). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Bias {
@@ -66,7 +69,8 @@ pub enum GateMetric {
     Lightness,
 }
 
-/// Color gate of [`Method::Wrs`] (eq. 7 of the paper): history loses weight in proportion to its color difference from the candidate.
+/// Color gate of [`Method::Wrs`] (eq. 7 of the paper): history loses weight in proportion to its color difference from
+/// the candidate.
 ///
 /// ```
 /// use afterimage::{Gate, Settings};
@@ -80,8 +84,9 @@ pub enum GateMetric {
 pub struct Gate {
     /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
-    /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. Less follows changes of light sooner and
-    /// keeps less detail, because a sharp sample differs from the blurred candidate of the same surface. Default 100.
+    /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. Less follows changes of
+    /// light sooner and keeps less detail, because a sharp sample differs from the blurred candidate of the same
+    /// surface. Default 100.
     pub divisor: f32,
     /// Difference up to which history loses no weight, in Delta E: 0 to 1e6. Default 0.
     pub offset: f32,
@@ -106,12 +111,12 @@ impl Default for Gate {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTest {
-    /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where motion or depth is
-    /// imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
+    /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where
+    /// motion or depth is imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
     pub relative: f32,
-    /// Reprojection error in pixels along each axis that the test tolerates: 0 to 64. The tolerance grows by the surface's slope over
-    /// that distance, so that history on grazing planes is not rejected. Default 1: half for rounding to the nearest texel, half for
-    /// the position of the depth sample within its pixel.
+    /// Reprojection error in pixels along each axis that the test tolerates: 0 to 64. The tolerance grows by the
+    /// surface's slope over that distance, so that history on grazing planes is not rejected. Default 1: half for
+    /// rounding to the nearest texel, half for the position of the depth sample within its pixel.
     pub slope_px: f32,
 }
 
@@ -133,11 +138,11 @@ impl Default for DepthTest {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smr {
-    /// Share of equally coarse history in the output: 0 to 0.98. More reduces the flicker of coarse regions in motion, and follows
-    /// changes of light later. Default 0.9.
+    /// Share of equally coarse history in the output: 0 to 0.98. More reduces the flicker of coarse regions in motion,
+    /// and follows changes of light later. Default 0.9.
     pub accumulate: f32,
-    /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. More keeps detail in spite of noise and imprecise
-    /// motion vectors; less rejects outdated history sooner. Default 1.
+    /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. More keeps detail in spite of
+    /// noise and imprecise motion vectors; less rejects outdated history sooner. Default 1.
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
@@ -149,10 +154,11 @@ impl Default for Smr {
     }
 }
 
-/// Settings of a context: method, foveation and tunables. They can be changed between frames (`set_settings` of either executor).
+/// Settings of a context: method, foveation and tunables. They can be changed between frames (`set_settings` of either
+/// executor).
 ///
-/// The default is [`Settings::steady`], which measures best on real frames. Other presets are [`responsive`](Self::responsive),
-/// [`traced`](Self::traced) and [`paper`](Self::paper).
+/// The default is [`Settings::steady`], which measures best on real frames. Other presets are
+/// [`responsive`](Self::responsive), [`traced`](Self::traced) and [`paper`](Self::paper).
 ///
 /// ```
 /// use afterimage::{Bias, ContextDesc, Sampler, Settings};
@@ -178,14 +184,15 @@ pub struct Settings {
     pub sampler: Sampler,
     /// Decay of history's weight in [`Method::Wrs`]. Default [`Bias::Bernoulli`].
     pub bias: Bias,
-    /// Color gate of [`Method::Wrs`]; `None` compares no colors, which keeps more detail and ghosts under changing light. Default on.
+    /// Color gate of [`Method::Wrs`]; `None` compares no colors, which keeps more detail and ghosts under changing
+    /// light. Default on.
     pub gate: Option<Gate>,
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
-    /// ([`Frame::noise`](crate::Frame::noise)), so that noise does not pass for a change. wrs weights a candidate by its number of
-    /// samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8 more bytes a pixel and a mip chain
-    /// of the candidates. Default false.
+    /// ([`Frame::noise`](crate::Frame::noise)), so that noise does not pass for a change. wrs weights a candidate by
+    /// its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8
+    /// more bytes a pixel and a mip chain of the candidates. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -208,26 +215,28 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The paper's method (Cantory et al., MIG 2025) as published: weighted reservoirs, A-Chao, Bernoulli survival, Delta E 94 gate.
-    /// Looks like the foveated frame with scattered sharp pixels, more of them the longer the eye stayed. The cheapest preset.
+    /// The paper's method (Cantory et al., MIG 2025) as published: weighted reservoirs, A-Chao, Bernoulli survival,
+    /// Delta E 94 gate. Looks like the foveated frame with scattered sharp pixels, more of them the longer the eye
+    /// stayed. The cheapest preset.
     pub fn paper() -> Self {
         Self { method: Method::Wrs, ..Self::default() }
     }
 
-    /// smr for a steady image: sharp where the eye has been, coarse regions averaged over time, so that they do not flicker. The
-    /// default.
+    /// smr for a steady image: sharp where the eye has been, coarse regions averaged over time, so that they do not
+    /// flicker. The default.
     pub fn steady() -> Self {
         Self { method: Method::Smr, smr: Smr::default(), ..Self::default() }
     }
 
-    /// smr that rejects outdated history sooner and averages over fewer frames: moving objects and changes of light flicker less, but
-    /// less detail survives a moving camera (2 dB of what was retained on Sponza). The same cost as [`steady`](Self::steady).
+    /// smr that rejects outdated history sooner and averages over fewer frames: moving objects and changes of light
+    /// flicker less, but less detail survives a moving camera (2 dB of what was retained on Sponza). The same cost as
+    /// [`steady`](Self::steady).
     pub fn responsive() -> Self {
         Self { method: Method::Smr, smr: Smr { accumulate: 0.7, tolerance: 0.6, ..Smr::default() }, ..Self::default() }
     }
 
-    /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as [`steady`](Self::steady).
-    /// Each frame must have a noise input ([`Frame::noise`](crate::Frame::noise)).
+    /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as
+    /// [`steady`](Self::steady). Each frame must have a noise input ([`Frame::noise`](crate::Frame::noise)).
     pub fn traced() -> Self {
         Self { noisy: true, smr: Smr { accumulate: 0.95, ..Smr::default() }, ..Self::steady() }
     }

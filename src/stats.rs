@@ -3,8 +3,8 @@
 use crate::kernel::reproject::Verdict;
 use crate::warning::Warning;
 
-/// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32 bits, which
-/// [`FrameStats::from_counters`] reads. `examples/02_engine.rs` uses it.
+/// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32 bits,
+/// which [`FrameStats::from_counters`] reads. `examples/02_engine.rs` uses it.
 pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
 
 /// Pixel counters of one frame, over all views.

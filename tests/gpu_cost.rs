@@ -1,5 +1,5 @@
-//! Cost of a turn of the head on the device: hard case H60. A process of its own, because a software device spends its CPU time; a real one
-//! spends none, and there the elapsed time counts.
+//! Cost of a turn of the head on the device: hard case H60. A process of its own, because a software device spends its
+//! CPU time; a real one spends none, and there the elapsed time counts.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::{ContextDesc, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};

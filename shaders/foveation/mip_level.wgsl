@@ -1,10 +1,10 @@
 //#use foveate
 //#use sanitize
-// Next mip level: means of 2x2 texels; non-finite texels count as black. At odd borders a missing texel is replaced by its neighbour.
-// CPU twin: halve in src/simulator/mip.rs. One invocation a texel of the coarser level; z is the view.
+// Next mip level: means of 2x2 texels; non-finite texels count as black. At odd borders a missing texel is replaced by
+// its neighbour. CPU twin: halve in src/simulator/mip.rs. One invocation a texel of the coarser level; z is the view.
 //
-// 4 reads and 1 write a texel. With a frame of 8 bytes a pixel and levels of 16 bytes a texel, all levels together read 8 + 4 + 1 +
-// ... = 13.3 bytes a pixel and write 4 + 1 + ... = 5.3.
+// 4 reads and 1 write a texel. With a frame of 8 bytes a pixel and levels of 16 bytes a texel, all levels together read
+// 8 + 4 + 1 + ... = 13.3 bytes a pixel and write 4 + 1 + ... = 5.3.
 
 // Size of the finer level; its texture may be larger.
 @group(0) @binding(0) var<uniform> fine_size: vec2<u32>;

@@ -10,8 +10,8 @@ fn cbrt(x: f32) -> f32 {
     if size < 1e-30 {
         return 0.0;
     }
-    // Software Vulkan runs the loop for 0, too, where the cube of the guess is denormal. Arithmetic on denormals alone would double
-    // the time of the pass.
+    // Software Vulkan runs the loop for 0, too, where the cube of the guess is denormal. Arithmetic on denormals alone
+    // would double the time of the pass.
     let a = select(size, 1.0, size < 1e-30);
     var r = bitcast<f32>(bitcast<u32>(a) / 3u + 0x2a514067u);
     for (var i = 0u; i < 2u; i++) {

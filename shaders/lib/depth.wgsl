@@ -51,8 +51,8 @@ fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     return abs(expected - stored) <= relative * max(expected, stored) + slope;
 }
 
-// depth::one_sided_slope; INVALID_DISPARITY for a neighbour outside the image. depth::slope, which reads the neighbours, is a
-// loop in the pass.
+// depth::one_sided_slope; INVALID_DISPARITY for a neighbour outside the image. depth::slope, which reads the
+// neighbours, is a loop in the pass.
 fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = center - before;
     let ahead = after - center;

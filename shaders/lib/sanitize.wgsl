@@ -1,4 +1,5 @@
-// Twin of src/kernel/sanitize.rs. Numbers are tested by their bits, because WGSL may assume that NaN and infinity do not exist.
+// Twin of src/kernel/sanitize.rs. Numbers are tested by their bits, because WGSL may assume that NaN and infinity do
+// not exist.
 
 const MAX_HALF: f32 = 65504.0;
 

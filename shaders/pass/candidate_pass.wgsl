@@ -1,8 +1,8 @@
 //#use noise
 //#use surface
-// First level of the mip chain of noisy candidates: means of 2x2 pixels without non-finite ones; at odd borders a missing pixel is
-// replaced by its neighbour. CPU twin: MipChain::build_candidates in src/cpu/mip_chain.rs. mip_chain_pass computes the other levels.
-// One invocation a texel of the level; z is the view.
+// First level of the mip chain of noisy candidates: means of 2x2 pixels without non-finite ones; at odd borders a
+// missing pixel is replaced by its neighbour. CPU twin: MipChain::build_candidates in src/cpu/mip_chain.rs.
+// mip_chain_pass computes the other levels. One invocation a texel of the level; z is the view.
 //
 // 4 reads of 12 bytes and 1 write of 8 a texel: 12 bytes a pixel read, 2 written.
 

@@ -5,7 +5,8 @@
 //#use reproject
 //#use sanitize
 //#use view_uniforms
-// Inputs of a pixel in internal conventions, its counters and its output; shared by all methods. CPU twin: src/cpu/inputs.rs.
+// Inputs of a pixel in internal conventions, its counters and its output; shared by all methods. CPU twin:
+// src/cpu/inputs.rs.
 
 // Which inputs the frame has, and which features are on. Constants of a pipeline: what is off is not compiled.
 override HAS_DEPTH: u32 = 1u;
@@ -90,8 +91,8 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     return disparity(textureLoad(depth_in, px, view, 0).x, map);
 }
 
-// depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. A loop with zero iterations for most pixels: software
-// Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
+// depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. A loop with zero iterations for most
+// pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
 fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
     var total = 0.0;
     var before = INVALID_DISPARITY;
@@ -120,8 +121,8 @@ fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
     return previous_disparity(disparity_now, stretch, row.w);
 }
 
-// Depth test: whether the `stored` disparity belongs to this pixel's surface, which had the disparity `expected`. True without a depth
-// test.
+// Depth test: whether the `stored` disparity belongs to this pixel's surface, which had the disparity `expected`. True
+// without a depth test.
 fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
     if DEPTH_TEST == 0u {
         return true;

@@ -3,7 +3,8 @@
 
 fn pixel(px: vec2<u32>, view: u32) {
     let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    // Not a constant, although frame.reset is always set: compilers would fold the debug view's color with other roundings.
+    // Not a constant, although frame.reset is always set: compilers would fold the debug view's color with other
+    // roundings.
     let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
     count_if(!candidate.usable, COUNT_NONFINITE);
     count_if(true, COUNT_VERDICTS + verdict);

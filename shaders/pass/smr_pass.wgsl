@@ -1,8 +1,9 @@
 //#use foveate
 //#use matched
 //#use surface_history
-// Scale-matched reservoirs. CPU twin: src/cpu/smr_pass.rs, which lists the reads and writes; docs/method.md has the equations. One
-// invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is the view.
+// Scale-matched reservoirs. CPU twin: src/cpu/smr_pass.rs, which lists the reads and writes; docs/method.md has the
+// equations. One invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is
+// the view.
 
 // Filters of the foveation: src/foveation.rs. FILTER_OFF is full rate everywhere.
 const FILTER_MIP: u32 = 0u;
@@ -81,7 +82,8 @@ struct Matching {
     next_level: vec3<f32>,
 }
 
-// History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color` is its level 0 there.
+// History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color` is its level 0
+// there.
 fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = textureNumLevels(past_mips);
     let limited = min(lod, f32(last));
@@ -132,7 +134,8 @@ fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -
     return select(own, near.color, near.usable);
 }
 
-// Mean of the four candidates at diagonal offsets of `radius` pixels; black unless `needed`, by a loop with zero iterations.
+// Mean of the four candidates at diagonal offsets of `radius` pixels; black unless `needed`, by a loop with zero
+// iterations.
 fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
@@ -284,7 +287,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
         result.color,
         PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
-    // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace them.
+    // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
+    // them.
     let stored_lod = select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0);
     let words = pack_surface(Surface(result.color, stored_lod, disparity_now));
     if VIEW == 0u {

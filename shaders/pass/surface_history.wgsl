@@ -1,8 +1,8 @@
 //#use inputs
 //#use resample
 //#use wrs
-// Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa). CPU twin:
-// src/cpu/surface_history.rs.
+// Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
+// CPU twin: src/cpu/surface_history.rs.
 
 @group(0) @binding(8) var lod_in: texture_2d_array<f32>;
 @group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
@@ -67,8 +67,8 @@ fn component(v: vec4<f32>, i: u32) -> f32 {
     return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
 }
 
-// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loop has zero
-// iterations: software Vulkan runs the body of an `if` for all pixels.
+// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loop has
+// zero iterations: software Vulkan runs the body of an `if` for all pixels.
 fn resample(source: Source, view: u32, needed: bool) -> Resampled {
     let between = needed && !(source.fraction.x == 0.0 && source.fraction.y == 0.0);
     let sharp_x = catmull_rom(source.fraction.x);

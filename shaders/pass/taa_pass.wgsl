@@ -1,15 +1,15 @@
 //#use surface_history
 //#use taa
-// Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes. One invocation a pixel;
-// z is the view.
+// Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes. One
+// invocation a pixel; z is the view.
 
 struct Neighbourhood {
     sum: vec3<f32>,
     squares: vec3<f32>,
 }
 
-// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is `own`. The loop
-// has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is
+// `own`. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
 fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neighbourhood {
     var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));
     let taps = select(0u, 9u, needed);

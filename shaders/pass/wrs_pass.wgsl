@@ -2,8 +2,8 @@
 //#use pack
 //#use rng
 //#use wrs
-// Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU twin:
-// src/cpu/wrs_pass.rs, which lists the reads and writes. One invocation a pixel; z is the view.
+// Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU
+// twin: src/cpu/wrs_pass.rs, which lists the reads and writes. One invocation a pixel; z is the view.
 
 // Settings as constants of a pipeline: what is off is not compiled.
 override SAMPLER: u32 = 0u;

@@ -145,19 +145,20 @@ impl History {
         }
     }
 
-    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty except for wrs.
+    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty except for
+    /// wrs.
     pub fn words(&self) -> &[[u32; 3]] {
         &self.previous.reservoirs
     }
 
-    /// Packed surfaces of the last processed frame, view after view ([`surface`](crate::kernel::surface)); empty except for taa and
-    /// smr.
+    /// Packed surfaces of the last processed frame, view after view ([`surface`](crate::kernel::surface)); empty except
+    /// for taa and smr.
     pub fn surfaces(&self) -> &[[u32; 2]] {
         &self.previous.surfaces
     }
 
-    /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty except for smr with
-    /// [`Settings::noisy`](crate::Settings::noisy).
+    /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty except for
+    /// smr with [`Settings::noisy`](crate::Settings::noisy).
     pub fn noise(&self) -> &[u32] {
         &self.previous.noise
     }
@@ -182,7 +183,8 @@ pub(super) struct PastView<'a> {
     pub log_keys: &'a [f32],
 }
 
-/// Previous frame's surfaces of one view with their mip chain, and the mip chain of this frame's candidates to compare them with.
+/// Previous frame's surfaces of one view with their mip chain, and the mip chain of this frame's candidates to compare
+/// them with.
 #[derive(Clone, Copy)]
 pub(super) struct PastSurfaces<'a> {
     pub words: &'a [[u32; 2]],

@@ -118,8 +118,8 @@ impl<'a> Inputs<'a> {
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
     }
 
-    /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which had the disparity `expected`. True
-    /// without a depth test.
+    /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which had the disparity
+    /// `expected`. True without a depth test.
     #[inline(always)]
     pub fn same_surface(&self, x: u32, y: u32, expected: f32, stored: f32) -> bool {
         let Some(test) = self.depth_test else {

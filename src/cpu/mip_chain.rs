@@ -1,5 +1,5 @@
-//! Mip chains of stored surfaces and of noisy candidates: means of 2x2 texels, as in the foveation's mip levels, so that a level of
-//! history compares with a candidate of the same level.
+//! Mip chains of stored surfaces and of noisy candidates: means of 2x2 texels, as in the foveation's mip levels, so
+//! that a level of history compares with a candidate of the same level.
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
@@ -9,8 +9,8 @@ use crate::kernel::surface::{mip_texel, round_mip};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Levels 1 to n of one view; level l at index l - 1. Texels are rounded to halves. For surfaces: color times coverage, and coverage;
-/// for candidates: color, and the variance of a pixel's luma.
+/// Levels 1 to n of one view; level l at index l - 1. Texels are rounded to halves. For surfaces: color times coverage,
+/// and coverage; for candidates: color, and the variance of a pixel's luma.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MipChain {
     size: [u32; 2],
@@ -85,7 +85,8 @@ impl MipChain {
         candidate_bilinear([a, b], [c, d], fraction)
     }
 
-    /// Color and variance of candidates at a position in pixels: at level of detail `lod` of at least 1, and at the next whole level.
+    /// Color and variance of candidates at a position in pixels: at level of detail `lod` of at least 1, and at the
+    /// next whole level.
     pub fn read_candidates(&self, at: [f32; 2], lod: f32) -> [Vec4; 2] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);
@@ -95,7 +96,8 @@ impl MipChain {
         [first + (second - first) * (lod - whole), second]
     }
 
-    /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth` is its level 0 there.
+    /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth` is
+    /// its level 0 there.
     pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 3] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);

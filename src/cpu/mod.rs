@@ -1,4 +1,5 @@
-//! CPU executor: the post-process on images in memory, for machines without a GPU and as the reference of the GPU executor.
+//! CPU executor: the post-process on images in memory, for machines without a GPU and as the reference of the GPU
+//! executor.
 //!
 //! Rows of pixels are processed in parallel; the result does not depend on the number of threads.
 
@@ -76,7 +77,8 @@ impl CpuAfterimage {
     /// A context without history.
     ///
     /// # Errors
-    /// [`SettingsError`] if the description is out of range: a setting, the depth convention, the size or the number of views.
+    /// [`SettingsError`] if the description is out of range: a setting, the depth convention, the size or the number of
+    /// views.
     pub fn new(desc: &ContextDesc) -> Result<Self, SettingsError> {
         desc.validate()?;
         Ok(Self { desc: *desc, history: History::new(desc) })
@@ -90,7 +92,8 @@ impl CpuAfterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the
+    /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -117,8 +120,8 @@ impl CpuAfterimage {
         Ok(())
     }
 
-    /// Discards history and held gaze positions: the next frame is processed like the first one. [`Reset::All`](crate::Reset::All) does
-    /// the same as part of a frame, but keeps the gaze.
+    /// Discards history and held gaze positions: the next frame is processed like the first one.
+    /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.history.forget();
     }
@@ -129,7 +132,8 @@ impl CpuAfterimage {
         &self.history
     }
 
-    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known state.
+    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known
+    /// state.
     ///
     /// # Panics
     /// If `words` has another length than the history's.
@@ -138,8 +142,8 @@ impl CpuAfterimage {
         self.history.restore(words);
     }
 
-    /// Size in bytes of the buffers that the context holds between frames. Larger than on a GPU, because mip chains are floats here and
-    /// halves there.
+    /// Size in bytes of the buffers that the context holds between frames. Larger than on a GPU, because mip chains are
+    /// floats here and halves there.
     pub fn memory_bytes(&self) -> usize {
         self.history.memory_bytes()
     }
@@ -147,13 +151,14 @@ impl CpuAfterimage {
     /// Processes one frame into `output`: linear colors, one image of the context's size a view.
     ///
     /// # Errors
-    /// [`FrameError`] if a size, a number of images or a value does not fit the context; then nothing is written and history is
-    /// unchanged.
+    /// [`FrameError`] if a size, a number of images or a value does not fit the context; then nothing is written and
+    /// history is unchanged.
     pub fn process(&mut self, frame: &Frame<'_>, output: &mut [Image<[f32; 3]>]) -> Result<FrameStats, FrameError> {
         self.run(frame, output, None)
     }
 
-    /// Processes one frame as [`process`](Self::process) does, and writes the decision at each pixel to `traces`, one image a view.
+    /// Processes one frame as [`process`](Self::process) does, and writes the decision at each pixel to `traces`, one
+    /// image a view.
     ///
     /// # Errors
     /// As for `process`.

@@ -1,11 +1,11 @@
-//! Scale-matched reservoirs: sanitize, reproject, reject, resample, match scales, relight, decide, store and output. `docs/method.md`
-//! has the equations. Twin: `shaders/pass/smr_pass.wgsl`.
+//! Scale-matched reservoirs: sanitize, reproject, reject, resample, match scales, relight, decide, store and output.
+//! `docs/method.md` has the equations. Twin: `shaders/pass/smr_pass.wgsl`.
 //!
-//! Each pixel reads its color, depth, three motion vectors, twelve stored surfaces, eight texels of their mip chain and, where light
-//! changed, four more colors (neighbours share most of these reads). It writes one surface, a third of a texel of the mip chain and
-//! one color. Memory traffic: 48 bytes a pixel with color and motion as halves. With noisy candidates it also reads their noise, the
-//! noise of one surface and eight texels of the candidates' mip chain, and writes one word of noise: 80 bytes a pixel, including the
-//! passes that compute that mip chain.
+//! Each pixel reads its color, depth, three motion vectors, twelve stored surfaces, eight texels of their mip chain
+//! and, where light changed, four more colors (neighbours share most of these reads). It writes one surface, a third of
+//! a texel of the mip chain and one color. Memory traffic: 48 bytes a pixel with color and motion as halves. With noisy
+//! candidates it also reads their noise, the noise of one surface and eight texels of the candidates' mip chain, and
+//! writes one word of noise: 80 bytes a pixel, including the passes that compute that mip chain.
 
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::Pixel;
@@ -70,7 +70,8 @@ impl Smr {
         // Gains and the overshoot of Catmull-Rom may exceed the largest half.
         result.color = result.color.min(Vec3::splat(MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && result.share == 0.0);
-        // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace them.
+        // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
+        // them.
         let stored_lod = if coherent_motion || result.lod < 0.0 { result.lod } else { MAX_LOD };
         let trace = PixelTrace {
             verdict,
@@ -209,8 +210,8 @@ impl Smr {
         (result, noise::noise_after(past, around, result.share, reuse.finer * acceptance))
     }
 
-    /// Mean of the four candidates at diagonal offsets of `radius` pixels. `own`, the usable candidate of the pixel, stands in for
-    /// non-finite ones.
+    /// Mean of the four candidates at diagonal offsets of `radius` pixels. `own`, the usable candidate of the pixel,
+    /// stands in for non-finite ones.
     #[inline(always)]
     fn around(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
         let [width, height] = view.inputs.size.map(|s| (s - 1) as f32);

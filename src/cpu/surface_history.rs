@@ -1,5 +1,5 @@
-//! Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa). Twin:
-//! `shaders/pass/surface_history.wgsl`.
+//! Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
+//! Twin: `shaders/pass/surface_history.wgsl`.
 
 use super::history::PastSurfaces;
 use super::inputs::Inputs;

@@ -1,8 +1,8 @@
-//! Temporal antialiasing of the foveated frame: sanitize, reproject, reject, resample, clip, blend, store and output. Twin:
-//! `shaders/pass/taa_pass.wgsl`.
+//! Temporal antialiasing of the foveated frame: sanitize, reproject, reject, resample, clip, blend, store and output.
+//! Twin: `shaders/pass/taa_pass.wgsl`.
 //!
-//! Each pixel reads its motion and depth, nine colors and twelve stored surfaces (neighbours share most of these reads), and writes one
-//! surface and one color. Memory traffic: 40 bytes a pixel with color and motion as halves.
+//! Each pixel reads its motion and depth, nine colors and twelve stored surfaces (neighbours share most of these
+//! reads), and writes one surface and one color. Memory traffic: 40 bytes a pixel with color and motion as halves.
 
 use super::surface_history::SurfaceHistory;
 use super::surface_pass::Pixel;
@@ -54,7 +54,8 @@ pub(super) fn pixel(view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut Frame
     Pixel { output, surface, noise: 0, trace }
 }
 
-/// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is `own`.
+/// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is
+/// `own`.
 #[inline(always)]
 fn neighbourhood(view: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
     let [width, height] = view.inputs.size;

@@ -1,8 +1,8 @@
 //! Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. Twin:
 //! `shaders/pass/wrs_pass.wgsl`.
 //!
-//! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test needs the slope), and writes
-//! one reservoir and one color. Memory traffic: 48 bytes a pixel with color and motion as halves.
+//! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test needs the
+//! slope), and writes one reservoir and one color. Memory traffic: 48 bytes a pixel with color and motion as halves.
 
 use super::Pass;
 use super::history::PastView;

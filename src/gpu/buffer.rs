@@ -2,8 +2,8 @@
 
 use wgpu::{Buffer, BufferUsages, BufferViewMut, Device};
 
-/// A buffer that contains `bytes`, whose length must be a multiple of 4; at least 4 bytes large. Not wgpu's `create_buffer_init`, which
-/// panics on a lost device (H77).
+/// A buffer that contains `bytes`, whose length must be a multiple of 4; at least 4 bytes large. Not wgpu's
+/// `create_buffer_init`, which panics on a lost device (H77).
 pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -> Buffer {
     let bytes = if bytes.is_empty() { &[0; 4] } else { bytes };
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {

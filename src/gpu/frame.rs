@@ -7,12 +7,12 @@ use wgpu::{Buffer, QuerySet, Texture};
 
 /// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
 ///
-/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), one sample a pixel, and the
-/// usage `TEXTURE_BINDING`.
+/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), one sample a
+/// pixel, and the usage `TEXTURE_BINDING`.
 pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 
-/// Outputs of [`record`](Afterimage::record): a texture, and optionally counters and timestamps. `record` also accepts the texture
-/// alone.
+/// Outputs of [`record`](Afterimage::record): a texture, and optionally counters and timestamps. `record` also accepts
+/// the texture alone.
 ///
 /// ```
 /// # fn example<'a>(output: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
@@ -24,12 +24,12 @@ pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
-    /// Output frame: a texture of the context's size, layers and output format, with the usage `STORAGE_BINDING`. Color is linear, as
-    /// the input's; alpha is 1.
+    /// Output frame: a texture of the context's size, layers and output format, with the usage `STORAGE_BINDING`. Color
+    /// is linear, as the input's; alpha is 1.
     pub output: &'a Texture,
     /// Buffer for pixel counters, which [`FrameStats::from_counters`](crate::FrameStats::from_counters) reads: at least
-    /// [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back). `None`: nothing is
-    /// counted, at no cost.
+    /// [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back).
+    /// `None`: nothing is counted, at no cost.
     pub counters: Option<&'a Buffer>,
     /// Timestamp queries around the passes. Needs `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,

@@ -1,5 +1,5 @@
-//! State between frames: two sets of textures, the previous frame's to read and the current one's to write, which swap after each
-//! frame.
+//! State between frames: two sets of textures, the previous frame's to read and the current one's to write, which swap
+//! after each frame.
 
 use super::mip_chain::{self, CandidatePass, Candidates, MipChainPass, MipLevel};
 use crate::frame::ContextDesc;
@@ -34,7 +34,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Empty history. `mip_chain` and `candidates` fill the mip chains of surfaces and of candidates, if the layout has them.
+    /// Empty history. `mip_chain` and `candidates` fill the mip chains of surfaces and of candidates, if the layout has
+    /// them.
     pub fn new(
         device: &Device,
         desc: &ContextDesc,
@@ -140,7 +141,8 @@ fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u3
     })
 }
 
-/// View of all layers of a texture's first level as a 2D array. Textures with one layer, too, because the shaders bind arrays.
+/// View of all layers of a texture's first level as a 2D array. Textures with one layer, too, because the shaders bind
+/// arrays.
 pub fn array_view(texture: &Texture) -> TextureView {
     levels_view(texture, 0, Some(1))
 }

@@ -1,8 +1,8 @@
 //! Pass of a method: its bindings, and its pipelines, specialised to the inputs of a frame and to the settings.
 //!
-//! The first bindings are shared by all methods, in the order of `shaders/pass/inputs.wgsl`; the history's follow, in the order of the
-//! method's shader. Absent inputs are switched off by `override` constants and bound to placeholders, which a specialised shader does
-//! not read.
+//! The first bindings are shared by all methods, in the order of `shaders/pass/inputs.wgsl`; the history's follow, in
+//! the order of the method's shader. Absent inputs are switched off by `override` constants and bound to placeholders,
+//! which a specialised shader does not read.
 
 use super::Frame;
 use super::buffer::filled;
@@ -76,7 +76,8 @@ impl MethodPass {
         self.shader.dispatch(device, pass, &overrides, &group, blocks, frame.views.len() as u32);
     }
 
-    /// Bind group of one frame. Each frame has its own buffer of uniforms, so that one submission can contain several frames.
+    /// Bind group of one frame. Each frame has its own buffer of uniforms, so that one submission can contain several
+    /// frames.
     fn group(
         &self,
         device: &Device,

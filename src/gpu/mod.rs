@@ -1,7 +1,7 @@
 //! GPU executor: the post-process as compute passes in the caller's wgpu command encoder.
 //!
-//! The caller owns device, queue, encoder, submission, and every input and output texture. [`Afterimage`] owns its history and
-//! pipelines. [`Afterimage::record`] never submits, polls, maps or waits.
+//! The caller owns device, queue, encoder, submission, and every input and output texture. [`Afterimage`] owns its
+//! history and pipelines. [`Afterimage::record`] never submits, polls, maps or waits.
 //!
 //! No device features are needed, and no limits beyond WebGPU's defaults except for frames larger than 8192 pixels
 //! ([`Afterimage::required_limits`]). Any number of contexts can share a device.
@@ -44,8 +44,8 @@ use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, Textu
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
 ///
-/// The [crate's first page](crate) has an example. `examples/02_engine.rs` is an engine's loop with resize, cuts, pauses, lost gaze and
-/// changes of exposure; `examples/03_stereo.rs` has two views.
+/// The [crate's first page](crate) has an example. `examples/02_engine.rs` is an engine's loop with resize, cuts,
+/// pauses, lost gaze and changes of exposure; `examples/03_stereo.rs` has two views.
 ///
 /// Several frames can be recorded into one encoder; they are processed in that order.
 #[derive(Debug)]
@@ -97,11 +97,12 @@ struct Prepared {
 }
 
 impl Afterimage {
-    /// A context without history, for outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules;
-    /// pipelines are compiled at the first frame that needs them.
+    /// A context without history, for outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates
+    /// shader modules; pipelines are compiled at the first frame that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device is too low.
+    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
+    /// is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
         let shader = desc.settings.method.entry().shader;
         Self::with_shader(device, desc, output_format, &SHADERS.compose(shader).source)
@@ -142,7 +143,8 @@ impl Afterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the
+    /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -172,8 +174,8 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Discards history and held gaze positions: the next frame is processed like the first one. [`Reset::All`](crate::Reset::All) does
-    /// the same as part of a frame, but keeps the gaze.
+    /// Discards history and held gaze positions: the next frame is processed like the first one.
+    /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.history.forget();
     }
@@ -185,19 +187,21 @@ impl Afterimage {
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
     ///
-    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the
-    /// keys (`R32Float`). For taa and smr the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip
-    /// chain (`Rgba16Float`), and for noisy candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
+    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
+    /// and with A-ES the keys (`R32Float`). For taa and smr the packed surfaces ([`surface`](crate::kernel::surface),
+    /// `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy candidates the packed noise
+    /// ([`noise`](crate::kernel::noise), `R32Uint`).
     #[doc(hidden)]
     pub fn history_textures(&self) -> &[Texture] {
         &self.history.split().0.textures
     }
 
-    /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output texture, or a
-    /// [`Target`]) and the history. Recoverable problems are returned as warnings, which may be ignored.
+    /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
+    /// texture, or a [`Target`]) and the history. Recoverable problems are returned as warnings, which may be ignored.
     ///
     /// # Errors
-    /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded and history is unchanged.
+    /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded and history is
+    /// unchanged.
     pub fn record<'a>(
         &mut self,
         device: &Device,
@@ -218,8 +222,9 @@ impl Afterimage {
         Ok(prepared.recorded)
     }
 
-    /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear color, into the
-    /// target's output. Counters, if any, are those of `record`. History is unchanged: call it before `record`, with another output.
+    /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
+    /// color, into the target's output. Counters, if any, are those of `record`. History is unchanged: call it before
+    /// `record`, with another output.
     ///
     /// ```no_run
     /// # fn example(

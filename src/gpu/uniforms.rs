@@ -47,7 +47,8 @@ pub struct FrameUniforms {
     pub mid_radius_deg: f32,
     /// Width of the blend outside each radius in degrees.
     pub blend_deg: f32,
-    /// Level of detail in the middle region; for a Gaussian blur its standard deviation at the region's edge, in pixels.
+    /// Level of detail in the middle region; for a Gaussian blur its standard deviation at the region's edge, in
+    /// pixels.
     pub coarse_mid: f32,
     /// Level of detail in the periphery; for a Gaussian blur its largest standard deviation, in pixels.
     pub coarse_far: f32,

@@ -1,8 +1,8 @@
-//! Elementary functions built from exactly rounded operations, so that CPU and GPU agree bit for bit. Tests check the stated
-//! accuracies.
+//! Elementary functions built from exactly rounded operations, so that CPU and GPU agree bit for bit. Tests check the
+//! stated accuracies.
 //!
-//! Shader compilers may still reorder sums: Mesa turns `(product + x) + constant` into `(x + constant) + product`. Horner's form
-//! has no sum that it can reorder.
+//! Shader compilers may still reorder sums: Mesa turns `(product + x) + constant` into `(x + constant) + product`.
+//! Horner's form has no sum that it can reorder.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 

@@ -39,8 +39,8 @@ fn fifth_root(x: f32) -> f32 {
     r
 }
 
-/// sRGB encoding of one linear channel (IEC 61966-2-1). Relative error below 6e-7 in \[0, 1\]. Values above 1 follow the same curve;
-/// negative ones its mirror image.
+/// sRGB encoding of one linear channel (IEC 61966-2-1). Relative error below 6e-7 in \[0, 1\]. Values above 1 follow
+/// the same curve; negative ones its mirror image.
 ///
 /// `x^(1/2.4) = c * sqrt(sqrt(c))` with `c = cbrt(x)`.
 #[inline]
@@ -55,8 +55,8 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear < 0.0 { -encoded } else { encoded }
 }
 
-/// Linear value of one sRGB-encoded channel. Relative error below 7e-7 in \[0, 1\]. Values above 1 follow the same curve; negative
-/// ones its mirror image.
+/// Linear value of one sRGB-encoded channel. Relative error below 7e-7 in \[0, 1\]. Values above 1 follow the same
+/// curve; negative ones its mirror image.
 ///
 /// `x^2.4 = x^2 * fifth_root(x)^2`.
 #[inline]
@@ -83,21 +83,21 @@ fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON { cbrt(t) } else { (LAB_KAPPA * t + 16.0) / 116.0 }
 }
 
-/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* exceeds 100 for
-/// colors above white and is negative for negative ones; always finite for finite input.
+/// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* exceeds 100
+/// for colors above white and is negative for negative ones; always finite for finite input.
 #[inline]
 pub fn lab(linear: Vec3) -> Vec3 {
     let c = linear.clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF));
-    // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each divided by the white point's
-    // X, Y or Z, so that it sums to 1.
+    // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each divided by the white
+    // point's X, Y or Z, so that it sums to 1.
     let fx = lab_f(0.433_887_35 * c.x + 0.376_224 * c.y + 0.189_888_65 * c.z);
     let fy = lab_f(0.212_639 * c.x + 0.715_168_7 * c.y + 0.072_192_3 * c.z);
     let fz = lab_f(0.017_750_04 * c.x + 0.109_447_62 * c.y + 0.872_802_3 * c.z);
     Vec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz))
 }
 
-/// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colors; `reference` sets the weights, so
-/// the function is not symmetric. At least 0, exactly 0 for equal colors; may exceed 100.
+/// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colors; `reference` sets the weights,
+/// so the function is not symmetric. At least 0, exactly 0 for equal colors; may exceed 100.
 #[inline]
 pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
     let d = reference - sample;

@@ -1,33 +1,34 @@
-//! Debug views: the decision at a pixel as a color. Ramps and codes are defined sRGB-encoded, as they look on screen; views are
-//! returned as linear light.
+//! Debug views: the decision at a pixel as a color. Ramps and codes are defined sRGB-encoded, as they look on screen;
+//! views are returned as linear light.
 
 use super::color::srgb_decode;
 use super::reproject::Verdict;
 use super::sanitize::is_finite;
 use glam::Vec3;
 
-/// Debug view: an image of one quantity of the decision at each pixel. `gpu::Afterimage::record_view` draws it and has an example.
+/// Debug view: an image of one quantity of the decision at each pixel. `gpu::Afterimage::record_view` draws it and has
+/// an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 #[non_exhaustive]
 pub enum DebugView {
-    /// Quality of the stored sample: black 0, white 1. For wrs the weight sum divided by 16; for smr the sharpness, which is 1 at full
-    /// rate and halves with each level of detail. Black for the other methods.
+    /// Quality of the stored sample: black 0, white 1. For wrs the weight sum divided by 16; for smr the sharpness,
+    /// which is 1 at full rate and halves with each level of detail. Black for the other methods.
     Quality = 1,
-    /// Frames since the shown sample was shaded: black 0, white 255 or more, on a square-root scale. wrs only; black for the other
-    /// methods.
+    /// Frames since the shown sample was shaded: black 0, white 255 or more, on a square-root scale. wrs only; black
+    /// for the other methods.
     Age = 2,
-    /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr and taa its share in
-    /// the output color.
+    /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr and
+    /// taa its share in the output color.
     Survival = 3,
-    /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow empty, red
-    /// disoccluded, cyan distrusted.
+    /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow
+    /// empty, red disoccluded, cyan distrusted.
     Rejection = 4,
-    /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well history explains the
-    /// candidate. White for the other methods.
+    /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well
+    /// history explains the candidate. White for the other methods.
     Gate = 5,
-    /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels; grey is no
-    /// motion, green NaN or infinite.
+    /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels;
+    /// grey is no motion, green NaN or infinite.
     Motion = 6,
 }
 
@@ -132,8 +133,8 @@ pub fn verdict_color(verdict: Verdict) -> Vec3 {
     }
 }
 
-/// Color of a motion vector (previous minus current position, in pixels), sRGB-encoded. The hue shows the direction in which the
-/// surface moves.
+/// Color of a motion vector (previous minus current position, in pixels), sRGB-encoded. The hue shows the direction in
+/// which the surface moves.
 #[inline]
 pub fn motion_color(motion: [f32; 2]) -> Vec3 {
     if !(is_finite(motion[0]) && is_finite(motion[1])) {

@@ -18,8 +18,8 @@ pub struct DisparityMap {
 /// Disparity of a pixel without usable depth: fails every depth test.
 pub const INVALID_DISPARITY: f32 = -1.0;
 
-/// Disparity of a stored depth value, at least 0; 0 for infinite distance. [`INVALID_DISPARITY`] for NaN and for distances that are
-/// not positive.
+/// Disparity of a stored depth value, at least 0; 0 for infinite distance. [`INVALID_DISPARITY`] for NaN and for
+/// distances that are not positive.
 #[inline]
 pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     let is_nan = stored.to_bits() & 0x7fff_ffff > 0x7f80_0000;
@@ -41,9 +41,9 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     }
 }
 
-/// Disparity that the surface of a pixel had in the previous frame's view, from `z_previous = z * stretch + shift`; with `m` the
-/// current-to-previous view transform, `stretch = m20 * ray.x + m21 * ray.y + m22` and `shift = m23`. [`INVALID_DISPARITY`] if the
-/// point was behind the previous camera.
+/// Disparity that the surface of a pixel had in the previous frame's view, from `z_previous = z * stretch + shift`;
+/// with `m` the current-to-previous view transform, `stretch = m20 * ray.x + m21 * ray.y + m22` and `shift = m23`.
+/// [`INVALID_DISPARITY`] if the point was behind the previous camera.
 #[inline]
 pub fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     if disparity < 0.0 {
@@ -57,8 +57,8 @@ pub fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     disparity / denominator
 }
 
-/// Whether a stored and an expected disparity belong to one surface: they differ by at most `relative` of the larger one
-/// plus `slope`, the surface's own change over the distance that reprojection may be off.
+/// Whether a stored and an expected disparity belong to one surface: they differ by at most `relative` of the larger
+/// one plus `slope`, the surface's own change over the distance that reprojection may be off.
 #[inline]
 pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     if expected < 0.0 || stored < 0.0 {
@@ -67,8 +67,9 @@ pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bo
     (expected - stored).abs() <= relative * expected.max(stored) + slope
 }
 
-/// Slope of the surface at pixel (`x`, `y`) of an image of `size`: change of disparity a pixel, summed over both axes. Constant on a
-/// plane. `at` reads a disparity; invalid ones are ignored. WGSL has no closures: there the pass has a loop instead.
+/// Slope of the surface at pixel (`x`, `y`) of an image of `size`: change of disparity a pixel, summed over both axes.
+/// Constant on a plane. `at` reads a disparity; invalid ones are ignored. WGSL has no closures: there the pass has a
+/// loop instead.
 #[inline]
 pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f32 {
     let tap = |inside: bool, x: u32, y: u32| {
@@ -82,9 +83,9 @@ pub fn slope(x: u32, y: u32, size: [u32; 2], at: impl Fn(u32, u32) -> f32) -> f3
     one_sided_slope(center, left, right) + one_sided_slope(center, up, down)
 }
 
-/// Change of disparity over one pixel along an axis: the smaller of the two one-sided differences, so that a silhouette on one side
-/// does not count as slope. 0 where the pixel is nearer or farther than both neighbours, as a thin wire is. A neighbour that is
-/// missing or invalid is ignored.
+/// Change of disparity over one pixel along an axis: the smaller of the two one-sided differences, so that a silhouette
+/// on one side does not count as slope. 0 where the pixel is nearer or farther than both neighbours, as a thin wire is.
+/// A neighbour that is missing or invalid is ignored.
 #[inline]
 pub fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = center - before;

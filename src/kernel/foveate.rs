@@ -1,14 +1,16 @@
-//! Foveation: level of detail by eccentricity, and the arithmetic of the foveation filters (mip levels, Gaussian taps, blocks).
+//! Foveation: level of detail by eccentricity, and the arithmetic of the foveation filters (mip levels, Gaussian taps,
+//! blocks).
 
 use super::approx;
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
-/// Standard deviation in pixels below which nothing is blurred: the weight of the next pixel is e^-32, far below the last bit of
-/// any color.
+/// Standard deviation in pixels below which nothing is blurred: the weight of the next pixel is e^-32, far below the
+/// last bit of any color.
 const SHARPEST_BLUR_PX: f32 = 0.125;
-/// Mip bias of block samples: the sample of a block of level l reads level l - 2. Renderers filter textures for a finer level than the
-/// shading rate (anisotropic filtering, mip bias), so that block samples alias; the filter reproduces that.
+/// Mip bias of block samples: the sample of a block of level l reads level l - 2. Renderers filter textures for a finer
+/// level than the shading rate (anisotropic filtering, mip bias), so that block samples alias; the filter reproduces
+/// that.
 const SAMPLE_LEVEL_BIAS: u32 = 2;
 
 /// 0 up to `start`, 1 from `start + width` on, linear in between (a step for width 0).
@@ -23,8 +25,8 @@ pub fn ramp(x: f32, start: f32, width: f32) -> f32 {
     }
 }
 
-/// Level of detail (log2 of the block edge in pixels) at eccentricity `e_deg`: 0 inside the fovea, `lod_mid` to the edge of
-/// the middle region, `lod_far` beyond, each step spread linearly over `blend_deg` outside its radius.
+/// Level of detail (log2 of the block edge in pixels) at eccentricity `e_deg`: 0 inside the fovea, `lod_mid` to the
+/// edge of the middle region, `lod_far` beyond, each step spread linearly over `blend_deg` outside its radius.
 #[inline]
 pub fn region_lod(
     e_deg: f32,
@@ -37,9 +39,9 @@ pub fn region_lod(
     lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg) + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
 }
 
-/// Level of detail of a blur at eccentricity `e_deg`. Its standard deviation sigma is 0 up to `start_deg`, grows linearly to
-/// `sigma_at_end` pixels at `end_deg` and beyond, and is limited to `largest_sigma`. `2^lod = 1 + 2 sigma`, so that blocks and blurs
-/// of one level look equally coarse. Error below 1e-6.
+/// Level of detail of a blur at eccentricity `e_deg`. Its standard deviation sigma is 0 up to `start_deg`, grows
+/// linearly to `sigma_at_end` pixels at `end_deg` and beyond, and is limited to `largest_sigma`. `2^lod = 1 + 2 sigma`,
+/// so that blocks and blurs of one level look equally coarse. Error below 1e-6.
 #[inline]
 pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest_sigma: f32) -> f32 {
     let slope = sigma_at_end / (end_deg - start_deg).max(1e-3);
@@ -66,8 +68,9 @@ pub struct GaussTap {
 
 /// Centre tap of a Gaussian of standard deviation `sigma_px`.
 ///
-/// Weights follow from forward differences of their logarithm: two products a tap instead of an exponential (Turkowski, "Incremental
-/// Computation of the Gaussian", GPU Gems 3, 2007). Error of a weight below `1e-7 (1 + sigma_px^2)`: 6e-6 at 7.5 pixels.
+/// Weights follow from forward differences of their logarithm: two products a tap instead of an exponential (Turkowski,
+/// "Incremental Computation of the Gaussian", GPU Gems 3, 2007). Error of a weight below `1e-7 (1 + sigma_px^2)`: 6e-6
+/// at 7.5 pixels.
 #[inline]
 pub fn gauss_center(sigma_px: f32) -> GaussTap {
     let s = sigma_px.max(SHARPEST_BLUR_PX);
@@ -126,8 +129,8 @@ pub fn mean_of_four(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Vec3 {
     (a + b + c + d) * 0.25
 }
 
-/// Pixel coordinate of the centre of block number `block` of 2^level pixels along `len`; clamped to the last pixel for blocks that
-/// the border cuts. Exact.
+/// Pixel coordinate of the centre of block number `block` of 2^level pixels along `len`; clamped to the last pixel for
+/// blocks that the border cuts. Exact.
 #[inline]
 pub fn block_center_px(block: u32, level: u32, len: u32) -> f32 {
     let edge_px = (1_u32 << level) as f32;

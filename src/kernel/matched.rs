@@ -1,5 +1,5 @@
-//! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as, low-passed to the
-//! candidate's level of detail, it explains the candidate. `docs/method.md` derives the equations.
+//! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as,
+//! low-passed to the candidate's level of detail, it explains the candidate. `docs/method.md` derives the equations.
 
 use glam::{Vec3, Vec4};
 
@@ -7,10 +7,11 @@ use glam::{Vec3, Vec4};
 pub const QUALITY_WIDTH: f32 = 0.1;
 /// Levels of detail by which history may be coarser than the candidate and still be accumulated.
 pub(super) const COARSER_WIDTH: f32 = 0.25;
-/// Gate: difference at which the fit starts to fall from 1 (contrast is added to it), and width over which it falls to 0, in units of
-/// [`root_difference`].
+/// Gate: difference at which the fit starts to fall from 1 (contrast is added to it), and width over which it falls to
+/// 0, in units of [`root_difference`].
 const GATE: [f32; 2] = [3.0, 6.0];
-/// Difference at which relighting starts, in units of [`root_difference`], and the factor on contrast that is added to it.
+/// Difference at which relighting starts, in units of [`root_difference`], and the factor on contrast that is added to
+/// it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
 /// [`RELIGHT`] for point-sampled blocks: higher, because their aliasing must not pass for a change of light.
 const RELIGHT_BLOCKS: [f32; 2] = [12.0, 2.0];
@@ -45,8 +46,8 @@ pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
     (t * t) * (3.0 - 2.0 * t)
 }
 
-/// Difference of two linear colors, 100 between black and white: Euclidean distance in YCoCg of the square roots, squared chroma at
-/// half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
+/// Difference of two linear colors, 100 between black and white: Euclidean distance in YCoCg of the square roots,
+/// squared chroma at half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
 #[inline]
 pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
     let d = roots(x) - roots(y);
@@ -65,8 +66,9 @@ pub fn roots(c: Vec3) -> Vec3 {
     Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
 }
 
-/// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its 2x2 block lies
-/// on a moving silhouette, where renderers mix the vectors of both sides: such a vector points at neither surface.
+/// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its
+/// 2x2 block lies on a moving silhouette, where renderers mix the vectors of both sides: such a vector points at
+/// neither surface.
 #[inline]
 pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
     let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
@@ -78,14 +80,14 @@ pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
 pub struct ReuseWeight {
     /// Degree to which history is finer than the candidate, in \[0, 1\].
     pub finer: f32,
-    /// History's share in the output, if it fits: 1 where it is finer, `accumulate` where equally fine, 0 where it is coarser. Without
-    /// noise, equally fine history has a share of 0 in the fovea.
+    /// History's share in the output, if it fits: 1 where it is finer, `accumulate` where equally fine, 0 where it is
+    /// coarser. Without noise, equally fine history has a share of 0 in the fovea.
     pub share: f32,
 }
 
-/// Reuse weight of history at level of detail `history_lod` for a candidate at `lod`. `confidence`: noise confidence of history and
-/// of the candidate, in \[0, 1\], 1 without noise. It makes noisy finer history count as equally fine, and lets coarser history be
-/// accumulated into a noisy candidate.
+/// Reuse weight of history at level of detail `history_lod` for a candidate at `lod`. `confidence`: noise confidence of
+/// history and of the candidate, in \[0, 1\], 1 without noise. It makes noisy finer history count as equally fine, and
+/// lets coarser history be accumulated into a noisy candidate.
 #[inline]
 pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: [f32; 2]) -> ReuseWeight {
     let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0) * confidence[0];
@@ -95,8 +97,8 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
     ReuseWeight { finer, share: finer + (alike * calm) * accumulate }
 }
 
-/// Gain of relighting for one color channel: the ratio of candidate and history at a coarse level, blended to 1 where light did not
-/// change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
+/// Gain of relighting for one color channel: the ratio of candidate and history at a coarse level, blended to 1 where
+/// light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
 #[inline]
 pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
@@ -105,14 +107,16 @@ pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
     (1.0 - share) + ratio * share
 }
 
-/// Difference at which relighting starts, in units of [`root_difference`]. `noise`: difference that noise alone can make.
+/// Difference at which relighting starts, in units of [`root_difference`]. `noise`: difference that noise alone can
+/// make.
 #[inline]
 pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
     (relight[0] + relight[1] * contrast) + noise
 }
 
-/// Whether candidate and history differ by more than detail explains. Only then does relighting need the candidate's neighbours.
+/// Whether candidate and history differ by more than detail explains. Only then does relighting need the candidate's
+/// neighbours.
 #[inline]
 pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, blocks: bool) -> bool {
     root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks, 0.0)
@@ -123,7 +127,8 @@ pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, 
 pub struct Evidence {
     /// The candidate.
     pub candidate: Vec3,
-    /// Color that is compared with history: the candidate, or a mean of its neighbourhood where it is a point sample or noisy.
+    /// Color that is compared with history: the candidate, or a mean of its neighbourhood where it is a point sample or
+    /// noisy.
     pub compared: Vec3,
     /// Candidate one level coarser; used only where [`is_changed`].
     pub compared_coarser: Vec3,
@@ -141,8 +146,8 @@ pub struct Evidence {
     pub next_level: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// Difference of `compared` and `matched` that noise alone can make, in units of [`root_difference`]; 0 for candidates without
-    /// noise.
+    /// Difference of `compared` and `matched` that noise alone can make, in units of [`root_difference`]; 0 for
+    /// candidates without noise.
     pub noise: f32,
     /// Noise confidence of history and of the candidate, in \[0, 1\]; 1 without noise.
     pub confidence: [f32; 2],
@@ -161,8 +166,8 @@ pub struct Matched {
     pub fit: f32,
 }
 
-/// Blends history into the candidate by its reuse weight and its fit, the degree to which it explains the candidate. History is relit
-/// if only the light changed.
+/// Blends history into the candidate by its reuse weight and its fit, the degree to which it explains the candidate.
+/// History is relit if only the light changed.
 #[inline]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
@@ -206,7 +211,8 @@ pub fn mip_mean(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> Vec4 {
     (a + b + c + d) * 0.25
 }
 
-/// Bilinear interpolation of the color of four texels of the mip chain, weighted by coverage. Black where nothing is covered.
+/// Bilinear interpolation of the color of four texels of the mip chain, weighted by coverage. Black where nothing is
+/// covered.
 #[inline]
 pub fn mip_bilinear(top: [Vec4; 2], bottom: [Vec4; 2], fraction: [f32; 2]) -> Vec3 {
     let t = top[0] + (top[1] - top[0]) * fraction[0];

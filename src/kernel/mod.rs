@@ -1,8 +1,9 @@
 //! Per-pixel mathematics of the passes, as functions without state.
 //!
-//! Each file has a twin in `shaders/lib` with the same stem and the same function names. Twins use only operations that give the
-//! same bits in Rust and WGSL: `+ - * /`, `sqrt`, comparisons, integer arithmetic and bit casts. No `pow`, `exp`, `log`, `acos` or
-//! fused multiply-add, whose results differ from device to device; the polynomials that replace them state their accuracy.
+//! Each file has a twin in `shaders/lib` with the same stem and the same function names. Twins use only operations that
+//! give the same bits in Rust and WGSL: `+ - * /`, `sqrt`, comparisons, integer arithmetic and bit casts. No `pow`,
+//! `exp`, `log`, `acos` or fused multiply-add, whose results differ from device to device; the polynomials that replace
+//! them state their accuracy.
 
 pub mod acuity;
 pub mod approx;

@@ -1,23 +1,23 @@
-//! Noise of candidates. A path-traced pixel is the mean of a few random samples: their number sets the weight of history, their
-//! variance the difference from history that noise explains.
+//! Noise of candidates. A path-traced pixel is the mean of a few random samples: their number sets the weight of
+//! history, their variance the difference from history that noise explains.
 //!
-//! History is weighted by numbers of samples alone. Weighting by the samples' own variance would favour pixels whose samples all
-//! missed a lamp (dark, and of low variance), and the mean would be biased towards black.
+//! History is weighted by numbers of samples alone. Weighting by the samples' own variance would favour pixels whose
+//! samples all missed a lamp (dark, and of low variance), and the mean would be biased towards black.
 
 use super::matched::{COARSER_WIDTH, DARK, smooth_step};
 use super::pack::{half_bits, half_value};
 use super::sanitize::MAX_HALF;
 use glam::{Vec3, Vec4};
 
-/// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an eighth of the
-/// noise.
+/// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an
+/// eighth of the noise.
 pub const NOISY_LEVELS: f32 = 3.0;
 /// Number of candidates in such a mean.
 const COMPARED_CANDIDATES: f32 = 64.0;
 /// Standard deviations up to which a difference is attributed to noise.
 const SIGMAS: f32 = 3.0;
-/// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of `root_difference`. Both are
-/// below the just noticeable difference.
+/// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of
+/// `root_difference`. Both are below the just noticeable difference.
 const CONFIDENCE_FALLOFF: [f32; 2] = [0.5, 1.0];
 /// Limit on the samples of a coarser history, in frames.
 const COARSER_FRAMES: f32 = 4.0;
@@ -37,8 +37,8 @@ pub struct Noise {
     pub variance: f32,
 }
 
-/// Noise of a candidate from the frame's input: standard error of its luma, linear, and number of samples. NaN or negative numbers
-/// count as an error of 0, and as one sample.
+/// Noise of a candidate from the frame's input: standard error of its luma, linear, and number of samples. NaN or
+/// negative numbers count as an error of 0, and as one sample.
 #[inline]
 pub fn candidate_noise(input: [f32; 2]) -> Noise {
     let error = positive(input[0]).min(MAX_ERROR);
@@ -46,7 +46,8 @@ pub fn candidate_noise(input: [f32; 2]) -> Noise {
     Noise { samples, variance: ((error * error) * samples).min(MAX_HALF) }
 }
 
-/// `x` if it is positive, infinity included, else 0. By bits, because shading languages may assume that NaN does not exist.
+/// `x` if it is positive, infinity included, else 0. By bits, because shading languages may assume that NaN does not
+/// exist.
 #[inline]
 fn positive(x: f32) -> f32 {
     if x.to_bits() <= 0x7f80_0000 { x } else { 0.0 }
@@ -64,8 +65,8 @@ pub fn unpack_noise(word: u32) -> Noise {
     Noise { samples: half_value(word & 0x7fff), variance: half_value((word >> 16) & 0x7fff) }
 }
 
-/// Texel of level 0 of the candidates' mip chain: color, and variance of the pixel's luma. A negative alpha marks an unusable
-/// candidate.
+/// Texel of level 0 of the candidates' mip chain: color, and variance of the pixel's luma. A negative alpha marks an
+/// unusable candidate.
 #[inline]
 pub fn candidate_texel(color: Vec3, usable: bool, n: Noise) -> Vec4 {
     if usable { color.extend(n.variance / n.samples) } else { Vec3::ZERO.extend(UNKNOWN) }
@@ -109,15 +110,15 @@ pub fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     (history.samples * history.variance + candidate.samples * candidate.variance) / all
 }
 
-/// Derivative of [`root_difference`](super::matched::root_difference) by linear luma, at a luma: that of 100 times its square root,
-/// limited for dark colors.
+/// Derivative of [`root_difference`](super::matched::root_difference) by linear luma, at a luma: that of 100 times its
+/// square root, limited for dark colors.
 #[inline]
 pub fn root_slope(luma: f32) -> f32 {
     50.0 / (luma.max(0.0) + DARK).sqrt()
 }
 
-/// Difference of the compared means of candidates and of history that noise alone can make: three standard deviations at a luma, in
-/// units of [`root_difference`](super::matched::root_difference).
+/// Difference of the compared means of candidates and of history that noise alone can make: three standard deviations
+/// at a luma, in units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
@@ -125,16 +126,16 @@ pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
 }
 
-/// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer sample replace a
-/// coarser one.
+/// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer
+/// sample replace a coarser one.
 #[inline]
 pub fn noise_confidence(history: Noise, luma: f32) -> f32 {
     let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
     1.0 - smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
 }
 
-/// Noise of a history that is coarser than the candidate by `levels` of detail, with its number of samples limited to a few frames:
-/// such history is blurred, and new samples should soon outweigh it.
+/// Noise of a history that is coarser than the candidate by `levels` of detail, with its number of samples limited to a
+/// few frames: such history is blurred, and new samples should soon outweigh it.
 #[inline]
 pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
     let limited = history.samples.min(COARSER_FRAMES * candidate.samples);
@@ -142,15 +143,15 @@ pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise 
     Noise { samples: history.samples + (limited - history.samples) * t, variance: history.variance }
 }
 
-/// Difference of a candidate and a sample of equal noise that noise alone can make: three standard deviations at a luma, in units of
-/// [`root_difference`](super::matched::root_difference).
+/// Difference of a candidate and a sample of equal noise that noise alone can make: three standard deviations at a
+/// luma, in units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
 }
 
-/// Noise of the output color. `share`: history's share in it; `finer`: degree to which history replaced the candidate as the finer
-/// sample, in which case the candidate's samples do not count.
+/// Noise of the output color. `share`: history's share in it; `finer`: degree to which history replaced the candidate
+/// as the finer sample, in which case the candidate's samples do not count.
 #[inline]
 pub fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Noise {
     // A mean with weights 1 - share and share of n and N samples has the weight of n / (1 - share) samples.

@@ -6,9 +6,9 @@
 //! | 1 | blue, half | disparity, [`disparity_code`] |
 //! | 2 | bits 0-7: age in frames, stays at 255 | bits 8-31: weight sum, the upper 24 bits of its float |
 //!
-//! All zeros are an empty reservoir. The weight sum keeps 16 significant bits: for a stream of constant weight w under Bernoulli
-//! survival it stops growing between 256 w and 363 w, so that the probability of replacement never falls below 1/364 a frame. A half
-//! would stop at 63 w, and at 33 w with half arithmetic.
+//! All zeros are an empty reservoir. The weight sum keeps 16 significant bits: for a stream of constant weight w under
+//! Bernoulli survival it stops growing between 256 w and 363 w, so that the probability of replacement never falls
+//! below 1/364 a frame. A half would stop at 63 w, and at 33 w with half arithmetic.
 
 use super::sanitize::{self, MAX_HALF};
 use glam::Vec3;
@@ -63,8 +63,8 @@ pub fn half_value(bits: u32) -> f32 {
     f32::from_bits(value.to_bits() | sign)
 }
 
-/// 16-bit code of a disparity: 6 bits of exponent (2^-32 to 2^32) and 10 of mantissa, a relative error of at most 2^-11. Smaller
-/// disparities become 0, the sky; negative ones (unknown) 0xffff.
+/// 16-bit code of a disparity: 6 bits of exponent (2^-32 to 2^32) and 10 of mantissa, a relative error of at most
+/// 2^-11. Smaller disparities become 0, the sky; negative ones (unknown) 0xffff.
 #[inline]
 pub fn disparity_code(disparity: f32) -> u32 {
     if disparity < 0.0 {

@@ -7,8 +7,8 @@ pub const MAX_MOTION_PX: f32 = 65536.0;
 
 /// Verdict on a pixel's history: valid, or the reason why it is missing or rejected.
 ///
-/// [`FrameStats::verdicts`](crate::FrameStats::verdicts) counts pixels by verdict, with the discriminant as index (an example is at
-/// [`FrameStats`](crate::FrameStats)); [`DebugView::Rejection`](crate::DebugView::Rejection) draws them.
+/// [`FrameStats::verdicts`](crate::FrameStats::verdicts) counts pixels by verdict, with the discriminant as index (an
+/// example is at [`FrameStats`](crate::FrameStats)); [`DebugView::Rejection`](crate::DebugView::Rejection) draws them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 #[non_exhaustive]
@@ -23,7 +23,8 @@ pub enum Verdict {
     OffScreen = 3,
     /// Nothing usable was stored at the previous position.
     Empty = 4,
-    /// Disocclusion: another surface was at the previous position (depth differs), or motion vectors of two surfaces are mixed.
+    /// Disocclusion: another surface was at the previous position (depth differs), or motion vectors of two surfaces
+    /// are mixed.
     Disoccluded = 5,
     /// The frame's trust mask is 0 at this pixel.
     Distrusted = 6,
@@ -37,8 +38,8 @@ impl Verdict {
     pub const REJECTED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }
 
-/// Texel of the previous frame nearest to the previous position of pixel (`x`, `y`). A position is inside the previous frame from
-/// half a pixel before the first centre (inclusive) to half a pixel after the last (exclusive).
+/// Texel of the previous frame nearest to the previous position of pixel (`x`, `y`). A position is inside the previous
+/// frame from half a pixel before the first centre (inclusive) to half a pixel after the last (exclusive).
 ///
 /// # Errors
 /// [`Verdict::BadMotion`] or [`Verdict::OffScreen`].

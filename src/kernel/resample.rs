@@ -3,8 +3,8 @@
 use super::surface::Surface;
 use glam::Vec3;
 
-/// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough for
-/// silhouettes.
+/// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough
+/// for silhouettes.
 pub const TAP_RELATIVE: f32 = 0.1;
 
 /// Number of taps: 4x4 texels without the corners, whose weights are close to 0.
@@ -16,8 +16,8 @@ pub fn tap_at(tap: u32) -> [u32; 2] {
     [((tap + 2) & 3) + u32::from(tap >= 10) - u32::from(tap < 2), (tap + 2) >> 2]
 }
 
-/// Catmull-Rom weights of four texels around a position at distance `t` in \[0, 1) after the second. At t = 0 the second weight is
-/// exactly 1 and the others are exactly 0.
+/// Catmull-Rom weights of four texels around a position at distance `t` in \[0, 1) after the second. At t = 0 the
+/// second weight is exactly 1 and the others are exactly 0.
 #[inline]
 pub fn catmull_rom(t: f32) -> [f32; 4] {
     let t2 = t * t;
@@ -74,8 +74,8 @@ pub struct Resampled {
     pub lod: f32,
 }
 
-/// Result of the sums: Catmull-Rom where all taps are on the surface, bilinear over those that are elsewhere, and the `nearest` texel
-/// where their weights are close to 0.
+/// Result of the sums: Catmull-Rom where all taps are on the surface, bilinear over those that are elsewhere, and the
+/// `nearest` texel where their weights are close to 0.
 #[inline]
 pub fn resolve(g: Gathered, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {

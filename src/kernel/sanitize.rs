@@ -1,4 +1,5 @@
-//! Sanitizing of inputs. Non-finite numbers are found by their bits, because shading languages may assume that NaN does not exist.
+//! Sanitizing of inputs. Non-finite numbers are found by their bits, because shading languages may assume that NaN does
+//! not exist.
 
 use glam::Vec3;
 

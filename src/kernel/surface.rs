@@ -39,8 +39,8 @@ impl Surface {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0 };
 }
 
-/// 14-bit float: a half without sign and without the last bit of its mantissa, that is 5 bits of exponent and 9 of mantissa. Rounded
-/// twice (first to a half), so the relative error is at most 1.5 * 2^-10. Negative values become 0.
+/// 14-bit float: a half without sign and without the last bit of its mantissa, that is 5 bits of exponent and 9 of
+/// mantissa. Rounded twice (first to a half), so the relative error is at most 1.5 * 2^-10. Negative values become 0.
 #[inline]
 pub fn half14_bits(x: f32) -> u32 {
     let positive = if x > 0.0 { x } else { 0.0 };

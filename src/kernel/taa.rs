@@ -1,14 +1,15 @@
-//! One pixel of temporal antialiasing, the gaze-unaware baseline: exponential mean along the motion, with history clipped to the color
-//! distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis 2014).
+//! One pixel of temporal antialiasing, the gaze-unaware baseline: exponential mean along the motion, with history
+//! clipped to the color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal
+//! supersampling"; Karis 2014).
 
 use super::matched::roots;
 use glam::Vec3;
 
-/// Weight of the candidate where history lies exactly on a texel, and midway between texels: higher there, because each resampling
-/// blurs.
+/// Weight of the candidate where history lies exactly on a texel, and midway between texels: higher there, because each
+/// resampling blurs.
 const ALPHA: [f32; 2] = [0.1, 0.4];
-/// Half width of the clipping box in standard deviations. A foveated neighbourhood is smooth, so that narrower boxes would clip the
-/// detail of earlier frames.
+/// Half width of the clipping box in standard deviations. A foveated neighbourhood is smooth, so that narrower boxes
+/// would clip the detail of earlier frames.
 const BOX_SIGMAS: f32 = 2.0;
 
 /// YCoCg of the square roots of a linear color.
@@ -47,8 +48,8 @@ pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
     resampled.max(1.0 - trust)
 }
 
-/// Output color: candidate blended with clipped history. `sum` and `squares`: sums over the 3x3 neighbourhood in YCoCg of colors and
-/// of their squares.
+/// Output color: candidate blended with clipped history. `sum` and `squares`: sums over the 3x3 neighbourhood in YCoCg
+/// of colors and of their squares.
 #[inline]
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);

@@ -86,8 +86,8 @@ pub struct Decision {
     pub survival: f32,
 }
 
-/// Reservoir with all weights multiplied by the history confidence `trust` ([`sanitize::trust`]), before gate and bias. Empty (a
-/// weight sum of 0) for a trust of 0.
+/// Reservoir with all weights multiplied by the history confidence `trust` ([`sanitize::trust`]), before gate and bias.
+/// Empty (a weight sum of 0) for a trust of 0.
 #[inline]
 pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     let share = sanitize::trust(trust);
@@ -98,8 +98,8 @@ pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
 }
 
-/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` from 2^-40 to 2^40: beyond that every half
-/// over- or underflows, and within it no product over- or underflows as a float.
+/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` from 2^-40 to 2^40: beyond
+/// that every half over- or underflows, and within it no product over- or underflows as a float.
 #[inline]
 pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
     (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
@@ -123,8 +123,8 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
-/// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. A `weight` of 0 marks an unusable
-/// candidate; it says nothing about a change of color either, so the gate value is 1.
+/// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. A `weight` of 0
+/// marks an unusable candidate; it says nothing about a change of color either, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;

@@ -1,7 +1,7 @@
 //! Methods: name, history layout and passes of each.
 //!
-//! To add one, write a variant of [`Method`], a file here with its [`Entry`] and its arm in [`Method::entry`], its passes in `cpu/` and
-//! in `shaders/pass/`, and tests.
+//! To add one, write a variant of [`Method`], a file here with its [`Entry`] and its arm in [`Method::entry`], its
+//! passes in `cpu/` and in `shaders/pass/`, and tests.
 
 mod none;
 mod smr;
@@ -57,8 +57,8 @@ pub(crate) struct Entry {
     /// Edge in pixels of the block that an invocation of the shader processes.
     #[cfg(feature = "gpu")]
     pub block_px: u32,
-    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says whether the frame has
-    /// a level-of-detail input.
+    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says
+    /// whether the frame has a level-of-detail input.
     #[cfg(feature = "gpu")]
     pub overrides: fn(&Settings, bool) -> Overrides,
 }
@@ -92,9 +92,9 @@ impl Settings {
         (self.method.entry().history)(self)
     }
 
-    /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and trust inputs.
-    /// Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth (4), trust (1). Taps that
-    /// neighbouring pixels share are counted once.
+    /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and
+    /// trust inputs. Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth
+    /// (4), trust (1). Taps that neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
         let (color, output) = (8, 8);
         if self.method == Method::None {

@@ -27,7 +27,8 @@ pub(super) static ENTRY: Entry = Entry {
 };
 
 fn history(settings: &Settings) -> HistoryLayout {
-    // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level coarser.
+    // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level
+    // coarser.
     let shift = match settings.foveation.filter {
         _ if settings.noisy => 2 + NOISY_LEVELS as u32,
         Filter::Block => 3,
@@ -37,11 +38,11 @@ fn history(settings: &Settings) -> HistoryLayout {
 }
 
 fn history_traffic_bytes(settings: &Settings) -> u32 {
-    // Surfaces: 8 bytes read, 8 written. Their mip chain has a third of the texels, 8 bytes each: read by the pass, written, and read
-    // again to fill its coarser levels.
+    // Surfaces: 8 bytes read, 8 written. Their mip chain has a third of the texels, 8 bytes each: read by the pass,
+    // written, and read again to fill its coarser levels.
     let surfaces = 2 * 8 + 8;
-    // The candidates' mip chain: color (8) and noise (4) are read to fill it, and it has the traffic of the surfaces' one (8). The pass
-    // reads noise (4), and reads and writes the stored noise (4 each).
+    // The candidates' mip chain: color (8) and noise (4) are read to fill it, and it has the traffic of the surfaces'
+    // one (8). The pass reads noise (4), and reads and writes the stored noise (4 each).
     let noise = if settings.noisy { (8 + 4 + 8) + 4 + 2 * 4 } else { 0 };
     surfaces + noise
 }
@@ -59,7 +60,8 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
         accumulate: settings.smr.accumulate,
-        // Rejecting coarse history costs little detail, so it must fit more strictly; except blocks, whose aliasing needs averaging.
+        // Rejecting coarse history costs little detail, so it must fit more strictly; except blocks, whose aliasing
+        // needs averaging.
         accumulate_tolerance: if blocks { 1.0 } else { 0.5 },
         tolerance: settings.smr.tolerance,
         blocks,

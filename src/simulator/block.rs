@@ -1,5 +1,5 @@
-//! Block filter: one point sample a block, as coarse shading hardware renders it. Blocks have power-of-two edges on a fixed, nested
-//! grid; the eccentricity of its centre decides whether a block is used.
+//! Block filter: one point sample a block, as coarse shading hardware renders it. Blocks have power-of-two edges on a
+//! fixed, nested grid; the eccentricity of its centre decides whether a block is used.
 
 use super::Pyramid;
 use crate::foveation::Foveation;
@@ -8,8 +8,8 @@ use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// Level of detail of each pixel, a whole number: level of the coarsest aligned block around it whose centre's level of detail is at
-/// least the block's level.
+/// Level of detail of each pixel, a whole number: level of the coarsest aligned block around it whose centre's level of
+/// detail is at least the block's level.
 pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
     let size = geometry.size_px();
     let coarsest = foveation.max_level();
@@ -28,8 +28,8 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
     })
 }
 
-/// Foveated frame: every pixel has the sample of its block. Non-finite samples become black, so that one non-finite pixel does not
-/// fill a block.
+/// Foveated frame: every pixel has the sample of its block. Non-finite samples become black, so that one non-finite
+/// pixel does not fill a block.
 pub fn render(pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
     let size = lods.size();
     Image::from_fn_parallel(size, |px| {

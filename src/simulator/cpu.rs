@@ -6,8 +6,9 @@ use crate::geometry::ViewGeometry;
 use crate::image::Image;
 
 impl Foveation {
-    /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. `ecc_deg`: eccentricities of the pixels
-    /// for the same gaze, from [`ViewGeometry::eccentricity_map`]. Needs the feature `cpu`. Example: `simulator::Pyramid`.
+    /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. `ecc_deg`:
+    /// eccentricities of the pixels for the same gaze, from [`ViewGeometry::eccentricity_map`]. Needs the feature
+    /// `cpu`. Example: `simulator::Pyramid`.
     ///
     /// # Panics
     /// If `ecc_deg` is smaller than the view.
@@ -18,8 +19,8 @@ impl Foveation {
         Image::from_fn_parallel(geometry.size_px(), |[x, y]| self.lod(ecc_deg.at(x as usize, y as usize)))
     }
 
-    /// Foveated frame, from the mip levels of a full-rate frame (levels 0 to [`max_level`](Self::max_level)) and the level of detail of
-    /// each pixel. Pixels of level 0 are copied bit for bit. Needs the feature `cpu`.
+    /// Foveated frame, from the mip levels of a full-rate frame (levels 0 to [`max_level`](Self::max_level)) and the
+    /// level of detail of each pixel. Pixels of level 0 are copied bit for bit. Needs the feature `cpu`.
     ///
     /// # Panics
     /// If the pyramid has too few levels.

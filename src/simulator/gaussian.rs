@@ -1,12 +1,12 @@
-//! Gaussian filter: blur that grows with eccentricity. Two one-dimensional passes, each with the width at the pixel that it writes:
-//! exact where the width is constant, a good approximation where it changes slowly.
+//! Gaussian filter: blur that grows with eccentricity. Two one-dimensional passes, each with the width at the pixel
+//! that it writes: exact where the width is constant, a good approximation where it changes slowly.
 
 use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// Foveated frame: `full` blurred by the width of each pixel's level of detail. Borders are clamped. Pixels of level 0 are copied bit
-/// for bit; for others non-finite pixels count as black.
+/// Foveated frame: `full` blurred by the width of each pixel's level of detail. Borders are clamped. Pixels of level 0
+/// are copied bit for bit; for others non-finite pixels count as black.
 pub fn render(full: &Image<[f32; 3]>, lods: &Image<f32>) -> Image<[f32; 3]> {
     blur_axis(&blur_axis(full, lods, 0), lods, 1)
 }

@@ -4,9 +4,11 @@ use crate::image::Image;
 use crate::kernel::{foveate, sanitize};
 use glam::Vec3;
 
-/// Mip levels of a full-rate frame: level 0 is the frame, a texel of each next level the mean of 2x2. Needs the feature `cpu`.
+/// Mip levels of a full-rate frame: level 0 is the frame, a texel of each next level the mean of 2x2. Needs the feature
+/// `cpu`.
 ///
-/// Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to `(i + 1) * 2^l - 1`, as far as they exist.
+/// Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to `(i + 1) * 2^l - 1`, as far as they
+/// exist.
 ///
 /// ```
 /// use afterimage::simulator::Pyramid;
@@ -29,8 +31,8 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// Computes levels 0 to `max_level` of `full`. Non-finite pixels count as black in coarser levels, so that one of them does not
-    /// make a whole block non-finite.
+    /// Computes levels 0 to `max_level` of `full`. Non-finite pixels count as black in coarser levels, so that one of
+    /// them does not make a whole block non-finite.
     pub fn new(full: Image<[f32; 3]>, max_level: u32) -> Self {
         let mut levels = vec![full];
         for _ in 0..max_level {
@@ -62,8 +64,8 @@ impl Pyramid {
         foveate::bilinear(row(y0), row(y1), [fx, fy])
     }
 
-    /// Trilinear lookup at the pixel `px` and level of detail `lod`: linear blend of bilinear lookups in the two levels around `lod`.
-    /// Level 0 is returned bit for bit; in a blend with level 1 its non-finite pixels count as black.
+    /// Trilinear lookup at the pixel `px` and level of detail `lod`: linear blend of bilinear lookups in the two levels
+    /// around `lod`. Level 0 is returned bit for bit; in a blend with level 1 its non-finite pixels count as black.
     ///
     /// # Panics
     /// If `px` is outside the frame, for a `lod` below 1.
@@ -86,8 +88,8 @@ impl Pyramid {
     }
 }
 
-/// Next mip level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which gives the mean of the
-/// existing ones.
+/// Next mip level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which gives the
+/// mean of the existing ones.
 fn halve(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     let size = image.size();
     let texel = |x: u32, y: u32| {

@@ -203,7 +203,8 @@ fn blurs_hold_their_stated_accuracy() {
 
 #[test]
 fn a_blurred_point_is_a_gaussian() {
-    // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard deviations.
+    // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard
+    // deviations.
     let mut image = Image::filled([91, 91], [0.0; 3]);
     image.pixels_mut()[45 * 91 + 45] = [1000.0, 100.0, 1.0];
     let foveation = Foveation { filter: Filter::Gauss, ..Foveation::default() };
@@ -245,7 +246,8 @@ fn blocks_are_aligned_nested_and_constant() {
 
 #[test]
 fn h62_angles_follow_rays_not_the_screen() {
-    // 110 degrees wide: the same pixel distance is a smaller angle at the side. 2 atan(tan(55) (x + 0.5 - 500) / 500) by hand.
+    // 110 degrees wide: the same pixel distance is a smaller angle at the side. 2 atan(tan(55) (x + 0.5 - 500) / 500)
+    // by hand.
     let geometry = ViewGeometry::flat([1000, 500], 110.0).unwrap();
     let mut worst = 0.0_f64;
     let angle = |x: f64| (55.0_f64.to_radians().tan() * (x + 0.5 - 500.0) / 500.0).atan().to_degrees();
@@ -254,7 +256,8 @@ fn h62_angles_follow_rays_not_the_screen() {
         assert_abs_diff_eq!(f64::from(got), (angle(b) - angle(a)).abs(), epsilon = 1e-3);
         worst = worst.max((f64::from(got) - (angle(b) - angle(a)).abs()).abs());
     }
-    // Every pixel of the row, for a gaze off the middle. Planted error: distance on the screen, which is tens of degrees off.
+    // Every pixel of the row, for a gaze off the middle. Planted error: distance on the screen, which is tens of
+    // degrees off.
     let map = geometry.eccentricity_map([900.0, 249.5]);
     let mut by_screen = 0.0_f64;
     for x in 0..1000 {

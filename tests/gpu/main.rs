@@ -1,4 +1,5 @@
-//! The GPU executor against its twin on the CPU: function by function, then whole sequences, decisions and stored state, bit for bit.
+//! The GPU executor against its twin on the CPU: function by function, then whole sequences, decisions and stored
+//! state, bit for bit.
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;

@@ -183,7 +183,8 @@ fn h43_half_float_depth_neither_rejects_nor_accepts_for_ever() {
     let half = |v: f32| half_value(half_bits(v));
     let step = |v: f32| half_value(half_bits(v) + 1) - half(v);
     assert_eq!((step(100.0), step(1000.0)), (0.0625, 0.5));
-    // One step of the half either way, as noise and jitter of the depth sample make it, is the same surface; 3 % further is not.
+    // One step of the half either way, as noise and jitter of the depth sample make it, is the same surface; 3 %
+    // further is not.
     let farthest = |stored: fn(f32) -> f32, convention: Depth| {
         let map = convention.disparity_map();
         let read = |bits: u32| depth::disparity(half_value(bits), map);
@@ -215,8 +216,9 @@ fn h43_half_float_depth_neither_rejects_nor_accepts_for_ever() {
 
 #[test]
 fn h44_a_grazing_plane_is_never_rejected_under_jitter() {
-    // A plane at up to 89.9 degrees between its normal and the view's axis, rolled any way: disparity is linear over pixels. The depth
-    // sample moves by up to half a pixel from frame to frame, and reprojection rounds by up to half a pixel, along both axes.
+    // A plane at up to 89.9 degrees between its normal and the view's axis, rolled any way: disparity is linear over
+    // pixels. The depth sample moves by up to half a pixel from frame to frame, and reprojection rounds by up to half a
+    // pixel, along both axes.
     let mut draws = Draws::new("grazing");
     let focal_px = 1000.0_f32;
     let (mut seen, mut without_slope) = (0, 0);

@@ -82,7 +82,8 @@ fn h54_no_bit_pattern_of_a_vector_leads_outside() {
 
 #[test]
 fn h55_half_float_motion_drifts_by_its_quantum() {
-    // A motion of 0.5 in uv, kept as a half, moves in steps of 2^-11: 1.875 px of 3840. In pixels below 1024 the step is 0.5 px.
+    // A motion of 0.5 in uv, kept as a half, moves in steps of 2^-11: 1.875 px of 3840. In pixels below 1024 the step
+    // is 0.5 px.
     let quantum = |v: f32| half_value(half_bits(v) + 1) - half_value(half_bits(v));
     assert_eq!(quantum(0.5) * 3840.0, 1.875);
     assert_eq!(quantum(1000.0), 0.5);

@@ -35,7 +35,8 @@ fn h23_draws_stay_below_1() {
     holds!("H23", Cpu, "largest draw 1 - {largest:.2e}; by x2^-32 the top {rounded_up} values would be 1");
 }
 
-/// p-value of pairs of uniform numbers falling into 16 x 16 cells: detects any dependence at that scale, not only a linear one.
+/// p-value of pairs of uniform numbers falling into 16 x 16 cells: detects any dependence at that scale, not only a
+/// linear one.
 fn p_of_cells(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
     let mut counts = vec![0_u64; 256];
     for (a, b) in pairs {

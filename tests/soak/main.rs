@@ -1,6 +1,7 @@
 //! Long streams of frames on both executors in lockstep: whatever the events, nothing drifts, leaks or shows NaN.
 //!
-//! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a process of its own.
+//! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a
+//! process of its own.
 
 mod events;
 #[path = "../common/images.rs"]
@@ -30,7 +31,8 @@ struct Found {
     above: u64,
     /// Fovea pixels of smr that were not the candidate, bit for bit.
     not_candidate: u64,
-    /// Number of quiet stretches compared with the recurrence in f64, and the largest difference as a share of storage's rounding.
+    /// Number of quiet stretches compared with the recurrence in f64, and the largest difference as a share of
+    /// storage's rounding.
     stretches: u64,
     drift: f64,
     resident_mib: Vec<f64>,
@@ -81,7 +83,8 @@ fn check(found: &mut Found, method: Method, event: &Event, view: &View, made: &M
     let color: &Image<[f32; 3]> = &view.color;
     for value in made.shown.iter().flatten().map(|&bits| f32::from_bits(bits)) {
         found.nonfinite += u64::from(!value.is_finite());
-        // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to the candidate's level.
+        // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to the
+        // candidate's level.
         found.above += u64::from(method == Method::Wrs && value > brightest * 1.002 + 1e-6);
     }
     if method == Method::Smr && !event.is_broken {

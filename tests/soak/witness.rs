@@ -15,8 +15,8 @@ pub struct Witness {
     frames: u32,
 }
 
-/// Weight sums are stored with 16 significant bits: each frame rounds by 2^-16, relative, at most, and its arithmetic in f32 by some
-/// 2^-24; the recurrence never widens an error.
+/// Weight sums are stored with 16 significant bits: each frame rounds by 2^-16, relative, at most, and its arithmetic
+/// in f32 by some 2^-24; the recurrence never widens an error.
 const ROUNDING: f64 = 1.0 / (1 << 16) as f64 + 4.0 / (1 << 24) as f64;
 
 impl Witness {

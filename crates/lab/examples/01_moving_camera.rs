@@ -13,7 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [320, 180];
     let mut source = AnalyticSource::new("lateral", size, 70.0, 60.0)?;
 
-    // An engine with reversed infinite depth, and motion in normalised device coordinates: current minus previous, y up.
+    // An engine with reversed infinite depth, and motion in normalised device coordinates: current minus previous, y
+    // up.
     let near = 0.1;
     let desc = ContextDesc {
         motion: MotionConvention {

@@ -1,5 +1,5 @@
-//! Compares all methods and presets on a clip, on the same foveated frames, with the metrics that the documents quote: PSNR, SSIM,
-//! retention, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
+//! Compares all methods and presets on a clip, on the same foveated frames, with the metrics that the documents quote:
+//! PSNR, SSIM, retention, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
 //!
 //! `cargo run --release -p afterimage-lab --example 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
 

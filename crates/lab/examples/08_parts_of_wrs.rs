@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p afterimage-lab --example 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
 //!
-//! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate earlier).
+//! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate
+//! earlier).
 
 use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;

@@ -1,7 +1,7 @@
 //! Rasterises, foveates and enhances a scene: prints retention, and writes the images of a rasterised frame.
 //!
-//! `cargo run --release -p afterimage-lab --example 09_raster_scene [SCENE [FRAMES [OUT.png]]]`; SCENE is a .gltf or .glb file, or
-//! builtin:NAME (default builtin:cubes). Needs an adapter; a software one is enough.
+//! `cargo run --release -p afterimage-lab --example 09_raster_scene [SCENE [FRAMES [OUT.png]]]`; SCENE is a .gltf or
+//! .glb file, or builtin:NAME (default builtin:cubes). Needs an adapter; a software one is enough.
 
 use afterimage::kernel::color::srgb_encode;
 use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};

@@ -1,4 +1,5 @@
-//! Error of accumulated frames with samples guided to pixels that lack history, against unguided sampling at equal sample counts.
+//! Error of accumulated frames with samples guided to pixels that lack history, against unguided sampling at equal
+//! sample counts.
 //!
 //!     cargo run --release -p afterimage-lab --example 11_guided_sampling
 
@@ -75,8 +76,8 @@ impl Stage {
     }
 }
 
-/// Values reprojected from the previous frame by the nearest pixel; the default at disocclusions. For a camera that moves sideways,
-/// so that depth is constant.
+/// Values reprojected from the previous frame by the nearest pixel; the default at disocclusions. For a camera that
+/// moves sideways, so that depth is constant.
 fn reprojected(moments: &Image<Moments>, before: &Image<f32>, seen: &Surfaces) -> Image<Moments> {
     Image::from_fn(SIZE, |[x, y]| {
         let [dx, dy] = seen.motion.at(x as usize, y as usize);

@@ -67,7 +67,8 @@ pub struct Exceeded {
 }
 
 impl Exceeded {
-    /// The limit in megapixels that admits this input, rounded up; `None` if it is not known or another limit is exceeded.
+    /// The limit in megapixels that admits this input, rounded up; `None` if it is not known or another limit is
+    /// exceeded.
     pub fn needed_megapixels(&self) -> Option<u64> {
         self.needed.filter(|_| self.bound == Bound::Pixels).map(|pixels| pixels.div_ceil(1_000_000))
     }

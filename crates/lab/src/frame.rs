@@ -11,11 +11,11 @@ pub struct SourceFrame {
     pub depth: Option<Image<f32>>,
     /// Motion vectors in pixels, y down, previous minus current: `p` was at `p + motion`. `None`: nothing moves.
     pub motion: Option<Image<[f32; 2]>>,
-    /// History confidence of each pixel, about 1 - FSR2's reactive mask: 1 reuses history as usual, 0 rejects it. `Some` where the
-    /// source knows content that moves without motion vectors.
+    /// History confidence of each pixel, about 1 - FSR2's reactive mask: 1 reuses history as usual, 0 rejects it.
+    /// `Some` where the source knows content that moves without motion vectors.
     pub trust: Option<Image<f32>>,
-    /// Matrix from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column vectors.
-    /// `None`: the camera did not move, or its motion is not known.
+    /// Matrix from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column
+    /// vectors. `None`: the camera did not move, or its motion is not known.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
     /// Camera cut: no history is valid.
     pub cut: bool,
@@ -42,14 +42,15 @@ pub struct FoveatedFrame {
 
 /// Per-pixel guide for adaptive sampling, known before the frame is traced.
 ///
-/// An invalid number (NaN, negative, or an infinite deviation) counts as unknown: 0 samples in the history, and the mean of the
-/// ring's valid deviations.
+/// An invalid number (NaN, negative, or an infinite deviation) counts as unknown: 0 samples in the history, and the
+/// mean of the ring's valid deviations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
-    /// Number of samples that the history holds of the visible surface. 0: none, as at a disocclusion. Infinity: no more needed.
+    /// Number of samples that the history holds of the visible surface. 0: none, as at a disocclusion. Infinity: no
+    /// more needed.
     pub known: Image<f32>,
-    /// Standard deviation of one sample's luma, in any unit common to all pixels: sampling minimizes the error in that unit. 0: more
-    /// samples gain nothing.
+    /// Standard deviation of one sample's luma, in any unit common to all pixels: sampling minimizes the error in that
+    /// unit. 0: more samples gain nothing.
     pub deviation: Image<f32>,
 }
 

@@ -1,7 +1,8 @@
 //! Frame sources, renderers, scanpaths and metrics to test and measure [`afterimage`].
 //!
 //! - [`source`]: stills, EXR sequences, analytic scenes and rendered scenes, all as streams of [`frame::SourceFrame`]s.
-//! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at full rate.
+//! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at
+//!   full rate.
 //! - [`scanpath`]: recorded and synthetic gaze.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.

@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Writes `path` with the contents that `fill` produces: into a temporary file in the same folder, which is then renamed. Readers
-/// never see a partial file, and an existing file stays intact if anything fails.
+/// Writes `path` with the contents that `fill` produces: into a temporary file in the same folder, which is then
+/// renamed. Readers never see a partial file, and an existing file stays intact if anything fails.
 ///
 /// # Errors
 /// Errors of the file system and of `fill`; the temporary file is then removed.

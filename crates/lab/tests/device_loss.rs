@@ -1,5 +1,5 @@
-//! A device that is lost in mid-stream: an error that says so, from every part of the tool that computes on one, and no panic; a new device
-//! goes on. The drop-in itself is in `tests/gpu/pass/lifecycle.rs`. Hard case H77.
+//! A device that is lost in mid-stream: an error that says so, from every part of the tool that computes on one, and no
+//! panic; a new device goes on. The drop-in itself is in `tests/gpu/pass/lifecycle.rs`. Hard case H77.
 
 use afterimage::{Foveation, FrameError, Settings};
 use afterimage_lab::device::{Backend, Headless};

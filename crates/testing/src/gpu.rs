@@ -1,4 +1,5 @@
-//! GPU tests: one adapter per test program, a fresh device per test, and probes that run a WGSL entry point over a table of inputs.
+//! GPU tests: one adapter per test program, a fresh device per test, and probes that run a WGSL entry point over a
+//! table of inputs.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -73,8 +74,8 @@ pub fn validated<T>(device: &wgpu::Device, what: &str, f: impl FnOnce() -> T) ->
 
 /// Runs the compute entry point `entry` of `source` and returns its output.
 ///
-/// Binding 0: `inputs`, read-only storage; binding 1: `out_words` words of storage, filled with [`SENTINEL`]. At least `out_words`
-/// invocations run, in workgroups of [`WORKGROUP`] along x, so that each invocation can handle one row.
+/// Binding 0: `inputs`, read-only storage; binding 1: `out_words` words of storage, filled with [`SENTINEL`]. At least
+/// `out_words` invocations run, in workgroups of [`WORKGROUP`] along x, so that each invocation can handle one row.
 #[track_caller]
 pub fn run_probe(
     device: &wgpu::Device,

@@ -25,8 +25,8 @@ impl Display for Side {
     }
 }
 
-/// `holds!("H08", Cpu, "s = {s:.2}")` records that this test proves row H08 on the CPU, and what it measured. Goes after the assertions,
-/// so that a failing test records nothing.
+/// `holds!("H08", Cpu, "s = {s:.2}")` records that this test proves row H08 on the CPU, and what it measured. Goes
+/// after the assertions, so that a failing test records nothing.
 #[macro_export]
 macro_rules! holds {
     ($row:literal, $side:ident, $($figure:tt)+) => {
@@ -39,8 +39,8 @@ macro_rules! holds {
     };
 }
 
-/// Prints the measured text and writes it to the folder named by `AFTERIMAGE_STABILITY`, if set. `closure`: type name of a closure in the
-/// test, from which the test's name follows.
+/// Prints the measured text and writes it to the folder named by `AFTERIMAGE_STABILITY`, if set. `closure`: type name
+/// of a closure in the test, from which the test's name follows.
 pub fn record(row: &str, side: Side, closure: &str, figure: &str) {
     let test = closure.split("::{{closure}}").next().unwrap_or(closure);
     println!("{row} holds ({side}): {figure}");

@@ -1,4 +1,5 @@
-//! Helpers shared by tests: statistical tests with printed p-values, independent seeds, GPU access, the register of hard cases.
+//! Helpers shared by tests: statistical tests with printed p-values, independent seeds, GPU access, the register of
+//! hard cases.
 
 pub mod gpu;
 pub mod hard_case;

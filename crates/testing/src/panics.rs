@@ -3,7 +3,8 @@
 use std::panic::{set_hook, take_hook};
 use std::sync::Once;
 
-/// Silences panics of the EXR decoder, which its caller turns into errors: printing backtraces would dominate a test's time and memory.
+/// Silences panics of the EXR decoder, which its caller turns into errors: printing backtraces would dominate a test's
+/// time and memory.
 pub fn silence_the_exr_decoder() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

@@ -6,7 +6,8 @@ pub fn resident_mib() -> Option<f64> {
     Some(pages * 4096.0 / f64::from(1 << 20))
 }
 
-/// Smallest growth from one reading to the next. A leak grows in every interval, a late allocation of the driver only once.
+/// Smallest growth from one reading to the next. A leak grows in every interval, a late allocation of the driver only
+/// once.
 pub fn least_growth_mib(resident: &[f64]) -> f64 {
     resident.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
 }

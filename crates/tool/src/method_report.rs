@@ -25,7 +25,8 @@ pub struct MethodReport {
     pub nonfinite_in: u64,
     /// Output pixels that were NaN or infinite.
     pub nonfinite_out: u64,
-    /// Share of pixels whose history was rejected (disocclusion, frame border or invalid motion), after the first frame.
+    /// Share of pixels whose history was rejected (disocclusion, frame border or invalid motion), after the first
+    /// frame.
     pub flushed: Option<f64>,
     /// Share of replaced samples among pixels with valid history.
     pub replaced: Option<f64>,

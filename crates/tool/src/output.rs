@@ -25,8 +25,8 @@ pub struct Table {
 }
 
 impl Output {
-    /// Creates the folder and its subfolders `parts`. Removes frames of an earlier run, if its `report` (`report.json` or
-    /// `trace.json`) shows that this tool wrote them.
+    /// Creates the folder and its subfolders `parts`. Removes frames of an earlier run, if its `report` (`report.json`
+    /// or `trace.json`) shows that this tool wrote them.
     pub fn create(root: &Path, parts: &[String], report: &str) -> Result<Self, Failure> {
         let refuse = |path: &Path, error: &dyn std::fmt::Display| {
             Failure::Input(format!(

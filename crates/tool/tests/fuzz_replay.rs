@@ -1,5 +1,5 @@
-//! Runs the fuzzing targets (`tests/fuzz.sh`) on stable Rust: on every file of the corpus, which includes former findings, and on a few
-//! thousand damaged copies of each kind.
+//! Runs the fuzzing targets (`tests/fuzz.sh`) on stable Rust: on every file of the corpus, which includes former
+//! findings, and on a few thousand damaged copies of each kind.
 
 #[path = "fuzz/entries.rs"]
 mod entries;

@@ -1,5 +1,5 @@
-//! The viewer on a virtual display: moving pointer, keys, resized, minimized and restored window, lost device. Its pictures are compared
-//! with those of `run` on the same gaze path.
+//! The viewer on a virtual display: moving pointer, keys, resized, minimized and restored window, lost device. Its
+//! pictures are compared with those of `run` on the same gaze path.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
@@ -55,7 +55,8 @@ impl Display {
             |name: &str| Running(Command::new("openbox").env("DISPLAY", name).stderr(Stdio::null()).spawn().unwrap());
         let manager = start(&name);
         let mut display = Self { name, _server: server, manager };
-        // The window manager may ignore a window that opens while it starts, and ends if it finds the display too early.
+        // The window manager may ignore a window that opens while it starts, and ends if it finds the display too
+        // early.
         wait_for("the window manager", || {
             if display.manager.0.try_wait().unwrap().is_some() {
                 display.manager = start(&display.name);
@@ -167,8 +168,9 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    /// Moves the pointer from the center of the window by some pixels and presses F12 at once. The next frame, whose picture is saved, must
-    /// use the new gaze. (Relative moves take the same path as keys, which preserves their order.)
+    /// Moves the pointer from the center of the window by some pixels and presses F12 at once. The next frame, whose
+    /// picture is saved, must use the new gaze. (Relative moves take the same path as keys, which preserves their
+    /// order.)
     fn looks_in_the_next_frame(&mut self, by_px: [i32; 2]) {
         self.look_along(&[[0.5, 0.5]]);
         let middle = self.pointer();
@@ -290,7 +292,8 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     viewer.look_along(&[[0.7, 0.7], [0.2, 0.5]]);
     viewer.is_as_of_run("smr");
 
-    // Changes of the window reset the history: the record begins at the pointer's position at that time, not at an earlier one.
+    // Changes of the window reset the history: the record begins at the pointer's position at that time, not at an
+    // earlier one.
     let before = viewer.record()[0].clone();
     viewer.display.xdotool(&["windowsize", "--sync", &viewer.window, "900", "620"]);
     pause(300);

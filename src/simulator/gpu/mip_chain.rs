@@ -13,8 +13,8 @@ use wgpu::{
 /// 32-bit floats, as on the CPU: level l is a mean of means, rounded l times.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
-/// Levels from 1 on, as mips from 0 on of one texture. Mip sizes of a texture round down, levels round up; the texture is padded to
-/// sides that the coarsest level divides, so that they agree.
+/// Levels from 1 on, as mips from 0 on of one texture. Mip sizes of a texture round down, levels round up; the texture
+/// is padded to sides that the coarsest level divides, so that they agree.
 #[derive(Debug)]
 pub(super) struct MipChain {
     /// View of all mips, to read.
@@ -27,7 +27,8 @@ pub(super) struct MipChain {
 }
 
 impl MipChain {
-    /// A mip chain of levels 1 to `coarsest`. For a `coarsest` of 0 its texture is a placeholder, which is bound but not read.
+    /// A mip chain of levels 1 to `coarsest`. For a `coarsest` of 0 its texture is a placeholder, which is bound but
+    /// not read.
     pub fn new(device: &Device, desc: &ContextDesc, coarsest: u32, source: String) -> Self {
         let mip_count = coarsest.max(1);
         let base = desc.size_px.map(|s| s.next_multiple_of(1 << mip_count) / 2);

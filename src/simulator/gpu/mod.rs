@@ -1,5 +1,5 @@
-//! Simulators on a GPU, recorded into the caller's command encoder. Twins of `Foveation::render` and `Foveation::lod_map`, bit-equal to
-//! them on software Vulkan.
+//! Simulators on a GPU, recorded into the caller's command encoder. Twins of `Foveation::render` and
+//! `Foveation::lod_map`, bit-equal to them on software Vulkan.
 
 mod mip_chain;
 // For the tests, which compare struct layouts.
@@ -22,16 +22,17 @@ use wgpu::{
 
 /// Inputs and outputs of a simulated frame. Example: [`GpuSimulator`].
 ///
-/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), and one sample a pixel.
+/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), and one
+/// sample a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct SimulatorFrame<'a> {
     /// Input: the frame at full rate. Linear color, any float format, usage `TEXTURE_BINDING`.
     pub full: &'a Texture,
-    /// Output: the foveated frame. The simulator's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied bit for bit if
-    /// `full` has the same format.
+    /// Output: the foveated frame. The simulator's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied
+    /// bit for bit if `full` has the same format.
     pub output: &'a Texture,
-    /// Output: level of detail of each pixel (log2 of the block edge in pixels), for [`Frame::lod`](crate::Frame::lod). `R32Float`,
-    /// usage `STORAGE_BINDING`. `None`: not written.
+    /// Output: level of detail of each pixel (log2 of the block edge in pixels), for [`Frame::lod`](crate::Frame::lod).
+    /// `R32Float`, usage `STORAGE_BINDING`. `None`: not written.
     pub lod: Option<&'a Texture>,
     /// Descriptions of the views, one for each view of the context; only geometry and gaze are used.
     pub views: &'a [ViewFrame],
@@ -46,11 +47,12 @@ impl<'a> SimulatorFrame<'a> {
     }
 }
 
-/// A foveation simulator on a GPU: turns a full-rate frame into the frame that a foveating renderer would have delivered.
+/// A foveation simulator on a GPU: turns a full-rate frame into the frame that a foveating renderer would have
+/// delivered.
 ///
 /// The caller owns device, queue, encoder, submission, and every input and output texture, as with
-/// [`Afterimage`](crate::gpu::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and 5 for
-/// [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
+/// [`Afterimage`](crate::gpu::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and 5
+/// for [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
 ///
 /// ```no_run
 /// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
@@ -82,12 +84,13 @@ enum Steps {
 }
 
 impl GpuSimulator {
-    /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`, and outputs of
-    /// `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules; pipelines are compiled at the first frame
-    /// that needs them.
+    /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`,
+    /// and outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules; pipelines
+    /// are compiled at the first frame that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device is too low.
+    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
+    /// is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
         Self::with_shaders(device, desc, output_format, |name| SHADERS.compose(name).source)
     }
@@ -151,8 +154,8 @@ impl GpuSimulator {
     /// Records one frame into `encoder`. For a lost gaze the last known position is used, as by the post-process.
     ///
     /// # Errors
-    /// [`FrameError`] if a texture or value does not fit the description; then nothing was recorded and held gaze positions are
-    /// unchanged.
+    /// [`FrameError`] if a texture or value does not fit the description; then nothing was recorded and held gaze
+    /// positions are unchanged.
     pub fn record(
         &mut self,
         device: &Device,

@@ -20,7 +20,8 @@ pub struct FoveationUniforms {
     pub mid_radius_deg: f32,
     /// Width of the blends outside the radii.
     pub blend_deg: f32,
-    /// Coarseness of the middle region: level of detail, or standard deviation in pixels of the Gaussian at the region's edge.
+    /// Coarseness of the middle region: level of detail, or standard deviation in pixels of the Gaussian at the
+    /// region's edge.
     pub mid: f32,
     /// Coarseness of the periphery: level of detail, or largest standard deviation in pixels of the Gaussian.
     pub far: f32,

@@ -88,8 +88,8 @@ fn h72_an_exposed_color_stays_within_halves() {
 
 #[test]
 fn h72_without_the_ratio_the_gate_recovers_within_3_frames() {
-    // Brighter: all history is too dark, and rejected at once. Darker: history that happens to look alike stays a little longer. Without the
-    // gate, history is replaced only by chance.
+    // Brighter: all history is too dark, and rejected at once. Darker: history that happens to look alike stays a
+    // little longer. Without the gate, history is replaced only by chance.
     let mut took = vec![];
     for (ratio, gate, frames, all) in [(EXPOSED, true, 0, 0), (1.0 / EXPOSED, true, 3, 20), (EXPOSED, false, 60, 100)] {
         let mut post = gated(gate);
@@ -143,7 +143,8 @@ fn h73_a_firefly_lives_one_frame() {
 
 #[test]
 fn h73_without_the_gate_a_firefly_is_drawn_and_dies_as_the_law_says() {
-    // Constant weights w: in units of w the sum follows a = a^2 / (a + 1) + 1 (eq. 5), whatever w; a frame is taken with 1 / a.
+    // Constant weights w: in units of w the sum follows a = a^2 / (a + 1) + 1 (eq. 5), whatever w; a frame is taken
+    // with 1 / a.
     let lit = flash(false, 65504.0, 100);
     let (mut sum, mut alive) = (0.0_f64, 0.0_f64);
     let mut energy = 0.0;
@@ -179,7 +180,8 @@ fn h73_without_the_gate_a_firefly_is_drawn_and_dies_as_the_law_says() {
 
 #[test]
 fn h74_a_strobe_leaves_nothing_behind() {
-    // One frame on, one off, for 60 frames, by a lot and by a stop; then dark again, and exactly so after the frames stated.
+    // One frame on, one off, for 60 frames, by a lot and by a stop; then dark again, and exactly so after the frames
+    // stated.
     let mut left = vec![];
     for (gate, on, frames) in [(true, 1.0, 6), (true, 0.0625, 40), (false, 1.0, 100)] {
         let mut post = gated(gate);

@@ -1,4 +1,5 @@
-//! Whole passes on the CPU: conventions, history rejection, determinism, lifecycle; hard cases H19, H22, H29, H46-H60, H63, H66, H77-H79.
+//! Whole passes on the CPU: conventions, history rejection, determinism, lifecycle; hard cases H19, H22, H29, H46-H60,
+//! H63, H66, H77-H79.
 
 mod depth;
 mod lifecycle;

@@ -1,5 +1,5 @@
-//! Small frames of arbitrary bit patterns through every method: the output is finite and comes from the inputs, and no view affects
-//! another one.
+//! Small frames of arbitrary bit patterns through every method: the output is finite and comes from the inputs, and no
+//! view affects another one.
 
 use super::*;
 use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
@@ -128,8 +128,8 @@ proptest! {
                 }
                 for (i, (p, q)) in a[0].pixels().iter().zip(b[0].pixels()).enumerate() {
                     let far = (i % 8).abs_diff(at % 8).max((i / 8).abs_diff(at / 8));
-                    // taa reads 3x3 candidates; smr at four that lie 3/4 of a block off, at twice that where blocks are point
-                    // samples, and where candidates are noisy at means of the 8x8 around them.
+                    // taa reads 3x3 candidates; smr at four that lie 3/4 of a block off, at twice that where blocks are
+                    // point samples, and where candidates are noisy at means of the 8x8 around them.
                     let reach = match settings.method {
                         Method::None | Method::Wrs => 0,
                         Method::Taa => 1,

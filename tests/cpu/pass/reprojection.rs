@@ -95,7 +95,8 @@ fn every_motion_convention_means_the_same_shift() {
 
 #[test]
 fn h53_half_pixel_motion_never_blurs() {
-    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the input colors.
+    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the
+    // input colors.
     let mut post = context(Settings { gate: None, ..Settings::paper() });
     let mut known = std::collections::HashSet::new();
     let mut kept = 0;

@@ -84,7 +84,8 @@ fn h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says() {
     }
     let fovea: Vec<usize> =
         (0..480 * 48).filter(|i| view.eccentricity_deg([(i % 480) as f32, (i / 480) as f32], old) < 2.5).collect();
-    // Sums and survival of each pixel in f64: 18 candidates of weight 1, then those of its new eccentricity b: a = a^2 / (a + b) + b.
+    // Sums and survival of each pixel in f64: 18 candidates of weight 1, then those of its new eccentricity b: a = a^2
+    // / (a + b) + b.
     let weight = |e: f64| {
         let d = |e: f64| (0.9851 / (1.0 + e / 1.058).powi(2) + 0.0149 * (-e / 22.14).exp()) / (1.0 + e / 41.03);
         (d(e) / d(2.5)).min(1.0)

@@ -15,8 +15,8 @@ fn to_roots(y: DVec3) -> DVec3 {
     DVec3::new(y.x + y.y - y.z, y.x + y.z, y.x - y.y - y.z)
 }
 
-/// Nine tenths of the history, pulled towards the mean of 3x3 pixels until it is within two standard deviations, and a tenth of the
-/// candidate, all as square roots.
+/// Nine tenths of the history, pulled towards the mean of 3x3 pixels until it is within two standard deviations, and a
+/// tenth of the candidate, all as square roots.
 fn expected(color: &Color, history: [f32; 3], x: usize, y: usize) -> (DVec3, bool) {
     let [w, h] = SIZE.map(|s| s as usize);
     let around: Vec<_> = (0..9)

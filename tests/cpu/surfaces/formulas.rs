@@ -89,7 +89,8 @@ fn reading_keeps_constants_and_ramps_whatever_is_missing() {
 
 #[test]
 fn a_sharp_reading_keeps_more_contrast_than_a_smooth_one() {
-    // The response of the Catmull-Rom weights half way between texels is 9/8 cos(w/2) - 1/8 cos(3w/2), that of linear ones cos(w/2).
+    // The response of the Catmull-Rom weights half way between texels is 9/8 cos(w/2) - 1/8 cos(3w/2), that of linear
+    // ones cos(w/2).
     for period in [3.0_f64, 4.0, 6.0, 8.0, 16.0] {
         let w = std::f64::consts::TAU / period;
         // A crest half way between the second and the third column.

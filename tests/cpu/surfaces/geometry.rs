@@ -65,7 +65,8 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
                 let [qx, qy] = [source(x, 26.0), source(y, 20.0)];
                 let shown = made.shown.at(x, y);
                 if t.verdict != Verdict::Valid {
-                    // Near the middle, where neighbours' vectors differ by much of themselves, they are taken for a silhouette's.
+                    // Near the middle, where neighbours' vectors differ by much of themselves, they are taken for a
+                    // silhouette's.
                     let inside = (-0.5..51.5).contains(&qx) && (-0.5..40.5).contains(&qy);
                     assert_eq!(t.verdict, if inside { Verdict::Disoccluded } else { Verdict::OffScreen });
                     assert_eq!(shown, later.color.at(x, y));

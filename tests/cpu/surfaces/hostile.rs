@@ -32,7 +32,8 @@ proptest! {
 
     #[test]
     fn h18_a_broken_pixel_is_not_taken_for_black_by_its_neighbours(x in 0u32..52, y in 0u32..41, bad in prop::sample::select(BAD.to_vec())) {
-        // Uniform surfaces under changed light: neighbours show the change of light (smr) and the range of colors (taa).
+        // Uniform surfaces under changed light: neighbours show the change of light (smr) and the range of colors
+        // (taa).
         for method in METHODS {
             let mut clean = context(method);
             step(&mut clean, 0, &Input::sharp(Image::filled(SIZE, [0.5, 0.4, 0.3])));
@@ -138,8 +139,8 @@ fn resampled_and_relit_highlights_stay_within_halves() {
 
 #[test]
 fn h73_detail_of_bright_pictures_stays() {
-    // Storage alone is off by 2^-10, which near 65504 is a difference of 100 * 256 * 2^-11 = 12 in the gate's units; low-passes are of
-    // many such roundings, which cancel.
+    // Storage alone is off by 2^-10, which near 65504 is a difference of 100 * 256 * 2^-11 = 12 in the gate's units;
+    // low-passes are of many such roundings, which cancel.
     for scale in [1.0, 100.0, 4_000.0, 60_000.0] {
         let mut post = context(Method::Smr);
         let picture = noise(SIZE, "h73").map(|c| c.map(|v| v * scale));

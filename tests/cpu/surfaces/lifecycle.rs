@@ -112,7 +112,8 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
             }
         }
     }
-    // Two words of two frames, and for smr levels 1 to 4 of sixteen bytes a texel of two frames: a quarter, a sixteenth, ...
+    // Two words of two frames, and for smr levels 1 to 4 of sixteen bytes a texel of two frames: a quarter, a
+    // sixteenth, ...
     let bytes = |method| {
         CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new([64, 48]) })
             .unwrap()
@@ -214,8 +215,8 @@ fn a_camera_that_drives_keeps_what_it_drives_at() {
 
 #[test]
 fn h58_nothing_is_read_over_a_depth_edge() {
-    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any that do. smr accumulates
-    // what is coarse.
+    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any that
+    // do. smr accumulates what is coarse.
     let mut widest = vec![];
     let near = |[x, _]: [u32; 2]| x < 26;
     let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };

@@ -1,5 +1,5 @@
-//! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not pass for a
-//! change, nor a change for noise.
+//! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
+//! pass for a change, nor a change for noise.
 
 use super::rig::{Draws, Input, SIZE, settings, step};
 use afterimage::cpu::CpuAfterimage;
@@ -16,7 +16,8 @@ fn post(settings: Settings) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
-/// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves suggest.
+/// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves
+/// suggest.
 fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> Input {
     let made = Image::from_fn(SIZE, |px| {
         let drawn: Vec<f32> = (0..samples).map(|_| sample(draws, px)).collect();

@@ -4,7 +4,8 @@ use super::rig::*;
 use afterimage::Verdict;
 use afterimage::kernel::surface::MAX_LOD;
 
-/// Coarse, moving, partly distrusted frames, as engines may deliver. Motion in quarters of a pixel, constant over large areas.
+/// Coarse, moving, partly distrusted frames, as engines may deliver. Motion in quarters of a pixel, constant over large
+/// areas.
 fn busy(name: &str) -> Input {
     let mut draws = Draws::new(name);
     let size = SIZE;
@@ -108,7 +109,8 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
     let mut post = context(Method::Smr);
     let picture = noise(SIZE, "coherent");
     step(&mut post, 0, &Input::sharp(picture.clone()));
-    // A single pixel; and a row of three, of which the first two share a 2x2 block and the last has no neighbour in its own.
+    // A single pixel; and a row of three, of which the first two share a 2x2 block and the last has no neighbour in its
+    // own.
     let odd = [[10, 10], [20, 10], [21, 10], [22, 10]];
     let motion = Image::from_fn(SIZE, |at| if odd.contains(&at) { [2.0, 0.0] } else { [0.0; 2] });
     let input = Input {
@@ -151,8 +153,9 @@ fn exposed(method: Method, ratio: f32, from: u64, is_declared: bool) -> Vec<Made
 #[test]
 fn s6_a_declared_exposure_is_as_if_it_had_always_been() {
     for method in METHODS {
-        // Powers of two shift exponents alone, and before the change there was a first frame only, in which nothing is compared: the
-        // gate's differences grow with the square root of light, so that later frames decide by their own exposure.
+        // Powers of two shift exponents alone, and before the change there was a first frame only, in which nothing is
+        // compared: the gate's differences grow with the square root of light, so that later frames decide by their own
+        // exposure.
         for ratio in [0.25, 0.5, 2.0, 16.0] {
             let always = exposed(method, ratio, 0, false);
             let declared = exposed(method, ratio, 1, true);

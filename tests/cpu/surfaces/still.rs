@@ -39,8 +39,8 @@ fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
 
 #[test]
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
-    // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is compared: a slope of
-    // 1.5 % a pixel is distinguished from its shifted copy.
+    // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is
+    // compared: a slope of 1.5 % a pixel is distinguished from its shifted copy.
     let mut post = context(Method::Smr);
     // Nor may it pass for a change of light.
     post.set_settings(Settings {
@@ -93,8 +93,9 @@ fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
 
 #[test]
 fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
-    // Nothing finer is known: history of the same level is accumulated. It is compared after another low-pass, which coarse history
-    // does not need, so that some of it is taken for a change of light; and what is stored is rounded, by up to 1.5 * 2^-10.
+    // Nothing finer is known: history of the same level is accumulated. It is compared after another low-pass, which
+    // coarse history does not need, so that some of it is taken for a change of light; and what is stored is rounded,
+    // by up to 1.5 * 2^-10.
     let mut post = context(Method::Smr);
     let coarse = LowPass::new(&noise(SIZE, "s9 coarse"), 4).render(&Image::filled(SIZE, 2.0));
     let mut frames = vec![];
@@ -176,16 +177,17 @@ fn h53_half_a_pixel_is_read_between_texels() {
             }
         }
         println!("after 4 pixels in 8 steps: off by {worst:.4}; the candidate by {coarse:.4}");
-        // Each reading between texels keeps 9/8 cos(15 deg) - 1/8 cos(45 deg) = 0.998 of the wave, so that 8 of them lose 1.4 % of
-        // 0.3, storage 2^-10 of 0.8 each. Measured: 0.009 and 0.014.
+        // Each reading between texels keeps 9/8 cos(15 deg) - 1/8 cos(45 deg) = 0.998 of the wave, so that 8 of them
+        // lose 1.4 % of 0.3, storage 2^-10 of 0.8 each. Measured: 0.009 and 0.014.
         assert!(worst < 0.02 && coarse > 0.15);
     }
 }
 
 #[test]
 fn h53_200_steps_of_half_a_pixel_blur_no_more_than_stated() {
-    // Waves of 16 pixels in a wide picture that moves 100 pixels to the right. Read half-way between texels, a wave keeps
-    // 9/8 cos(pi f) - 1/8 cos(3 pi f) of itself, f being a wave a 16th of a pixel: 0.896 of it after 200 readings.
+    // Waves of 16 pixels in a wide picture that moves 100 pixels to the right. Read half-way between texels, a wave
+    // keeps 9/8 cos(pi f) - 1/8 cos(3 pi f) of itself, f being a wave a 16th of a pixel: 0.896 of it after 200
+    // readings.
     const WIDE: [u32; 2] = [224, 24];
     let f = std::f64::consts::PI / 16.0;
     let mtf = 1.125 * f.cos() - 0.125 * (3.0 * f).cos();

@@ -59,8 +59,8 @@ proptest! {
         let color = Vec3::new(bright, bright * r, bright * g);
         let s = unpack_surface(pack_surface(Surface { color, lod, disparity }));
         for i in 0..3 {
-            // Ten significant bits, rounded by way of a half's eleven, which costs up to half as much again; where halves are
-            // denormal, the same of their grid.
+            // Ten significant bits, rounded by way of a half's eleven, which costs up to half as much again; where
+            // halves are denormal, the same of their grid.
             let bound = 1.5 * (color[i] / 1024.0).max(2.0_f32.powi(-24));
             prop_assert!((s.color[i] - color[i]).abs() <= bound, "{} became {}", color[i], s.color[i]);
         }

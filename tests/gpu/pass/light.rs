@@ -37,7 +37,8 @@ fn h72_exposure_up_and_down_by_256() {
         let expected: Vec<[u32; 3]> = view("still", ratio).color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
         assert!(made.shown == expected && made.stats.rejected() == 0);
         assert!(trace[0].pixels().iter().filter(|t| !t.take).count() > 64 * 48 / 2);
-        // Back, undeclared: after 3 frames the gate has rejected all history but a hundredth, which happens to look alike.
+        // Back, undeclared: after 3 frames the gate has rejected all history but a hundredth, which happens to look
+        // alike.
         rig.exposure = Exposure::Same;
         for index in 11..31 {
             let (made, trace) = rig.both(index, Reset::None, &[view(&format!("h72 {index}"), 1.0)]);

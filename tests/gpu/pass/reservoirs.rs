@@ -19,8 +19,8 @@ fn plain(size: [u32; 2], light: f32) -> View {
     View::still(Image::filled(size, [light; 3]), [0.0; 2])
 }
 
-/// Weight sum that the pass stores, on both executors, after `frames` more candidates of weight 1 on a history of sum `start`, and the
-/// one of the frame before.
+/// Weight sum that the pass stores, on both executors, after `frames` more candidates of weight 1 on a history of sum
+/// `start`, and the one of the frame before.
 fn sum_after(rig: &mut Rig, words: &[[u32; 3]], start: f32, frames: u64) -> [f32; 2] {
     let size = rig.context.size_px;
     rig.restore(&with_w_sum(words, start));

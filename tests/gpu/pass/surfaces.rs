@@ -66,7 +66,8 @@ fn h44_a_grazing_plane_under_jitter_is_not_rejected() {
             let Some(mut rig) = ungated_of(method) else { return };
             for index in 0..8 {
                 let (_, trace) = one(&mut rig, index, frame(index));
-                // Only where the neighbouring rows are on the plane for any sample position: the horizon is a silhouette.
+                // Only where the neighbouring rows are on the plane for any sample position: the horizon is a
+                // silhouette.
                 for (i, t) in trace.pixels().iter().enumerate().filter(|(i, _)| row((i / 64) as f32 - 1.5) > 0.0) {
                     assert!(t.verdict != Verdict::Disoccluded, "{method:?}, {angle_deg} degrees, row {}", i / 64);
                     seen += 1;

@@ -1,5 +1,5 @@
-//! smr on the device in the hard cases that wrs has in `surfaces`, `gaze` and `light`: H50 to H53, H58, H59, H66, H72 to H75. The CPU
-//! agrees in every bit; here the properties are checked on the device's output.
+//! smr on the device in the hard cases that wrs has in `surfaces`, `gaze` and `light`: H50 to H53, H58, H59, H66, H72
+//! to H75. The CPU agrees in every bit; here the properties are checked on the device's output.
 
 use super::rig::{Made, Rig, View, noise};
 use afterimage::kernel::debug_view::PixelTrace;

@@ -62,8 +62,8 @@ fn h02_two_empty_reservoirs_keep_the_newer_color() {
     holds!("H02", Gpu, "the second's color, w_sum 0, survival 1, for both samplers");
 }
 
-/// A stream of candidates of one weight on a history: frames, then sampler, weight, weight sum and log key; how many were taken, weight
-/// sum and log key after.
+/// A stream of candidates of one weight on a history: frames, then sampler, weight, weight sum and log key; how many
+/// were taken, weight sum and log key after.
 const STREAM: Probe = Probe {
     name: "a stream of one weight",
     module: "wrs rng",

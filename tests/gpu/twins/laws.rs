@@ -8,8 +8,8 @@ use afterimage::kernel::rng;
 use afterimage_testing::holds;
 use afterimage_testing::{accept, p_of_counts, reject, seed};
 
-/// Streams of up to eight weights: the stream's number, a key, how many of them, 0 for `update`, 1 for `combine`, 2 for A-ES keys, and the
-/// weights; how often each was kept.
+/// Streams of up to eight weights: the stream's number, a key, how many of them, 0 for `update`, 1 for `combine`, 2 for
+/// A-ES keys, and the weights; how often each was kept.
 const STREAMS: Probe = Probe {
     name: "streams of eight",
     module: "reservoir rng",

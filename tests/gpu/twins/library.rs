@@ -7,8 +7,8 @@ pub use afterimage::shader::SHADERS;
 /// Where `shaders/lib` and `src/kernel` are.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
-/// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a closure,
-/// and `mix`, which is a builtin of WGSL.
+/// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a
+/// closure, and `mix`, which is a builtin of WGSL.
 pub const WGSL_ONLY: &[(&str, &str)] =
     &[("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 

@@ -1,4 +1,5 @@
-//! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the same.
+//! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the
+//! same.
 
 use super::library::{FOLDER, PRIVATE, RUST_ONLY, SHADERS, WGSL_ONLY, probes};
 use afterimage::shader::Composed;

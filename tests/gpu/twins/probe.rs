@@ -10,8 +10,8 @@ pub struct Probe {
     pub module: &'static str,
     /// Words of a row of input and of output.
     pub words: [usize; 2],
-    /// WGSL statements that read `in_u`, `in_f`, `in_v` (word, float, three floats; by index) and call `out_u`, `out_f`,
-    /// `out_v`, `out_b` in order.
+    /// WGSL statements that read `in_u`, `in_f`, `in_v` (word, float, three floats; by index) and call `out_u`,
+    /// `out_f`, `out_v`, `out_b` in order.
     pub wgsl: &'static str,
     /// Calls the Rust twin on a row.
     pub rust: fn(&Row<'_>, &mut Out),
@@ -125,7 +125,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         (count, lines)
     }
 
-    /// Results of each row on a fresh device, after a check that Rust's are equal in every bit. `None` without an adapter.
+    /// Results of each row on a fresh device, after a check that Rust's are equal in every bit. `None` without an
+    /// adapter.
     #[track_caller]
     pub fn outputs(&self, rows: &[Vec<u32>]) -> Option<Vec<Vec<u32>>> {
         let (device, queue) = afterimage_testing::gpu::device()?;
@@ -171,7 +172,8 @@ pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
     Some(counts.into_iter().flatten().sum())
 }
 
-/// A planted error: `wrong` instead of `right` in the source of the function `name`. Fails unless the comparison sees it.
+/// A planted error: `wrong` instead of `right` in the source of the function `name`. Fails unless the comparison sees
+/// it.
 #[track_caller]
 pub fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
     let probe = probes.iter().find(|p| p.name == name).unwrap();

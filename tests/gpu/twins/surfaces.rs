@@ -58,7 +58,8 @@ fn fraction_rows(name: &str) -> Rows {
     Rows::new(1).cross(&[&edges.concat()]).random(name, |d, row| push(row, &[fraction(d)]))
 }
 
-/// Taps of one reading: color, level of detail, whether it shows the surface, its weights' texel. The fractions come first.
+/// Taps of one reading: color, level of detail, whether it shows the surface, its weights' texel. The fractions come
+/// first.
 const READING: usize = 2 + 12 * 5;
 
 fn read_twelve(r: &Row<'_>, o: &mut Out) {

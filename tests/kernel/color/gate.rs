@@ -52,8 +52,9 @@ fn h34_a_gate_with_an_offset_for_noise_does_not_see_dark_noise() {
     let differs = |a: f32, b: f32| wrs::difference(Vec3::splat(a), Vec3::splat(b), DELTA_E);
     let one_sigma = differs(0.0, 0.002);
     assert_abs_diff_eq!(one_sigma, 1.81, epsilon = 0.01);
-    // Candidates around 0.01 with that noise, at the weight of 10 degrees, over a history of 18 foveal frames: how open the gate
-    // is, how often it all but shuts, and how likely the sample is kept for 25 frames (about half, if nothing but eq. 5 forgets).
+    // Candidates around 0.01 with that noise, at the weight of 10 degrees, over a history of 18 foveal frames: how open
+    // the gate is, how often it all but shuts, and how likely the sample is kept for 25 frames (about half, if nothing
+    // but eq. 5 forgets).
     let run = |offset: f32| {
         let mut draws = Draws::new("dark noise");
         let mut normal = || (0..12).map(|_| draws.uniform()).sum::<f32>() - 6.0;

@@ -139,7 +139,8 @@ fn h10_a_billion_frames_follow_the_closed_form() {
     holds!("H10", Cpu, "s = {a:.0} after 1e9 frames, drift {worst:.0e}; f32 within 1e-3 for {held:.1e} frames");
 }
 
-/// Weights 1, history capped at `cap` before each candidate: survivors of `pixels` after `frames`, and their expected share.
+/// Weights 1, history capped at `cap` before each candidate: survivors of `pixels` after `frames`, and their expected
+/// share.
 fn capped(cap: f32, start: f32, frames: u32, pixels: u64, draws: &mut Draws) -> (u64, f64) {
     let (mut share, mut alive) = (1.0, pixels);
     let mut r = Reservoir { w_sum: start, count: 0 };
@@ -163,7 +164,8 @@ fn capped(cap: f32, start: f32, frames: u32, pixels: u64, draws: &mut Draws) -> 
 fn h16_a_capped_history_answers_a_step_in_the_time_theory_says() {
     let mut figures = vec![];
     for (name, cap, start) in [("8", 8.0_f32, 1000.0), ("32", 32.0, 1000.0), ("infinite", f32::INFINITY, 40.0)] {
-        // With a cap every old sample survives a frame with M / (M + 1); without, k frames after a sum of s with s / (s + k).
+        // With a cap every old sample survives a frame with M / (M + 1); without, k frames after a sum of s with s / (s
+        // + k).
         let theory = if cap.is_finite() {
             0.5_f64.ln() / (f64::from(cap) / f64::from(cap + 1.0)).ln()
         } else {

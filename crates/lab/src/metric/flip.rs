@@ -1,8 +1,8 @@
-//! FLIP: visibility of the difference between two images that are shown in alternation (Andersson et al., "FLIP: A Difference
-//! Evaluator for Alternating Images", 2020). This is LDR-FLIP, for sRGB-encoded values in \[0, 1\].
+//! FLIP: visibility of the difference between two images that are shown in alternation (Andersson et al., "FLIP: A
+//! Difference Evaluator for Alternating Images", 2020). This is LDR-FLIP, for sRGB-encoded values in \[0, 1\].
 //!
-//! A contrast sensitivity filter removes detail that the eye cannot resolve at the given distance. The filtered images are then
-//! compared by color, with more weight where edges or points differ.
+//! A contrast sensitivity filter removes detail that the eye cannot resolve at the given distance. The filtered images
+//! are then compared by color, with more weight where edges or points differ.
 
 use afterimage::kernel::color;
 use afterimage::{Image, ViewGeometry};
@@ -19,8 +19,8 @@ const COLOR_BELOW_KNEE: f32 = 0.95;
 /// Width in degrees of the detected edges and points (w, section 4.2).
 const FEATURE_DEG: f64 = 0.082;
 
-/// Contrast sensitivity to luminance, red-green and blue-yellow: sums of Gaussians a exp(-b f^2) of the frequency f in cycles per
-/// degree, as pairs (a, b) (section 4.1.1).
+/// Contrast sensitivity to luminance, red-green and blue-yellow: sums of Gaussians a exp(-b f^2) of the frequency f in
+/// cycles per degree, as pairs (a, b) (section 4.1.1).
 const LUMINANCE: [(f64, f64); 1] = [(1.0, 0.0047)];
 const RED_GREEN: [(f64, f64); 1] = [(1.0, 0.0053)];
 const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
@@ -31,7 +31,8 @@ const WIDEST: f64 = 0.04;
 const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
 const WHITE: [f64; 2] = [0.3127, 0.3290];
 
-/// Range of pixels per degree: below it the filters are a single pixel; above it they grow large beyond what any eye resolves.
+/// Range of pixels per degree: below it the filters are a single pixel; above it they grow large beyond what any eye
+/// resolves.
 const PIXELS_PER_DEGREE: [f32; 2] = [1.0, 1000.0];
 
 /// Filter weights of pixels -r to r.
@@ -64,8 +65,8 @@ pub struct Preprocessed {
 }
 
 impl Flip {
-    /// The metric at a resolution in pixels per degree, clamped to 1 to 1000. NVIDIA's default is 67.02: 3840 pixels over 0.7 m, seen
-    /// from 0.7 m.
+    /// The metric at a resolution in pixels per degree, clamped to 1 to 1000. NVIDIA's default is 67.02: 3840 pixels
+    /// over 0.7 m, seen from 0.7 m.
     pub fn new(pixels_per_degree: f32) -> Self {
         let [least, most] = PIXELS_PER_DEGREE;
         let pixels_per_degree = pixels_per_degree.max(least).min(most);
@@ -164,8 +165,8 @@ impl Flip {
         share.min(1.0)
     }
 
-    /// Opponent color YCxCz (luminance, red-green, blue-yellow) of an sRGB-encoded color, divided by 116, 500 and 200. The factors
-    /// cancel, because the filters are linear.
+    /// Opponent color YCxCz (luminance, red-green, blue-yellow) of an sRGB-encoded color, divided by 116, 500 and 200.
+    /// The factors cancel, because the filters are linear.
     fn opponent(&self, encoded: [f32; 3]) -> Vec3 {
         let xyz = self.xyz_from_linear * Vec3::from(encoded.map(color::srgb_decode));
         Vec3::new(xyz.y, xyz.x - xyz.y, xyz.y - xyz.z)
@@ -203,7 +204,8 @@ fn hyab(a: Vec3, b: Vec3) -> f32 {
 /// Spatial filters of a contrast sensitivity function: a separable kernel for each of its Gaussians. Their 2D sum is 1.
 fn sensitivity(gaussians: &[(f64, f64)], ppd: f64) -> Vec<Kernel> {
     let reach = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * ppd).ceil() as i32;
-    // The inverse Fourier transform (section 4.1.1). As published, the 2D filters have the factor sqrt(pi / b) of the 1D transform.
+    // The inverse Fourier transform (section 4.1.1). As published, the 2D filters have the factor sqrt(pi / b) of the
+    // 1D transform.
     let height = |(a, b): (f64, f64)| a * (PI / b).sqrt();
     let along = |b: f64, x: i32| (-PI * PI / b * (f64::from(x) / ppd).powi(2)).exp();
     let side = |b: f64| (-reach..=reach).map(|x| along(b, x)).sum::<f64>();

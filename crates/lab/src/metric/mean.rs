@@ -46,7 +46,8 @@ pub(super) struct Histogram {
 }
 
 impl Histogram {
-    /// Bin width, which bounds the error of a quantile. For Delta E 94 it is about 1/30 of the just noticeable difference.
+    /// Bin width, which bounds the error of a quantile. For Delta E 94 it is about 1/30 of the just noticeable
+    /// difference.
     pub const BIN: f32 = 1.0 / 32.0;
     /// Bins up to 128, which is above the largest Delta E 94 of sRGB colors.
     const BINS: usize = 4096;

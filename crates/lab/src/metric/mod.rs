@@ -1,7 +1,8 @@
-//! Streaming image quality metrics: PSNR, SSIM and FLIP over the whole frame and by eccentricity, PSNR weighted by visual acuity,
-//! retention of detail from earlier foveas, flicker, and ghosting.
+//! Streaming image quality metrics: PSNR, SSIM and FLIP over the whole frame and by eccentricity, PSNR weighted by
+//! visual acuity, retention of detail from earlier foveas, flicker, and ghosting.
 //!
-//! All compare sRGB-encoded RGB in \[0, 1\] with the full-rate frame of the same time. `docs/metrics.md` has the formulas.
+//! All compare sRGB-encoded RGB in \[0, 1\] with the full-rate frame of the same time. `docs/metrics.md` has the
+//! formulas.
 
 pub mod flip;
 mod ghost;
@@ -73,8 +74,9 @@ fn lab_map(encoded: &Image<[f32; 3]>) -> Image<Vec3> {
     lab
 }
 
-/// Weight of an error at an eccentricity in degrees: the density of retinal ganglion cells (Watson 2014, [`acuity::cell_density`])
-/// relative to the centre of the fovea. Each cell then counts equally, rather than each pixel.
+/// Weight of an error at an eccentricity in degrees: the density of retinal ganglion cells (Watson 2014,
+/// [`acuity::cell_density`]) relative to the centre of the fovea. Each cell then counts equally, rather than each
+/// pixel.
 pub fn error_weight(e_deg: f32) -> f32 {
     acuity::cell_density(e_deg) / acuity::cell_density(0.0)
 }

@@ -64,7 +64,8 @@ pub struct Scores {
     pub flicker: Option<f64>,
     /// Squared share of the old color in the output beyond 3.5 degrees after a change, summed over 32 frames.
     pub ghost_energy: Option<f64>,
-    /// Frames until that share falls to half of its value in the first frame after the change; `None`: not within 32 frames.
+    /// Frames until that share falls to half of its value in the first frame after the change; `None`: not within 32
+    /// frames.
     pub ghost_half_frames: Option<u32>,
 }
 
@@ -106,8 +107,8 @@ impl Scorer {
         Self { skip_ssim: true, ..Self::default() }
     }
 
-    /// Adds a frame: its reference, the method's sRGB-encoded output, correspondence to the previous frame, and eccentricities in
-    /// degrees. Returns the frame's own errors.
+    /// Adds a frame: its reference, the method's sRGB-encoded output, correspondence to the previous frame, and
+    /// eccentricities in degrees. Returns the frame's own errors.
     ///
     /// # Panics
     /// If the sizes differ.

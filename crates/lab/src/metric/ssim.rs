@@ -9,12 +9,12 @@ use rayon::prelude::*;
 /// Side of the window in pixels.
 const WINDOW: usize = 11;
 
-/// Rows of the map per strip. The crate downsamples images whose shorter side exceeds 384 pixels, as the authors' script does. Strips
-/// stay below, so that SSIM is computed at full resolution, and run in parallel.
+/// Rows of the map per strip. The crate downsamples images whose shorter side exceeds 384 pixels, as the authors'
+/// script does. Strips stay below, so that SSIM is computed at full resolution, and run in parallel.
 const STRIP_ROWS: usize = 128;
 
-/// SSIM at every pixel whose window lies inside the image: a map that is 10 pixels smaller in width and height, whose pixel (0, 0) is
-/// the image's (5, 5). `None` for images smaller than the window.
+/// SSIM at every pixel whose window lies inside the image: a map that is 10 pixels smaller in width and height, whose
+/// pixel (0, 0) is the image's (5, 5). `None` for images smaller than the window.
 ///
 /// # Panics
 /// If the sizes differ.

@@ -1,5 +1,5 @@
-//! Correspondence of pixels between frames, and surface points that were sampled at full rate: ground truth for metrics, from the
-//! full-rate frames and independent of any method.
+//! Correspondence of pixels between frames, and surface points that were sampled at full rate: ground truth for
+//! metrics, from the full-rate frames and independent of any method.
 
 use crate::frame::SourceFrame;
 use afterimage::kernel::{depth, reproject};
@@ -8,7 +8,8 @@ use afterimage::{DepthConvention, DepthTest, Image, ViewGeometry};
 /// Level of detail below which a pixel counts as sampled at full rate.
 const SHARP_LOD: f32 = 0.25;
 
-/// Eccentricity in degrees beyond which retention is measured: outside the foveas of the common settings and their blend zones.
+/// Eccentricity in degrees beyond which retention is measured: outside the foveas of the common settings and their
+/// blend zones.
 pub(super) const RETAINED_FROM_DEG: f32 = 3.5;
 
 /// Value in [`Tracked::past`] of a pixel that was not visible in the previous frame.
@@ -19,10 +20,11 @@ pub const NO_PAST: u32 = u32::MAX;
 pub struct Tracked {
     /// Index of each pixel's surface point in the previous frame, or [`NO_PAST`] if it was not visible.
     pub past: Image<u32>,
-    /// Index of the pixel in the previous frame that the motion vector points to, without a depth test, or [`NO_PAST`] outside of the
-    /// frame: the history fetch of a method that relies on motion vectors alone.
+    /// Index of the pixel in the previous frame that the motion vector points to, without a depth test, or [`NO_PAST`]
+    /// outside of the frame: the history fetch of a method that relies on motion vectors alone.
     pub fetched: Image<u32>,
-    /// Retained pixels: beyond 3.5 degrees, with a surface point that was sampled at full rate earlier and has been visible since.
+    /// Retained pixels: beyond 3.5 degrees, with a surface point that was sampled at full rate earlier and has been
+    /// visible since.
     pub retained: Image<bool>,
 }
 

@@ -4,15 +4,15 @@ use super::{Scanpath, Screen};
 use crate::error::InputError;
 use afterimage::ViewGeometry;
 
-/// Tolerance in seconds for comparing sample and frame times: covers the rounding of `start_s + i / fps` over hours, and is far
-/// below the sample spacing of any recording.
+/// Tolerance in seconds for comparing sample and frame times: covers the rounding of `start_s + i / fps` over hours,
+/// and is far below the sample spacing of any recording.
 const TIME_SLACK_S: f64 = 1e-9;
 
 /// Mapping of screen positions to frame positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GazeMap {
-    /// Keeps visual angles: the middle of the screen maps to the view's forward direction, and a gaze 5 degrees from it on the screen
-    /// is 5 degrees from it in the view. Needs the screen's size in centimetres and its distance.
+    /// Keeps visual angles: the middle of the screen maps to the view's forward direction, and a gaze 5 degrees from it
+    /// on the screen is 5 degrees from it in the view. Needs the screen's size in centimetres and its distance.
     Angle,
     /// Stretches the screen to the frame, edge to edge.
     Fit,
@@ -27,7 +27,8 @@ impl GazeMap {
 
 /// Gaze of each frame: the last valid sample at or before the frame's time, neither interpolated nor predicted.
 ///
-/// Frame `i` is displayed `start_s + i / fps` seconds after the recording's first sample. A lookup takes O(log samples).
+/// Frame `i` is displayed `start_s + i / fps` seconds after the recording's first sample. A lookup takes O(log
+/// samples).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameGaze {
     /// Times (on the recording's clock) and frame positions of the valid samples.
@@ -44,8 +45,8 @@ impl FrameGaze {
     /// Samples so far off the screen that their pixel overflows an `f32` count as lost.
     ///
     /// # Errors
-    /// [`Request`](InputError::Request) if `fps` is not a positive number, `start_s` is negative, not finite or beyond the
-    /// recording's end, or `map` is [`GazeMap::Angle`] and the screen's geometry is not known.
+    /// [`Request`](InputError::Request) if `fps` is not a positive number, `start_s` is negative, not finite or beyond
+    /// the recording's end, or `map` is [`GazeMap::Angle`] and the screen's geometry is not known.
     pub fn new(path: &Scanpath, view: &ViewGeometry, map: GazeMap, start_s: f64, fps: f64) -> Result<Self, InputError> {
         if !(fps.is_finite() && fps > 0.0) {
             return Err(InputError::request("fps", format!("{fps} frames per second"), "expected a number above 0"));
@@ -83,15 +84,15 @@ impl FrameGaze {
         self.map
     }
 
-    /// Gaze in frame `index` in pixels; (0, 0) is the **centre** of the top left pixel, y down. Finite, but possibly outside of the
-    /// frame. `None` before the first valid sample: the caller chooses a fallback. Past [`FrameGaze::frames`] the last valid sample
-    /// is held.
+    /// Gaze in frame `index` in pixels; (0, 0) is the **centre** of the top left pixel, y down. Finite, but possibly
+    /// outside of the frame. `None` before the first valid sample: the caller chooses a fallback. Past
+    /// [`FrameGaze::frames`] the last valid sample is held.
     pub fn px(&self, index: u64) -> Option<[f32; 2]> {
         self.held(index).map(|(_, px)| px)
     }
 
-    /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]. An age of more than a few sample intervals means that the
-    /// gaze is lost and held; a caller may respond with a wider fovea.
+    /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]. An age of more than a few sample intervals
+    /// means that the gaze is lost and held; a caller may respond with a wider fovea.
     pub fn age_s(&self, index: u64) -> Option<f64> {
         self.held(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
     }

@@ -1,7 +1,7 @@
 //! Scanpaths: recorded and synthetic gaze over time, and its resampling to frames.
 //!
-//! A [`Scanpath`] comes from a CSV file ([`read_csv`]) or from a model of the eye ([`generate`]); [`FrameGaze`] resamples it to one
-//! gaze point per frame. Lost gaze is `None` in samples, and is never filled in by interpolation.
+//! A [`Scanpath`] comes from a CSV file ([`read_csv`]) or from a model of the eye ([`generate`]); [`FrameGaze`]
+//! resamples it to one gaze point per frame. Lost gaze is `None` in samples, and is never filled in by interpolation.
 
 mod frames;
 mod recorded;
@@ -26,7 +26,8 @@ const UNKNOWN: &str = "unknown";
 pub struct Sample {
     /// Time in seconds on the recording's clock.
     pub t_s: f64,
-    /// Gaze in screen pixels from the top left **corner** of the screen, y down; may lie off the screen. `None`: lost gaze.
+    /// Gaze in screen pixels from the top left **corner** of the screen, y down; may lie off the screen. `None`: lost
+    /// gaze.
     pub px: Option<[f32; 2]>,
 }
 
@@ -50,8 +51,8 @@ impl Default for Screen {
 }
 
 impl Screen {
-    /// A screen with the pixels and visual angles of `view`, seen from 60 cm: both [`GazeMap`]s onto `view` are then equal. An
-    /// off-axis view is centred.
+    /// A screen with the pixels and visual angles of `view`, seen from 60 cm: both [`GazeMap`]s onto `view` are then
+    /// equal. An off-axis view is centred.
     pub fn of_view(view: &ViewGeometry) -> Self {
         let size_px = view.size_px().map(|n| n.max(1));
         let (tangent_per_px, _) = view.scale_offset();
@@ -109,13 +110,13 @@ pub struct Scanpath {
 }
 
 impl Scanpath {
-    /// A scanpath from its parts. Samples whose coordinates are not finite become lost; nothing else is altered. `name` is the name
-    /// in errors, usually the file's path.
+    /// A scanpath from its parts. Samples whose coordinates are not finite become lost; nothing else is altered. `name`
+    /// is the name in errors, usually the file's path.
     ///
     /// # Errors
-    /// [`Invalid`](InputError::Invalid) if the screen has no pixels or a size that is not positive, the rate is not a positive
-    /// number, a note is not one line of `key: value` or uses a reserved key, times are not finite and increasing, there is no
-    /// sample, or none is valid.
+    /// [`Invalid`](InputError::Invalid) if the screen has no pixels or a size that is not positive, the rate is not a
+    /// positive number, a note is not one line of `key: value` or uses a reserved key, times are not finite and
+    /// increasing, there is no sample, or none is valid.
     pub fn new(
         name: impl Into<String>,
         screen: Screen,

@@ -60,14 +60,15 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
 
 /// Parses the contents of a scanpath file; `name` is its name in errors.
 ///
-/// Columns are `t_s,x_px,y_px,valid`: seconds, screen pixels from the top left corner (y down), 1 or 0. A sample is lost if
-/// `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept unchanged. A measure in the
-/// header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`, or be `unknown`; only
-/// `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
+/// Columns are `t_s,x_px,y_px,valid`: seconds, screen pixels from the top left corner (y down), 1 or 0. A sample is
+/// lost if `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept unchanged. A
+/// measure in the header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`,
+/// or be `unknown`; only `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
 ///
 /// # Errors
-/// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot be parsed, a
-/// row without exactly four columns, times that do not increase. Without: no column names, and the errors of [`Scanpath::new`].
+/// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot
+/// be parsed, a row without exactly four columns, times that do not increase. Without: no column names, and the errors
+/// of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     let text = utf8(name, bytes)?;
     let mut header = Header::default();
@@ -111,8 +112,8 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     Scanpath::new(name, screen, header.about, samples)
 }
 
-/// Writes the format that [`read_csv`] reads. Numbers have as many digits as an exact round trip needs, and lost samples are
-/// `nan,nan,0`. The name is not written: reading the result under the same name gives an equal scanpath.
+/// Writes the format that [`read_csv`] reads. Numbers have as many digits as an exact round trip needs, and lost
+/// samples are `nan,nan,0`. The name is not written: reading the result under the same name gives an equal scanpath.
 ///
 /// # Errors
 /// Errors of `out`.

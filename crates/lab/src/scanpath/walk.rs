@@ -9,8 +9,8 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// Attempts to draw a direction (and amplitude) that stays on the screen, before the eye moves towards the middle instead. Fewer
-/// attempts bias amplitudes in the corners of small screens towards short ones.
+/// Attempts to draw a direction (and amplitude) that stays on the screen, before the eye moves towards the middle
+/// instead. Fewer attempts bias amplitudes in the corners of small screens towards short ones.
 const AIM_TRIES: usize = 64;
 
 /// Rectangle around the forward direction, by its half size in tangents.
@@ -114,13 +114,13 @@ impl<T: Iterator<Item = f64>> Walk<T> {
                 return (towards, amplitude_deg);
             }
         }
-        // The shortest saccade towards the middle ends in the field, because the field contains a circle of that radius around the
-        // middle (`SyntheticOptions::validate`).
+        // The shortest saccade towards the middle ends in the field, because the field contains a circle of that radius
+        // around the middle (`SyntheticOptions::validate`).
         (tangent_towards(self.gaze, DVec3::Z), SACCADE_DEG[0])
     }
 
-    /// A direction in which a movement of `amplitude_deg` stays in the allowed field. The field is convex and wider than a
-    /// microsaccade, so the direction towards the middle is always valid.
+    /// A direction in which a movement of `amplitude_deg` stays in the allowed field. The field is convex and wider
+    /// than a microsaccade, so the direction towards the middle is always valid.
     fn direction_inside(&mut self, amplitude_deg: f64) -> DVec3 {
         for _ in 0..AIM_TRIES {
             let towards = self.any_direction();

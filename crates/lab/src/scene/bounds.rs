@@ -38,7 +38,8 @@ impl Scene {
         }
     }
 
-    /// A camera with the scene's whole bounding box in view, from the front, right and above: for scenes without a camera.
+    /// A camera with the scene's whole bounding box in view, from the front, right and above: for scenes without a
+    /// camera.
     ///
     /// `aspect` is width over height of the frame. For an empty scene it looks at the origin.
     pub fn framing_camera(&self, aspect: f32) -> Camera {
@@ -56,7 +57,8 @@ impl Scene {
         let up = back.cross(right);
         let tan_y = (f64::from(FRAMING_VFOV_DEG) / 2.0).to_radians().tan() / MARGIN;
         let tan_x = tan_y * aspect;
-        // A corner at (x, y, z) in camera axes around the middle is in view from distance d if |x| <= (d - z) tan_x; same for y.
+        // A corner at (x, y, z) in camera axes around the middle is in view from distance d if |x| <= (d - z) tan_x;
+        // same for y.
         let distance = (0..8)
             .map(|corner| {
                 let sign = |bit: i32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };

@@ -45,8 +45,8 @@ struct KeyframesForm {
 
 impl CameraFile {
     /// Reads a `cameras.json` (poses in Blender's axes, z up) or keyframes in the scene's axes:
-    /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}`. The camera follows a smooth curve through
-    /// the keyframes, with y up.
+    /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}`. The camera follows a smooth
+    /// curve through the keyframes, with y up.
     ///
     /// # Errors
     /// [`Io`](InputError::Io) if the file cannot be read, [`Limit`](InputError::Limit) if it is too large, and those of

@@ -12,8 +12,8 @@ pub const FILE_NAME: &str = "cameras.json";
 /// Largest file size in bytes: 100,000 frames with every field take less.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// Tolerance for orthonormality of a rotation, and for a pair of matrices being inverse to each other. Rounding to eight digits
-/// errs by 1e-8; a scaled or sheared camera by far more than this tolerance.
+/// Tolerance for orthonormality of a rotation, and for a pair of matrices being inverse to each other. Rounding to
+/// eight digits errs by 1e-8; a scaled or sheared camera by far more than this tolerance.
 const RIGID_TOLERANCE: f64 = 1e-3;
 
 #[derive(Deserialize)]
@@ -124,8 +124,8 @@ impl Cameras {
         }
     }
 
-    /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no number.
-    /// `None` if there are no matrices.
+    /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no
+    /// number. `None` if there are no matrices.
     pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);

@@ -150,8 +150,9 @@ impl Geometry {
         v
     }
 
-    /// Appends the triangles to `out`. Triangles with a corner that is not finite or beyond [`MAX_COORDINATE`] are dropped if
-    /// `drop_bad`; otherwise they collapse to a point, which keeps the order and number of triangles. Returns the number dropped.
+    /// Appends the triangles to `out`. Triangles with a corner that is not finite or beyond [`MAX_COORDINATE`] are
+    /// dropped if `drop_bad`; otherwise they collapse to a point, which keeps the order and number of triangles.
+    /// Returns the number dropped.
     pub fn push_triangles(&self, posed: &Posed, drop_bad: bool, out: &mut Triangles) -> u64 {
         let mut dropped = 0;
         out.reserve(self.indices.len());
@@ -199,7 +200,8 @@ pub(crate) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     u.cross(v).normalize_or(glam::DVec3::Y).as_vec3()
 }
 
-/// Normal transformation: the inverse transpose up to a factor, signed so that normals keep pointing outwards under mirroring.
+/// Normal transformation: the inverse transpose up to a factor, signed so that normals keep pointing outwards under
+/// mirroring.
 fn signed_cofactors(m: Mat3, mirrored: bool) -> Mat3A {
     let sign = if mirrored { -1.0 } else { 1.0 };
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];

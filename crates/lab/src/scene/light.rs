@@ -12,8 +12,8 @@ pub struct PunctualLight {
     pub position: Vec3,
     /// Unit direction that the light shines in; not used for point lights.
     pub direction: Vec3,
-    /// Linear color times intensity: radiant intensity of point and spot lights (glTF's candela taken as W/sr), irradiance of
-    /// directional ones (lux taken as W/m^2).
+    /// Linear color times intensity: radiant intensity of point and spot lights (glTF's candela taken as W/sr),
+    /// irradiance of directional ones (lux taken as W/m^2).
     pub intensity: [f32; 3],
     /// Range in metres; infinity for no limit.
     pub range: f32,
@@ -40,6 +40,7 @@ pub enum PunctualKind {
 pub enum Environment {
     /// Constant radiance; black for no environment.
     Constant([f32; 3]),
-    /// Equirectangular map of radiance: longitude along x with -z in the middle column, latitude along y with up at the top.
+    /// Equirectangular map of radiance: longitude along x with -z in the middle column, latitude along y with up at the
+    /// top.
     Map(Image<[f32; 3]>),
 }

@@ -2,7 +2,8 @@
 
 use crate::error::{Bound, Exceeded, InputError};
 
-/// Limits on the size of a scene. Higher limits admit larger scenes, and let a damaged or hostile file claim as much memory.
+/// Limits on the size of a scene. Higher limits admit larger scenes, and let a damaged or hostile file claim as much
+/// memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneLimits {
     /// Largest number of triangles, every instance of a mesh counted. Default 50 million, about 10 GB.

@@ -1,6 +1,7 @@
 //! Textures.
 
-/// An 8 bit RGBA texture. Texels are encoded as in the file; whether that is sRGB depends on the material slot that uses it.
+/// An 8 bit RGBA texture. Texels are encoded as in the file; whether that is sRGB depends on the material slot that
+/// uses it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// Width and height in texels, 1 or more.

@@ -11,9 +11,9 @@ pub struct Triangles {
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates, (0, 0) at the first texel's corner.
     pub uvs: Vec<[Vec2; 3]>,
-    /// Unit tangent in the direction of increasing u; w is the sign of the bitangent `cross(normal, tangent) * w`, which is the
-    /// direction of a normal map's green channel (up in the image, decreasing v). An arbitrary direction orthogonal to the normal
-    /// if the material needs no tangent.
+    /// Unit tangent in the direction of increasing u; w is the sign of the bitangent `cross(normal, tangent) * w`,
+    /// which is the direction of a normal map's green channel (up in the image, decreasing v). An arbitrary direction
+    /// orthogonal to the normal if the material needs no tangent.
     pub tangents: Vec<[Vec4; 3]>,
     /// Vertex colors: linear factors of the base color, and of alpha in w.
     pub colors: Vec<[Vec4; 3]>,

@@ -1,10 +1,10 @@
 //! Reading and writing EXR frames.
 //!
 //! # Supported files
-//! Scan-line and tiled files, one or several parts, half, float and unsigned samples, and every compression that the `exr` crate
-//! decodes. Mip and rip maps are read at full resolution only. The data window must equal the display window (at any origin):
-//! cropped and overscanned frames are not supported, because missing pixels have neither color nor motion. Nor are subsampled
-//! channels and deep data.
+//! Scan-line and tiled files, one or several parts, half, float and unsigned samples, and every compression that the
+//! `exr` crate decodes. Mip and rip maps are read at full resolution only. The data window must equal the display
+//! window (at any origin): cropped and overscanned frames are not supported, because missing pixels have neither color
+//! nor motion. Nor are subsampled channels and deep data.
 //!
 //! # Channel names
 //! Names are looked up over all parts; a part's name counts as a prefix of its channel names. Case is ignored.

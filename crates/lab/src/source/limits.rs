@@ -8,7 +8,8 @@ pub(crate) const BLOCK_BYTES_PER_PIXEL: u64 = 16;
 /// Remedy for images above the limit.
 pub(crate) const SMALLER: &str = "use a smaller image, or raise the limit";
 
-/// Limits on image size. A higher limit admits larger images, and lets a damaged or hostile header claim as much memory.
+/// Limits on image size. A higher limit admits larger images, and lets a damaged or hostile header claim as much
+/// memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Largest width x height of an image, in pixels. Default 64 million: an 8K frame has 33 million.
@@ -56,8 +57,8 @@ impl ReadLimits {
         Exceeded { bound: Bound::Pixels, needed, allowed: self.max_pixels }
     }
 
-    /// Largest decoded block (a tile or a band of scan lines with all its channels) in bytes: that of an image at the limit with
-    /// four floats per pixel.
+    /// Largest decoded block (a tile or a band of scan lines with all its channels) in bytes: that of an image at the
+    /// limit with four floats per pixel.
     pub(crate) fn max_block_bytes(&self) -> u64 {
         self.max_pixels.saturating_mul(BLOCK_BYTES_PER_PIXEL)
     }

@@ -73,22 +73,23 @@ pub struct CameraPose {
 
 /// A stream of frames, by playback index.
 ///
-/// A sequence shorter than the playback is played forwards and backwards (0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...), with motion
-/// vectors for the direction of playback. Memory does not grow with the number of frames.
+/// A sequence shorter than the playback is played forwards and backwards (0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...), with
+/// motion vectors for the direction of playback. Memory does not grow with the number of frames.
 pub trait FrameSource {
     /// Properties that hold for all frames.
     fn info(&self) -> &SourceInfo;
 
-    /// The frame at playback position `index`. Positions may come in any order; motion vectors always refer to `index - 1`.
+    /// The frame at playback position `index`. Positions may come in any order; motion vectors always refer to
+    /// `index - 1`.
     ///
     /// # Errors
-    /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or contradicts its
-    /// header, [`Limit`](InputError::Limit) if it is larger than the limits by now, [`Device`](InputError::Device) if the renderer
-    /// failed or lost its device.
+    /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or
+    /// contradicts its header, [`Limit`](InputError::Limit) if it is larger than the limits by now,
+    /// [`Device`](InputError::Device) if the renderer failed or lost its device.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
 
-    /// The frame at `index`, foveated by the source itself around a gaze in pixels. `guide` directs the samples. `None` if the
-    /// source cannot foveate: a simulator then foveates the full-rate frame.
+    /// The frame at `index`, foveated by the source itself around a gaze in pixels. `guide` directs the samples. `None`
+    /// if the source cannot foveate: a simulator then foveates the full-rate frame.
     ///
     /// # Errors
     /// As for [`frame`](Self::frame).
@@ -112,8 +113,8 @@ pub trait FrameSource {
         None
     }
 
-    /// Overrides the camera's path from frame `index` on with the poses before and from then; `None` returns it to its path. See
-    /// `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
+    /// Overrides the camera's path from frame `index` on with the poses before and from then; `None` returns it to its
+    /// path. See `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
     fn steer(&mut self, _index: u64, _before_and_now: Option<[DMat4; 2]>) {}
 }
 

@@ -1,7 +1,7 @@
 //! Detects the convention of a renderer's motion vectors by trying all of them on two frames.
 //!
-//! A wrong sign or unit does not crash: it shows as ghosts and blur. The detector reprojects the previous frame under each of the
-//! twelve conventions and picks the one that matches the current frame best. The scene must move enough.
+//! A wrong sign or unit does not crash: it shows as ghosts and blur. The detector reprojects the previous frame under
+//! each of the twelve conventions and picks the one that matches the current frame best. The scene must move enough.
 
 use crate::error::InputError;
 use afterimage::{Image, MotionConvention, MotionDirection, MotionUnit, YAxis};
@@ -148,7 +148,8 @@ fn tone(x: f32) -> f32 {
     (x / (1.0 + x)).powf(1.0 / 2.2)
 }
 
-/// Bilinearly filtered tone-mapped color, clamped to the edge: a convention that points far outside finds a wrong color.
+/// Bilinearly filtered tone-mapped color, clamped to the edge: a convention that points far outside finds a wrong
+/// color.
 fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
     let along = |v: f32, n: usize| {
         let v = v.clamp(0.0, (n - 1) as f32);

@@ -15,11 +15,12 @@ pub fn is_scene(input: &str) -> bool {
 ///
 /// # Errors
 /// - [`Io`](InputError::Io): the file or folder does not exist or cannot be read.
-/// - [`Invalid`](InputError::Invalid): a file is damaged, lacks color, or does not fit the other frames of its sequence.
+/// - [`Invalid`](InputError::Invalid): a file is damaged, lacks color, or does not fit the other frames of its
+///   sequence.
 /// - [`NotSupported`](InputError::NotSupported): the kind of file or a feature of it is not implemented.
 /// - [`Limit`](InputError::Limit): a frame has more pixels than `limits` allows.
-/// - [`Request`](InputError::Request): `scene` gives a size for a file, there is no analytic scene of that name, `input` is a
-///   scene that needs a renderer, or the folder holds no frames.
+/// - [`Request`](InputError::Request): `scene` gives a size for a file, there is no analytic scene of that name,
+///   `input` is a scene that needs a renderer, or the folder holds no frames.
 pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
     // Schemes first, so that a file of the same name cannot hide them.
     match input.split_once(':') {

@@ -20,9 +20,9 @@ pub const DEFAULT_FPS: f32 = 60.0;
 
 /// A scene seen by a camera, rasterised frame by frame and read back to memory.
 ///
-/// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from `(index - 1) / fps`.
-/// Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present. Depth and motion are sampled at
-/// pixel centres; color is the mean of four samples.
+/// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from
+/// `(index - 1) / fps`. Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present.
+/// Depth and motion are sampled at pixel centres; color is the mean of four samples.
 pub struct RasterSource {
     info: SourceInfo,
     device: Arc<Headless>,
@@ -33,12 +33,12 @@ pub struct RasterSource {
 }
 
 impl RasterSource {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for `camera`.
-    /// Texture filtering is anisotropic except on software devices.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for
+    /// `camera`. Texture filtering is anisotropic except on software devices.
     ///
     /// # Errors
-    /// Those of [`Scene::open`], [`SceneCamera::choose`] and [`RasterSource::new`], and [`Limit`](InputError::Limit) if the frame
-    /// has more pixels than `limits` allows.
+    /// Those of [`Scene::open`], [`SceneCamera::choose`] and [`RasterSource::new`], and [`Limit`](InputError::Limit) if
+    /// the frame has more pixels than `limits` allows.
     pub fn open(
         input: &str,
         limits: &ReadLimits,

@@ -60,9 +60,9 @@ impl SceneCamera {
     ///
     /// - `still`: the scene's first camera, else `framing`;
     /// - `framing`: a static camera with all of the scene in view;
-    /// - `lateral`: the scene's first camera, else `framing`, moving to the right and back. Its largest speed is an eighteenth of the
-    ///   scene's radius per second if it is inside the scene's bounding box (1 m/s in a hall of 36 m), else a fifth of its distance
-    ///   from the box's middle;
+    /// - `lateral`: the scene's first camera, else `framing`, moving to the right and back. Its largest speed is an
+    ///   eighteenth of the scene's radius per second if it is inside the scene's bounding box (1 m/s in a hall of 36
+    ///   m), else a fifth of its distance from the box's middle;
     /// - `orbit`: the scene's first camera, else `framing`, rotating about the scene's middle at 15 degrees per second.
     ///
     /// `None` selects `still` for an animated scene and `lateral` for a static one.
@@ -70,8 +70,8 @@ impl SceneCamera {
     /// `hfov_deg` replaces the camera's horizontal field of view.
     ///
     /// # Errors
-    /// [`Request`](InputError::Request) if there is no such camera, or the size or the field of view is out of range; those of
-    /// [`CameraFile::open`].
+    /// [`Request`](InputError::Request) if there is no such camera, or the size or the field of view is out of range;
+    /// those of [`CameraFile::open`].
     pub fn choose(
         scene: &Scene,
         name: Option<&str>,
@@ -150,8 +150,8 @@ impl SceneCamera {
         }
     }
 
-    /// Overrides the path with camera-to-world matrices (x right, y up, looking along -z): the second from frame `index` on, the
-    /// first for earlier frames. `None` returns the camera to its path.
+    /// Overrides the path with camera-to-world matrices (x right, y up, looking along -z): the second from frame
+    /// `index` on, the first for earlier frames. `None` returns the camera to its path.
     pub fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
         self.steering = before_and_now.map(|[before, now]| Steering { from_frame: index, before, now });
     }

@@ -11,8 +11,8 @@ use crate::scene::cameras::Cameras;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json`. Opening
-/// checks every header; pixels are decoded on request and not cached.
+/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json`.
+/// Opening checks every header; pixels are decoded on request and not cached.
 ///
 /// A folder with a single frame is a still.
 #[derive(Debug)]
@@ -32,9 +32,9 @@ impl SequenceSource {
     /// - [`Io`](InputError::Io): the folder or a file cannot be read.
     /// - [`Request`](InputError::Request): the folder has no `.exr`.
     /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of [`ExrHeader::open`].
-    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in size, or in
-    ///   whether it has depth or motion; a frame number is missing; several frames have no motion vectors; or `cameras.json` is
-    ///   invalid or belongs to other frames.
+    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in
+    ///   size, or in whether it has depth or motion; a frame number is missing; several frames have no motion vectors;
+    ///   or `cameras.json` is invalid or belongs to other frames.
     pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let name = folder.display().to_string();
         let files = exr_files(folder)?;

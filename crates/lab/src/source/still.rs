@@ -16,9 +16,9 @@ use std::path::Path;
 
 /// A still image, decoded once.
 ///
-/// PNG and JPEG are read as sRGB: gamma, color profiles, the orientation tag and alpha are ignored, and grey is replicated to all
-/// three channels. EXR is linear; its depth is used, its motion is ignored, and a `cameras.json` in its folder gives the field of
-/// view.
+/// PNG and JPEG are read as sRGB: gamma, color profiles, the orientation tag and alpha are ignored, and grey is
+/// replicated to all three channels. EXR is linear; its depth is used, its motion is ignored, and a `cameras.json` in
+/// its folder gives the field of view.
 #[derive(Clone, Debug)]
 pub struct StillSource {
     info: SourceInfo,
@@ -31,7 +31,8 @@ impl StillSource {
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
     /// - [`Invalid`](InputError::Invalid): it is damaged, or an EXR without color; or its `cameras.json` is.
-    /// - [`NotSupported`](InputError::NotSupported): another extension, or a feature of the format that is not implemented.
+    /// - [`NotSupported`](InputError::NotSupported): another extension, or a feature of the format that is not
+    ///   implemented.
     /// - [`Limit`](InputError::Limit): it is larger than `limits` allows.
     /// - [`Request`](InputError::Request): it is a folder.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {

@@ -36,10 +36,11 @@ pub struct TracedSamples {
     pub full_rate_samples: u32,
 }
 
-/// A scene seen by a camera, path-traced frame by frame: at full rate with the same number of samples everywhere, and foveated.
+/// A scene seen by a camera, path-traced frame by frame: at full rate with the same number of samples everywhere, and
+/// foveated.
 ///
-/// As with [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut. Depth and
-/// motion are those at pixel centres, without noise.
+/// As with [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut.
+/// Depth and motion are those at pixel centres, without noise.
 pub struct TracedSource {
     info: SourceInfo,
     scene: Scene,
@@ -54,13 +55,13 @@ pub struct TracedSource {
 }
 
 impl TracedSource {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for `camera`. A scene
-    /// without lights gets a uniform white environment.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for
+    /// `camera`. A scene without lights gets a uniform white environment.
     ///
     /// # Errors
-    /// Those of [`Scene::open`] and [`SceneCamera::choose`]; [`Limit`](InputError::Limit) if the frame has more pixels than `limits`
-    /// allows; [`Device`](InputError::Device) if the scene does not fit the device; [`Request`](InputError::Request) if the frame
-    /// rate is not above 0.
+    /// Those of [`Scene::open`] and [`SceneCamera::choose`]; [`Limit`](InputError::Limit) if the frame has more pixels
+    /// than `limits` allows; [`Device`](InputError::Device) if the scene does not fit the device;
+    /// [`Request`](InputError::Request) if the frame rate is not above 0.
     pub fn open(
         input: &str,
         limits: &ReadLimits,

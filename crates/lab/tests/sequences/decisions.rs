@@ -1,4 +1,5 @@
-//! What is known of decisions: counters, debug views, warnings. They agree with the CPU's, cost no state, and can be left out.
+//! What is known of decisions: counters, debug views, warnings. They agree with the CPU's, cost no state, and can be
+//! left out.
 
 use super::rig::{Rig, View, make_texture};
 use super::sequences::{SIZE, reset, trust, view};

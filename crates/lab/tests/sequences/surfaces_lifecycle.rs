@@ -167,7 +167,8 @@ fn memory_bytes_is_what_is_made() {
         let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
         let desc = ContextDesc { view_count, settings, ..ContextDesc::new(size) };
         let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
-        // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never rounds.
+        // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never
+        // rounds.
         let levels = if method == Method::Taa { 0 } else { 5 + u64::from(filter == Filter::Block) };
         let padded = |len: u32| u64::from(len.div_ceil(2)).next_multiple_of(1 << (levels.max(1) - 1));
         let chain: u64 = (0..levels).map(|l| (padded(size[0]) >> l) * (padded(size[1]) >> l)).sum();

@@ -1,7 +1,7 @@
 //! The rules of the house: checks over the files of the workspace.
 //!
-//! Each rule is a function from text to a list of violations. One test applies it to the workspace, another to a small input
-//! with planted violations.
+//! Each rule is a function from text to a list of violations. One test applies it to the workspace, another to a small
+//! input with planted violations.
 
 mod commands;
 mod manifests;

@@ -30,7 +30,8 @@ fn included(manifest: &Table) -> Vec<&str> {
     list.map(|l| l.iter().filter_map(Value::as_str).collect()).unwrap_or_default()
 }
 
-/// Files that sources read when they are compiled and that `include` leaves out. `files`: paths in the package, and texts.
+/// Files that sources read when they are compiled and that `include` leaves out. `files`: paths in the package, and
+/// texts.
 fn left_out(manifest: &Table, files: &[(&str, String)]) -> Vec<String> {
     let list = included(manifest);
     let mut left_out = vec![];

@@ -84,7 +84,8 @@ fn normalized(path: &str) -> String {
     parts.join("/")
 }
 
-/// Text of a file in which paths are checked, as lines with their numbers: comments of source files, all of other files.
+/// Text of a file in which paths are checked, as lines with their numbers: comments of source files, all of other
+/// files.
 fn checked_lines<'a>(path: &str, text: &'a str) -> Vec<(usize, &'a str)> {
     if path.ends_with(".rs") || path.ends_with(".wgsl") {
         let comments = pieces(text).into_iter().filter(|p| p.kind == Kind::Comment);

@@ -29,7 +29,6 @@ fn wide_lines(path: &str, text: &str) -> Vec<String> {
 }
 
 #[test]
-#[ignore = "until comments and pages are wrapped"]
 fn prose_is_at_most_120_characters_wide() {
     let tree = Tree::read();
     // docs/stability.md is printed by a test.

@@ -1,7 +1,8 @@
 //! Tables of the pages about shaders are generated from the shaders.
 //!
-//! A line `<!-- generated: functions of FOLDER -->` or `<!-- generated: bindings of FOLDER -->` stands above each; FOLDER is
-//! relative to the page. `AFTERIMAGE_BLESS=1 cargo test -p afterimage-testing --test house` rewrites the tables.
+//! A line `<!-- generated: functions of FOLDER -->` or `<!-- generated: bindings of FOLDER -->` stands above each;
+//! FOLDER is relative to the page. `AFTERIMAGE_BLESS=1 cargo test -p afterimage-testing --test house` rewrites the
+//! tables.
 
 use super::tree::{Tree, expect_none, read};
 use std::collections::BTreeSet;

@@ -19,7 +19,8 @@ pub struct Piece<'a> {
     pub text: &'a str,
 }
 
-/// Comments and string literals of Rust or WGSL, in order. Block comments, which the sources do not have, are not recognized.
+/// Comments and string literals of Rust or WGSL, in order. Block comments, which the sources do not have, are not
+/// recognized.
 pub fn pieces(source: &str) -> Vec<Piece<'_>> {
     let mut found = vec![];
     let mut at = 0;

@@ -56,7 +56,8 @@ fn the_tests_of_the_table_exist() {
     }
 }
 
-/// After a complete test run: the records agree with the table, except for measured values, which may differ between machines.
+/// After a complete test run: the records agree with the table, except for measured values, which may differ between
+/// machines.
 #[test]
 #[ignore = "after all other tests: tests/run.sh"]
 fn the_table_is_what_the_tests_said() {

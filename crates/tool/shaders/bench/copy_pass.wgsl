@@ -1,6 +1,6 @@
 //#use inputs
-// Moves the bytes of wrs_pass with depth and motion, and computes nothing: the time that benches hold the passes against. Bound in place
-// of wrs_pass; the history that it leaves is worthless.
+// Moves the bytes of wrs_pass with depth and motion, and computes nothing: the time that benches hold the passes
+// against. Bound in place of wrs_pass; the history that it leaves is worthless.
 
 // wrs_pass's, which its pipelines set.
 override SAMPLER: u32 = 0u;

@@ -1,7 +1,7 @@
 //#use color
-// What the window shows: a picture, or that of one side of the divider, where the eye looks, and the panel. One invocation a pixel of the
-// window. What branches hang on is constant when the pipeline is made: software devices compute all branches of a shader, and lavapipe
-// compiles it anew at every bind if they hang on a uniform.
+// What the window shows: a picture, or that of one side of the divider, where the eye looks, and the panel. One
+// invocation a pixel of the window. What branches hang on is constant when the pipeline is made: software devices
+// compute all branches of a shader, and lavapipe compiles it anew at every bind if they hang on a uniform.
 
 // src/commands/view/screen.rs: ScreenConstants, which explains them
 struct ScreenConstants {

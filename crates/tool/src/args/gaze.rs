@@ -15,7 +15,8 @@ pub struct GazeArgs {
     /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
     #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: String,
-    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's geometry
+    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
+    /// geometry
     #[arg(long, value_enum)]
     pub gaze_map: Option<GazeMapName>,
     /// Start time in the scanpath, seconds

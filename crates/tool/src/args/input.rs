@@ -16,8 +16,8 @@ use clap::{Args, ValueEnum};
 /// Input: frames or a scene.
 #[derive(Args, Clone, Debug)]
 pub struct InputArgs {
-    /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with NAME one
-    /// of still, lateral, turn, occluder, light-step, scroll
+    /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with
+    /// NAME one of still, lateral, turn, occluder, light-step, scroll
     #[arg(value_name = "INPUT")]
     pub name: String,
     /// Frames per second, for view an upper limit; default: the input's, else 60
@@ -37,8 +37,8 @@ pub struct InputArgs {
     pub spp: u32,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Camera of a scene: one of its cameras by name, a .json file (a cameras.json, or a path of keyframes), or lateral, orbit,
-    /// framing; default: the scene's first camera, which glides sideways if nothing in the scene moves
+    /// Camera of a scene: one of its cameras by name, a .json file (a cameras.json, or a path of keyframes), or
+    /// lateral, orbit, framing; default: the scene's first camera, which glides sideways if nothing in the scene moves
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Limit on the size of input images, million pixels
@@ -59,7 +59,8 @@ pub enum SourceName {
 pub struct Rendering {
     pub backend: Backend,
     pub seed: u64,
-    /// Sampling pattern of foveated frames, and samples per pixel of their full-rate references; `None`: full-rate frames only.
+    /// Sampling pattern of foveated frames, and samples per pixel of their full-rate references; `None`: full-rate
+    /// frames only.
     pub foveated: Option<(Sampling, u32)>,
 }
 

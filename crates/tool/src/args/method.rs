@@ -61,7 +61,8 @@ pub struct WrsArgs {
     /// Turn the color gate off
     #[arg(long)]
     pub no_gate: bool,
-    /// smr: largest weight of history at the same level of detail, 0 to 0.98; default: 0.9, for frames traced with --sampling 0.95
+    /// smr: largest weight of history at the same level of detail, 0 to 0.98; default: 0.9, for frames traced with
+    /// --sampling 0.95
     #[arg(long, value_name = "X")]
     pub smr_accumulate: Option<f32>,
     /// smr: factor on the tolerated difference from history, 0.1 to 10

@@ -36,8 +36,8 @@ pub struct SamplingArgs {
     /// layers: spacing of traced pixels in the four layers, pixels
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4", value_name = "A,B,C,D")]
     pub layer_step: Vec<u32>,
-    /// layers: radius of the area that a headset's lens shows, degrees from the view's axis; nothing is traced outside; default: the whole
-    /// frame
+    /// layers: radius of the area that a headset's lens shows, degrees from the view's axis; nothing is traced outside;
+    /// default: the whole frame
     #[arg(long, value_name = "DEG")]
     pub lens_deg: Option<f32>,
 }

@@ -1,4 +1,5 @@
-//! Runs the pipeline over a clip, frame by frame, and writes frames and scores to disk. Shared by `run`, `demo` and `sweep`.
+//! Runs the pipeline over a clip, frame by frame, and writes frames and scores to disk. Shared by `run`, `demo` and
+//! `sweep`.
 
 pub mod run_report;
 
@@ -135,7 +136,8 @@ impl Clip {
         Ok(report)
     }
 
-    /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the last frame.
+    /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the
+    /// last frame.
     pub fn play(
         &self,
         source: &mut dyn FrameSource,

@@ -30,8 +30,8 @@ pub struct BenchArgs {
     /// Subject of the benchmark
     #[arg(value_enum, default_value = "post")]
     pub what: What,
-    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second paper's frames are as wide
-    /// as this height), 192x108 for effects
+    /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second
+    /// paper's frames are as wide as this height), 192x108 for effects
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
     /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; for papers per pattern, at
@@ -41,11 +41,12 @@ pub struct BenchArgs {
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, papers (first paper), effects: scenes, separated by commas; default: builtin:courtyard, for effects four built-in ones
+    /// trace, papers (first paper), effects: scenes, separated by commas; default: builtin:courtyard, for effects four
+    /// built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, papers (first paper): camera of the scenes, as for `afterimage trace`: a camera by name, still, framing, lateral, orbit, or a
-    /// file; default: still
+    /// trace, papers (first paper): camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
+    /// lateral, orbit, or a file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// trace, papers, effects: device that traces; papers use the adapter if there is one
@@ -75,7 +76,8 @@ pub enum Compare {
 /// Subjects of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy pass that moves as many bytes as wrs
+    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy pass that moves
+    /// as many bytes as wrs
     Post,
     /// The path tracer: rays per second, depth 3, multiple importance sampling
     Trace,

@@ -23,8 +23,8 @@ pub struct DemoArgs {
     pub out: PathBuf,
 }
 
-/// Arguments of `afterimage run` that give the same result. The clip ends 0.1 s after a wide saccade, when the effect of reuse is
-/// easiest to see.
+/// Arguments of `afterimage run` that give the same result. The clip ends 0.1 s after a wide saccade, when the effect
+/// of reuse is easiest to see.
 pub const BY_HAND: &str = "analytic:still --size 960x540 --gaze synthetic:46 --frames 98 --rate-mid 4 --rate-far 8 \
     --method none,wrs,smr,oracle --reference --no-flip --backend cpu";
 const SIZE: [u32; 2] = [960, 540];

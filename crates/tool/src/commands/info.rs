@@ -25,7 +25,8 @@ pub struct InfoArgs {
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
-    /// With adapters: test the arithmetic of each, and whether the passes give the same bits as on the CPU (seconds on software devices)
+    /// With adapters: test the arithmetic of each, and whether the passes give the same bits as on the CPU (seconds on
+    /// software devices)
     #[arg(long)]
     pub self_test: bool,
 }

@@ -34,7 +34,8 @@ pub struct RunArgs {
     pub out: PathBuf,
     #[command(flatten)]
     pub gaze: GazeArgs,
-    /// Number of frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a synthetic or fixed gaze)
+    /// Number of frames; default: the whole input, for stills and analytic scenes the whole scanpath (5 s of a
+    /// synthetic or fixed gaze)
     #[arg(long, value_parser = parse_frames, value_name = "N")]
     pub frames: Option<u64>,
     #[command(flatten)]
@@ -44,8 +45,8 @@ pub struct RunArgs {
     pub reference_spp: u32,
     #[command(flatten)]
     pub sampling: SamplingArgs,
-    /// With --sampling and the method smr: trace more samples where the history's confidence is low and fewer where it is high, with the
-    /// same total
+    /// With --sampling and the method smr: trace more samples where the history's confidence is low and fewer where it
+    /// is high, with the same total
     #[arg(long)]
     pub guided: bool,
     #[command(flatten)]

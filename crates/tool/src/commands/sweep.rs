@@ -43,8 +43,8 @@ pub struct SweepArgs {
     /// Plan in TOML, see below
     #[arg(long, value_name = "FILE.toml")]
     pub file: Option<PathBuf>,
-    /// An option of run and its values; every combination of the axes is measured. NAME=V,V; options that vary together: N+N=V+V,V+V; values
-    /// that contain commas: NAME=V;V; flags: NAME=-,on; the value - leaves any option out
+    /// An option of run and its values; every combination of the axes is measured. NAME=V,V; options that vary
+    /// together: N+N=V+V,V+V; values that contain commas: NAME=V;V; flags: NAME=-,on; the value - leaves any option out
     #[arg(long, value_name = "NAME=VALUES")]
     pub axis: Vec<String>,
     /// An option of run to change alone, with the first value of each axis but the method: NAME or NAME=VALUE
@@ -185,7 +185,8 @@ fn run(args: &SweepArgs) -> Result<Store, Failure> {
     Ok(store)
 }
 
-/// Refuses a folder whose points come from other common options, another version or another machine: they are not comparable.
+/// Refuses a folder whose points come from other common options, another version or another machine: they are not
+/// comparable.
 fn refuse_another_sweep(
     args: &SweepArgs,
     done: &[Measurement],

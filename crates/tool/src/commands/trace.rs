@@ -55,8 +55,8 @@ pub struct TraceArgs {
     /// Horizontal field of view, degrees; default: the camera's
     #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
     pub hfov: Option<f32>,
-    /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit; or a file: a
-    /// cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
+    /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit;
+    /// or a file: a cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Animation of the scene to play, by name or number; default: the first
@@ -67,14 +67,14 @@ pub struct TraceArgs {
     pub spp: u32,
     #[command(flatten)]
     pub pattern: PatternArgs,
-    /// Render two eyes with this distance between the pupils, meters (typical 0.063; at most 0.2); parallel axes, centered on the camera;
-    /// default: one eye at the camera
+    /// Render two eyes with this distance between the pupils, meters (typical 0.063; at most 0.2); parallel axes,
+    /// centered on the camera; default: one eye at the camera
     #[arg(long, value_name = "IPD_M", allow_negative_numbers = true)]
     pub stereo: Option<f64>,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with its own
-    /// lights, else uniform white
+    /// Environment light: none, a radiance R,G,B, or an .exr with longitude along x; default: none for a scene with its
+    /// own lights, else uniform white
     #[arg(long, value_name = "none|R,G,B|FILE.exr")]
     pub sky: Option<String>,
     /// Additional images to write, separated by commas; depth and motion also as channels of the color .exr
@@ -150,7 +150,8 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         }
         for (eye, name) in eyes.names().iter().enumerate() {
             let clock = Stopwatch::start();
-            // The eyes draw independent random numbers: noise shared by both would appear as a pattern floating in space.
+            // The eyes draw independent random numbers: noise shared by both would appear as a pattern floating in
+            // space.
             let eye_frame = EyeFrame { view: views[eye], frame, draws: frame * views.len() as u64 + eye as u64 };
             let (picture, counts) = match gaze.eyes.last() {
                 None => eye_frame.uniform(args, &setup, &bar),

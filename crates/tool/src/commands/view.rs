@@ -53,11 +53,13 @@ pub struct ViewArgs {
     /// Two methods to show side by side
     #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "method", value_name = "A,B")]
     pub split: Vec<Shows>,
-    /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]. One
-    /// position per frame, at most --fps frames a second, so that pictures are the same as with run; key P
+    /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or
+    /// synthetic[:SEED]. One position per frame, at most --fps frames a second, so that pictures are the same as with
+    /// run; key P
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: Option<String>,
-    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's geometry
+    /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
+    /// geometry
     #[arg(long, value_enum)]
     pub gaze_map: Option<GazeMapName>,
     /// Start time in the scanpath, seconds
@@ -76,13 +78,15 @@ pub struct ViewArgs {
     /// Exposure before sRGB encoding, stops
     #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
-    /// Rendering resolution as a factor on the input's, above 0 and at most 1; default: 1, lowered on a software device that is too slow
+    /// Rendering resolution as a factor on the input's, above 0 and at most 1; default: 1, lowered on a software device
+    /// that is too slow
     #[arg(long, value_name = "X")]
     pub internal_scale: Option<f32>,
     /// File that F12 saves the picture to, as run writes it; with --frames the last picture is saved too
     #[arg(long, value_name = "FILE.png")]
     pub screenshot: Option<PathBuf>,
-    /// File for the gaze of every frame since the last history reset, as a scanpath for --gaze; written with each picture and at the end
+    /// File for the gaze of every frame since the last history reset, as a scanpath for --gaze; written with each
+    /// picture and at the end
     #[arg(long, value_name = "FILE.csv")]
     pub record: Option<PathBuf>,
     /// Start with the panel hidden

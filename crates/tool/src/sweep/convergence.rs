@@ -20,8 +20,8 @@ pub struct Convergence {
     pub label: String,
     /// In ascending order of samples.
     pub points: Vec<ConvergencePoint>,
-    /// Least-squares slope of lg(squared error) against lg(samples): whole image, then fovea, middle, periphery. Independent samples
-    /// without bias have -1.
+    /// Least-squares slope of lg(squared error) against lg(samples): whole image, then fovea, middle, periphery.
+    /// Independent samples without bias have -1.
     pub slope_by_samples: [Option<f64>; 4],
     /// Least-squares slope of lg(squared error) against lg(milliseconds), in the same order.
     pub slope_by_time: [Option<f64>; 4],
@@ -38,8 +38,8 @@ pub struct ConvergencePoint {
     pub cost_ms: f64,
     /// Mean squared error: whole image, then fovea, middle, periphery.
     pub mse: [Option<f64>; 4],
-    /// 1 / (squared error x seconds), in the same order. Squared error instead of variance includes the bias of pixels that are
-    /// interpolated between samples.
+    /// 1 / (squared error x seconds), in the same order. Squared error instead of variance includes the bias of pixels
+    /// that are interpolated between samples.
     pub efficiency: [Option<f64>; 4],
 }
 

@@ -63,8 +63,8 @@ pub fn class(row: &Row) -> Option<u32> {
     row.render_ms.is_none().then(|| (row.samples_share * 1000.0).round() as u32)
 }
 
-/// The tables of an input for a metric, largest share of the samples first; empty if no row has the metric. Without the oracle, which no
-/// renderer can run.
+/// The tables of an input for a metric, largest share of the samples first; empty if no row has the metric. Without the
+/// oracle, which no renderer can run.
 pub fn equal(table: &Table, input: &str, metric: &Metric) -> Vec<Section> {
     let value = |row: &Row| row.values.get(metric.key).copied().flatten();
     let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
@@ -129,7 +129,8 @@ pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
     methods
 }
 
-/// Bounds of a table in ascending order, rounded: all `needed` values, and an even selection of `steps` up to [`MAX_LINES`].
+/// Bounds of a table in ascending order, rounded: all `needed` values, and an even selection of `steps` up to
+/// [`MAX_LINES`].
 fn bounds(
     needed: impl Iterator<Item = f64>,
     steps: impl Iterator<Item = f64>,

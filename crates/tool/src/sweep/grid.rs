@@ -41,8 +41,8 @@ pub struct Grid {
 const EXPECTED_AXIS: &str = "expected NAME=VALUE,VALUE,... with the name of an option of run, or NAME+NAME=VALUE+VALUE,... for options that vary together";
 
 impl Axis {
-    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=-,on`, or `region-spp=32,16,8;2,2,2`: values that contain commas are
-    /// separated by semicolons.
+    /// Reads `fovea=5,10`, `rate-mid+rate-far=2+4,8+16`, `no-gate=-,on`, or `region-spp=32,16,8;2,2,2`: values that
+    /// contain commas are separated by semicolons.
     ///
     /// # Errors
     /// If the text has another form.
@@ -94,8 +94,9 @@ pub fn parse_switch(text: &str) -> (String, Option<String>) {
 }
 
 impl Grid {
-    /// The points for inputs and seeds, without duplicates. Options are dropped unless `concerns(option, value, method)`, and further seeds
-    /// unless `is_random(method, options)`, since they would not change the result.
+    /// The points for inputs and seeds, without duplicates. Options are dropped unless
+    /// `concerns(option, value, method)`, and further seeds unless `is_random(method, options)`, since they would not
+    /// change the result.
     pub fn points(
         &self,
         inputs: &[String],

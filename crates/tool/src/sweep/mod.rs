@@ -1,7 +1,8 @@
 //! Sweeps: error against time of the points of a grid of methods and options.
 //!
-//! A point is a method with options of `afterimage run`. [`grid`] enumerates the points. [`store`] keeps the measurements of each point
-//! in a file, so that a sweep can be stopped, resumed and split between machines. [`table`] compares the measurements.
+//! A point is a method with options of `afterimage run`. [`grid`] enumerates the points. [`store`] keeps the
+//! measurements of each point in a file, so that a sweep can be stopped, resumed and split between machines. [`table`]
+//! compares the measurements.
 
 pub mod convergence;
 pub mod equal;

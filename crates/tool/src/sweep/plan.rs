@@ -126,7 +126,8 @@ impl Plan {
     /// Checks whether the plan can be measured.
     ///
     /// # Errors
-    /// If an option is reserved for the sweep or is both common and an axis, or for more than 1000 seeds or 100,000 points.
+    /// If an option is reserved for the sweep or is both common and an axis, or for more than 1000 seeds or 100,000
+    /// points.
     pub fn check(&self) -> Result<(), InputError> {
         if !(1..=MAX_SEEDS).contains(&self.seeds) {
             let text = format!("is not in 1 to {MAX_SEEDS}");

@@ -30,7 +30,8 @@ pub struct Row {
     pub frames: (String, Vec<f64>),
     /// Mean factor of the drift correction.
     pub drift: f64,
-    /// Time of rendering the foveated frame, milliseconds: measured if traced, else `renderer_ms` times the share of the samples.
+    /// Time of rendering the foveated frame, milliseconds: measured if traced, else `renderer_ms` times the share of
+    /// the samples.
     pub render_ms: Option<f64>,
     /// Time of the pass and of rendering, milliseconds.
     pub cost_ms: f64,

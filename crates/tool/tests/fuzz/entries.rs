@@ -1,5 +1,5 @@
-//! Entry points for untrusted bytes, and the oracle: each must give an error in one line, or a valid result. Shared by the fuzzing targets
-//! and `tests/fuzz_replay.rs`.
+//! Entry points for untrusted bytes, and the oracle: each must give an error in one line, or a valid result. Shared by
+//! the fuzzing targets and `tests/fuzz_replay.rs`.
 
 #[path = "../../../lab/tests/common/sound_scene.rs"]
 mod sound_scene;

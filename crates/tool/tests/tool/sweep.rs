@@ -114,7 +114,8 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     assert_eq!(figures(&killed), figures(&whole));
     // Another run has nothing to do.
     assert!(run(&killed, &[]).contains("0 to measure"));
-    // A round that was killed between writing its points is measured again completely, so that its times are from one run.
+    // A round that was killed between writing its points is measured again completely, so that its times are from one
+    // run.
     let point = fs::read_dir(killed.join("points")).unwrap().map(Result::unwrap).find(is_point).unwrap();
     fs::remove_file(point.path()).unwrap();
     let said = run(&killed, &[]);
@@ -221,9 +222,10 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     refuses(&tool(&args).output().unwrap(), 2, &["missing.toml", "cannot be read"]);
 }
 
-/// Traced samples are independent and, where every pixel has samples, unbiased. So the squared error of single frames falls with their
-/// number in the fovea of every pattern, and in the whole frame with uniform samples. Interpolation between samples is biased, most of
-/// all beside the lamp, which is brighter than the output range: there, more samples help least.
+/// Traced samples are independent and, where every pixel has samples, unbiased. So the squared error of single frames
+/// falls with their number in the fovea of every pattern, and in the whole frame with uniform samples. Interpolation
+/// between samples is biased, most of all beside the lamp, which is brighter than the output range: there, more samples
+/// help least.
 #[test]
 fn traced_patterns_converge_with_samples() {
     let folder = tempfile::tempdir().unwrap();

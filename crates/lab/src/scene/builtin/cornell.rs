@@ -14,8 +14,8 @@ use glam::Vec3;
 /// | low block | 1.65 x 1.65 x 1.65, turned by -18 degrees about y, moved by (1.30, 0, 0.65) | 0.73 |
 /// | lamp | x 2.13..3.43, z 2.27..3.32, y 5.54; radiance 15 downwards | 0 |
 ///
-/// The camera is at (2.78, 2.78, -8), looks along +z, and has a vertical field of view of 40 degrees. The environment is black.
-/// Dimensions are those of Shirley's "Ray Tracing: The Next Week", which rounds the Cornell measurements.
+/// The camera is at (2.78, 2.78, -8), looks along +z, and has a vertical field of view of 40 degrees. The environment
+/// is black. Dimensions are those of Shirley's "Ray Tracing: The Next Week", which rounds the Cornell measurements.
 pub fn cornell() -> Scene {
     let lambert =
         |name: &str, base_color| Material { name: name.into(), base_color, specular: 0.0, ..Material::default() };
@@ -43,8 +43,8 @@ pub fn cornell() -> Scene {
     super::still("cornell", materials, t, camera, Environment::Constant([0.0; 3]))
 }
 
-/// Appends the 12 triangles of a box with a corner at the origin, rotated by `turn_deg` about y, then translated by `moved`. Fronts
-/// face outwards.
+/// Appends the 12 triangles of a box with a corner at the origin, rotated by `turn_deg` about y, then translated by
+/// `moved`. Fronts face outwards.
 fn block(to: &mut Triangles, size: Vec3, turn_deg: f32, moved: Vec3, material: u32) {
     let turn = glam::Quat::from_rotation_y(turn_deg.to_radians());
     let corner = |x: u32, y: u32, z: u32| turn * (size * Vec3::new(x as f32, y as f32, z as f32)) + moved;

@@ -11,8 +11,8 @@ pub fn courtyard() -> Scene {
     courtyard_of(262_144)
 }
 
-/// The courtyard with about `triangles` triangles: paving, walls of rough stone, 32 columns under an architrave, 16 bushes. Light
-/// comes from a uniform sky and a lantern on each side.
+/// The courtyard with about `triangles` triangles: paving, walls of rough stone, 32 columns under an architrave, 16
+/// bushes. Light comes from a uniform sky and a lantern on each side.
 pub fn courtyard_of(triangles: u32) -> Scene {
     let [paving, stone, marble, leaves, lantern] = [0, 1, 2, 3, 4];
     let lambert =

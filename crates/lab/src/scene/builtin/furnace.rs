@@ -4,8 +4,8 @@ use super::patch::direction;
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;
 
-/// A ball of eight white sectors, each with another lobe of the BSDF, in a uniform environment of radiance 1. Where energy is
-/// conserved the ball is invisible: every pixel is 1 except for noise, at any path depth of 1 or more.
+/// A ball of eight white sectors, each with another lobe of the BSDF, in a uniform environment of radiance 1. Where
+/// energy is conserved the ball is invisible: every pixel is 1 except for noise, at any path depth of 1 or more.
 pub fn furnace() -> Scene {
     let white = Material::default();
     let metal = Material { metallic: 1.0, ..white.clone() };
@@ -21,8 +21,8 @@ pub fn furnace() -> Scene {
     ])
 }
 
-/// A ball of radius 1 m with a sector for each of `materials`, in a uniform environment of radiance 1, seen from 4 m. It is shaded
-/// flat, so that shading and geometric normals agree.
+/// A ball of radius 1 m with a sector for each of `materials`, in a uniform environment of radiance 1, seen from 4 m.
+/// It is shaded flat, so that shading and geometric normals agree.
 pub fn furnace_of(materials: Vec<Material>) -> Scene {
     let mut t = Triangles::default();
     let sectors = materials.len().max(1) as u32;

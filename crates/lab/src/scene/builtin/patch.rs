@@ -3,8 +3,9 @@
 use crate::scene::Triangles;
 use glam::{Vec2, Vec3};
 
-/// Tessellates the surface `at(u, v)` over the unit square into `cells` quadrilaterals along u and v, two triangles each, with smooth
-/// normals. Seen from the front, u increases to the right and v upwards. Degenerate triangles (poles) are left out.
+/// Tessellates the surface `at(u, v)` over the unit square into `cells` quadrilaterals along u and v, two triangles
+/// each, with smooth normals. Seen from the front, u increases to the right and v upwards. Degenerate triangles (poles)
+/// are left out.
 pub(super) fn patch(to: &mut Triangles, cells: [u32; 2], material: u32, at: impl Fn(f32, f32) -> Vec3) {
     let [columns, rows] = cells;
     let point = |i: u32, j: u32| at(i as f32 / columns as f32, j as f32 / rows as f32);

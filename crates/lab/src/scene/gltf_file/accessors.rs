@@ -23,8 +23,8 @@ impl<'a> Accessors<'a> {
         Ok(self.accessor(index)?.count.0)
     }
 
-    /// Vectors of `N` floats. Integers are converted, normalised if the accessor says so. An error unless there are `expected`
-    /// elements, if that is given.
+    /// Vectors of `N` floats. Integers are converted, normalised if the accessor says so. An error unless there are
+    /// `expected` elements, if that is given.
     pub fn vectors<const N: usize>(
         &self,
         index: Index<Accessor>,

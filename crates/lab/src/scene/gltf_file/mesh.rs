@@ -37,8 +37,8 @@ impl Primitives<'_> {
         Ok(topology.triangles(self.accessors.count(source)?))
     }
 
-    /// Mesh of a primitive, and the number of triangles dropped because a corner is not finite or too far; `None` for points, lines,
-    /// and primitives without positions.
+    /// Mesh of a primitive, and the number of triangles dropped because a corner is not finite or too far; `None` for
+    /// points, lines, and primitives without positions.
     pub fn geometry(
         &self,
         mesh: usize,
@@ -195,7 +195,8 @@ fn vectors(arrays: Vec<[f32; 3]>) -> Vec<Vec3> {
     arrays.into_iter().map(Vec3::from_array).collect()
 }
 
-/// Removes triangles with a corner that is not finite or too far, at rest or in a morph target, and returns their number.
+/// Removes triangles with a corner that is not finite or too far, at rest or in a morph target, and returns their
+/// number.
 fn leave_out_unusable(geometry: &mut Geometry) -> u64 {
     let (targets, positions) = (&geometry.targets, &geometry.positions);
     let usable = |i: &u32| {

@@ -1,8 +1,8 @@
 //! glTF 2.0 files.
 //!
-//! The crate `gltf` provides the types of the JSON. Its validation is not used, because it indexes before it checks, and refuses
-//! application-specific attributes; here every reference is looked up with a check. Its import is not used either, because it
-//! reads any path.
+//! The crate `gltf` provides the types of the JSON. Its validation is not used, because it indexes before it checks,
+//! and refuses application-specific attributes; here every reference is looked up with a check. Its import is not used
+//! either, because it reads any path.
 
 mod accessors;
 mod animation;

@@ -33,7 +33,8 @@ pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Node
     Ok((Nodes { parents, locals, order }, shown))
 }
 
-/// Nodes and all their descendants, each once. Parents come before children if no given node is a descendant of another.
+/// Nodes and all their descendants, each once. Parents come before children if no given node is a descendant of
+/// another.
 fn below(nodes: &[json::Node], mut found: Vec<u32>) -> Vec<u32> {
     let mut met = vec![false; nodes.len()];
     found.retain(|&node| !std::mem::replace(&mut met[node as usize], true));

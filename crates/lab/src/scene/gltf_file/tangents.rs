@@ -10,7 +10,8 @@ const MAX_VALENCE: u32 = 512;
 
 /// Gives every corner its own vertex with a tangent. The mesh must have texture coordinates.
 ///
-/// The sign in w is the opposite of MikkTSpace's: a glTF normal map's green channel points up in the image, towards decreasing v.
+/// The sign in w is the opposite of MikkTSpace's: a glTF normal map's green channel points up in the image, towards
+/// decreasing v.
 pub(super) fn generate(geometry: &mut Geometry) {
     geometry.unweld();
     geometry.tangents = vec![Vec4::ZERO; geometry.positions.len()];

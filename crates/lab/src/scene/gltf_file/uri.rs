@@ -23,7 +23,8 @@ pub(super) enum Resolved {
 /// Resolves a URI against the scene's folder.
 ///
 /// # Errors
-/// `NotSupported` if it leads, or could lead, out of the folder; `Io` if there is no such file; `Invalid` if its data is damaged.
+/// `NotSupported` if it leads, or could lead, out of the folder; `Io` if there is no such file; `Invalid` if its data
+/// is damaged.
 pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolved, InputError> {
     let damaged = |problem: &str| {
         InputError::invalid(subject, format!("the URI \"{}\" {problem}", printable(uri)), "export the scene again")

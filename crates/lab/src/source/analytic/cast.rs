@@ -144,8 +144,9 @@ impl<'a> Caster<'a> {
         Geometry { depth, motion: self.motion(before.view(previous), now.view(point)) }
     }
 
-    /// Motion vector between two points in view space. A difference of two projections, not of a projection and the pixel centre,
-    /// is exactly zero where nothing moved. A point behind the previous camera gets a vector far outside of the frame.
+    /// Motion vector between two points in view space. A difference of two projections, not of a projection and the
+    /// pixel centre, is exactly zero where nothing moved. A point behind the previous camera gets a vector far outside
+    /// of the frame.
     fn motion(&self, previous: Vec3, current: Vec3) -> [f32; 2] {
         let outside = self.view.size_px().map(|s| 4.0 * s as f32);
         match (self.view.project(previous.into()), self.view.project(current.into())) {

@@ -128,7 +128,8 @@ pub(super) fn turn() -> Scene {
     })
 }
 
-/// `occluder`: a fence and a rolling ball pass in front of a camera that translates and rotates a little; the globe spins.
+/// `occluder`: a fence and a rolling ball pass in front of a camera that translates and rotates a little; the globe
+/// spins.
 pub(super) fn occluder() -> Scene {
     let mut extra = notice();
     extra.push(Object {

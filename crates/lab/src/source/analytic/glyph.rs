@@ -76,8 +76,9 @@ fn dot(columns: [u8; 5], x: f32, y: f32) -> f32 {
     }
 }
 
-/// Ink in [0, 1] of running text at `p`, in dots, y down. Lines are `columns` characters long and go on without end; the first one
-/// starts at character `first` of the text. Where the footprint `w` is wider than a dot, the result fades to the rows' mean grey.
+/// Ink in [0, 1] of running text at `p`, in dots, y down. Lines are `columns` characters long and go on without end;
+/// the first one starts at character `first` of the text. Where the footprint `w` is wider than a dot, the result fades
+/// to the rows' mean grey.
 pub(super) fn running_text(p: Vec2, w: Vec2, columns: i32, first: i32) -> f32 {
     let line = split(p.y / LEADING).0;
     let column = split(p.x / ADVANCE).0;

@@ -1,4 +1,5 @@
-//! Lighting: a sun with shadows, partly behind a roof of slats, and a sky with ambient occlusion at walls and around objects.
+//! Lighting: a sun with shadows, partly behind a roof of slats, and a sky with ambient occlusion at walls and around
+//! objects.
 
 use super::courtyard::{BACK, FLOOR, LEFT, RIGHT};
 use super::noise::{fbm, pulse, smoothstep};
@@ -79,7 +80,8 @@ pub(super) fn occludes_floor(shape: &Shape, (centre, radius): (Vec3, f32)) -> bo
     occluder(shape).is_some_and(|(middle, size)| middle.distance(centre) < REACH * size + radius)
 }
 
-/// Share of the sun that passes the roof of slats above and behind the camera. It casts stripes on the floor and the walls.
+/// Share of the sun that passes the roof of slats above and behind the camera. It casts stripes on the floor and the
+/// walls.
 fn slats(point: Vec3) -> f32 {
     const HEIGHT: f32 = -3.4;
     /// Angular diameter of the sun, as a slope.

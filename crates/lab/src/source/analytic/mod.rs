@@ -1,5 +1,5 @@
-//! Analytic scenes: a courtyard of textured rectangles, spheres and posts, ray-cast on the CPU. Color, depth, motion vectors and
-//! camera motion are exact, so that errors of a temporal method are not mixed with errors of its input.
+//! Analytic scenes: a courtyard of textured rectangles, spheres and posts, ray-cast on the CPU. Color, depth, motion
+//! vectors and camera motion are exact, so that errors of a temporal method are not mixed with errors of its input.
 //!
 //! | scene | motion | tests |
 //! |---|---|---|
@@ -71,11 +71,11 @@ const KINDS: [(&str, Kind); 6] = [
 
 /// An endless scene with exact color, depth and motion.
 ///
-/// Each frame is a function of its index alone: the same bytes in any order of calls, on any number of threads. Depth and
-/// motion are those at pixel centres; color is the mean over the pixel's area.
+/// Each frame is a function of its index alone: the same bytes in any order of calls, on any number of threads. Depth
+/// and motion are those at pixel centres; color is the mean over the pixel's area.
 ///
-/// Depth, motion and `previous_from_current` (the identity for a static camera) are always present. Frame 0 is a cut; its motion
-/// vectors refer to the scene one frame earlier.
+/// Depth, motion and `previous_from_current` (the identity for a static camera) are always present. Frame 0 is a cut;
+/// its motion vectors refer to the scene one frame earlier.
 pub struct AnalyticSource {
     info: SourceInfo,
     kind: Kind,
@@ -88,12 +88,12 @@ pub struct AnalyticSource {
 }
 
 impl AnalyticSource {
-    /// The scene `name` (see [`AnalyticSource::names`]) in frames of `size` pixels, with a horizontal field of view of `hfov_deg`
-    /// degrees, at `fps` frames per second.
+    /// The scene `name` (see [`AnalyticSource::names`]) in frames of `size` pixels, with a horizontal field of view of
+    /// `hfov_deg` degrees, at `fps` frames per second.
     ///
     /// # Errors
-    /// [`Request`](InputError::Request) if there is no such scene, a side is 0 or above [`MAX_SIDE`], the field of view is not in
-    /// (0, 180) degrees, or the frame rate is not above 0 and finite.
+    /// [`Request`](InputError::Request) if there is no such scene, a side is 0 or above [`MAX_SIDE`], the field of view
+    /// is not in (0, 180) degrees, or the frame rate is not above 0 and finite.
     pub fn new(name: &str, size: [u32; 2], hfov_deg: f32, fps: f32) -> Result<Self, InputError> {
         let subject = format!("analytic:{name}");
         let Some(&(_, kind)) = KINDS.iter().find(|(known, _)| *known == name) else {
@@ -160,8 +160,8 @@ impl AnalyticSource {
         &self.view
     }
 
-    /// Mask of the panel without motion vectors in frame `index`: pixels that it covers fully or partly. In `scroll`, only these
-    /// change. `None` for scenes without such a panel.
+    /// Mask of the panel without motion vectors in frame `index`: pixels that it covers fully or partly. In `scroll`,
+    /// only these change. `None` for scenes without such a panel.
     pub fn panel_mask(&self, index: u64) -> Option<Image<bool>> {
         let stage = self.stage(index);
         let panel = stage.panel?;

@@ -1,7 +1,7 @@
 //! Building blocks of the textures: integer hashes, value noise, and step functions averaged over a sample's footprint.
 //!
-//! Functions take the footprint `w`, the width in texture units that one color sample covers, and return the mean over it. Such
-//! prefiltered textures do not alias where they are finer than the pixels.
+//! Functions take the footprint `w`, the width in texture units that one color sample covers, and return the mean over
+//! it. Such prefiltered textures do not alias where they are finer than the pixels.
 
 use glam::{Vec2, Vec3};
 
@@ -51,8 +51,8 @@ pub(super) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Hash values in [0, 1) at the four lattice points around a cell, top row first. The four hashes share most of their arithmetic,
-/// and one round less than in [`hash`] is enough for interpolated values.
+/// Hash values in [0, 1) at the four lattice points around a cell, top row first. The four hashes share most of their
+/// arithmetic, and one round less than in [`hash`] is enough for interpolated values.
 #[inline]
 fn corners(x: i32, y: i32, seed: u32) -> [f32; 4] {
     const X: u32 = 0x9e37_79b1;
@@ -99,7 +99,8 @@ pub(super) fn surviving(w: f32) -> f32 {
     1.0 - smoothstep(0.35, 1.0, w)
 }
 
-/// Sum of `octaves` noises, each twice as fine and half as strong; in [0, 1] around 0.5. Octaves finer than `w` fade out.
+/// Sum of `octaves` noises, each twice as fine and half as strong; in [0, 1] around 0.5. Octaves finer than `w` fade
+/// out.
 pub(super) fn fbm(p: Vec2, w: f32, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
     for octave in 0..octaves {
@@ -129,8 +130,8 @@ pub(super) fn fbm3(p: Vec3, w: f32, octaves: u32, seed: u32) -> f32 {
     sum
 }
 
-/// Pulse train averaged over a footprint: share of [x - w/2, x + w/2] covered by [n, n + duty] over all integers n. Exact for any
-/// `w`.
+/// Pulse train averaged over a footprint: share of [x - w/2, x + w/2] covered by [n, n + duty] over all integers n.
+/// Exact for any `w`.
 #[inline]
 pub(super) fn pulse(x: f32, duty: f32, w: f32) -> f32 {
     let w = w.max(1e-4);

@@ -18,7 +18,8 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Fills the lists for the pixels in [`from`, `to`); `corners` are the rays through the tile's corners, in cyclic order.
+    /// Fills the lists for the pixels in [`from`, `to`); `corners` are the rays through the tile's corners, in cyclic
+    /// order.
     pub fn fill(&mut self, stage: &Stage, outlines: &[Outline], [from, to]: [Vec2; 2], corners: &[Ray; 4]) {
         self.casters.resize(stage.objects.len(), Vec::new());
         self.candidates.clear();

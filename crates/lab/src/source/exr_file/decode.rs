@@ -37,9 +37,9 @@ impl ExrHeader {
     /// Decodes the frame with the selected vectors. Memory: the frame, and one batch of chunks, compressed and decoded.
     ///
     /// # Errors
-    /// [`Invalid`](InputError::Invalid) if the file lacks these vectors, has changed, or its compressed data is damaged;
-    /// [`NotSupported`](InputError::NotSupported) for compression that the `exr` crate cannot decode; [`Io`](InputError::Io) if it
-    /// cannot be read.
+    /// [`Invalid`](InputError::Invalid) if the file lacks these vectors, has changed, or its compressed data is
+    /// damaged; [`NotSupported`](InputError::NotSupported) for compression that the `exr` crate cannot decode;
+    /// [`Io`](InputError::Io) if it cannot be read.
     pub fn read(&self, vectors: Vectors) -> Result<ExrFrame, InputError> {
         guarded(&self.subject, || self.read_unguarded(vectors))
     }
@@ -77,7 +77,8 @@ impl ExrHeader {
         Ok(())
     }
 
-    /// Reads chunk `index` of a part. Its header must name the block `tile`, so that every pixel is written exactly once.
+    /// Reads chunk `index` of a part. Its header must name the block `tile`, so that every pixel is written exactly
+    /// once.
     fn read_chunk(&self, file: &mut File, part: usize, index: usize, tile: Vec2<usize>) -> Result<Chunk, InputError> {
         let io = |e: std::io::Error| io_error(&self.subject, &e);
         let header = &self.meta.headers[part];
@@ -141,8 +142,8 @@ impl ExrHeader {
     }
 }
 
-/// Whether the counters of a DWA chunk are within the size of its block. The `exr` crate allocates what the counters ask for
-/// without a check, and a failed allocation aborts the process.
+/// Whether the counters of a DWA chunk are within the size of its block. The `exr` crate allocates what the counters
+/// ask for without a check, and a failed allocation aborts the process.
 fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> bool {
     if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
         return true;
@@ -215,7 +216,8 @@ impl Planes {
         parts
     }
 
-    /// Copies the channels in `slots` out of a decoded block. Each row of a block stores the samples channel by channel.
+    /// Copies the channels in `slots` out of a decoded block. Each row of a block stores the samples channel by
+    /// channel.
     fn scatter(&mut self, part: usize, block: &UncompressedBlock, channels: &ChannelList, width: usize) {
         let Vec2(x0, y0) = block.index.pixel_position;
         let Vec2(w, h) = block.index.pixel_size;

@@ -40,12 +40,14 @@ pub struct ExrHeader {
 }
 
 impl ExrHeader {
-    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, whatever sizes it claims.
+    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, whatever sizes it
+    /// claims.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
     /// - [`Invalid`](InputError::Invalid): it is not EXR, truncated, or without color.
-    /// - [`NotSupported`](InputError::NotSupported): it is cropped or overscanned, subsampled, deep, or has parts of different sizes.
+    /// - [`NotSupported`](InputError::NotSupported): it is cropped or overscanned, subsampled, deep, or has parts of
+    ///   different sizes.
     /// - [`Limit`](InputError::Limit): the image, or one block of it, is larger than `limits` allows.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();

@@ -1,5 +1,5 @@
-//! Three regions: pixels, blocks of 2x2, blocks of 4x4 (Mohanto et al., "A Foveated Framework to Accelerate Real-Time Path
-//! Tracing", 2023).
+//! Three regions: pixels, blocks of 2x2, blocks of 4x4 (Mohanto et al., "A Foveated Framework to Accelerate Real-Time
+//! Path Tracing", 2023).
 
 use super::circle::Circle;
 use super::fill::Filter;

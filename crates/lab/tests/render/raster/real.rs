@@ -34,7 +34,8 @@ fn psnr(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
     -10.0 * (squares / (3 * a.pixels().len()) as f64).log10()
 }
 
-/// PSNR of the tone-mapped image against 16 paths per pixel; `None` without a device. Panics if the frame is not finite.
+/// PSNR of the tone-mapped image against 16 paths per pixel; `None` without a device. Panics if the frame is not
+/// finite.
 fn likeness(input: &str) -> Option<f64> {
     let device = device()?;
     let mut scene = Scene::open(input, &SceneLimits::default()).unwrap();

@@ -4,7 +4,8 @@ use super::builder::Gltf;
 use afterimage_lab::scene::{Bounds, Camera};
 use glam::{DVec3, Vec3};
 
-/// Whether all corners of the box are in the frame, and the largest share of the frame's width or height that they span.
+/// Whether all corners of the box are in the frame, and the largest share of the frame's width or height that they
+/// span.
 fn coverage(camera: &Camera, bounds: Bounds, aspect: f64) -> f64 {
     let view = camera.world_from_camera.inverse();
     let tan = f64::from(camera.vfov_deg / 2.0).to_radians().tan();

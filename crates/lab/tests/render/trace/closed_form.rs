@@ -81,7 +81,8 @@ fn white_balls_cannot_be_seen_in_a_furnace_h83() {
     let metal = Material { metallic: 1.0, ..Material::default() };
     let glass = Material { transmission: 1.0, roughness: 0.2, ..Material::default() };
     let body = |roughness| Material { volume: true, roughness, ..glass.clone() };
-    // Bounds of the systematic error of the albedo tables, averaged over a ball; see `tests/render/scattering/furnace.rs`.
+    // Bounds of the systematic error of the albedo tables, averaged over a ball; see
+    // `tests/render/scattering/furnace.rs`.
     let balls: Vec<(&str, Material, u32, f64)> = vec![
         ("Lambert", white.clone(), 1, 4e-4),
         ("retro-reflection", Material { specular: 1e-9, ..white.clone() }, 1, 4e-4),

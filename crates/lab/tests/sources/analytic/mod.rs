@@ -1,5 +1,5 @@
-//! Analytic scenes: depth and motion against independent closed forms in f64, invariance over time, threads and size, and the
-//! fixture of a page of text.
+//! Analytic scenes: depth and motion against independent closed forms in f64, invariance over time, threads and size,
+//! and the fixture of a page of text.
 
 use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
@@ -36,8 +36,8 @@ fn encode(color: [f32; 3]) -> Vec3 {
     Vec3::from(color).clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2)
 }
 
-/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, over pixels whose four texels lie on the same
-/// surface; and the share of those pixels.
+/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, over pixels whose four texels lie on the
+/// same surface; and the share of those pixels.
 fn explained(before: &SourceFrame, now: &SourceFrame, sign: f32) -> (f64, f64) {
     let (depth, motion) = geometry(now);
     let (previous_depth, _) = geometry(before);

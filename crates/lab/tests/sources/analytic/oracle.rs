@@ -103,8 +103,8 @@ impl Occluder {
         }
     }
 
-    /// Name of the object at a pixel, identified by depth, and the previous position of its surface point. Static objects are
-    /// "rest".
+    /// Name of the object at a pixel, identified by depth, and the previous position of its surface point. Static
+    /// objects are "rest".
     fn previous(&self, ray: DVec3, depth: f64) -> (&'static str, DVec3) {
         let (origin, axes) = self.camera[0];
         let point = origin + axes * ray * depth;
@@ -206,8 +206,8 @@ fn depth_is_that_of_planes_and_balls() {
         let length2 = ray.length_squared();
         let along = ray.dot(ball) / length2;
         let chord2 = 0.38_f64.powi(2) - (ball - ray * along).length_squared();
-        // Open floor between the balls and the notice board, bare bricks below the prints. The slope of the ball's surface
-        // amplifies a lateral rounding error in depth.
+        // Open floor between the balls and the notice board, bare bricks below the prints. The slope of the ball's
+        // surface amplifies a lateral rounding error in depth.
         let (kind, exact, steep) = if chord2 > 1e-4 {
             let steep = 0.38 / chord2.sqrt();
             (0, along - (chord2 / length2).sqrt(), steep)

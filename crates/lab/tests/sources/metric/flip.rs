@@ -84,7 +84,8 @@ fn flip_is_nvidias_own() {
     println!("largest differences: of means {of_means:.1e}, of the maps {of_maps:.1e}");
 }
 
-/// Every pixel: `python3 fixtures/flip.py FOLDER`, then `FLIP_MAPS=FOLDER cargo test -p afterimage-lab --test sources -- --ignored flip_maps`.
+/// Every pixel: `python3 fixtures/flip.py FOLDER`, then
+/// `FLIP_MAPS=FOLDER cargo test -p afterimage-lab --test sources -- --ignored flip_maps`.
 #[test]
 #[ignore = "needs maps that NVIDIA's implementation wrote"]
 fn flip_maps_are_nvidias_own() {
@@ -111,7 +112,8 @@ fn flip_of_equal_pictures_is_0_and_of_black_and_white_alike_both_ways() {
     let [black, white] = pair("black_white");
     let (there, back) = (flip.map(&black, &white), flip.map(&white, &black));
     assert_eq!(there, back);
-    // HyAB is 100 here, above the knee. The largest difference is between green and blue, with L*a*b* values from textbooks.
+    // HyAB is 100 here, above the knee. The largest difference is between green and blue, with L*a*b* values from
+    // textbooks.
     let hunt = |[l, a, b]: [f64; 3]| [l, 0.01 * l * a, 0.01 * l * b];
     let (green, blue) = (hunt([87.737, -86.185, 83.181]), hunt([32.303, 79.197, -107.864]));
     let hyab = (green[0] - blue[0]).abs() + (green[1] - blue[1]).hypot(green[2] - blue[2]);

@@ -131,7 +131,8 @@ fn ghosts_fade_as_the_method_forgets() {
 
 #[test]
 fn ghosts_are_followed_along_motion_and_end_at_cuts() {
-    // Stripes move right by 2 px a frame, and from frame 1 on a bright panel with them; the method never shows the panel.
+    // Stripes move right by 2 px a frame, and from frame 1 on a bright panel with them; the method never shows the
+    // panel.
     let stripes = |x: u32, frame: u32| 0.35 + 0.15 * (0.4 * (x as f32 - 2.0 * frame as f32)).sin();
     let inside = |x: u32, y: u32, left: u32| (left..left + 20).contains(&x) && (40..50).contains(&y);
     let with_panel = |[x, y]: [u32; 2], i| if i > 0 && inside(x, y, 20 + 2 * i) { 0.9 } else { stripes(x, i) };

@@ -65,7 +65,8 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
         assert_eq!(known, name != "reading_250hz_noisy.csv");
         let rate: f64 = name.split('_').find_map(|w| w.split("hz").next()?.parse().ok()).unwrap();
         assert_eq!(path.about().rate_hz, Some(rate));
-        // H63: lost samples and outliers of real trackers give finite pixels in every frame after the first valid sample.
+        // H63: lost samples and outliers of real trackers give finite pixels in every frame after the first valid
+        // sample.
         let gaze = FrameGaze::new(&path, &view(), GazeMap::default_for(path.screen()), 0.0, 60.0).unwrap();
         let first_valid = path.samples().iter().find(|s| s.px.is_some()).unwrap().t_s;
         for i in 0..gaze.frames() {

@@ -132,8 +132,9 @@ fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     (2.0 * (0.5 * chord).asin()).to_degrees()
 }
 
-/// From the samples alone: the duration of the middle 80 % of a saccade follows the main sequence. A minimum-jerk profile spends a
-/// fixed share of its time there, so time against amplitude has that share of the main sequence's slope and intercept.
+/// From the samples alone: the duration of the middle 80 % of a saccade follows the main sequence. A minimum-jerk
+/// profile spends a fixed share of its time there, so time against amplitude has that share of the main sequence's
+/// slope and intercept.
 #[test]
 fn the_main_sequence_is_in_the_samples() {
     let mut points = Vec::new();
@@ -184,8 +185,8 @@ fn time_of_a_tenth() -> f64 {
     low
 }
 
-/// From the samples alone: squared steps within fixations, in units of half their claimed mean, are chi-squared with two degrees
-/// of freedom each.
+/// From the samples alone: squared steps within fixations, in units of half their claimed mean, are chi-squared with
+/// two degrees of freedom each.
 #[test]
 fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
     let (mut sum_deg2, mut steps) = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! Damaged files: flipped, inserted and removed bytes must give an error or an image, never a panic or excessive memory.
+//! Damaged files: flipped, inserted and removed bytes must give an error or an image, never a panic or excessive
+//! memory.
 
 use super::{picture, vectors};
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
@@ -162,8 +163,8 @@ proptest! {
             }
         }
         if let (Some(before), Some(after)) = (before, peak_mb()) {
-            // The largest allowed image takes 16 MB as color and depth, and its decoder about as much again; other tests run
-            // in this process at the same time.
+            // The largest allowed image takes 16 MB as color and depth, and its decoder about as much again; other
+            // tests run in this process at the same time.
             prop_assert!(after - before < 300, "{} took {} MB", name, after - before);
         }
     }

@@ -1,7 +1,7 @@
 //! `afterimage bench effects`: cost of each effect in a scene that does not need it.
 //!
-//! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the times of two
-//! frames that are traced within a second of each other.
+//! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the
+//! times of two frames that are traced within a second of each other.
 
 mod removals;
 mod table;
@@ -51,7 +51,8 @@ struct SceneReport {
     needs: Vec<&'static str>,
     /// One list per backend.
     prices: Vec<Vec<Price>>,
-    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with `--removal`.
+    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with
+    /// `--removal`.
     removals: Vec<Price>,
 }
 
@@ -161,8 +162,8 @@ fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], fr
     }
 }
 
-/// Measures compile times: CPU time of creating the tracer and tracing a first small frame, minus that of a second one. Drivers compile at
-/// the first dispatch.
+/// Measures compile times: CPU time of creating the tracer and tracing a first small frame, minus that of a second one.
+/// Drivers compile at the first dispatch.
 fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant]) -> Result<(), Failure> {
     for _ in 0..COMPILES {
         for variant in &mut *variants {
@@ -208,8 +209,8 @@ fn price(variant: &Variant, above: &[f64], below: &[f64]) -> Price {
     let mut ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
     let ratio = Quartiles::of(&ratios);
     ratios.sort_by(f64::total_cmp);
-    // Order statistics: the number of frames below the median is binomial, approximated by a normal distribution with standard deviation
-    // sqrt(n) / 2; 99.9 % are within 3.29 standard deviations.
+    // Order statistics: the number of frames below the median is binomial, approximated by a normal distribution with
+    // standard deviation sqrt(n) / 2; 99.9 % are within 3.29 standard deviations.
     let n = ratios.len() as f64;
     let rank = (0.5 * n - 3.29 * 0.5 * n.sqrt()).floor().max(0.0) as usize;
     let interval = (!ratios.is_empty()).then(|| [ratios[rank], ratios[ratios.len() - 1 - rank]]);

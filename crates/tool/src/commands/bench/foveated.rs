@@ -33,7 +33,8 @@ pub struct PatternReport {
     pub clock: &'static str,
     /// Samples per pixel where the pattern is densest, and everywhere in the uniform frame.
     pub samples_per_pixel: u32,
-    /// Samples of the uniform frame divided by those of the pattern without overlaps for blending and partial blocks at borders.
+    /// Samples of the uniform frame divided by those of the pattern without overlaps for blending and partial blocks at
+    /// borders.
     pub ideal_reduction: Option<f64>,
     /// Samples of the uniform frame divided by those traced.
     pub sample_reduction: f64,

@@ -19,8 +19,8 @@ const DISPLAY_AWAY_CM: f32 = 60.0;
 /// The paper's radii of the regions, pixels.
 const RADII_PX: [f32; 2] = [147.0, 482.0];
 
-/// The paper's results: samples per block, million samples per frame, time reduction in Sponza. Without a GPU, we trace a quarter of the
-/// samples where they are divisible by 4.
+/// The paper's results: samples per block, million samples per frame, time reduction in Sponza. Without a GPU, we trace
+/// a quarter of the samples where they are divisible by 4.
 const TRIPLES: [Triple; 3] = [
     Triple { samples: [32, 16, 8], is_divisible: true, millions: 8.60, time: 23.93 },
     Triple { samples: [32, 8, 4], is_divisible: true, millions: 5.39, time: 35.33 },
@@ -32,7 +32,8 @@ const HALVED_TIME: f64 = 44.67;
 
 /// Field of view of one eye, and of its lens, for the thesis, which does not specify its headset.
 const EYE_HFOV_DEG: f32 = 100.0;
-/// The thesis' scenes, with its speed-ups for gaze forward and into the corner. Its empty scene was limited by the display's frame rate.
+/// The thesis' scenes, with its speed-ups for gaze forward and into the corner. Its empty scene was limited by the
+/// display's frame rate.
 const SCENES: [(&str, Option<[f64; 2]>); 5] = [
     ("control", None),
     ("bunny-low", Some([1.99, 3.99])),
@@ -90,7 +91,8 @@ struct Compared {
     paper_share_of_ideal: Option<f64>,
 }
 
-/// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200 for 1920x1080).
+/// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200
+/// for 1920x1080).
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let backend = backends(args)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
     let eye = [size[1], (size[1] * 10).div_ceil(9)];

@@ -35,8 +35,8 @@ struct Report {
     frames: u64,
     /// Clock: timestamp queries of the device, or the process's CPU time on a software device.
     clock: &'static str,
-    /// Time of the post-process and the copy from their creation until their first frame is done: shader and pipeline creation, and
-    /// the driver's compilation at the first dispatch.
+    /// Time of the post-process and the copy from their creation until their first frame is done: shader and pipeline
+    /// creation, and the driver's compilation at the first dispatch.
     cold_start_ms: f64,
     passes: Vec<PassReport>,
 }
@@ -252,8 +252,8 @@ fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
     Ok([ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px })])
 }
 
-/// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not follow, so that
-/// half of the history is valid and half is rejected.
+/// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not
+/// follow, so that half of the history is valid and half is rejected.
 fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> {
     let desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
     let mut inputs = DeviceInputs::new(gpu, &desc, DeviceFormats::ENGINE)?;

@@ -41,7 +41,8 @@ pub struct FrameTime {
 }
 
 impl Subject {
-    /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the scene.
+    /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the
+    /// scene.
     pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
         let mut scene = Scene::open(name, &SceneLimits::default())?;
         for warning in &scene.warnings {
@@ -99,8 +100,8 @@ impl Subject {
         (frame, took)
     }
 
-    /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the times to the whole
-    /// frame.
+    /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the
+    /// times to the whole frame.
     pub fn uniform(&self, tracer: &Tracer, samples: u32, every: u32, index: u64) -> FrameTime {
         const BAND: u32 = 4;
         let [width, height] = self.size;

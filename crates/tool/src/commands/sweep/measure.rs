@@ -1,4 +1,5 @@
-//! Measures a batch: all methods take turns on every frame, so that other load on the machine affects all of them alike.
+//! Measures a batch: all methods take turns on every frame, so that other load on the machine affects all of them
+//! alike.
 
 use super::batch::{Batch, Subject};
 use crate::clip::{Clip, FrameResult};

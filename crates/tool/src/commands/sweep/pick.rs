@@ -11,8 +11,8 @@ pub struct PickArgs {
     /// Metric for comparing points: flip, psnr_db, ssim, weighted_psnr_db, retained_psnr_db, ... (columns of sweep.csv)
     #[arg(long, default_value = "flip", value_name = "NAME", value_parser = parse_metric)]
     pub by: &'static Metric,
-    /// Time of your renderer for a frame at full rate, milliseconds; foveated frames are assumed to take their share of the samples.
-    /// Default: unknown, and costs are those of the pass alone
+    /// Time of your renderer for a frame at full rate, milliseconds; foveated frames are assumed to take their share of
+    /// the samples. Default: unknown, and costs are those of the pass alone
     #[arg(long, value_name = "MS")]
     pub renderer_ms: Option<f64>,
     /// Print the best settings within this time per frame, milliseconds
@@ -50,8 +50,8 @@ pub fn print(args: &PickArgs, table: &Table) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Groups of points that can be compared by time alone: all points if the renderer's time is known, else those with the same share of
-/// samples.
+/// Groups of points that can be compared by time alone: all points if the renderer's time is known, else those with the
+/// same share of samples.
 fn classes<'a>(table: &'a Table, input: &str) -> Vec<(String, Vec<&'a Row>)> {
     let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
     if rows.iter().all(|r| r.render_ms.is_some()) {

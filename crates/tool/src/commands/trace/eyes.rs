@@ -40,7 +40,8 @@ impl Eyes {
         self.ipd_m.map_or_else(|| vec![*head], |ipd_m| head.stereo(ipd_m).to_vec())
     }
 
-    /// Gaze of each eye at the point in space that the head's `gaze_px` shows. An eye that does not see the point keeps its last gaze.
+    /// Gaze of each eye at the point in space that the head's `gaze_px` shows. An eye that does not see the point keeps
+    /// its last gaze.
     pub fn gaze(&mut self, setup: &Setup, head: &View, views: &[View], gaze_px: [f32; 2]) -> Vec<[f32; 2]> {
         if self.ipd_m.is_none() {
             return vec![gaze_px];

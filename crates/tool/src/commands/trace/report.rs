@@ -223,8 +223,8 @@ impl Report {
         serde_json::to_string_pretty(&report).expect("the report has no map with keys other than strings") + "\n"
     }
 
-    /// Camera poses as a cameras.json (z up), which `run` reads with the frames and `--camera` accepts. `view_of` maps the head's view to
-    /// the camera.
+    /// Camera poses as a cameras.json (z up), which `run` reads with the frames and `--camera` accepts. `view_of` maps
+    /// the head's view to the camera.
     pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup, view_of: impl Fn(&View) -> View) -> String {
         let frames = self.heads.iter().enumerate().map(|(frame, head)| {
             let m = view_of(head).world_from_camera().transpose().to_cols_array_2d();

@@ -35,7 +35,8 @@ impl AutoScale {
         if typical <= budget {
             return None;
         }
-        // Time is proportional to the number of pixels. If that estimate is too low, later frames lower the scale again.
+        // Time is proportional to the number of pixels. If that estimate is too low, later frames lower the scale
+        // again.
         let expected = |to: f32| typical * f64::from(to / scale).powi(2);
         let mut lower = SCALES.into_iter().filter(|s| *s < scale);
         lower.clone().find(|s| expected(*s) <= budget).or(lower.next_back())

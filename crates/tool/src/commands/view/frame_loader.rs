@@ -1,4 +1,5 @@
-//! Background thread that reads or renders input frames, one ahead of the window, and resizes them to the requested resolution.
+//! Background thread that reads or renders input frames, one ahead of the window, and resizes them to the requested
+//! resolution.
 
 use crate::failure::Failure;
 use afterimage::Image;
@@ -130,7 +131,8 @@ fn box_filtered(color: &Image<[f32; 3]>, [width, height]: [u32; 2]) -> Image<[f3
     Image::from_fn_parallel([width, height], |[x, y]| mean(&rows[y as usize], |from| narrow.at(x as usize, from)))
 }
 
-/// Box-filter weights for resizing a row of `from` pixels to `to`: for each output pixel, the covered input pixels and their weights.
+/// Box-filter weights for resizing a row of `from` pixels to `to`: for each output pixel, the covered input pixels and
+/// their weights.
 fn weights(from: u32, to: u32) -> Vec<Vec<(usize, f32)>> {
     let ratio = f64::from(from) / f64::from(to);
     let covered = |i: u32| {

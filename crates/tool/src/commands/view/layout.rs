@@ -43,7 +43,8 @@ impl Layout {
         (x - at).abs() <= GRIP_PX
     }
 
-    /// Size of a window for a picture of `size`: small pictures are enlarged by a whole factor, large ones reduced to fit the screen.
+    /// Size of a window for a picture of `size`: small pictures are enlarged by a whole factor, large ones reduced to
+    /// fit the screen.
     pub fn window(size: [u32; 2], screen: [u32; 2]) -> [u32; 2] {
         const COMFORTABLE: [u32; 2] = [1280, 720];
         // Leave room for window borders and taskbars.

@@ -107,8 +107,8 @@ impl ViewPipeline {
         self.cut = frame.cut;
     }
 
-    /// Foveates the uploaded frame around `gaze_px` and runs the methods. `again`: the frame is that of the last call, so motion is
-    /// zero.
+    /// Foveates the uploaded frame around `gaze_px` and runs the methods. `again`: the frame is that of the last call,
+    /// so motion is zero.
     pub fn show(
         &mut self,
         gaze_px: [f32; 2],

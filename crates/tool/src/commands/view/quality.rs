@@ -1,4 +1,5 @@
-//! PSNR of each side in the periphery. Squared errors are summed on the device and read back a few frames later, without a stall.
+//! PSNR of each side in the periphery. Squared errors are summed on the device and read back a few frames later,
+//! without a stall.
 
 use super::device;
 use super::shader::SHADERS;

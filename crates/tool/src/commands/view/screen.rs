@@ -217,7 +217,8 @@ impl Screen {
     }
 }
 
-/// Upper bound on the ring's radius, pixels of the window: its radius away from the center of the view, where a degree spans most pixels.
+/// Upper bound on the ring's radius, pixels of the window: its radius away from the center of the view, where a degree
+/// spans most pixels.
 fn ring_reach_px(geometry: &ViewGeometry, gaze_px: [f32; 2], scene: &Scene<'_>) -> f32 {
     let ray = geometry.ray(gaze_px);
     let (eccentricity, radius) =

@@ -1,4 +1,5 @@
-//! Time of each pass: timestamp queries where the device supports them, else wall time of submitting one pass and waiting for it.
+//! Time of each pass: timestamp queries where the device supports them, else wall time of submitting one pass and
+//! waiting for it.
 
 use afterimage::gpu::Timestamps;
 use afterimage_lab::device::{DeviceClock, Headless};
@@ -43,7 +44,8 @@ impl PassTimes {
         Self { ms: [None; 4], clock: device.map(|device| Clock { device, written: None, in_flight: None }) }
     }
 
-    /// Milliseconds of a pass, of the last frame whose times have been read back; `None` if that frame did not run the pass.
+    /// Milliseconds of a pass, of the last frame whose times have been read back; `None` if that frame did not run the
+    /// pass.
     pub fn ms(&self, pass: Pass) -> Option<f64> {
         self.ms[pass as usize]
     }

@@ -1,7 +1,7 @@
 //! Report of a sweep as one HTML file that loads nothing else: data, plots, pictures, style and script are embedded.
 //!
-//! All numbers are computed here; the script only formats them. Names of files and options are always text: escaped here, and set as
-//! text nodes by the script.
+//! All numbers are computed here; the script only formats them. Names of files and options are always text: escaped
+//! here, and set as text nodes by the script.
 
 mod answers;
 mod pictures;
@@ -23,7 +23,8 @@ const SCRIPTS: [&str; 5] = [
     include_str!("main.js"),
 ];
 
-/// The page. `pictures` returns the JPEG of a [`Row::id`](crate::sweep::Row::id) and `shown`, `error` or `reference`, if it exists.
+/// The page. `pictures` returns the JPEG of a [`Row::id`](crate::sweep::Row::id) and `shown`, `error` or `reference`,
+/// if it exists.
 pub fn page(table: &Table, pictures: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> String {
     let inputs = inputs(table);
     let by_metric = |of: &dyn Fn(&str, &Metric) -> serde_json::Value| {

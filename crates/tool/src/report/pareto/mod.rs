@@ -1,7 +1,7 @@
 //! Plot of error against time with the Pareto frontier, as SVG and as PNG.
 //!
-//! `svg` composes the document and escapes all text. `resvg` rasterizes it with a font from a crate, so that the result does not depend
-//! on the machine's fonts.
+//! `svg` composes the document and escapes all text. `resvg` rasterizes it with a font from a crate, so that the result
+//! does not depend on the machine's fonts.
 
 mod drawing;
 mod marks;

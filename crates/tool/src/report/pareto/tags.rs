@@ -12,7 +12,8 @@ const RINGS_PX: [f64; 7] = [15.0, 22.0, 30.0, 40.0, 52.0, 66.0, 82.0];
 /// Candidate directions in sixteenths of a turn, clockwise from the right; those above first.
 const DIRECTIONS: [u32; 16] = [14, 10, 12, 2, 6, 4, 0, 8, 13, 11, 15, 9, 1, 7, 3, 5];
 
-/// Centers of the numbers of `points` within `low` to `high`. Numbers never overlap each other, and overlap as few `marks` as possible.
+/// Centers of the numbers of `points` within `low` to `high`. Numbers never overlap each other, and overlap as few
+/// `marks` as possible.
 pub fn place(points: &[[f64; 2]], marks: &[[f64; 2]], low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
     let mut placed: Vec<[f64; 2]> = vec![];
     for point in points {

@@ -8,7 +8,8 @@ use afterimage_lab::metric::{BandScores, Scores};
 
 pub const INPUTS: [&str; 2] = ["sponza/", "still.png"];
 
-/// Method, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that remains.
+/// Method, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that
+/// remains.
 const METHODS: [(&str, f64, u32, f64); 5] = [
     ("none", 0.21, 14, 1.0),
     ("taa", 0.55, 38, 0.8),
@@ -21,7 +22,8 @@ fn options(pairs: &[(&str, &str)]) -> Options {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 
-/// Switches: name, value, methods that have it, and and their factor on milliseconds, change in bytes, and factor on the error.
+/// Switches: name, value, methods that have it, and and their factor on milliseconds, change in bytes, and factor on
+/// the error.
 type Switch = (&'static str, &'static str, &'static [&'static str], f64, i32, f64);
 const SWITCHES: [Switch; 4] = [
     ("no-flush", "", &["wrs", "smr", "taa"], 0.93, -8, 1.3),

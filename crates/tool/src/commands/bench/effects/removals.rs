@@ -1,4 +1,5 @@
-//! Removal of an effect's source from the kernels, to measure the cost of an effect that is compiled in but switched off.
+//! Removal of an effect's source from the kernels, to measure the cost of an effect that is compiled in but switched
+//! off.
 
 use afterimage_lab::trace::effects::Effect;
 
