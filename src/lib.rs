@@ -39,18 +39,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Add depth and motion vectors as soon as the camera or the scene moves: fields `depth` and `motion` of [`Frame`], in your renderer's
-//! [`DepthConvention`] and [`MotionConvention`].
+//! Add depth and motion vectors as soon as the camera or the scene moves: fields `depth` and `motion` of [`Frame`], in
+//! your renderer's [`DepthConvention`] and [`MotionConvention`].
 //!
 //! # Where to look
 //!
-//! - [`ContextDesc`]: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`] and all tunables.
+//! - [`ContextDesc`]: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`]
+//!   and all tunables.
 //! - [`Frame`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: what happened in a frame, as counters, messages and images.
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: what can go wrong.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
-//! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`), stereo
-//!   (`03_stereo.rs`) and a window (`06_window.rs`).
+//! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`),
+//!   stereo (`03_stereo.rs`) and a window (`06_window.rs`).
 //!
 //! # Executors
 //!

@@ -1,8 +1,8 @@
 //! Composition of WGSL shaders from modules.
 //!
-//! Every file under `shaders/` is a module and valid WGSL syntax. Comment lines `//#use name` at its top name the modules that it uses.
-//! `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/` and `foveation/` contain
-//! bindings, overrides and one entry point a file.
+//! Every file under `shaders/` is a module and valid WGSL syntax. Comment lines `//#use name` at its top name the
+//! modules that it uses. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/`
+//! and `foveation/` contain bindings, overrides and one entry point a file.
 
 /// One WGSL file.
 #[derive(Debug)]

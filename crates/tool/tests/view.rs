@@ -315,7 +315,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     viewer.key("ctrl+shift+l");
     viewer.look_along(&[[0.5, 0.5], [0.4, 0.4]]);
     viewer.is_as_of_run("smr");
-    viewer.close(&["afterimage: the device is lost; another is opened"]);
+    viewer.close(&["afterimage: the device is lost; opening another"]);
 }
 
 #[test]

@@ -5,21 +5,25 @@ use super::tree::{Tree, expect_none, read};
 /// Widest line of prose, in characters; rustfmt.toml has the same width for code.
 const WIDTH: usize = 120;
 
-/// Lines of prose that are too wide. Tables, code, links alone on a line and generated pages are not prose.
+/// Lines of prose that are too wide. Tables, code and links are not prose.
 fn wide_lines(path: &str, text: &str) -> Vec<String> {
     let is_page = path.ends_with(".md");
     let mut is_code = false;
     let mut wide = vec![];
     for (index, line) in text.lines().enumerate() {
-        let start = line.trim_start();
-        if is_page && start.starts_with("```") {
+        let comment = line.trim_start();
+        let Some(content) = (if is_page { Some(line) } else { comment.strip_prefix("//") }) else {
+            is_code = false;
+            continue;
+        };
+        let content = if is_page { content } else { content.trim_start_matches(['/', '!']) };
+        let start = content.trim_start();
+        if start.starts_with("```") {
             is_code = !is_code;
         }
-        let is_prose = if is_page {
-            !is_code && !line.starts_with("    ") && !start.starts_with(['|', '!'])
-        } else {
-            start.starts_with("//")
-        };
+        let is_usage = start.starts_with('`') && start.ends_with('`') && start.matches('`').count() == 2;
+        let is_prose =
+            !is_code && !is_usage && !content.starts_with("    ") && !start.starts_with(['|', '#', '!', '<']);
         let width = line.chars().count();
         if is_prose && width > WIDTH && !line.contains("://") {
             wide.push(format!("{path}:{}: {width} characters", index + 1));

@@ -230,9 +230,11 @@ fn lights_and_cameras_follow_their_nodes() {
 #[test]
 fn builtin_and_unknown_names_are_told_apart() {
     let limits = afterimage_lab::scene::SceneLimits::default();
-    for (input, word) in
-        [("builtin:nothing", "built-in"), ("scene.obj", "not a scene"), ("nowhere.glb", "does not exist")]
-    {
+    for (input, word) in [
+        ("builtin:nothing", "built-in"),
+        ("scene.obj", "not a supported kind of scene"),
+        ("nowhere.glb", "does not exist"),
+    ] {
         let error = afterimage_lab::scene::Scene::open(input, &limits).unwrap_err().to_string();
         assert!(error.contains(word) && error.starts_with(input), "{error}");
     }
