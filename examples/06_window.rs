@@ -127,7 +127,7 @@ impl App {
         let Renderer { pattern, foveation, color } = &mut self.renderer;
         foveation.record(&self.device, &mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
         // (3) The post-process.
-        let frame = Frame::new(color, &views, self.index);
+        let frame = Frame::new(&*color, &views, self.index);
         self.post.record(&self.device, &mut encoder, &frame, &self.output)?;
         // Your tone mapping would come here.
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));

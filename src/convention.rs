@@ -40,17 +40,17 @@ pub enum YAxis {
     Up,
 }
 
-/// Convention of motion vectors. Default: previous minus current position in pixels, y down.
+/// Convention of motion vectors. Default: previous minus current position in pixels, y down, without jitter.
 ///
 /// A wrong convention shows as history that is rejected or smeared in motion, while a still view looks right.
 ///
 /// ```
-/// use afterimage::{ContextDesc, MotionConvention, MotionDirection, MotionUnit, YAxis};
+/// use afterimage::{ContextDesc, MotionConvention, MotionUnit};
 ///
-/// // An engine whose vectors are current minus previous position in normalised device coordinates.
 /// let mut desc = ContextDesc::new([1920, 1080]);
-/// desc.motion =
-///     MotionConvention { unit: MotionUnit::Ndc, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
+/// desc.motion = MotionConvention::BEVY;
+/// // An upscaler's vectors, but in texture coordinates (FSR2 with a motionVectorScale of the frame's size).
+/// desc.motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::FSR2 };
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionConvention {
@@ -60,14 +60,43 @@ pub struct MotionConvention {
     pub direction: MotionDirection,
     /// Vertical axis. Default: down.
     pub y_axis: YAxis,
+    /// Whether vectors contain the jitter of the projection: differences of jittered positions. The jitter of each
+    /// frame is [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px). Default: false, as in all engines named here.
+    pub jittered: bool,
 }
 
 impl MotionConvention {
-    /// Convention of Blender's vector pass (`Vector.X`, `Vector.Y`): previous minus current in pixels, y up.
-    pub const BLENDER: Self =
-        Self { unit: MotionUnit::Pixels, direction: MotionDirection::PreviousMinusCurrent, y_axis: YAxis::Up };
+    /// Blender's vector pass (`Vector.X`, `Vector.Y`): previous minus current in pixels, y up.
+    pub const BLENDER: Self = Self { y_axis: YAxis::Up, ..Self::FSR2 };
 
-    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`.
+    /// Bevy's `MotionVectorPrepass` texture: current minus previous in texture coordinates, y down.
+    pub const BEVY: Self =
+        Self { unit: MotionUnit::Uv, direction: MotionDirection::CurrentMinusPrevious, ..Self::FSR2 };
+
+    /// Unity's `_MotionVectorTexture` (built-in, URP and HDRP) on graphics APIs whose textures start at the top
+    /// (Direct3D, Metal, Vulkan): current minus previous in texture coordinates, y down. On OpenGL y is up.
+    pub const UNITY: Self = Self::BEVY;
+
+    /// Unreal's velocity after `DecodeVelocityFromTexture`: current minus previous in normalised device coordinates,
+    /// y up. The encoded texture cannot be passed as it is; its pixels without velocity need the camera's motion.
+    pub const UNREAL: Self = Self {
+        unit: MotionUnit::Ndc,
+        direction: MotionDirection::CurrentMinusPrevious,
+        y_axis: YAxis::Up,
+        jittered: false,
+    };
+
+    /// FSR2 after its `motionVectorScale`: previous minus current in pixels, y down. XeSS (with low-resolution vectors
+    /// in pixels) and DLSS (after `InMVScale`) have the same convention; it is also the default.
+    pub const FSR2: Self = Self {
+        unit: MotionUnit::Pixels,
+        direction: MotionDirection::PreviousMinusCurrent,
+        y_axis: YAxis::Down,
+        jittered: false,
+    };
+
+    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. A jitter in
+    /// it remains: see [`jitter_offset`](Self::jitter_offset).
     #[doc(hidden)]
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
         let [w, h] = size_px.map(|s| s as f32);
@@ -85,6 +114,12 @@ impl MotionConvention {
             YAxis::Up => -1.0,
         };
         [sign * sx, sign * flip * sy]
+    }
+
+    /// Vector in pixels, y down, to add to a converted vector so that it contains no jitter, for the jitters in pixels
+    /// of this frame and of the previous one.
+    pub(crate) fn jitter_offset(self, jitter_px: [f32; 2], previous_px: [f32; 2]) -> [f32; 2] {
+        if self.jittered { [jitter_px[0] - previous_px[0], jitter_px[1] - previous_px[1]] } else { [0.0; 2] }
     }
 }
 

@@ -2,18 +2,34 @@
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
-use crate::geometry::ViewGeometry;
+use crate::geometry::{ViewGeometry, camera_motion};
 use crate::settings::Settings;
 use std::fmt::Debug;
 
-/// Gaze: position in a view that the eye looks at. Default: [`Lost`](Self::Lost). Example: [`ViewFrame`].
+/// Largest accepted jitter of a projection along an axis, in pixels.
+const MAX_JITTER_PX: f32 = 16.0;
+
+/// Gaze: where the eye looks in a view. Default: [`Lost`](Self::Lost). Example: [`ViewFrame`].
+///
+/// A gaze that is not finite counts as lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Gaze {
-    /// Known position. May lie outside the view. A position that is not finite counts as [`Lost`](Self::Lost).
+    /// Position in pixels, which may lie outside the view.
     At {
-        /// Position in pixels: (0, 0) is the centre of the top-left pixel, y down.
+        /// (0, 0) is the centre of the top-left pixel, y down.
         px: [f32; 2],
+    },
+    /// Position in texture coordinates, which may lie outside the view.
+    Uv {
+        /// (0, 0) is the top-left corner of the view, (1, 1) its bottom-right corner.
+        uv: [f32; 2],
+    },
+    /// Direction from the eye, as eye trackers deliver it. Counts as lost if it points backwards.
+    Direction {
+        /// Direction in view space, of any length: x right, y down, z forward. For view spaces with y up and z backward
+        /// (OpenXR, glTF, Bevy) negate y and z.
+        view: [f32; 3],
     },
     /// Unknown in this frame (blink, lost tracking): the last known position is used; before the first one, the middle
     /// of the view.
@@ -22,15 +38,41 @@ pub enum Gaze {
 }
 
 impl Gaze {
-    /// Position to use: this one if it is known and finite, else `held`, else the middle of a view of `size_px`.
-    /// Clamped to +-1e6 pixels, so that angles stay finite.
+    /// This gaze if the eye tracker's `confidence`, 0 to 1, is at least `least`, otherwise [`Lost`](Self::Lost).
+    /// Trackers report low confidence in blinks, when positions jump by many degrees; 0.5 suits most.
+    ///
+    /// ```
+    /// use afterimage::Gaze;
+    ///
+    /// let gaze = Gaze::Uv { uv: [0.4, 0.6] };
+    /// assert_eq!(gaze.if_confident(0.9, 0.5), gaze);
+    /// assert_eq!(gaze.if_confident(0.1, 0.5), Gaze::Lost);
+    /// ```
+    pub fn if_confident(self, confidence: f32, least: f32) -> Self {
+        // A confidence that is NaN is none.
+        if confidence >= least { self } else { Self::Lost }
+    }
+
+    /// Position in pixels of a view of `geometry`; `None` if it is lost or not finite. Clamped to +-1e6 pixels, so that
+    /// angles stay finite.
+    pub(crate) fn known_px(self, geometry: &ViewGeometry) -> Option<[f32; 2]> {
+        let px = match self {
+            Self::At { px } => Some(px),
+            Self::Uv { uv } => {
+                let size = geometry.size_px();
+                Some([uv[0] * size[0] as f32 - 0.5, uv[1] * size[1] as f32 - 0.5])
+            }
+            Self::Direction { view } => geometry.project(view),
+            Self::Lost => None,
+        };
+        px.filter(|px| px[0].is_finite() && px[1].is_finite()).map(|px| px.map(|v| v.clamp(-1e6, 1e6)))
+    }
+
+    /// Position in pixels to use: this one if it is known, else `held`, else the middle of the view.
     #[doc(hidden)]
-    pub fn resolve(self, held: Option<[f32; 2]>, size_px: [u32; 2]) -> [f32; 2] {
-        let middle = size_px.map(|s| 0.5 * s as f32 - 0.5);
-        match self {
-            Self::At { px } if px[0].is_finite() && px[1].is_finite() => px.map(|v| v.clamp(-1e6, 1e6)),
-            _ => held.unwrap_or(middle),
-        }
+    pub fn resolve(self, held: Option<[f32; 2]>, geometry: &ViewGeometry) -> [f32; 2] {
+        let middle = geometry.size_px().map(|s| 0.5 * s as f32 - 0.5);
+        self.known_px(geometry).or(held).unwrap_or(middle)
     }
 }
 
@@ -55,18 +97,63 @@ pub struct ViewFrame {
     /// Camera motion: the matrix that transforms a point from this frame's view space (x right, y down, z forward) to
     /// the previous frame's. Row-major, for column vectors; perspective views only. `None`: the depth test expects
     /// unchanged distances, so that history is rejected on surfaces that the camera approaches or leaves fast.
+    /// [`moved`](Self::moved) computes it from an engine's matrices.
     pub previous_from_current: Option<[[f32; 4]; 4]>,
+    /// Jitter of the projection in pixels, for renderers that jitter it for antialiasing: a point that the projection
+    /// without jitter puts at `p` is drawn at `p + jitter_px`; y down. (0, 0) without jitter.
+    ///
+    /// The jitter is removed from motion vectors that contain it ([`MotionConvention::jittered`]) and from the rays
+    /// through the pixels, so that history stays where it is on a still camera. [`geometry`](Self::geometry) is that of
+    /// the projection without jitter. Temporal antialiasing runs after the post-process, with the same jitter.
+    pub jitter_px: [f32; 2],
+    /// Convention of this view's depth values in this frame. `None`: the context's ([`ContextDesc::depth`]). History
+    /// stays valid when the near plane changes, because distances are stored.
+    pub depth: Option<DepthConvention>,
 }
 
 impl ViewFrame {
-    /// A view of unknown camera motion.
+    /// A view of unknown camera motion, without jitter.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
-        Self { geometry, gaze, previous_from_current: None }
+        Self { geometry, gaze, previous_from_current: None, jitter_px: [0.0; 2], depth: None }
+    }
+
+    /// This view with the camera motion between two frames, from an engine's matrices: the projection
+    /// `clip_from_view`, and projection times view (`clip_from_world`) of this frame and of the previous one, without
+    /// jitter.
+    ///
+    /// The matrices are right-handed with y up and -z forward, stored by columns (`to_cols_array_2d` of glam), for any
+    /// depth range, reversed and infinite ones, too. See [`ViewGeometry::from_projection`].
+    ///
+    /// ```
+    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # let clip_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+    /// # let (clip_from_world, previous_clip_from_world) = (clip_from_view, clip_from_view);
+    /// let geometry = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
+    /// let view = ViewFrame::new(geometry, Gaze::Uv { uv: [0.6, 0.5] })
+    ///     .moved(clip_from_view, clip_from_world, previous_clip_from_world)?;
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a matrix is not that of a perspective camera, is not finite, or cannot be inverted.
+    pub fn moved(
+        self,
+        clip_from_view: [[f32; 4]; 4],
+        clip_from_world: [[f32; 4]; 4],
+        previous_clip_from_world: [[f32; 4]; 4],
+    ) -> Result<Self, SettingsError> {
+        let matrix = camera_motion(clip_from_view, clip_from_world, previous_clip_from_world)?;
+        Ok(Self { previous_from_current: Some(matrix), ..self })
     }
 
     /// Third row of [`previous_from_current`](Self::previous_from_current), which gives the previous distance.
     pub(crate) fn depth_row(&self) -> [f32; 4] {
         self.previous_from_current.map_or([0.0, 0.0, 1.0, 0.0], |m| m[2])
+    }
+
+    /// Convention of depth values.
+    pub(crate) fn depth_convention(&self, desc: &ContextDesc) -> DepthConvention {
+        self.depth.unwrap_or(desc.depth)
     }
 
     /// Checks all fields against the context's description.
@@ -75,22 +162,28 @@ impl ViewFrame {
         if found != desc.size_px {
             return Err(FrameError::Size { input: "geometry", view, found, expected: desc.size_px });
         }
+        let refuse = |what, found, expected| Err(FrameError::Value { what, view, found, expected });
+        if let Some(Err(error)) = self.depth.map(DepthConvention::validate) {
+            let expected = "planes in the ranges that DepthConvention documents, or None for the context's convention";
+            return refuse("depth convention", error.found, expected);
+        }
+        let [x, y] = self.jitter_px;
+        if !(x.abs() <= MAX_JITTER_PX && y.abs() <= MAX_JITTER_PX) {
+            return refuse("jitter_px", format!("({x}, {y})"), "finite offsets of at most 16 pixels, usually below 1");
+        }
         let Some(matrix) = self.previous_from_current else {
             return Ok(());
         };
-        let refuse =
-            |found: String, expected| Err(FrameError::Value { what: "previous_from_current", view, found, expected });
-        if matches!(desc.depth, DepthConvention::Orthographic { .. }) {
-            return refuse(
-                "given with orthographic depth".into(),
-                "None: rays of an orthographic view are not known here",
-            );
+        let what = "previous_from_current";
+        if matches!(self.depth_convention(desc), DepthConvention::Orthographic { .. }) {
+            let expected = "None: rays of an orthographic view are not known here";
+            return refuse(what, "given with orthographic depth".into(), expected);
         }
         match matrix.iter().flatten().find(|v| !v.is_finite()) {
-            Some(v) => refuse(
-                format!("a matrix that holds {v}"),
-                "finite numbers, or None if the camera's motion is not known",
-            ),
+            Some(v) => {
+                let expected = "finite numbers, or None if the camera's motion is not known";
+                refuse(what, format!("a matrix that holds {v}"), expected)
+            }
             None => Ok(()),
         }
     }
@@ -136,21 +229,20 @@ impl Exposure {
         }
     }
 
-    /// Factor on stored colors; `None` if unchanged. Clamped to the range of [`expose`](crate::kernel::wrs::expose).
-    pub(crate) fn factor(self) -> Option<f32> {
+    /// Factor on stored colors, clamped to the range of [`expose`](crate::kernel::wrs::expose).
+    pub(crate) fn factor(self) -> f32 {
         const LIMIT: f32 = (1_u64 << 40) as f32;
         match self {
-            Self::Same => None,
-            Self::Changed { ratio } => Some(ratio.clamp(1.0 / LIMIT, LIMIT)),
+            Self::Same => 1.0,
+            Self::Changed { ratio } => ratio.clamp(1.0 / LIMIT, LIMIT),
         }
     }
 }
 
 /// Executor of the post-process: types of its input images.
 ///
-/// Implemented by `gpu::Afterimage`, whose inputs are textures with one array layer a view, and by
-/// `cpu::CpuAfterimage`, whose inputs are slices with one `Image` a view. It only makes [`Frame`] generic; there is no
-/// need to implement or to name it.
+/// Implemented by `gpu::Afterimage`, whose inputs are `gpu::Textures`, and by `cpu::CpuAfterimage`, whose inputs are
+/// slices with one `Image` a view. It only makes [`Frame`] generic; there is no need to implement or to name it.
 pub trait Executor {
     /// Images with three channels (color).
     type Colors<'a>: Copy + Debug;
@@ -171,7 +263,8 @@ pub trait Executor {
 /// use afterimage::Reset;
 /// use afterimage::gpu::Frame;
 ///
-/// let after_a_cut = Frame { depth: Some(depth), motion: Some(motion), reset: Reset::All, ..Frame::new(color, views, 0) };
+/// let (depth, motion) = (Some(depth.into()), Some(motion.into()));
+/// let after_a_cut = Frame { depth, motion, reset: Reset::All, ..Frame::new(color, views, 0) };
 /// # let _ = after_a_cut;
 /// # }
 /// ```
@@ -232,8 +325,8 @@ impl<E: Executor> Debug for Frame<'_, E> {
 }
 
 impl<'a, E: Executor> Frame<'a, E> {
-    /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
-    pub fn new(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
+    /// What `new` of either executor does.
+    pub(crate) fn of_color(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
         Self {
             color,
             depth: None,
@@ -293,8 +386,12 @@ pub struct ContextDesc {
     pub view_count: u32,
     /// Convention of motion vectors. Default: previous minus current position in pixels, y down.
     pub motion: MotionConvention,
-    /// Convention of depth values. Default: linear distance.
+    /// Convention of depth values, for views that do not state their own ([`ViewFrame::depth`]). Default: linear
+    /// distance.
     pub depth: DepthConvention,
+    /// Whether the output has the color input's alpha (1 where that is not finite) instead of 1. GPU only. Default
+    /// true.
+    pub keep_alpha: bool,
     /// Method, foveation and tunables. Default: [`Settings::steady`].
     pub settings: Settings,
 }
@@ -310,6 +407,7 @@ impl ContextDesc {
             view_count: 1,
             motion: MotionConvention::default(),
             depth: DepthConvention::default(),
+            keep_alpha: true,
             settings: Settings::default(),
         }
     }

@@ -4,7 +4,7 @@ use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::Vec2;
+use glam::{DMat4, DVec4, Vec2};
 
 /// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
 /// headset).
@@ -74,6 +74,32 @@ impl ViewGeometry {
         Ok(Self { size_px, scale, offset })
     }
 
+    /// A view of `size_px` from an engine's projection matrix, without jitter: right-handed with y up and -z forward,
+    /// stored by columns (`to_cols_array_2d` of glam). Symmetric or off-axis. The depth range does not matter: 0 to 1
+    /// or -1 to 1, reversed and infinite ones, too.
+    ///
+    /// ```
+    /// use afterimage::ViewGeometry;
+    ///
+    /// // Bevy's and Unreal's kind: infinite, reversed, near plane at 0.1; 90 degrees high.
+    /// let clip_from_view = [[0.5625, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+    /// let view = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
+    /// assert!((view.hfov_deg() - 121.3).abs() < 0.1);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the matrix is not that of a perspective camera: orthographic, left-handed or y down (negate
+    /// the row or column that is flipped), rotated, not finite.
+    pub fn from_projection(size_px: [u32; 2], clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
+        let [x, y, z, _] = checked_projection(clip_from_view)?;
+        // A ray (t, u, -1) has the clip coordinates (x.0 t - z.0, y.1 u - z.1) and w = 1; clip y is up, u is up.
+        let tangent = |clip: f32, scale: f32, shift: f32| (clip + shift) / scale;
+        let tan_x = [tangent(-1.0, x[0], z[0]), tangent(1.0, x[0], z[0])];
+        let tan_y = [-tangent(1.0, y[1], z[1]), -tangent(-1.0, y[1], z[1])];
+        Self::off_axis(size_px, tan_x, tan_y)
+    }
+
     /// Width and height in pixels.
     pub fn size_px(&self) -> [u32; 2] {
         self.size_px
@@ -118,4 +144,56 @@ impl ViewGeometry {
     pub fn eccentricity_map(&self, gaze_px: [f32; 2]) -> Image<f32> {
         Image::from_fn_parallel(self.size_px, |[x, y]| self.eccentricity_deg([x as f32, y as f32], gaze_px))
     }
+}
+
+/// The columns of a projection matrix, if it is one that [`ViewGeometry::from_projection`] accepts.
+fn checked_projection(columns: [[f32; 4]; 4]) -> Result<[[f32; 4]; 4], SettingsError> {
+    let refuse = |expected: &str| {
+        Err(SettingsError { setting: "clip_from_view", found: format!("{columns:?}"), expected: expected.into() })
+    };
+    let [x, y, z, w] = columns;
+    if columns.iter().flatten().any(|v| !v.is_finite()) {
+        return refuse("finite numbers");
+    }
+    if z[3] == 0.0 && w[3] != 0.0 {
+        return refuse("a perspective projection; this one is orthographic");
+    }
+    if x[3] == 0.0 && y[3] == 0.0 && z[3] > 0.0 {
+        return refuse("a right-handed projection with -z forward; negate the third column of a left-handed one");
+    }
+    if [x[3], y[3], w[3]] == [0.0; 3] && z[3] == -1.0 && x[0] > 0.0 && y[1] < 0.0 {
+        return refuse("clip space with y up; negate the second column of a projection for y down");
+    }
+    let zeros = [x[1], x[2], x[3], y[0], y[2], y[3], w[0], w[1], w[3]];
+    if zeros != [0.0; 9] || z[3] != -1.0 || x[0] <= 0.0 || y[1] <= 0.0 {
+        return refuse("a perspective projection alone, by columns; not multiplied by a view, and not transposed");
+    }
+    Ok(columns)
+}
+
+/// Transform from this frame's view space (x right, y down, z forward) to the previous frame's, by rows, from a
+/// projection and two view-projection matrices (y up, -z forward, by columns).
+pub(crate) fn camera_motion(
+    clip_from_view: [[f32; 4]; 4],
+    clip_from_world: [[f32; 4]; 4],
+    previous_clip_from_world: [[f32; 4]; 4],
+) -> Result<[[f32; 4]; 4], SettingsError> {
+    let matrix = |setting, columns: [[f32; 4]; 4]| {
+        // Doubles: a world position of kilometres leaves few digits of a float for the motion of a frame.
+        let matrix = DMat4::from_cols_array_2d(&columns.map(|c| c.map(f64::from)));
+        if matrix.is_finite() && matrix.determinant() != 0.0 {
+            return Ok(matrix);
+        }
+        let expected = "finite numbers, and an inverse".into();
+        Err(SettingsError { setting, found: format!("{columns:?}"), expected })
+    };
+    let projection = matrix("clip_from_view", checked_projection(clip_from_view)?)?;
+    let world_from_clip = matrix("clip_from_world", clip_from_world)?.inverse();
+    let previous = matrix("previous_clip_from_world", previous_clip_from_world)?;
+    // Both frames have the same projection, or one that differs in field of view or planes only: the distance, which the
+    // depth test needs, is the previous clip w in either case.
+    let previous_from_current = projection.inverse() * previous * world_from_clip * projection;
+    let flip = DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
+    let rows = (flip * previous_from_current * flip).transpose();
+    Ok(rows.to_cols_array_2d().map(|row| row.map(|v| v as f32)))
 }

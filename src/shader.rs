@@ -56,6 +56,8 @@ pub static MODULES: &[Module] = &[
     module!("pass", "mip_chain_pass"),
     module!("pass", "inputs"),
     module!("pass", "none_pass"),
+    module!("pass", "output"),
+    module!("pass", "output_and_view"),
     module!("pass", "smr_pass"),
     module!("pass", "surface_history"),
     module!("pass", "taa_pass"),
@@ -114,6 +116,16 @@ impl Composer {
         self.compose_with(&[name], "")
     }
 
+    /// The module `name` after all modules that it uses, with the second module of `instead` in place of the first.
+    ///
+    /// # Panics
+    /// As for [`compose`](Self::compose).
+    pub fn compose_replacing(&self, name: &str, instead: (&str, &str)) -> Composed {
+        let mut composed = Composed { source: String::new(), origins: vec![] };
+        self.add(name, Some(instead), &mut composed, &mut vec![], &mut vec![]);
+        composed
+    }
+
     /// The modules `names` after all modules that they use, followed by `extra` WGSL.
     ///
     /// # Panics
@@ -122,13 +134,21 @@ impl Composer {
         let mut composed = Composed { source: String::new(), origins: vec![] };
         let mut done = vec![];
         for name in names {
-            self.add(name, &mut composed, &mut done, &mut vec![]);
+            self.add(name, None, &mut composed, &mut done, &mut vec![]);
         }
         composed.push("(the caller's text)", extra);
         composed
     }
 
-    fn add(&self, name: &str, composed: &mut Composed, done: &mut Vec<&'static str>, open: &mut Vec<&'static str>) {
+    fn add(
+        &self,
+        name: &str,
+        instead: Option<(&str, &str)>,
+        composed: &mut Composed,
+        done: &mut Vec<&'static str>,
+        open: &mut Vec<&'static str>,
+    ) {
+        let name = instead.filter(|(module, _)| *module == name).map_or(name, |(_, other)| other);
         let mut modules = self.tables.iter().flat_map(|table| table.iter());
         let module = modules.find(|m| m.name == name).unwrap_or_else(|| panic!("no shader module '{name}'"));
         if done.contains(&module.name) {
@@ -137,7 +157,7 @@ impl Composer {
         assert!(!open.contains(&module.name), "shader modules use each other in a cycle: {open:?}");
         open.push(module.name);
         for used in module.text.lines().map_while(|l| l.strip_prefix("//#use ")) {
-            self.add(used.trim(), composed, done, open);
+            self.add(used.trim(), instead, composed, done, open);
         }
         open.pop();
         composed.push(module.path, module.text);

@@ -37,11 +37,7 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
     let output = texture(TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING);
     let z = Image::from_fn(SIZE, |[x, y]| 2.0 + (x + y) as f32 * 0.01);
     afterimage_testing::gpu::write_layer(&queue, &depth, 0, bytemuck::cast_slice(z.pixels()));
-    let views = [ViewFrame {
-        geometry: ViewGeometry::flat(SIZE, 70.0).unwrap(),
-        gaze: Gaze::At { px: [160.0, 90.0] },
-        previous_from_current: None,
-    }];
+    let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), Gaze::At { px: [160.0, 90.0] })];
     let wait = || {
         queue.submit([]);
         device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
@@ -63,7 +59,11 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             wait();
             let from = clock_ns(is_software);
             let mut encoder = device.create_command_encoder(&Default::default());
-            let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
+            let frame = Frame {
+                depth: Some((&depth).into()),
+                motion: Some((&motion).into()),
+                ..Frame::new(&color, &views, index)
+            };
             post.record(&device, &mut encoder, &frame, &output).unwrap();
             queue.submit([encoder.finish()]);
             wait();

@@ -31,7 +31,7 @@ fn ten_thousand_frames_with_resizes_leak_nothing() {
         }
         let (color, output) = textures.as_ref().unwrap();
         let geometry = ViewGeometry::flat(post.desc().size_px, 70.0).unwrap();
-        let views = [ViewFrame { geometry, gaze: Gaze::Lost, previous_from_current: None }];
+        let views = [ViewFrame::new(geometry, Gaze::Lost)];
         let frame = Frame::new(color, &views, index);
         let mut encoder = device.create_command_encoder(&Default::default());
         post.record(&device, &mut encoder, &frame, output).unwrap();

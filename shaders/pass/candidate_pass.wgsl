@@ -6,22 +6,37 @@
 //
 // 4 reads of 12 bytes and 1 write of 8 a texel: 12 bytes a pixel read, 2 written.
 
-@group(0) @binding(0) var<uniform> size: vec2<u32>;
+// src/gpu/uniforms.rs: CandidateUniforms, which documents the fields
+struct CandidateUniforms {
+    size: vec2<u32>,
+    color_origin: u32,
+    noise_origin: u32,
+    first_view: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
+}
+
+@group(0) @binding(0) var<uniform> frame: CandidateUniforms;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var noise_in: texture_2d_array<f32>;
 @group(0) @binding(3) var coarse: texture_storage_2d_array<rgba16float, write>;
 
-fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
-    let px = min(at, size - 1u);
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
-    let noise = candidate_noise(textureLoad(noise_in, px, view, 0).xy);
+fn from_origin(px: vec2<u32>, origin: u32) -> vec2<u32> {
+    return px + vec2<u32>(origin & 0xffffu, origin >> 16u);
+}
+
+fn texel(at: vec2<u32>, layer: u32) -> vec4<f32> {
+    let px = min(at, frame.size - 1u);
+    let candidate = color(textureLoad(color_in, from_origin(px, frame.color_origin), layer, 0).xyz);
+    let noise = candidate_noise(textureLoad(noise_in, from_origin(px, frame.noise_origin), layer, 0).xy);
     return candidate_texel(candidate.color, candidate.usable, noise);
 }
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let first = 2u * id.xy;
-    if any(first >= size) {
+    if any(first >= frame.size) {
         return;
     }
     let mean = candidate_mean(
@@ -30,5 +45,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         texel(first + vec2<u32>(0u, 1u), group.z),
         texel(first + vec2<u32>(1u, 1u), group.z),
     );
-    textureStore(coarse, id.xy, group.z, round_mip(mean));
+    textureStore(coarse, id.xy, frame.first_view + group.z, round_mip(mean));
 }

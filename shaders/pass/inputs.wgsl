@@ -1,22 +1,21 @@
 //#use acuity
-//#use debug_view
 //#use depth
 //#use noise
 //#use reproject
 //#use sanitize
 //#use view_uniforms
-// Inputs of a pixel in internal conventions, its counters and its output; shared by all methods. CPU twin:
-// src/cpu/inputs.rs.
+// Inputs of a pixel in internal conventions, and its counters; shared by all methods. CPU twin: src/cpu/inputs.rs.
 
 // Which inputs the frame has, and which features are on. Constants of a pipeline: what is off is not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 override HAS_TRUST: u32 = 1u;
-override HAS_EXPOSURE: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;
-// 0, or a VIEW_* code: draw a debug view of the decision, and store nothing.
+// 0: inputs and outputs have one layer a view. 1: each view has a region of its own; they are bound view by view.
+override REGIONS: u32 = 0u;
+// 0, or a VIEW_* code: output a debug view of the decision, and store nothing.
 override VIEW: u32 = 0u;
 
 // src/gpu/uniforms.rs: FrameUniforms, which documents the fields
@@ -31,11 +30,8 @@ struct FrameUniforms {
     inv_gate_divisor: f32,
     depth_relative: f32,
     depth_slope_px: f32,
-    disparity_a: f32,
-    motion_scale: vec2<f32>,
-    disparity_b: f32,
-    disparity_flags: u32,
     exposure: f32,
+    motion_scale: vec2<f32>,
     mid_radius_deg: f32,
     blend_deg: f32,
     coarse_mid: f32,
@@ -43,6 +39,9 @@ struct FrameUniforms {
     smr_accumulate: f32,
     smr_accumulate_tolerance: f32,
     smr_tolerance: f32,
+    first_view: u32,
+    unused_0: u32,
+    unused_1: u32,
     views: array<ViewUniforms, 4>,
 }
 
@@ -51,7 +50,6 @@ struct FrameUniforms {
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
 @group(0) @binding(4) var trust_in: texture_2d_array<f32>;
-@group(0) @binding(5) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
 @group(0) @binding(7) var noise_in: texture_2d_array<f32>;
 
@@ -66,29 +64,57 @@ const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
 // Counts of a workgroup: one global atomic a counter and workgroup instead of one a pixel.
 var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
+// Texel of an input or output whose view begins at `origin`.
+fn texel_of(px: vec2<u32>, origin: u32) -> vec2<u32> {
+    if REGIONS == 0u {
+        return px;
+    }
+    return px + vec2<u32>(origin & 0xffffu, origin >> 16u);
+}
+
+// Layer of an input or output.
+fn layer_of(view: u32) -> u32 {
+    if REGIONS == 0u {
+        return view;
+    }
+    return 0u;
+}
+
+// Color and alpha, as the renderer wrote them.
+fn color_at(px: vec2<u32>, view: u32) -> vec4<f32> {
+    return textureLoad(color_in, texel_of(px, frame.views[view].color_origin), layer_of(view), 0);
+}
+
+// Trust mask, not sanitized.
+fn trust_at(px: vec2<u32>, view: u32) -> f32 {
+    return textureLoad(trust_in, texel_of(px, frame.views[view].trust_origin), layer_of(view), 0).x;
+}
+
 fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
     return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
-// Motion vector: previous minus current position in pixels, y down.
+// Motion vector: previous minus current position in pixels, y down, without jitter.
 fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     if HAS_MOTION == 0u {
         return vec2<f32>(0.0);
     }
-    return textureLoad(motion_in, px, view, 0).xy * frame.motion_scale;
+    let given = textureLoad(motion_in, texel_of(px, frame.views[view].motion_origin), layer_of(view), 0).xy;
+    return given * frame.motion_scale + frame.views[view].motion_offset;
 }
 
 // Noise of the candidate; valid only if NOISY is set.
 fn noise_at(px: vec2<u32>, view: u32) -> Noise {
-    return candidate_noise(textureLoad(noise_in, px, view, 0).xy);
+    return candidate_noise(textureLoad(noise_in, texel_of(px, frame.views[view].noise_origin), layer_of(view), 0).xy);
 }
 
 fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     if HAS_DEPTH == 0u {
         return INVALID_DISPARITY;
     }
-    let map = DisparityMap(frame.disparity_a, frame.disparity_b, frame.disparity_flags);
-    return disparity(textureLoad(depth_in, px, view, 0).x, map);
+    let constants = frame.views[view];
+    let map = DisparityMap(constants.disparity_a, constants.disparity_b, constants.disparity_flags);
+    return disparity(textureLoad(depth_in, texel_of(px, constants.depth_origin), layer_of(view), 0).x, map);
 }
 
 // depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. A loop with zero iterations for most
@@ -148,18 +174,9 @@ fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdi
         count_if(disparity_now == INVALID_DISPARITY, COUNT_BAD_DEPTH);
     }
     if HAS_TRUST != 0u {
-        count_if(!is_finite(textureLoad(trust_in, px, view, 0).x), COUNT_BAD_TRUST);
+        count_if(!is_finite(trust_at(px, view)), COUNT_BAD_TRUST);
     }
     count_if(true, COUNT_VERDICTS + verdict);
-}
-
-// Writes the output color, or the debug view of the decision.
-fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, traced: PixelTrace) {
-    if VIEW != 0u {
-        textureStore(color_out, px, view, vec4<f32>(view_color(VIEW, traced), 1.0));
-    } else {
-        textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
-    }
 }
 
 // Adds a workgroup's counts to the frame's. All invocations of the workgroup must call it (it has a barrier).

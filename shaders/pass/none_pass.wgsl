@@ -1,14 +1,16 @@
 //#use inputs
+//#use output
 // No method: outputs the sanitized candidate. CPU twin: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
 
 fn pixel(px: vec2<u32>, view: u32) {
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let given = color_at(px, view);
+    let candidate = color(given.xyz);
     // Not a constant, although frame.reset is always set: compilers would fold the debug view's color with other
     // roundings.
     let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
     count_if(!candidate.usable, COUNT_NONFINITE);
     count_if(true, COUNT_VERDICTS + verdict);
-    write_output(px, view, candidate.color, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
+    write_output(px, view, candidate.color, given.w, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
 }
 
 @compute @workgroup_size(64, 1)
@@ -18,7 +20,7 @@ fn main(
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, group.z);
+        pixel(id.xy, frame.first_view + group.z);
     }
     add_counts(invocation);
 }

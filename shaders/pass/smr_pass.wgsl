@@ -1,5 +1,6 @@
 //#use foveate
 //#use matched
+//#use output
 //#use surface_history
 // Scale-matched reservoirs. CPU twin: src/cpu/smr_pass.rs, which lists the reads and writes; docs/method.md has the
 // equations. One invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is
@@ -18,7 +19,7 @@ override RELIGHT_ON: u32 = 1u;
 // Level of detail of the candidate.
 fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
     if HAS_LOD != 0u {
-        let given = textureLoad(lod_in, px, view, 0).x;
+        let given = textureLoad(lod_in, texel_of(px, frame.views[view].lod_origin), layer_of(view), 0).x;
         // By bits: NaN is 0.
         return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
     }
@@ -130,7 +131,7 @@ fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
 // Candidate at an offset from a pixel; `own` if it is not finite, because a non-finite pixel must not count as black.
 fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
     let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
-    let near = color(textureLoad(color_in, vec2<u32>(at), view, 0).xyz);
+    let near = color(color_at(vec2<u32>(at), view).xyz);
     return select(own, near.color, near.usable);
 }
 
@@ -244,7 +245,8 @@ fn averaged_pixel(
 
 // Outputs and stores a pixel; returns the stored words.
 fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let given = color_at(px, view);
+    let candidate = color(given.xyz);
     let ray = ray_at(px, view);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
@@ -285,6 +287,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
         px,
         view,
         result.color,
+        given.w,
         PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
     // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
@@ -307,6 +310,7 @@ fn main(
     @builtin(local_invocation_index) invocation: u32,
 ) {
     let first = 2u * id.xy;
+    let view = frame.first_view + group.z;
     if all(first < frame.size) {
         var texels_0 = vec4<f32>(0.0);
         var texels_1 = vec4<f32>(0.0);
@@ -320,7 +324,7 @@ fn main(
             let row = select(0u, i >> 1u, px.y < frame.size.y);
             var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);
             if all(px < frame.size) {
-                texel = mip_texel(pixel(px, group.z));
+                texel = mip_texel(pixel(px, view));
             }
             texels_0 = select(texels_0, texel, i == 0u);
             texels_1 = select(texels_1, texel, i == 1u);
@@ -328,7 +332,7 @@ fn main(
             texels_3 = select(texels_3, texel, i == 3u);
         }
         if VIEW == 0u {
-            textureStore(next_mips, id.xy, group.z, round_mip(mip_mean(texels_0, texels_1, texels_2, texels_3)));
+            textureStore(next_mips, id.xy, view, round_mip(mip_mean(texels_0, texels_1, texels_2, texels_3)));
         }
     }
     add_counts(invocation);

@@ -49,7 +49,7 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
     }
     var confidence = 1.0;
     if HAS_TRUST != 0u {
-        confidence = trust(textureLoad(trust_in, px, view, 0).x);
+        confidence = trust(trust_at(px, view));
         if confidence == 0.0 {
             return no_source(VERDICT_DISTRUSTED);
         }
@@ -94,17 +94,10 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
 
 // Stored color scaled to this frame's exposure.
 fn exposed(stored: vec3<f32>) -> vec3<f32> {
-    if HAS_EXPOSURE == 0u {
-        return stored;
-    }
     return expose(stored, frame.exposure);
 }
 
 // Noise of the nearest texel, scaled to this frame's exposure.
 fn past_noise_of(source: Source, view: u32) -> Noise {
-    let stored = unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x);
-    if HAS_EXPOSURE == 0u {
-        return stored;
-    }
-    return expose_noise(stored, frame.exposure);
+    return expose_noise(unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x), frame.exposure);
 }

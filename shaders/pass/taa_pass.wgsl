@@ -1,3 +1,4 @@
+//#use output
 //#use surface_history
 //#use taa
 // Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes. One
@@ -15,7 +16,7 @@ fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neig
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let at = max(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u)) - 1u;
-        let near = color(textureLoad(color_in, min(at, frame.size - 1u), view, 0).xyz);
+        let near = color(color_at(min(at, frame.size - 1u), view).xyz);
         let v = to_ycocg(select(own, near.color, near.usable));
         around.sum += v;
         around.squares += v * v;
@@ -24,7 +25,8 @@ fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neig
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let given = color_at(px, view);
+    let candidate = color(given.xyz);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
     let source = source_of(px, view, ray_at(px, view), motion, disparity_now);
@@ -48,7 +50,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     // The overshoot of Catmull-Rom may exceed the largest half.
     shown = min(shown, vec3<f32>(MAX_HALF));
-    write_output(px, view, shown, PixelTrace(source.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
+    write_output(px, view, shown, given.w, PixelTrace(source.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
     if VIEW != 0u {
         return;
     }
@@ -64,7 +66,7 @@ fn main(
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, group.z);
+        pixel(id.xy, frame.first_view + group.z);
     }
     add_counts(invocation);
 }

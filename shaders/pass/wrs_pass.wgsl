@@ -1,4 +1,5 @@
 //#use inputs
+//#use output
 //#use pack
 //#use rng
 //#use wrs
@@ -47,7 +48,7 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
         past.log_key = textureLoad(past_keys, source.at, view, 0).x;
     }
     if HAS_TRUST != 0u {
-        past = scale_by_trust(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);
+        past = scale_by_trust(past, trust_at(px, view), SAMPLER);
         if past.w_sum == 0.0 {
             return no_history(VERDICT_DISTRUSTED);
         }
@@ -55,14 +56,13 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     if !is_same_surface(px, view, disparity_now, expected_disparity(view, ray, disparity_now), stored.disparity) {
         return no_history(VERDICT_DISOCCLUDED);
     }
-    if HAS_EXPOSURE != 0u {
-        past.color = expose(past.color, frame.exposure);
-    }
+    past.color = expose(past.color, frame.exposure);
     return History(VERDICT_VALID, past, stored.age);
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let given = color_at(px, view);
+    let candidate = color(given.xyz);
     let motion = motion_at(px, view);
     let constants = frame.views[view];
     let ray = ray_at(px, view);
@@ -91,7 +91,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     let survival = select(0.0, decision.survival, valid);
     let quality = decision.w_sum * (1.0 / 16.0);
     let traced = PixelTrace(history.verdict, candidate_w, quality, age, survival, decision.gate, decision.take, motion);
-    write_output(px, view, shown, traced);
+    write_output(px, view, shown, given.w, traced);
     if VIEW != 0u {
         return;
     }
@@ -111,7 +111,7 @@ fn main(
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
         // View index from the workgroup id, which is uniform: the view's constants are loaded once.
-        pixel(id.xy, group.z);
+        pixel(id.xy, frame.first_view + group.z);
     }
     add_counts(invocation);
 }

@@ -3,6 +3,7 @@
 use super::mip_chain::MipChain;
 use crate::frame::{ContextDesc, ViewFrame};
 use crate::method::HistoryLayout;
+use crate::uniforms::Held;
 use glam::Vec4;
 
 /// History of all views: buffers of the previous and the current frame. Buffers that a method does not use are empty.
@@ -15,7 +16,7 @@ pub struct History {
     /// Mip chains of this frame's candidates, one a view; empty unless candidates are noisy.
     candidates: Vec<MipChain>,
     filled: bool,
-    held_gaze: Vec<Option<[f32; 2]>>,
+    held: Vec<Held>,
 }
 
 /// Buffers of one frame: all views, view after view.
@@ -75,7 +76,7 @@ impl History {
                 _ => vec![],
             },
             filled: false,
-            held_gaze: vec![None; view_count as usize],
+            held: vec![Held::default(); view_count as usize],
         }
     }
 
@@ -85,7 +86,7 @@ impl History {
 
     pub(super) fn forget(&mut self) {
         self.filled = false;
-        self.held_gaze.fill(None);
+        self.held.fill(Held::default());
     }
 
     /// Makes the written frame the previous one.
@@ -99,11 +100,11 @@ impl History {
         self.filled
     }
 
-    /// Resolves the gaze of a view to a position in pixels, and holds it for frames in which the gaze is lost.
-    pub(super) fn resolve_gaze(&mut self, index: usize, view: &ViewFrame) -> [f32; 2] {
-        let px = view.gaze.resolve(self.held_gaze[index], view.geometry.size_px());
-        self.held_gaze[index] = Some(px);
-        px
+    /// Gaze to use for a view and its previous jitter, which are held for the next frame.
+    pub(super) fn hold(&mut self, index: usize, view: &ViewFrame) -> Held {
+        let held = self.held[index].with(view);
+        self.held[index] = held;
+        held
     }
 
     /// Previous reservoirs of `view`, and the current ones and their log keys to write.

@@ -10,7 +10,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::{acuity, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use crate::uniforms::ViewUniforms;
+use crate::uniforms::{Held, ViewUniforms};
 use glam::{Vec2, Vec3};
 
 /// Inputs and constants of one view of a frame.
@@ -24,8 +24,8 @@ pub(super) struct Inputs<'a> {
     pub size: [u32; 2],
     pub uniforms: ViewUniforms,
     gaze_ray: Vec3,
-    /// Factor on stored colors; `None` if exposure is unchanged.
-    pub exposure: Option<f32>,
+    /// Factor on stored colors.
+    pub exposure: f32,
     /// Whether there is no history.
     pub reset: bool,
     motion_scale: [f32; 2],
@@ -34,9 +34,10 @@ pub(super) struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// Inputs of view `index` of `frame` for a gaze at `gaze_px`. `has_history`: whether a frame was processed before.
-    pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, gaze_px: [f32; 2], has_history: bool) -> Self {
-        let uniforms = ViewUniforms::new(&frame.views[index], gaze_px, &desc.settings, index, frame.index);
+    /// Inputs of view `index` of `frame`. `has_history`: whether a frame was processed before.
+    pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, held: &Held, has_history: bool) -> Self {
+        let view = &frame.views[index];
+        let uniforms = ViewUniforms::new(desc, view, held, index, frame.index);
         let [x, y, z, _] = uniforms.gaze_ray;
         Self {
             color: frame.color[index],
@@ -51,7 +52,7 @@ impl<'a> Inputs<'a> {
             exposure: frame.exposure.factor(),
             reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
-            disparity_map: desc.depth.disparity_map(),
+            disparity_map: view.depth_convention(desc).disparity_map(),
             depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
         }
     }
@@ -89,7 +90,8 @@ impl<'a> Inputs<'a> {
     pub fn motion(&self, x: u32, y: u32) -> [f32; 2] {
         self.motion.map_or([0.0; 2], |m| {
             let v = m.at(x as usize, y as usize);
-            [v[0] * self.motion_scale[0], v[1] * self.motion_scale[1]]
+            let [offset_x, offset_y] = self.uniforms.motion_offset;
+            [v[0] * self.motion_scale[0] + offset_x, v[1] * self.motion_scale[1] + offset_y]
         })
     }
 

@@ -18,7 +18,7 @@ pub use crate::kernel::debug_view::PixelTrace;
 pub use history::History;
 
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Executor, check_size};
+use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
 use crate::image::Image;
 use crate::method::HistoryLayout;
 use crate::settings::{Method, Settings};
@@ -37,6 +37,14 @@ use crate::stats::FrameStats;
 /// # }
 /// ```
 pub type Frame<'a> = crate::Frame<'a, CpuAfterimage>;
+
+impl<'a> Frame<'a> {
+    /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one
+    /// image a view.
+    pub fn new(color: &'a [&'a Image<[f32; 3]>], views: &'a [ViewFrame], index: u64) -> Self {
+        Self::of_color(color, views, index)
+    }
+}
 
 /// The post-process on the CPU: a context with its settings and history.
 ///

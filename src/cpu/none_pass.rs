@@ -19,9 +19,11 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             stats.nonfinite += u64::from(!valid);
         }
         if let Some(traces) = &mut traces {
+            // Without history the previous jitter counts as 0.
+            let [dx, dy] = desc.motion.jitter_offset(frame.views[i].jitter_px, [0.0; 2]);
             traces[i] = match frame.motion {
                 Some(motion) => {
-                    motion[i].map(|m| PixelTrace { motion: [m[0] * sx, m[1] * sy], ..PixelTrace::default() })
+                    motion[i].map(|m| PixelTrace { motion: [m[0] * sx + dx, m[1] * sy + dy], ..PixelTrace::default() })
                 }
                 None => Image::filled(desc.size_px, PixelTrace::default()),
             };

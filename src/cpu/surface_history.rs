@@ -103,13 +103,12 @@ impl SurfaceHistory<'_> {
     /// Noise of the nearest texel, scaled to this frame's exposure.
     #[inline(always)]
     pub fn noise(&self, source: &Source) -> Noise {
-        let stored = unpack_noise(self.past.noise[source.index]);
-        self.inputs.exposure.map_or(stored, |ratio| expose_noise(stored, ratio))
+        expose_noise(unpack_noise(self.past.noise[source.index]), self.inputs.exposure)
     }
 
     /// Stored color scaled to this frame's exposure.
     #[inline(always)]
     pub fn expose(&self, color: Vec3) -> Vec3 {
-        self.inputs.exposure.map_or(color, |ratio| expose(color, ratio))
+        expose(color, self.inputs.exposure)
     }
 }

@@ -38,8 +38,8 @@ pub(super) fn run(
     let width = desc.size_px[0] as usize;
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let gaze_px = history.resolve_gaze(i, &frame.views[i]);
-        let inputs = Inputs::new(desc, frame, i, gaze_px, has_history);
+        let held = history.hold(i, &frame.views[i]);
+        let inputs = Inputs::new(desc, frame, i, &held, has_history);
         history.build_candidates(i, |x, y| {
             let (color, usable) = inputs.candidate(x, y);
             candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))

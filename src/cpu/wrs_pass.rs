@@ -46,10 +46,10 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let gaze_px = history.resolve_gaze(i, &frame.views[i]);
+        let held = history.hold(i, &frame.views[i]);
         let (past, words, log_keys) = history.split(i);
         let pass = ViewPass {
-            inputs: Inputs::new(desc, frame, i, gaze_px, has_history),
+            inputs: Inputs::new(desc, frame, i, &held, has_history),
             past,
             params: wrs_params(settings),
             fovea_radius_deg: settings.foveation.fovea_radius_deg(),
@@ -174,9 +174,7 @@ impl ViewPass<'_> {
                 return Err(Verdict::Disoccluded);
             }
         }
-        if let Some(ratio) = inputs.exposure {
-            past.color = wrs::expose(past.color, ratio);
-        }
+        past.color = wrs::expose(past.color, inputs.exposure);
         Ok((past, stored.age))
     }
 }

@@ -17,6 +17,8 @@ pub const WORKGROUP_WIDTH: u32 = 64;
 #[derive(Debug)]
 pub struct ComputeShader {
     label: &'static str,
+    /// Binding numbers, in the order of the resources of a [`group`](Self::group).
+    numbers: Vec<u32>,
     bindings: BindGroupLayout,
     layout: PipelineLayout,
     module: ShaderModule,
@@ -27,13 +29,25 @@ pub struct ComputeShader {
 impl ComputeShader {
     /// A shader with bindings of `types`, numbered from 0.
     pub fn new(device: &Device, label: &'static str, source: String, types: &[BindingType]) -> Self {
+        let bindings: Vec<_> = (0..).zip(types.iter().copied()).collect();
+        Self::with_bindings(device, label, source, &bindings)
+    }
+
+    /// A shader with numbered bindings.
+    pub fn with_bindings(
+        device: &Device,
+        label: &'static str,
+        source: String,
+        bindings: &[(u32, BindingType)],
+    ) -> Self {
         let module = device.create_shader_module(ShaderModuleDescriptor {
             label: Some(label),
             source: ShaderSource::Wgsl(source.into()),
         });
-        let entries: Vec<_> = (0..)
-            .zip(types)
-            .map(|(binding, &ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })
+        let numbers = bindings.iter().map(|(number, _)| *number).collect();
+        let entries: Vec<_> = bindings
+            .iter()
+            .map(|&(binding, ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })
             .collect();
         let bindings =
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
@@ -42,13 +56,17 @@ impl ComputeShader {
             bind_group_layouts: &[Some(&bindings)],
             ..PipelineLayoutDescriptor::default()
         });
-        Self { label, bindings, layout, module, pipelines: Mutex::default() }
+        Self { label, numbers, bindings, layout, module, pipelines: Mutex::default() }
     }
 
-    /// A bind group of `resources`, numbered from binding 0.
+    /// A bind group of `resources`, in the order of the bindings.
     pub fn group<'a>(&self, device: &Device, resources: impl IntoIterator<Item = BindingResource<'a>>) -> BindGroup {
-        let entries: Vec<_> =
-            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        let entries: Vec<_> = self
+            .numbers
+            .iter()
+            .zip(resources)
+            .map(|(&binding, resource)| BindGroupEntry { binding, resource })
+            .collect();
         device.create_bind_group(&BindGroupDescriptor {
             label: Some(self.label),
             layout: &self.bindings,
@@ -78,6 +96,11 @@ impl ComputeShader {
         });
         pipelines.insert(overrides.to_vec(), pipeline.clone());
         pipeline
+    }
+
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
 
     /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.

@@ -1,32 +1,49 @@
 //! Inputs and outputs of one frame on a GPU.
 
-use super::{Afterimage, MAX_VIEWS};
-use crate::frame::{Gaze, ViewFrame};
+use super::{Afterimage, MAX_VIEWS, Textures};
+use crate::frame::ViewFrame;
+use crate::kernel::debug_view::DebugView;
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
 /// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
 ///
-/// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), one sample a
-/// pixel, and the usage `TEXTURE_BINDING`.
+/// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] says where the views are in them.
 pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 
-/// Outputs of [`record`](Afterimage::record): a texture, and optionally counters and timestamps. `record` also accepts
-/// the texture alone.
+impl<'a> Frame<'a> {
+    /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
+    pub fn new(color: impl Into<Textures<'a>>, views: &'a [ViewFrame], index: u64) -> Self {
+        Self::of_color(color.into(), views, index)
+    }
+
+    /// Whether an input consists of regions.
+    pub(super) fn has_regions(&self) -> bool {
+        let optional = [self.depth, self.motion, self.trust, self.lod, self.noise];
+        self.color.is_regions() || optional.iter().flatten().any(Textures::is_regions)
+    }
+}
+
+/// Outputs of [`record`](Afterimage::record): the frame, and optionally a debug view, counters and timestamps. `record`
+/// also accepts a texture alone.
 ///
 /// ```
-/// # fn example<'a>(output: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
-/// use afterimage::gpu::Target;
+/// # fn example<'a>(output: &'a wgpu::Texture, view: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
+/// use afterimage::DebugView;
+/// use afterimage::gpu::{DebugTarget, Target};
 ///
-/// let target = Target { counters: Some(counters), ..Target::new(output) };
+/// let debug = Some(DebugTarget { view: DebugView::Rejection, output: view.into() });
+/// let target = Target { debug, counters: Some(counters), ..Target::new(output) };
 /// # let _ = target;
 /// # }
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
-    /// Output frame: a texture of the context's size, layers and output format, with the usage `STORAGE_BINDING`. Color
-    /// is linear, as the input's; alpha is 1.
-    pub output: &'a Texture,
+    /// Output frame, of the context's output format, with the usage `STORAGE_BINDING`. Color is linear, as the input's;
+    /// alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::ContextDesc::keep_alpha)).
+    pub output: Textures<'a>,
+    /// Debug view of the frame's decisions, drawn by the same pass. `None`: no view, at no cost.
+    pub debug: Option<DebugTarget<'a>>,
     /// Buffer for pixel counters, which [`FrameStats::from_counters`](crate::FrameStats::from_counters) reads: at least
     /// [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back).
     /// `None`: nothing is counted, at no cost.
@@ -35,16 +52,91 @@ pub struct Target<'a> {
     pub timestamps: Option<Timestamps<'a>>,
 }
 
+/// Debug view beside the output frame. Example: [`Target`].
+///
+/// The device needs the limit `max_storage_textures_per_shader_stage` of 5. [`Afterimage::record_view`] needs 4.
+#[derive(Clone, Copy, Debug)]
+pub struct DebugTarget<'a> {
+    /// View to draw.
+    pub view: DebugView,
+    /// Where to draw it: `Rgba16Float`, with the usage `STORAGE_BINDING`. Linear color.
+    pub output: Textures<'a>,
+}
+
 impl<'a> Target<'a> {
-    /// An output texture without counters and timestamps.
-    pub fn new(output: &'a Texture) -> Self {
-        Self { output, counters: None, timestamps: None }
+    /// An output frame without debug view, counters and timestamps.
+    pub fn new(output: impl Into<Textures<'a>>) -> Self {
+        Self { output: output.into(), debug: None, counters: None, timestamps: None }
+    }
+
+    /// Whether an output consists of regions.
+    pub(super) fn has_regions(&self) -> bool {
+        self.output.is_regions() || self.debug.is_some_and(|d| d.output.is_regions())
     }
 }
 
 impl<'a> From<&'a Texture> for Target<'a> {
     fn from(output: &'a Texture) -> Self {
         Self::new(output)
+    }
+}
+
+impl<'a> From<Textures<'a>> for Target<'a> {
+    fn from(output: Textures<'a>) -> Self {
+        Self::new(output)
+    }
+}
+
+/// What a frame and its target have, for [`Afterimage::prewarm`]: each combination has pipelines of its own. Default:
+/// color and output alone.
+///
+/// ```no_run
+/// # fn example(post: &afterimage::gpu::Afterimage, device: &wgpu::Device) {
+/// use afterimage::gpu::Variant;
+///
+/// // While loading. Depth and motion are missing in the first frame after a cut.
+/// let usual = Variant { depth: true, motion: true, ..Variant::default() };
+/// post.prewarm(device, [usual, Variant::default()]);
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Variant {
+    /// Whether there is a depth input.
+    pub depth: bool,
+    /// Whether there are motion vectors.
+    pub motion: bool,
+    /// Whether there is a trust mask.
+    pub trust: bool,
+    /// Whether there are levels of detail.
+    pub lod: bool,
+    /// Whether there is a buffer for counters.
+    pub counters: bool,
+    /// Whether an input or output consists of [`Regions`](Textures::Regions).
+    pub regions: bool,
+    /// View of the [`DebugTarget`], if any.
+    pub debug: Option<DebugView>,
+}
+
+impl Variant {
+    /// All combinations without regions and debug views: 32.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..32_u32).map(|bits| {
+            let bit = |i: u32| bits >> i & 1 == 1;
+            Self { depth: bit(0), motion: bit(1), trust: bit(2), lod: bit(3), counters: bit(4), ..Self::default() }
+        })
+    }
+
+    /// Variant of a frame and its target.
+    pub fn of(frame: &Frame<'_>, target: &Target<'_>) -> Self {
+        Self {
+            depth: frame.depth.is_some(),
+            motion: frame.motion.is_some(),
+            trust: frame.trust.is_some(),
+            lod: frame.lod.is_some(),
+            counters: target.counters.is_some(),
+            regions: frame.has_regions() || target.has_regions(),
+            debug: target.debug.map(|d| d.view),
+        }
     }
 }
 
@@ -95,8 +187,8 @@ impl Recorded {
     /// Notes a warning about the gaze of view `view`, if any. `held`: last known position.
     pub(super) fn note_gaze(&mut self, view: usize, frame: &ViewFrame, held: Option<[f32; 2]>) {
         let size = frame.geometry.size_px().map(|s| s as f32);
-        self.gaze[view] = match frame.gaze {
-            Gaze::At { px } if px.iter().all(|v| v.is_finite()) => {
+        self.gaze[view] = match frame.gaze.known_px(&frame.geometry) {
+            Some(px) => {
                 let inside = |i: usize| (-0.5..size[i] - 0.5).contains(&px[i]);
                 (!(inside(0) && inside(1))).then_some(Warning::GazeOffScreen { view })
             }

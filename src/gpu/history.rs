@@ -5,6 +5,7 @@ use super::mip_chain::{self, CandidatePass, Candidates, MipChainPass, MipLevel};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
+use crate::uniforms::Held;
 use wgpu::{
     Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
     TextureViewDescriptor, TextureViewDimension,
@@ -22,7 +23,7 @@ pub(super) struct Planes {
     pub mip_levels: Vec<MipLevel>,
 }
 
-/// Textures of the previous and the current frame, and held gaze positions.
+/// Textures of the previous and the current frame, and what is held of the views.
 #[derive(Debug)]
 pub(super) struct History {
     layout: HistoryLayout,
@@ -30,7 +31,7 @@ pub(super) struct History {
     candidates: Option<Candidates>,
     past: usize,
     filled: bool,
-    pub held_gaze: Vec<Option<[f32; 2]>>,
+    pub held: Vec<Held>,
 }
 
 impl History {
@@ -44,32 +45,21 @@ impl History {
         candidates: Option<&CandidatePass>,
     ) -> Self {
         let planes = || {
-            let full = |format| texture(device, desc, format, desc.size_px, 1);
-            let mut textures = match layout {
-                HistoryLayout::Nothing => vec![],
-                HistoryLayout::Reservoirs { keys } => {
-                    let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
-                    formats.into_iter().take(if keys { 3 } else { 2 }).map(full).collect()
-                }
-                HistoryLayout::Surfaces { .. } => vec![full(TextureFormat::Rg32Uint)],
+            let textures: Vec<_> = plan(desc, layout).iter().map(|p| p.create(device, desc)).collect();
+            let mip_levels = match (mip_chain, textures.get(1)) {
+                (Some(pass), Some(texture)) => pass.levels(device, texture, desc.size_px),
+                _ => vec![],
             };
-            let mut levels = vec![];
-            if let (HistoryLayout::Surfaces { levels: count @ 1.., noisy }, Some(pass)) = (layout, mip_chain) {
-                let texture = mip_chain_texture(device, desc, count);
-                levels = pass.levels(device, &texture, desc.size_px);
-                textures.push(texture);
-                textures.extend(noisy.then(|| full(TextureFormat::R32Uint)));
-            }
-            let views = textures.iter().map(|t| levels_view(t, 0, None)).collect();
-            let targets = textures.iter().map(|t| levels_view(t, 0, Some(1))).collect();
-            Planes { textures, views, targets, mip_levels: levels }
+            let views = textures.iter().map(|t| levels_view(t, 0, None, None)).collect();
+            let targets = textures.iter().map(array_view).collect();
+            Planes { textures, views, targets, mip_levels }
         };
-        let candidates = match layout {
-            HistoryLayout::Surfaces { levels, noisy: true } => candidates.map(|c| c.levels(device, desc, levels)),
+        let candidates = match (candidates, candidate_plan(desc, layout)) {
+            (Some(pass), Some(plan)) => Some(pass.levels(device, desc, plan)),
             _ => None,
         };
-        let held_gaze = vec![None; desc.view_count as usize];
-        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, held_gaze }
+        let held = vec![Held::default(); desc.view_count as usize];
+        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, held }
     }
 
     /// Mip chain of noisy candidates.
@@ -81,10 +71,10 @@ impl History {
         self.layout
     }
 
-    /// Discards history and held gaze positions: the next frame starts without history.
+    /// Discards history and what is held of the views: the next frame starts without history.
     pub fn forget(&mut self) {
         self.filled = false;
-        self.held_gaze.fill(None);
+        self.held.fill(Held::default());
     }
 
     /// Whether a frame was recorded since the last reset.
@@ -102,53 +92,89 @@ impl History {
         self.past = 1 - self.past;
         self.filled = true;
     }
+}
 
-    /// Bytes of all textures.
-    pub fn memory_bytes(&self) -> u64 {
-        let textures = self.sets.iter().flat_map(|s| &s.textures);
-        textures.chain(self.candidates.iter().map(|c| &c.texture)).map(bytes).sum()
+/// Bytes that a context holds between frames.
+pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
+    let layout = desc.settings.history_layout();
+    let sets: u64 = plan(desc, layout).iter().map(|p| 2 * p.bytes(desc)).sum();
+    sets + candidate_plan(desc, layout).map_or(0, |p| p.bytes(desc))
+}
+
+/// A texture of history.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    format: TextureFormat,
+    size_px: [u32; 2],
+    levels: u32,
+}
+
+/// Textures of one frame's history. The mip chain, if any, is the second.
+fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
+    let full = |format| Plan { format, size_px: desc.size_px, levels: 1 };
+    match layout {
+        HistoryLayout::Nothing => vec![],
+        HistoryLayout::Reservoirs { keys } => {
+            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
+            formats.into_iter().take(if keys { 3 } else { 2 }).map(full).collect()
+        }
+        HistoryLayout::Surfaces { levels, noisy } => {
+            let mip_chain = (levels > 0).then(|| mip_chain_plan(desc, levels));
+            let noise = (levels > 0 && noisy).then(|| full(TextureFormat::R32Uint));
+            [Some(full(TextureFormat::Rg32Uint)), mip_chain, noise].into_iter().flatten().collect()
+        }
     }
 }
 
-fn bytes(texture: &Texture) -> u64 {
-    let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(0));
-    let texels = |level: u32| u64::from(texture.width() >> level) * u64::from(texture.height() >> level);
-    let all_levels: u64 = (0..texture.mip_level_count()).map(texels).sum();
-    texel * all_levels * u64::from(texture.depth_or_array_layers())
+/// Mip chain of noisy candidates, if the layout has one.
+pub(super) fn candidate_plan(desc: &ContextDesc, layout: HistoryLayout) -> Option<Plan> {
+    match layout {
+        HistoryLayout::Surfaces { levels, noisy: true } => Some(mip_chain_plan(desc, levels)),
+        _ => None,
+    }
 }
 
-/// Texture for levels 1 to `count` of a mip chain.
-pub(super) fn mip_chain_texture(device: &Device, desc: &ContextDesc, count: u32) -> Texture {
+/// Texture for levels 1 to `levels` of a mip chain.
+fn mip_chain_plan(desc: &ContextDesc, levels: u32) -> Plan {
     // Mip sizes of a texture round down, levels of the mip chain round up. With padding they agree.
-    let multiple = 1 << (count - 1);
-    let size = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
-    texture(device, desc, mip_chain::FORMAT, size, count)
+    let multiple = 1 << (levels - 1);
+    let size_px = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
+    Plan { format: mip_chain::FORMAT, size_px, levels }
 }
 
-fn texture(device: &Device, desc: &ContextDesc, format: TextureFormat, size: [u32; 2], levels: u32) -> Texture {
-    device.create_texture(&TextureDescriptor {
-        label: Some("afterimage history"),
-        size: Extent3d { width: size[0], height: size[1], depth_or_array_layers: desc.view_count },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: TextureUsages::TEXTURE_BINDING
-            | TextureUsages::STORAGE_BINDING
-            | TextureUsages::COPY_SRC
-            | TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
+impl Plan {
+    pub fn create(self, device: &Device, desc: &ContextDesc) -> Texture {
+        let [width, height] = self.size_px;
+        device.create_texture(&TextureDescriptor {
+            label: Some("afterimage history"),
+            size: Extent3d { width, height, depth_or_array_layers: desc.view_count },
+            mip_level_count: self.levels,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: self.format,
+            usage: TextureUsages::TEXTURE_BINDING
+                | TextureUsages::STORAGE_BINDING
+                | TextureUsages::COPY_SRC
+                | TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    }
+
+    fn bytes(self, desc: &ContextDesc) -> u64 {
+        let texel = u64::from(self.format.block_copy_size(None).unwrap_or(0));
+        let texels = |level: u32| self.size_px.map(|s| u64::from(s >> level)).iter().product::<u64>();
+        texel * (0..self.levels).map(texels).sum::<u64>() * u64::from(desc.view_count)
+    }
 }
 
 /// View of all layers of a texture's first level as a 2D array. Textures with one layer, too, because the shaders bind
 /// arrays.
 pub fn array_view(texture: &Texture) -> TextureView {
-    levels_view(texture, 0, Some(1))
+    levels_view(texture, 0, Some(1), None)
 }
 
-/// View of all layers as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first` on.
-pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>) -> TextureView {
+/// View of one layer, or of all, as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first` on.
+pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>, layer: Option<u32>) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
     texture.create_view(&TextureViewDescriptor {
@@ -157,6 +183,8 @@ pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>) -> 
         aspect,
         base_mip_level: first,
         mip_level_count: count,
+        base_array_layer: layer.unwrap_or(0),
+        array_layer_count: layer.map(|_| 1),
         ..TextureViewDescriptor::default()
     })
 }

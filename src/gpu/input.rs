@@ -1,13 +1,15 @@
 //! Validation of a frame before anything is recorded.
 
-use super::{Frame, Target};
+use super::output::DEBUG_FORMAT;
+use super::{Afterimage, Frame, Target, Textures};
 use crate::error::FrameError;
 use crate::frame::ContextDesc;
 use crate::stats::COUNTERS_BYTES;
-use wgpu::{Buffer, BufferUsages, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
+use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
-/// Checks a frame and its target against the context's description.
+/// Checks a frame and its target against the device and the context's description.
 pub(super) fn check(
+    device: &Device,
     desc: &ContextDesc,
     output_format: TextureFormat,
     frame: &Frame<'_>,
@@ -22,29 +24,92 @@ pub(super) fn check(
         ("lod", frame.lod, 1),
         ("noise", frame.noise, 2),
     ];
-    for (input, texture, channels) in inputs {
-        if let Some(texture) = texture {
-            check_texture(desc, input, texture, TextureUsages::TEXTURE_BINDING)?;
+    for (input, textures, channels) in inputs {
+        let Some(textures) = textures else { continue };
+        check_textures(desc, input, textures, Afterimage::INPUT_USAGE)?;
+        for texture in textures.iter() {
             check_readable(input, texture, channels)?;
         }
     }
     if let Some(counters) = target.counters {
         check_counters(counters)?;
     }
-    check_texture(desc, "output", target.output, TextureUsages::STORAGE_BINDING)?;
-    if target.output.format() == output_format {
-        Ok(())
-    } else {
-        Err(refuse(
-            "output",
-            target.output,
-            "not the context's".into(),
-            "the output format given to Afterimage::new; or create a context for this one",
-        ))
+    let expected = "the output format given to Afterimage::new; or create a context for this one";
+    check_output(desc, "output", target.output, output_format, expected)?;
+    let Some(debug) = target.debug else { return Ok(()) };
+    check_output(desc, "debug view", debug.output, DEBUG_FORMAT, "Rgba16Float")?;
+    let found = device.limits().max_storage_textures_per_shader_stage;
+    if found < STORAGE_TEXTURES_WITH_VIEW {
+        return Err(FrameError::Value {
+            what: "debug view",
+            view: 0,
+            found: format!("beside the output, on a device with max_storage_textures_per_shader_stage of {found}"),
+            expected: "a limit of 5; or Afterimage::record_view",
+        });
+    }
+    Ok(())
+}
+
+/// Storage textures of a pass that also writes a debug view: output, view, and at most three of history.
+const STORAGE_TEXTURES_WITH_VIEW: u32 = 5;
+
+fn check_output(
+    desc: &ContextDesc,
+    name: &'static str,
+    textures: Textures<'_>,
+    format: TextureFormat,
+    expected: &'static str,
+) -> Result<(), FrameError> {
+    check_textures(desc, name, textures, Afterimage::OUTPUT_USAGE)?;
+    match textures.iter().find(|t| t.format() != format) {
+        Some(texture) => Err(refuse(name, texture, "not the right one".into(), expected)),
+        None => Ok(()),
     }
 }
 
-/// Checks size, layers, samples and usage of a texture.
+/// Checks place, layers, samples and usage of an input's or output's textures.
+fn check_textures(
+    desc: &ContextDesc,
+    input: &'static str,
+    textures: Textures<'_>,
+    usage: TextureUsages,
+) -> Result<(), FrameError> {
+    let regions = match textures {
+        Textures::Layers(texture) => return check_texture(desc, input, texture, usage),
+        Textures::Regions(regions) => regions,
+    };
+    let (found, expected) = (regions.len(), desc.view_count as usize);
+    if found != expected {
+        return Err(FrameError::ViewCount { found, expected });
+    }
+    for (view, region) in regions.iter().enumerate() {
+        let texture = region.texture;
+        check_usage(input, texture, usage)?;
+        let size = [texture.width(), texture.height()];
+        let end = [0, 1].map(|i| u64::from(region.origin_px[i]) + u64::from(desc.size_px[i]));
+        if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
+            let ([x, y], [width, height]) = (region.origin_px, desc.size_px);
+            return Err(FrameError::Value {
+                what: input,
+                view,
+                found: format!("a region of {width}x{height} from ({x}, {y}) in a texture of {}x{}", size[0], size[1]),
+                expected: "a rectangle of the context's size inside the texture",
+            });
+        }
+        if region.layer >= texture.depth_or_array_layers() {
+            let layers = texture.depth_or_array_layers();
+            return Err(refuse(
+                input,
+                texture,
+                format!("with {layers} layers, for layer {}", region.layer),
+                "a layer that exists",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Checks size, layers, samples and usage of a texture with one layer a view.
 pub(crate) fn check_texture(
     desc: &ContextDesc,
     input: &'static str,
@@ -56,13 +121,21 @@ pub(crate) fn check_texture(
         return Err(FrameError::Size { input, view: 0, found, expected: desc.size_px });
     }
     let layers = texture.depth_or_array_layers();
-    if texture.dimension() != wgpu::TextureDimension::D2 || layers != desc.view_count {
+    if layers != desc.view_count {
         return Err(refuse(
             input,
             texture,
             format!("with {layers} layers"),
-            "a 2D texture with one array layer for each view of the context",
+            "a 2D texture with one array layer for each view of the context, or Textures::Regions",
         ));
+    }
+    check_usage(input, texture, usage)
+}
+
+/// Checks dimension, samples and usage of a texture.
+fn check_usage(input: &'static str, texture: &Texture, usage: TextureUsages) -> Result<(), FrameError> {
+    if texture.dimension() != wgpu::TextureDimension::D2 {
+        return Err(refuse(input, texture, format!("of dimension {:?}", texture.dimension()), "a 2D texture"));
     }
     if texture.sample_count() != 1 {
         let samples = texture.sample_count();

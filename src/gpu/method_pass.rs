@@ -4,31 +4,52 @@
 //! the order of the method's shader. Absent inputs are switched off by `override` constants and bound to placeholders,
 //! which a specialised shader does not read.
 
-use super::Frame;
 use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
-use super::frame::Target;
 use super::history::{History, array_view};
+use super::output::DEBUG_FORMAT;
+use super::textures::{Batch, batches};
 use super::uniforms::FrameUniforms;
+use super::{Frame, Target, Textures, Variant};
+use crate::frame::ContextDesc;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides};
 use crate::settings::{Method, Settings};
+use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
+use std::sync::OnceLock;
 use wgpu::{
-    BindGroup, BindingResource, BindingType, Buffer, BufferBinding, BufferUsages, ComputePass, Device, Texture,
-    TextureFormat, TextureUsages, TextureView,
+    BindGroup, BindingResource, BindingType, Buffer, BufferBinding, BufferUsages, ComputePass, Device, TextureFormat,
+    TextureUsages, TextureView,
 };
+
+/// Binding number of the debug view in `shaders/pass/output_and_view.wgsl`.
+const DEBUG_BINDING: u32 = 16;
 
 /// The pass, with placeholders for absent inputs: 1x1 textures and a buffer.
 #[derive(Debug)]
 pub(super) struct MethodPass {
     shader: ComputeShader,
+    /// The pass that also writes a debug view; made at its first use.
+    with_view: OnceLock<ComputeShader>,
     method: Method,
     history: HistoryLayout,
+    output: TextureFormat,
     no_float: TextureView,
     no_word: TextureView,
     no_out: [TextureView; 3],
     no_counters: Buffer,
+}
+
+/// A frame to record: its description, and what follows from it.
+pub(super) struct Job<'a, 'f> {
+    pub desc: &'a ContextDesc,
+    pub frame: &'a Frame<'f>,
+    pub target: &'a Target<'a>,
+    /// View to output in place of the frame, without storing anything.
+    pub view: Option<DebugView>,
+    pub uniforms: FrameUniforms,
+    pub history: &'a History,
 }
 
 impl MethodPass {
@@ -42,9 +63,16 @@ impl MethodPass {
             mapped_at_creation: false,
         });
         Self {
-            shader: ComputeShader::new(device, "afterimage", writing(source, output), &binding_types(output, history)),
+            shader: ComputeShader::new(
+                device,
+                "afterimage",
+                writing(device, source, output),
+                &binding_types(output, history),
+            ),
+            with_view: OnceLock::new(),
             method: settings.method,
             history,
+            output,
             no_float: stand_in(device, TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING),
             no_word: stand_in(device, TextureFormat::Rg32Uint, TextureUsages::TEXTURE_BINDING),
             no_out: written(history).map(|format| stand_in(device, format, TextureUsages::STORAGE_BINDING)),
@@ -57,45 +85,57 @@ impl MethodPass {
         self.method
     }
 
-    /// Records the pass.
-    #[allow(clippy::too_many_arguments, reason = "a struct for one call would only move the list")]
-    pub fn record(
-        &self,
-        device: &Device,
-        pass: &mut ComputePass<'_>,
-        settings: &Settings,
-        frame: &Frame<'_>,
-        target: &Target<'_>,
-        view: Option<DebugView>,
-        uniforms: &FrameUniforms,
-        history: &History,
-    ) {
-        let group = self.group(device, frame, target, uniforms, history);
-        let blocks = uniforms.size.map(|s| s.div_ceil(self.method.entry().block_px));
-        let overrides = overrides(settings, frame, target.counters.is_some(), view);
-        self.shader.dispatch(device, pass, &overrides, &group, blocks, frame.views.len() as u32);
+    /// Compiles the pipeline of a variant.
+    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
+        self.shader(device, variant).pipeline(device, &overrides(desc, variant, None));
     }
 
-    /// Bind group of one frame. Each frame has its own buffer of uniforms, so that one submission can contain several
-    /// frames.
-    fn group(
-        &self,
-        device: &Device,
-        frame: &Frame<'_>,
-        target: &Target<'_>,
-        uniforms: &FrameUniforms,
-        history: &History,
-    ) -> BindGroup {
-        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(uniforms), BufferUsages::UNIFORM);
-        let optional = |texture: Option<&Texture>| texture.map_or_else(|| self.no_float.clone(), array_view);
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.shader.pipeline_count() + self.with_view.get().map_or(0, ComputeShader::pipeline_count)
+    }
+
+    fn shader(&self, device: &Device, variant: Variant) -> &ComputeShader {
+        if variant.debug.is_none() {
+            return &self.shader;
+        }
+        self.with_view.get_or_init(|| {
+            let source = SHADERS.compose_replacing(self.method.entry().shader, ("output", "output_and_view")).source;
+            let types = binding_types(self.output, self.history);
+            let mut bindings: Vec<_> = (0..).zip(types).collect();
+            bindings.push((DEBUG_BINDING, storage_texture(DEBUG_FORMAT)));
+            ComputeShader::with_bindings(device, "afterimage", writing(device, &source, self.output), &bindings)
+        })
+    }
+
+    /// Records the pass.
+    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_, '_>) {
+        let variant = Variant::of(job.frame, job.target);
+        let shader = self.shader(device, variant);
+        let blocks = job.uniforms.size.map(|s| s.div_ceil(self.method.entry().block_px));
+        let overrides = overrides(job.desc, variant, job.view);
+        for batch in batches(job.frame.views.len(), variant.regions) {
+            let group = self.group(device, shader, job, &batch);
+            shader.dispatch(device, pass, &overrides, &group, blocks, batch.views.len() as u32);
+        }
+    }
+
+    /// Bind group of a batch of views. Each has its own buffer of uniforms, so that one submission can contain several.
+    fn group(&self, device: &Device, shader: &ComputeShader, job: &Job<'_, '_>, batch: &Batch) -> BindGroup {
+        let Job { frame, target, history, .. } = job;
+        let uniforms = FrameUniforms { first_view: batch.views.start, ..job.uniforms };
+        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let optional =
+            |textures: Option<Textures<'_>>| textures.map_or_else(|| self.no_float.clone(), |t| t.bind(batch));
         let inputs = [
-            array_view(frame.color),
+            frame.color.bind(batch),
             optional(frame.depth),
             optional(frame.motion),
             optional(frame.trust),
-            array_view(target.output),
+            target.output.bind(batch),
         ];
         let (lod, noise) = (optional(frame.lod), optional(frame.noise));
+        let debug = target.debug.map(|d| d.output.bind(batch));
         let (past, next) = history.split();
         let (past, next) = (&past.views, &next.targets);
         let candidates = history.candidates().map_or(&self.no_float, |c| &c.view);
@@ -130,31 +170,34 @@ impl MethodPass {
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
-            .chain(history_views.into_iter().map(BindingResource::TextureView));
-        self.shader.group(device, resources)
+            .chain(history_views.into_iter().chain(debug.as_ref()).map(BindingResource::TextureView));
+        shader.group(device, resources)
     }
 }
 
-/// Override values of a pass: those of `shaders/pass/inputs.wgsl`, then the method's own.
-fn overrides(settings: &Settings, frame: &Frame<'_>, count: bool, view: Option<DebugView>) -> Overrides {
+/// Override values of a pass: those of `shaders/pass/{inputs,output}.wgsl`, then the method's own.
+fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> Overrides {
     let flag = u32::from;
+    let settings = &desc.settings;
     let mut list = vec![
-        ("HAS_DEPTH", flag(frame.depth.is_some())),
-        ("HAS_MOTION", flag(frame.motion.is_some())),
-        ("HAS_TRUST", flag(frame.trust.is_some())),
-        ("HAS_EXPOSURE", flag(frame.exposure.factor().is_some())),
-        ("DEPTH_TEST", flag(frame.depth.is_some() && settings.depth_test.is_some())),
+        ("HAS_DEPTH", flag(variant.depth)),
+        ("HAS_MOTION", flag(variant.motion)),
+        ("HAS_TRUST", flag(variant.trust)),
+        ("DEPTH_TEST", flag(variant.depth && settings.depth_test.is_some())),
         ("NOISY", flag(settings.noisy)),
-        ("COUNT", flag(count)),
+        ("COUNT", flag(variant.counters)),
+        ("REGIONS", flag(variant.regions)),
         ("VIEW", view.map_or(0, |v| v as u32)),
+        ("KEEP_ALPHA", flag(desc.keep_alpha)),
     ];
-    list.extend((settings.method.entry().overrides)(settings, frame.lod.is_some()));
+    list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
+    list.extend((settings.method.entry().overrides)(settings, variant.lod));
     list
 }
 
 /// Shader text for outputs of format `output`: in WGSL the texel format of a storage texture is part of its type.
-fn writing(source: &str, output: TextureFormat) -> String {
-    let texel = super::output::texel(output).expect("the output format was checked");
+fn writing(device: &Device, source: &str, output: TextureFormat) -> String {
+    let texel = super::output::texel(device, output).expect("the output format was checked");
     source.replace(
         "color_out: texture_storage_2d_array<rgba16float",
         &format!("color_out: texture_storage_2d_array<{texel}"),

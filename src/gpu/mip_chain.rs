@@ -3,7 +3,9 @@
 use super::Frame;
 use super::buffer::filled;
 use super::compute::{ComputeShader, WORKGROUP_WIDTH, float_texture, storage_texture, uniform};
-use super::history::{array_view, levels_view, mip_chain_texture};
+use super::history::{Plan, array_view, levels_view};
+use super::textures::batches;
+use super::uniforms::CandidateUniforms;
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::shader::SHADERS;
@@ -51,7 +53,7 @@ impl MipChainPass {
                 let [width, height] = size_px.map(|s| level_len(s, coarse + 1));
                 let bytes = bytemuck::bytes_of(&fine_size);
                 let buffer = filled(device, "afterimage uniforms", bytes, BufferUsages::UNIFORM);
-                let [fine, target] = [coarse - 1, coarse].map(|level| levels_view(texture, level, Some(1)));
+                let [fine, target] = [coarse - 1, coarse].map(|level| levels_view(texture, level, Some(1), None));
                 let resources = [
                     buffer.as_entire_binding(),
                     BindingResource::TextureView(&fine),
@@ -66,10 +68,23 @@ impl MipChainPass {
             .collect()
     }
 
+    /// Compiles the pipeline.
+    pub fn prewarm(&self, device: &Device) {
+        self.shader.pipeline(device, &self.overrides());
+    }
+
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.shader.pipeline_count()
+    }
+
+    fn overrides(&self) -> [(&'static str, u32); 1] {
+        [("CANDIDATES", u32::from(self.kind == MipChainKind::Candidates))]
+    }
+
     /// Records the dispatches of `levels`.
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, levels: &[MipLevel]) {
-        let is_candidates = u32::from(self.kind == MipChainKind::Candidates);
-        pass.set_pipeline(&self.shader.pipeline(device, &[("CANDIDATES", is_candidates)]));
+        pass.set_pipeline(&self.shader.pipeline(device, &self.overrides()));
         for level in levels {
             pass.set_bind_group(0, &level.group, &[]);
             let [x, y, z] = level.workgroups;
@@ -88,7 +103,6 @@ pub(super) struct CandidatePass {
 /// Mip chain of a frame's noisy candidates.
 #[derive(Debug)]
 pub(super) struct Candidates {
-    pub texture: Texture,
     /// View of all levels, to read.
     pub view: TextureView,
     target: TextureView,
@@ -105,32 +119,51 @@ impl CandidatePass {
         }
     }
 
-    /// An empty mip chain of `count` levels for each view.
-    pub fn levels(&self, device: &Device, desc: &ContextDesc, count: u32) -> Candidates {
-        let texture = mip_chain_texture(device, desc, count);
+    /// An empty mip chain for each view.
+    pub fn levels(&self, device: &Device, desc: &ContextDesc, plan: Plan) -> Candidates {
+        let texture = plan.create(device, desc);
         Candidates {
-            view: levels_view(&texture, 0, None),
-            target: levels_view(&texture, 0, Some(1)),
+            view: levels_view(&texture, 0, None, None),
+            target: array_view(&texture),
             levels: self.rest.levels(device, &texture, desc.size_px),
-            texture,
         }
+    }
+
+    /// Compiles the pipelines.
+    pub fn prewarm(&self, device: &Device) {
+        self.first.pipeline(device, &[]);
+        self.rest.prewarm(device);
+    }
+
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.first.pipeline_count() + self.rest.pipeline_count()
     }
 
     /// Records all levels of a frame's candidates; nothing for a frame without noise.
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, frame: &Frame<'_>, candidates: &Candidates) {
         let Some(noise) = frame.noise else { return };
-        let size_px = [frame.color.width(), frame.color.height()];
-        let size = filled(device, "afterimage uniforms", bytemuck::bytes_of(&size_px), BufferUsages::UNIFORM);
-        let [color, noise] = [frame.color, noise].map(array_view);
-        let resources = [
-            size.as_entire_binding(),
-            BindingResource::TextureView(&color),
-            BindingResource::TextureView(&noise),
-            BindingResource::TextureView(&candidates.target),
-        ];
-        let group = self.first.group(device, resources);
-        let half = size_px.map(|s| level_len(s, 1));
-        self.first.dispatch(device, pass, &[], &group, half, frame.color.depth_or_array_layers());
+        let size = frame.views[0].geometry.size_px();
+        for batch in batches(frame.views.len(), frame.color.is_regions() || noise.is_regions()) {
+            let first = batch.views.start as usize;
+            let uniforms = CandidateUniforms {
+                size,
+                color_origin: frame.color.packed_origin(first),
+                noise_origin: noise.packed_origin(first),
+                first_view: batch.views.start,
+                ..CandidateUniforms::default()
+            };
+            let buffer = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+            let [color, noise] = [frame.color, noise].map(|textures| textures.bind(&batch));
+            let resources = [
+                buffer.as_entire_binding(),
+                BindingResource::TextureView(&color),
+                BindingResource::TextureView(&noise),
+                BindingResource::TextureView(&candidates.target),
+            ];
+            let group = self.first.group(device, resources);
+            self.first.dispatch(device, pass, &[], &group, size.map(|s| level_len(s, 1)), batch.views.len() as u32);
+        }
         self.rest.record(device, pass, &candidates.levels);
     }
 }

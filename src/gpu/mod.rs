@@ -16,17 +16,19 @@ mod input;
 mod method_pass;
 mod mip_chain;
 mod output;
+mod textures;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
 pub mod uniforms;
 
 #[doc(hidden)]
 pub use buffer::filled;
-pub use frame::{Frame, Recorded, Target, Timestamps};
+pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
 #[doc(hidden)]
 pub use history::array_view;
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::{texel, validate};
+pub use textures::{Region, Textures};
 pub use uniforms::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
@@ -36,11 +38,12 @@ use crate::method::HistoryLayout;
 use crate::settings::{Method, Settings};
 use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
+use crate::uniforms::Held;
 use history::History;
-use method_pass::MethodPass;
+use method_pass::{Job, MethodPass};
 use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
 use uniforms::FrameUniforms;
-use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat};
+use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
 ///
@@ -57,9 +60,9 @@ pub struct Afterimage {
 }
 
 impl Executor for Afterimage {
-    type Colors<'a> = &'a Texture;
-    type Scalars<'a> = &'a Texture;
-    type Vectors<'a> = &'a Texture;
+    type Colors<'a> = Textures<'a>;
+    type Scalars<'a> = Textures<'a>;
+    type Vectors<'a> = Textures<'a>;
 }
 
 /// Passes of a method.
@@ -91,14 +94,21 @@ impl Passes {
 /// Uniforms of a frame, and what else follows from its description.
 struct Prepared {
     uniforms: FrameUniforms,
-    /// Resolved gaze positions, which are held for frames in which the gaze is lost.
-    gaze_px: Vec<[f32; 2]>,
+    /// What is held of the views for the next frame.
+    held: Vec<Held>,
     recorded: Recorded,
 }
 
 impl Afterimage {
-    /// A context without history, for outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates
-    /// shader modules; pipelines are compiled at the first frame that needs them.
+    /// Usage that every input texture needs.
+    pub const INPUT_USAGE: TextureUsages = TextureUsages::TEXTURE_BINDING;
+    /// Usage that output textures need.
+    pub const OUTPUT_USAGE: TextureUsages = TextureUsages::STORAGE_BINDING;
+
+    /// A context without history, for outputs of `output_format`: one with red, green and blue that compute shaders can
+    /// write. These are `Rgba16Float`, `Rgba32Float`, `Rgba8Unorm` and `Rgba8Snorm`; `Bgra8Unorm`, `Rgba16Unorm` and
+    /// `Rgba16Snorm` with their device features; `Rgb10a2Unorm` and `Rg11b10Ufloat` on adapters that can. Creates
+    /// shader modules; pipelines are compiled by [`prewarm`](Self::prewarm), or at the first frame that needs them.
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
@@ -116,7 +126,7 @@ impl Afterimage {
         output_format: TextureFormat,
         source: &str,
     ) -> Result<Self, CreateError> {
-        validate(desc, output_format, &device.limits())?;
+        validate(device, desc, output_format)?;
         let mut passes = Passes::new(device, &desc.settings, output_format, source);
         Ok(Self { desc: *desc, output_format, history: passes.history(device, desc), passes })
     }
@@ -180,9 +190,49 @@ impl Afterimage {
         self.history.forget();
     }
 
+    /// Compiles the pipelines for `variants` of frames and targets, so that [`record`](Self::record) does not have to:
+    /// while loading, and again after [`set_settings`](Self::set_settings). [`Variant::all`] are all that a frame can
+    /// need without regions and debug views; a list of those that occur takes less time.
+    ///
+    /// Drivers may finish compilation at the first dispatch (software Vulkan does): record a frame while loading to
+    /// force that, too.
+    pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
+        for variant in variants {
+            self.passes.method.prewarm(device, &self.desc, variant);
+        }
+        if let Some(mip_chain) = &self.passes.mip_chain {
+            mip_chain.prewarm(device);
+        }
+        if let Some(candidates) = &self.passes.candidates {
+            candidates.prewarm(device);
+        }
+    }
+
+    /// Number of compiled pipelines, for tests.
+    #[doc(hidden)]
+    pub fn pipeline_count(&self) -> usize {
+        let Passes { method, mip_chain, candidates } = &self.passes;
+        method.pipeline_count()
+            + mip_chain.as_ref().map_or(0, MipChainPass::pipeline_count)
+            + candidates.as_ref().map_or(0, CandidatePass::pipeline_count)
+    }
+
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
-        self.history.memory_bytes()
+        Self::memory_bytes_of(&self.desc)
+    }
+
+    /// Size in bytes of the textures that a context of this description would hold between frames.
+    ///
+    /// ```
+    /// use afterimage::ContextDesc;
+    /// use afterimage::gpu::Afterimage;
+    ///
+    /// let bytes = Afterimage::memory_bytes_of(&ContextDesc::new([1920, 1080]));
+    /// assert_eq!(bytes / (1920 * 1080), 21);
+    /// ```
+    pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
+        history::memory_bytes(desc)
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -210,13 +260,13 @@ impl Afterimage {
         target: impl Into<Target<'a>>,
     ) -> Result<Recorded, FrameError> {
         let target = target.into();
-        input::check(&self.desc, self.output_format, frame, &target)?;
-        let prepared = self.prepare(frame);
-        self.dispatch(device, encoder, frame, &target, None, &prepared.uniforms);
+        input::check(device, &self.desc, self.output_format, frame, &target)?;
+        let prepared = self.prepare(frame, &target);
+        self.dispatch(device, encoder, frame, &target, None, prepared.uniforms);
         if self.desc.settings.history_layout() == HistoryLayout::Nothing {
             self.history.forget();
         } else {
-            self.history.held_gaze = prepared.gaze_px.into_iter().map(Some).collect();
+            self.history.held = prepared.held;
             self.history.swap();
         }
         Ok(prepared.recorded)
@@ -224,16 +274,17 @@ impl Afterimage {
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
     /// color, into the target's output. Counters, if any, are those of `record`. History is unchanged: call it before
-    /// `record`, with another output.
+    /// `record`, with another output, for any number of views. A [`DebugTarget`] is faster: it needs no pass of its own.
     ///
     /// ```no_run
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
-    /// #     frame: &afterimage::gpu::Frame<'_>, debug_output: &wgpu::Texture, output: &wgpu::Texture,
+    /// #     frame: &afterimage::gpu::Frame<'_>, views: &[wgpu::Texture; 2], output: &wgpu::Texture,
     /// # ) -> Result<(), afterimage::FrameError> {
     /// use afterimage::DebugView;
     ///
-    /// post.record_view(device, encoder, frame, debug_output, DebugView::Rejection)?;
+    /// post.record_view(device, encoder, frame, &views[0], DebugView::Rejection)?;
+    /// post.record_view(device, encoder, frame, &views[1], DebugView::Motion)?;
     /// let recorded = post.record(device, encoder, frame, output)?;
     /// for warning in recorded.warnings() {
     ///     eprintln!("{warning}");
@@ -252,10 +303,10 @@ impl Afterimage {
         target: impl Into<Target<'a>>,
         view: DebugView,
     ) -> Result<Recorded, FrameError> {
-        let target = target.into();
-        input::check(&self.desc, self.output_format, frame, &target)?;
-        let prepared = self.prepare(frame);
-        self.dispatch(device, encoder, frame, &target, Some(view), &prepared.uniforms);
+        let target = Target { debug: None, ..target.into() };
+        input::check(device, &self.desc, self.output_format, frame, &target)?;
+        let prepared = self.prepare(frame, &target);
+        self.dispatch(device, encoder, frame, &target, Some(view), prepared.uniforms);
         Ok(prepared.recorded)
     }
 
@@ -266,7 +317,7 @@ impl Afterimage {
         frame: &Frame<'_>,
         target: &Target<'_>,
         view: Option<DebugView>,
-        uniforms: &FrameUniforms,
+        uniforms: FrameUniforms,
     ) {
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
@@ -278,21 +329,21 @@ impl Afterimage {
         if let (Some(passes), Some(candidates)) = (&self.passes.candidates, self.history.candidates()) {
             passes.record(device, &mut pass, frame, candidates);
         }
-        let settings = &self.desc.settings;
-        self.passes.method.record(device, &mut pass, settings, frame, target, view, uniforms, &self.history);
+        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history };
+        self.passes.method.record(device, &mut pass, &job);
         if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {
             mip_chain.record(device, &mut pass, &self.history.split().1.mip_levels);
         }
     }
 
-    fn prepare(&self, frame: &Frame<'_>) -> Prepared {
+    fn prepare(&self, frame: &Frame<'_>, target: &Target<'_>) -> Prepared {
         let mut recorded = Recorded::default();
-        let mut gaze_px = vec![];
-        for (i, (view, held)) in frame.views.iter().zip(&self.history.held_gaze).enumerate() {
-            gaze_px.push(view.gaze.resolve(*held, self.desc.size_px));
-            recorded.note_gaze(i, view, *held);
+        let mut after = vec![];
+        for (i, (view, held)) in frame.views.iter().zip(&self.history.held).enumerate() {
+            after.push(held.with(view));
+            recorded.note_gaze(i, view, held.gaze_px);
         }
-        let uniforms = FrameUniforms::new(&self.desc, frame, &gaze_px, self.history.is_filled());
-        Prepared { uniforms, gaze_px, recorded }
+        let uniforms = FrameUniforms::new(&self.desc, frame, target, &after, self.history.is_filled());
+        Prepared { uniforms, held: after, recorded }
     }
 }

@@ -3,22 +3,54 @@
 use super::MAX_VIEWS;
 use crate::error::{CreateError, SettingsError};
 use crate::frame::ContextDesc;
-use wgpu::{Limits, TextureFormat};
+use wgpu::{Device, Features, Limits, TextureFormat, TextureUsages};
 
-/// WGSL name of an output format.
-pub(crate) fn texel(format: TextureFormat) -> Result<&'static str, CreateError> {
+/// Format of a debug view beside the output.
+pub(super) const DEBUG_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+/// WGSL name of an output format: one with red, green and blue that compute shaders can write on `device`.
+pub(crate) fn texel(device: &Device, format: TextureFormat) -> Result<&'static str, CreateError> {
+    let refuse = |expected| Err(CreateError::OutputFormat { found: format, expected });
+    let name = match format {
+        TextureFormat::Rgba16Float => "rgba16float",
+        TextureFormat::Rgba32Float => "rgba32float",
+        TextureFormat::Rgba8Unorm => "rgba8unorm",
+        TextureFormat::Rgba8Snorm => "rgba8snorm",
+        TextureFormat::Bgra8Unorm => "bgra8unorm",
+        TextureFormat::Rgb10a2Unorm => "rgb10a2unorm",
+        TextureFormat::Rg11b10Ufloat => "rg11b10ufloat",
+        TextureFormat::Rgba16Unorm => "rgba16unorm",
+        TextureFormat::Rgba16Snorm => "rgba16snorm",
+        TextureFormat::Rgba8UnormSrgb | TextureFormat::Bgra8UnormSrgb => {
+            return refuse(
+                "a format without sRGB encoding, which compute shaders cannot write; Rgba16Float suits most, tone-mapped to the screen afterwards",
+            );
+        }
+        _ => return refuse("Rgba16Float, Rgba32Float, Rgba8Unorm or another storable format with red, green and blue"),
+    };
+    let specific = Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+    let usages = format.guaranteed_format_features(device.features()).allowed_usages;
+    let storable = usages.contains(TextureUsages::STORAGE_BINDING) || device.features().contains(specific);
     match format {
-        TextureFormat::Rgba16Float => Ok("rgba16float"),
-        TextureFormat::Rgba32Float => Ok("rgba32float"),
-        TextureFormat::Rgba8Unorm => Ok("rgba8unorm"),
-        found => Err(CreateError::OutputFormat { found, expected: "Rgba16Float, Rgba32Float, Rgba8Unorm" }),
+        TextureFormat::Bgra8Unorm if !usages.contains(TextureUsages::STORAGE_BINDING) => {
+            refuse("a device with Features::BGRA8UNORM_STORAGE, or the format Rgba8Unorm")
+        }
+        TextureFormat::Rgba16Unorm | TextureFormat::Rgba16Snorm
+            if !device.features().contains(Features::TEXTURE_FORMAT_16BIT_NORM) =>
+        {
+            refuse("a device with Features::TEXTURE_FORMAT_16BIT_NORM, or the format Rgba16Float")
+        }
+        _ if !storable => {
+            refuse("a device with Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, or the format Rgba16Float")
+        }
+        _ => Ok(name),
     }
 }
 
-/// Checks a description, an output format and the device's limits.
-pub(crate) fn validate(desc: &ContextDesc, output: TextureFormat, limits: &Limits) -> Result<(), CreateError> {
+/// Checks a description and an output format against a device.
+pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureFormat) -> Result<(), CreateError> {
     desc.validate()?;
-    texel(output)?;
+    texel(device, output)?;
     if desc.view_count as usize > MAX_VIEWS {
         return Err(CreateError::Settings(SettingsError {
             setting: "view_count",
@@ -26,7 +58,7 @@ pub(crate) fn validate(desc: &ContextDesc, output: TextureFormat, limits: &Limit
             expected: format!("at most {MAX_VIEWS} views"),
         }));
     }
-    let needed = required_limits(desc);
+    let (limits, needed) = (device.limits(), required_limits(desc));
     let checks = [
         ("max_texture_dimension_2d", limits.max_texture_dimension_2d, needed.max_texture_dimension_2d),
         (

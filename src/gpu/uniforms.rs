@@ -1,8 +1,9 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
-use super::Frame;
+use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
 use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
+use crate::uniforms::Held;
 pub use crate::uniforms::ViewUniforms;
 use bytemuck::{Pod, Zeroable};
 
@@ -33,16 +34,10 @@ pub struct FrameUniforms {
     pub depth_relative: f32,
     /// Slope tolerance of the depth test in pixels.
     pub depth_slope_px: f32,
-    /// `DisparityMap::a`.
-    pub disparity_a: f32,
-    /// Factors that convert motion to internal conventions.
-    pub motion_scale: [f32; 2],
-    /// `DisparityMap::b`.
-    pub disparity_b: f32,
-    /// Bit 0: `DisparityMap::invert`; bit 1: `DisparityMap::clamp`.
-    pub disparity_flags: u32,
     /// Factor on stored colors.
     pub exposure: f32,
+    /// Factors that convert motion to internal conventions.
+    pub motion_scale: [f32; 2],
     /// Radius of the middle region in degrees.
     pub mid_radius_deg: f32,
     /// Width of the blend outside each radius in degrees.
@@ -58,17 +53,27 @@ pub struct FrameUniforms {
     pub smr_accumulate_tolerance: f32,
     /// `SmrParams::tolerance`.
     pub smr_tolerance: f32,
+    /// First view of the dispatch.
+    pub first_view: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 2],
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame with gaze positions `gaze_px`. `has_history`: whether a frame was recorded before.
-    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, gaze_px: &[[f32; 2]], has_history: bool) -> Self {
+    /// Uniforms of a frame with a target; `held` is that after this frame. `has_history`: whether a frame was recorded
+    /// before.
+    pub(super) fn new(
+        desc: &ContextDesc,
+        frame: &Frame<'_>,
+        target: &Target<'_>,
+        held: &[Held],
+        has_history: bool,
+    ) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
         let [coarse_mid, coarse_far] = settings.foveation.coarseness();
-        let disparity = desc.depth.disparity_map();
         let test = settings.depth_test.unwrap_or_default();
         let mut uniforms = Self {
             size: desc.size_px,
@@ -81,11 +86,8 @@ impl FrameUniforms {
             inv_gate_divisor: wrs.inv_gate_divisor,
             depth_relative: test.relative,
             depth_slope_px: test.slope_px,
-            disparity_a: disparity.a,
             motion_scale: desc.motion.to_internal(desc.size_px),
-            disparity_b: disparity.b,
-            disparity_flags: u32::from(disparity.invert) | u32::from(disparity.clamp) << 1,
-            exposure: frame.exposure.factor().unwrap_or(1.0),
+            exposure: frame.exposure.factor(),
             mid_radius_deg: settings.foveation.mid_radius_deg(),
             blend_deg: settings.foveation.blend_deg,
             coarse_mid,
@@ -95,10 +97,36 @@ impl FrameUniforms {
             smr_tolerance: smr.tolerance,
             ..Self::default()
         };
-        let views = uniforms.views.iter_mut().zip(frame.views).zip(gaze_px).enumerate();
-        for (i, ((to, view), gaze_px)) in views {
-            *to = ViewUniforms::new(view, *gaze_px, settings, i, frame.index);
+        let origin = |textures: Option<Textures<'_>>, view| textures.map_or(0, |t| t.packed_origin(view));
+        for (i, ((to, view), held)) in uniforms.views.iter_mut().zip(frame.views).zip(held).enumerate() {
+            *to = ViewUniforms {
+                color_origin: origin(Some(frame.color), i),
+                depth_origin: origin(frame.depth, i),
+                motion_origin: origin(frame.motion, i),
+                trust_origin: origin(frame.trust, i),
+                lod_origin: origin(frame.lod, i),
+                noise_origin: origin(frame.noise, i),
+                output_origin: origin(Some(target.output), i),
+                debug_origin: origin(target.debug.map(|d| d.output), i),
+                ..ViewUniforms::new(desc, view, held, i, frame.index)
+            };
         }
         uniforms
     }
+}
+
+/// `CandidateUniforms` in `shaders/pass/candidate_pass.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct CandidateUniforms {
+    /// Width and height of a view in pixels.
+    pub size: [u32; 2],
+    /// First pixel of the view in the color input: x in the low half, y in the high half.
+    pub color_origin: u32,
+    /// The same for noise.
+    pub noise_origin: u32,
+    /// First view of the dispatch.
+    pub first_view: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 3],
 }

@@ -44,7 +44,7 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> AnyFrame {
     let shift = [0; 2].map(|_| (d.bits() % 5) as f32 - 2.0);
     let vector = |d: &mut Draws, v: f32| if d.uniform() < wild { f32::from_bits(d.bits()) } else { v };
     AnyFrame {
-        facts: ViewFrame { geometry: ViewGeometry::flat(SIZE, 70.0).unwrap(), gaze, previous_from_current: None },
+        facts: ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), gaze),
         color: Image::from_fn(SIZE, |_| [0; 3].map(|_| number(d, wild, 0.0, 1.0))),
         depth: Image::from_fn(SIZE, |_| number(d, wild, 3.0, 3.05)),
         motion: Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v))),

@@ -32,11 +32,10 @@ impl Pictures {
         let foveated = self.0.entry((size, state.picture, state.gaze));
         let (color, lod) = foveated.or_insert_with(|| foveate(size, state.picture, gaze_px)).clone();
         let color = color.map(|c| c.map(|v| v * state.exposure));
-        let facts = ViewFrame {
-            geometry: ViewGeometry::flat(size, 70.0).unwrap(),
-            gaze: if event.is_lost { Gaze::Lost } else { Gaze::At { px: gaze_px } },
-            previous_from_current: None,
-        };
+        let facts = ViewFrame::new(
+            ViewGeometry::flat(size, 70.0).unwrap(),
+            if event.is_lost { Gaze::Lost } else { Gaze::At { px: gaze_px } },
+        );
         let mut view = View { lod: Some(lod), ..View::still(color, gaze_px) };
         view.facts = facts;
         if event.moves {

@@ -3,10 +3,7 @@
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{
-    ContextDesc, DepthConvention, Gaze, Image, MotionConvention, MotionDirection, MotionUnit, Reset, Verdict,
-    ViewFrame, YAxis,
-};
+use afterimage::{ContextDesc, DepthConvention, Gaze, Image, MotionConvention, Reset, Verdict, ViewFrame};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,11 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // up.
     let near = 0.1;
     let desc = ContextDesc {
-        motion: MotionConvention {
-            unit: MotionUnit::Ndc,
-            direction: MotionDirection::CurrentMinusPrevious,
-            y_axis: YAxis::Up,
-        },
+        motion: MotionConvention::UNREAL,
         depth: DepthConvention::Reversed { near, far: f32::INFINITY },
         ..ContextDesc::new(size)
     };

@@ -3,9 +3,7 @@
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 use afterimage::gpu::{Afterimage, Frame, Target};
-use afterimage::{
-    ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, MotionUnit, Verdict, ViewFrame, YAxis,
-};
+use afterimage::{ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, Verdict, ViewFrame};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use wgpu::{TextureFormat, TextureUsages};
@@ -15,13 +13,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("on {}", gpu.info.name);
     let size = [320, 180];
     let near = 0.1;
-    // Reversed infinite depth, and motion in normalised device coordinates: current minus previous, y up.
+    // Reversed infinite depth, and motion as Unreal has it.
     let right = ContextDesc {
-        motion: MotionConvention {
-            unit: MotionUnit::Ndc,
-            direction: MotionDirection::CurrentMinusPrevious,
-            y_axis: YAxis::Up,
-        },
+        motion: MotionConvention::UNREAL,
         depth: DepthConvention::Reversed { near, far: f32::INFINITY },
         ..ContextDesc::new(size)
     };
@@ -50,7 +44,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 previous_from_current: frame.previous_from_current,
                 ..ViewFrame::new(*source.view(), Gaze::At { px: [160.0, 90.0] })
             }];
-            let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
+            let frame = Frame {
+                depth: Some((&depth).into()),
+                motion: Some((&motion).into()),
+                ..Frame::new(&color, &views, index)
+            };
             let target = Target { counters: Some(&counters), ..Target::new(&output) };
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             post.record(&gpu.device, &mut encoder, &frame, target)?;

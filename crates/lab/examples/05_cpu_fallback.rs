@@ -47,7 +47,7 @@ impl Post {
             Self::Gpu { gpu, post, color: input, output } => {
                 gpu.write_rgb(input, 0, color);
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                post.record(&gpu.device, &mut encoder, &gpu::Frame::new(input, &[view], index), &*output)?;
+                post.record(&gpu.device, &mut encoder, &gpu::Frame::new(&*input, &[view], index), &*output)?;
                 gpu.queue.submit([encoder.finish()]);
                 Ok(gpu.read_rgb(output, 0))
             }
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let px = if index < 20 { [80.0, 90.0] } else { [240.0, 90.0] };
         let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
         let foveated = foveation.render(&pyramid, &lods);
-        let facts = ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None };
+        let facts = ViewFrame::new(geometry, Gaze::At { px });
         shown = chosen.show(index, &foveated, facts)?;
         if let Some(other) = &mut other {
             let theirs = other.show(index, &foveated, facts)?;

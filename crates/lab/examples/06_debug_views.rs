@@ -38,7 +38,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             previous_from_current: frame.previous_from_current,
             ..ViewFrame::new(*source.view(), Gaze::At { px })
         }];
-        let frame = Frame { depth: Some(&depth), motion: Some(&motion), ..Frame::new(&color, &views, index) };
+        let frame =
+            Frame { depth: Some((&depth).into()), motion: Some((&motion).into()), ..Frame::new(&color, &views, index) };
         if index == 19 {
             // Before the frame itself is recorded, because that advances the history.
             for view in DebugView::ALL {

@@ -13,6 +13,7 @@ use crate::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform
 use crate::gpu::{Timestamps, array_view, check_readable, check_texture, filled, texel, validate};
 use crate::kernel::foveate::block_sample_level;
 use crate::shader::SHADERS;
+use crate::uniforms::Held;
 use mip_chain::MipChain;
 use uniforms::FoveationUniforms;
 use wgpu::{
@@ -71,7 +72,7 @@ pub struct GpuSimulator {
     desc: ContextDesc,
     output_format: TextureFormat,
     steps: Steps,
-    held_gaze: Vec<Option<[f32; 2]>>,
+    held: Vec<Held>,
     /// Placeholder for frames without levels of detail; not written.
     no_lod: TextureView,
 }
@@ -85,8 +86,8 @@ enum Steps {
 
 impl GpuSimulator {
     /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`,
-    /// and outputs of `output_format`: `Rgba16Float`, `Rgba32Float` or `Rgba8Unorm`. Creates shader modules; pipelines
-    /// are compiled at the first frame that needs them.
+    /// and outputs of `output_format`, as for [`Afterimage::new`](crate::gpu::Afterimage::new). Creates shader modules;
+    /// pipelines are compiled at the first frame that needs them.
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
@@ -103,8 +104,8 @@ impl GpuSimulator {
         output_format: TextureFormat,
         source: impl Fn(&str) -> String,
     ) -> Result<Self, CreateError> {
-        validate(desc, output_format, &device.limits())?;
-        let texel = texel(output_format)?;
+        validate(device, desc, output_format)?;
+        let texel = texel(device, output_format)?;
         // In WGSL the texel format of a storage texture is part of its type.
         let writing = |name, texel| source(name).replace("rgba16float", texel);
         let foveation = desc.settings.foveation;
@@ -141,7 +142,7 @@ impl GpuSimulator {
             desc: *desc,
             output_format,
             steps,
-            held_gaze: vec![None; desc.view_count as usize],
+            held: vec![Held::default(); desc.view_count as usize],
             no_lod: array_view(&no_lod),
         })
     }
@@ -221,13 +222,10 @@ impl GpuSimulator {
 
     /// Uniforms of a frame. Holds its gaze positions for frames in which the gaze is lost.
     fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
-        let mut gaze_px = vec![];
-        for (view, held) in views.iter().zip(&mut self.held_gaze) {
-            let px = view.gaze.resolve(*held, self.desc.size_px);
-            *held = Some(px);
-            gaze_px.push(px);
+        for (view, held) in views.iter().zip(&mut self.held) {
+            *held = held.with(view);
         }
-        FoveationUniforms::new(&self.desc, views, &gaze_px)
+        FoveationUniforms::new(&self.desc, views, &self.held)
     }
 }
 

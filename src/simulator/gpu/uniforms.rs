@@ -3,7 +3,7 @@
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, ViewFrame};
 use crate::gpu::MAX_VIEWS;
-use crate::uniforms::ViewUniforms;
+use crate::uniforms::{Held, ViewUniforms};
 use bytemuck::{Pod, Zeroable};
 
 /// `FoveationUniforms` in `shaders/foveation/foveated_views.wgsl`.
@@ -30,8 +30,8 @@ pub struct FoveationUniforms {
 }
 
 impl FoveationUniforms {
-    /// Uniforms of a frame with gaze positions `gaze_px`.
-    pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], gaze_px: &[[f32; 2]]) -> Self {
+    /// Uniforms of a frame; `held` is that after this frame.
+    pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], held: &[Held]) -> Self {
         let foveation = &desc.settings.foveation;
         let [mid, far] = foveation.coarseness();
         let mut uniforms = Self {
@@ -44,8 +44,8 @@ impl FoveationUniforms {
             far,
             ..Self::default()
         };
-        for (i, ((to, view), gaze_px)) in uniforms.views.iter_mut().zip(views).zip(gaze_px).enumerate() {
-            *to = ViewUniforms::new(view, *gaze_px, &desc.settings, i, 0);
+        for (i, ((to, view), held)) in uniforms.views.iter_mut().zip(views).zip(held).enumerate() {
+            *to = ViewUniforms::new(desc, view, held, i, 0);
         }
         uniforms
     }

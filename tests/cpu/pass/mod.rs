@@ -59,7 +59,7 @@ impl Input {
 
     fn view(&self) -> OneView<'_> {
         let geometry = geometry(self.color.size());
-        let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
+        let facts = ViewFrame { previous_from_current: self.camera, ..ViewFrame::new(geometry, self.gaze) };
         OneView {
             depth: self.depth.as_ref(),
             motion: self.motion.as_ref(),

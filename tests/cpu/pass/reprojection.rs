@@ -63,7 +63,7 @@ fn every_motion_convention_means_the_same_shift() {
     for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
         for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
             for y_axis in [YAxis::Down, YAxis::Up] {
-                let convention = MotionConvention { unit, direction, y_axis };
+                let convention = MotionConvention { unit, direction, y_axis, jittered: false };
                 let scale = convention.to_internal(SIZE);
                 let vector = [3.0 / scale[0], -2.0 / scale[1]];
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
@@ -86,8 +86,12 @@ fn every_motion_convention_means_the_same_shift() {
         }
     }
     // Computed by hand, not by the function under test: 3 px right to left in a 64 px wide frame.
-    let uv =
-        MotionConvention { unit: MotionUnit::Uv, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
+    let uv = MotionConvention {
+        unit: MotionUnit::Uv,
+        direction: MotionDirection::CurrentMinusPrevious,
+        y_axis: YAxis::Up,
+        jittered: false,
+    };
     assert_eq!(uv.to_internal([64, 48]), [-64.0, 48.0]);
     let ndc = MotionConvention { unit: MotionUnit::Ndc, ..MotionConvention::default() };
     assert_eq!(ndc.to_internal([64, 48]), [32.0, 24.0]);

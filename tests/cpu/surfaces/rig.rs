@@ -69,7 +69,7 @@ impl Input {
 
     pub fn view(&self) -> OneView<'_> {
         let geometry = ViewGeometry::flat(self.color.size(), 70.0).unwrap();
-        let facts = ViewFrame { geometry, gaze: self.gaze, previous_from_current: self.camera };
+        let facts = ViewFrame { previous_from_current: self.camera, ..ViewFrame::new(geometry, self.gaze) };
         OneView {
             facts,
             color: &self.color,

@@ -1,6 +1,6 @@
 //! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
-use afterimage::gpu::uniforms::{FrameUniforms, MAX_VIEWS, ViewUniforms};
+use afterimage::gpu::uniforms::{CandidateUniforms, FrameUniforms, MAX_VIEWS, ViewUniforms};
 use afterimage::shader::SHADERS;
 use afterimage::simulator::gpu::uniforms::FoveationUniforms;
 use std::mem::offset_of;
@@ -21,18 +21,29 @@ macro_rules! rust {
     };
 }
 
+fn view_uniforms() -> (Vec<(String, usize)>, usize) {
+    rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key, disparity_a, disparity_b, disparity_flags,
+        motion_offset, color_origin, depth_origin, motion_origin, trust_origin, lod_origin, noise_origin,
+        output_origin, debug_origin)
+}
+
 #[test]
 fn constants_have_one_layout() {
     let composed = SHADERS.compose("wrs_pass");
     let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
     let frame = rust!(FrameUniforms: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
-        gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, disparity_a, motion_scale, disparity_b,
-        disparity_flags, exposure, mid_radius_deg, blend_deg, coarse_mid, coarse_far, smr_accumulate,
-        smr_accumulate_tolerance, smr_tolerance, views);
+        gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, exposure, motion_scale, mid_radius_deg,
+        blend_deg, coarse_mid, coarse_far, smr_accumulate, smr_accumulate_tolerance, smr_tolerance, first_view, views);
     assert_eq!(wgsl(&module, "FrameUniforms"), frame);
-    let view = rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key);
-    assert_eq!(wgsl(&module, "ViewUniforms"), view);
+    assert_eq!(wgsl(&module, "ViewUniforms"), view_uniforms());
     assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
+}
+
+#[test]
+fn constants_of_the_candidates_have_one_layout() {
+    let module = naga::front::wgsl::parse_str(&SHADERS.compose("candidate_pass").source).unwrap();
+    let candidates = rust!(CandidateUniforms: size, color_origin, noise_origin, first_view);
+    assert_eq!(wgsl(&module, "CandidateUniforms"), candidates);
 }
 
 #[test]
@@ -42,7 +53,6 @@ fn constants_of_the_foveation_have_one_layout() {
     let frame = rust!(FoveationUniforms: size, coarsest, fovea_radius_deg, mid_radius_deg, blend_deg, mid, far,
         views);
     assert_eq!(wgsl(&module, "FoveationUniforms"), frame);
-    let view = rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key);
-    assert_eq!(wgsl(&module, "ViewUniforms"), view);
+    assert_eq!(wgsl(&module, "ViewUniforms"), view_uniforms());
     assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
 }

@@ -44,7 +44,7 @@ fn every_convention_agrees() {
     for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
         for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
             for y_axis in [YAxis::Down, YAxis::Up] {
-                let motion = MotionConvention { unit, direction, y_axis };
+                let motion = MotionConvention { unit, direction, y_axis, jittered: false };
                 agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
             }
         }
@@ -244,16 +244,16 @@ fn good_bad_good_equals_good_good() {
     let elsewhere = [ViewFrame { geometry: ViewGeometry::flat([9, 9], 70.0).unwrap(), ..facts[0] }];
     let good = Frame { reset: Reset::All, ..Frame::new(&color, &facts, 7) };
     let bad = [
-        Frame { color: &small, ..good },
-        Frame { color: &unbound, ..good },
-        Frame { color: &integer, ..good },
-        Frame { color: &narrow, ..good },
-        Frame { motion: Some(&narrow), ..good },
-        Frame { depth: Some(&integer), ..good },
-        Frame { trust: Some(&integer), ..good },
-        Frame { trust: Some(&small), ..good },
-        Frame { lod: Some(&integer), ..good },
-        Frame { lod: Some(&unbound), ..good },
+        Frame { color: (&small).into(), ..good },
+        Frame { color: (&unbound).into(), ..good },
+        Frame { color: (&integer).into(), ..good },
+        Frame { color: (&narrow).into(), ..good },
+        Frame { motion: Some((&narrow).into()), ..good },
+        Frame { depth: Some((&integer).into()), ..good },
+        Frame { trust: Some((&integer).into()), ..good },
+        Frame { trust: Some((&small).into()), ..good },
+        Frame { lod: Some((&integer).into()), ..good },
+        Frame { lod: Some((&unbound).into()), ..good },
         Frame { exposure: Exposure::Changed { ratio: 0.0 }, ..good },
         Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
         Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },

@@ -30,11 +30,7 @@ pub struct View {
 impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
-        let facts = ViewFrame {
-            geometry: ViewGeometry::flat(color.size(), 70.0).unwrap(),
-            gaze: Gaze::At { px: gaze_px },
-            previous_from_current: None,
-        };
+        let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
         Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
     }
 }
@@ -185,7 +181,7 @@ impl Rig {
     pub fn refusal(&mut self, view: &View) -> String {
         self.upload(std::slice::from_ref(view));
         let frame = Frame {
-            noise: view.noise.is_some().then_some(&self.textures.noise),
+            noise: view.noise.is_some().then_some((&self.textures.noise).into()),
             ..Frame::new(&self.textures.color, std::slice::from_ref(&view.facts), 0)
         };
         let output = &self.textures.output;
@@ -214,11 +210,11 @@ impl Rig {
         self.upload(views);
         let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
         let frame = Frame {
-            depth: views[0].depth.is_some().then_some(&self.textures.depth),
-            motion: views[0].motion.is_some().then_some(&self.textures.motion),
-            trust: views[0].trust.is_some().then_some(&self.textures.trust),
-            lod: views[0].lod.is_some().then_some(&self.textures.lod),
-            noise: views[0].noise.is_some().then_some(&self.textures.noise),
+            depth: views[0].depth.is_some().then_some((&self.textures.depth).into()),
+            motion: views[0].motion.is_some().then_some((&self.textures.motion).into()),
+            trust: views[0].trust.is_some().then_some((&self.textures.trust).into()),
+            lod: views[0].lod.is_some().then_some((&self.textures.lod).into()),
+            noise: views[0].noise.is_some().then_some((&self.textures.noise).into()),
             exposure: self.exposure,
             reset,
             ..Frame::new(&self.textures.color, &facts, index)
@@ -240,8 +236,8 @@ impl Rig {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for (index, facts) in facts.iter().enumerate() {
             let frame = Frame {
-                depth: Some(&self.textures.depth),
-                motion: Some(&self.textures.motion),
+                depth: Some((&self.textures.depth).into()),
+                motion: Some((&self.textures.motion).into()),
                 ..Frame::new(&self.textures.color, std::slice::from_ref(facts), index as u64)
             };
             let target = Target { counters: Some(&self.counters), ..Target::new(&self.textures.output) };
@@ -397,11 +393,7 @@ pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
         other => panic!("{other:?}: a convention that the rig does not know"),
     };
     View {
-        facts: ViewFrame {
-            geometry: ViewGeometry::flat(size, 70.0).unwrap(),
-            gaze: Gaze::At { px },
-            previous_from_current: None,
-        },
+        facts: ViewFrame::new(ViewGeometry::flat(size, 70.0).unwrap(), Gaze::At { px }),
         color: Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()]),
         depth: Some(Image::from_fn(size, |[x, _]| stored(if x % 16 < 8 { 2.0 } else { 30.0 }))),
         motion: Some(Image::from_fn(size, |[x, y]| {

@@ -40,7 +40,7 @@ pub fn desc(size: [u32; 2], view_count: u32, foveation: Foveation) -> ContextDes
 }
 
 pub fn looking(geometry: ViewGeometry, px: [f32; 2]) -> ViewFrame {
-    ViewFrame { geometry, gaze: Gaze::At { px }, previous_from_current: None }
+    ViewFrame::new(geometry, Gaze::At { px })
 }
 
 impl Scene {
@@ -62,7 +62,7 @@ impl Scene {
     pub fn on_cpu(&self, foveation: &Foveation) -> Made {
         let mut made = Made { shown: vec![], lods: vec![] };
         for (image, view) in self.images.iter().zip(&self.views) {
-            let gaze = view.gaze.resolve(None, image.size());
+            let gaze = view.gaze.resolve(None, &view.geometry);
             let lods = foveation.lod_map(&view.geometry, gaze, &view.geometry.eccentricity_map(gaze));
             let shown = foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods);
             made.shown.extend(shown.pixels().iter().map(|c| c.map(f32::to_bits)));
@@ -110,8 +110,10 @@ impl Rig {
         self.upload(&scene.images);
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
-            let frame =
-                SimulatorFrame { lod: Some(&self.lod), ..SimulatorFrame::new(&self.full, &self.output, &scene.views) };
+            let frame = SimulatorFrame {
+                lod: Some((&self.lod).into()),
+                ..SimulatorFrame::new(&self.full, &self.output, &scene.views)
+            };
             self.post.record(&self.device, &mut encoder, &frame).unwrap();
             self.queue.submit([encoder.finish()]);
         });

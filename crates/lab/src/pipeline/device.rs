@@ -197,11 +197,11 @@ impl DeviceInputs {
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
         let given = self.given;
         Frame {
-            depth: given.depth.then_some(&self.depth),
-            motion: given.motion.then_some(&self.motion),
-            trust: (given.trust && use_trust).then_some(&self.trust),
-            lod: given.lod.then_some(&self.lod),
-            noise: given.noise.then_some(&self.noise),
+            depth: given.depth.then_some((&self.depth).into()),
+            motion: given.motion.then_some((&self.motion).into()),
+            trust: (given.trust && use_trust).then_some((&self.trust).into()),
+            lod: given.lod.then_some((&self.lod).into()),
+            noise: given.noise.then_some((&self.noise).into()),
             reset,
             ..Frame::new(&self.foveated, views, index)
         }
@@ -209,7 +209,7 @@ impl DeviceInputs {
 
     /// `frame` repeated, with motion vectors of zero.
     pub fn again<'a>(&'a self, frame: Frame<'a>) -> Frame<'a> {
-        Frame { motion: frame.motion.map(|_| &self.no_motion), ..frame }
+        Frame { motion: frame.motion.map(|_| (&self.no_motion).into()), ..frame }
     }
 
     /// The full-rate frame.

@@ -310,7 +310,7 @@ impl Pipeline {
     /// view.
     pub fn look(&mut self, gaze: Option<[f32; 2]>) -> [f32; 2] {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
-        let gaze_px = gaze.resolve(self.held_gaze, self.geometry.size_px());
+        let gaze_px = gaze.resolve(self.held_gaze, &self.geometry);
         self.held_gaze = Some(gaze_px);
         gaze_px
     }

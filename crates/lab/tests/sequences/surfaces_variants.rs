@@ -4,8 +4,7 @@ use super::rig::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, reset, trust};
 use afterimage::{
-    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MotionConvention, MotionDirection,
-    MotionUnit, Reset, Settings, Smr, YAxis,
+    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MotionConvention, Reset, Settings, Smr,
 };
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::Draws;
@@ -248,8 +247,7 @@ fn noise_is_asked_for_and_refused_by_the_setting() {
 
 #[test]
 fn other_conventions_agree_bit_for_bit() {
-    let motion =
-        MotionConvention { unit: MotionUnit::Ndc, direction: MotionDirection::CurrentMinusPrevious, y_axis: YAxis::Up };
+    let motion = MotionConvention::UNREAL;
     let depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
     let desc = ContextDesc { motion, depth, ..ContextDesc::new(SIZE) };
     for base in both_methods() {

@@ -6,8 +6,8 @@ mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
-    Bias, ContextDesc, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method, Reset, Sampler,
-    Settings, Smr, ViewFrame, ViewGeometry,
+    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method,
+    Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
 };
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
@@ -138,7 +138,10 @@ pub fn settings(bytes: &[u8]) {
         let gaze = if has(0) { Gaze::At { px: [bits.float(), bits.float()] } } else { Gaze::Lost };
         let row = |bits: &mut Bits| [0; 4].map(|_| bits.float());
         let previous_from_current = has(8).then(|| [0; 4].map(|_| row(&mut bits)));
-        let views = [ViewFrame { geometry, gaze, previous_from_current }];
+        let jitter_px = if has(9) { [bits.float(), bits.float()] } else { [0.0; 2] };
+        let depth_convention = has(10).then(|| DepthConvention::Reversed { near: bits.float(), far: bits.float() });
+        let views =
+            [ViewFrame { previous_from_current, jitter_px, depth: depth_convention, ..ViewFrame::new(geometry, gaze) }];
         let (color, depth, motion) = ([&color], [&depth], [&motion]);
         let (trust, lod, noise) = ([&trust], [&lod], [&noise]);
         let frame = Frame {
