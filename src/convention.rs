@@ -9,6 +9,7 @@ use crate::kernel::depth::DisparityMap;
 
 /// Unit of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum MotionUnit {
     /// Pixels of the frame.
@@ -22,6 +23,7 @@ pub enum MotionUnit {
 
 /// Sign of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum MotionDirection {
     /// Position of the surface point in the previous frame minus its position in this frame.
     #[default]
@@ -32,6 +34,7 @@ pub enum MotionDirection {
 
 /// Direction of the vertical axis of motion vectors. Example: [`MotionConvention`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum YAxis {
     /// Downwards: towards later rows of the image.
     #[default]
@@ -53,6 +56,7 @@ pub enum YAxis {
 /// desc.motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::FSR2 };
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct MotionConvention {
     /// Unit. Default: pixels.
     pub unit: MotionUnit,
@@ -138,6 +142,7 @@ impl MotionConvention {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum DepthConvention {
     /// Distance along the view axis; infinite, or above 1e30, where there is no surface.
@@ -148,6 +153,7 @@ pub enum DepthConvention {
         /// Distance of the near plane, above 0 and finite.
         near: f32,
         /// Distance of the far plane, above `near`; `f32::INFINITY` for an infinite projection.
+        #[cfg_attr(feature = "serde", serde(with = "far_plane"))]
         far: f32,
     },
     /// Reversed perspective depth buffer: 1 at `near`, 0 at `far`.
@@ -155,6 +161,7 @@ pub enum DepthConvention {
         /// Distance of the near plane, above 0 and finite.
         near: f32,
         /// Distance of the far plane, above `near`; `f32::INFINITY` for an infinite projection.
+        #[cfg_attr(feature = "serde", serde(with = "far_plane"))]
         far: f32,
     },
     /// Orthographic depth buffer: 0 at `near`, 1 at `far`, linear in distance.
@@ -204,5 +211,33 @@ impl DepthConvention {
             Self::Orthographic { near, far } => (far - near, near, true, true),
         };
         DisparityMap { a, b, invert, clamp }
+    }
+}
+
+/// Distances of far planes in configuration files: "infinite" for infinity, which JSON lacks.
+#[cfg(feature = "serde")]
+mod far_plane {
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    const INFINITE: &str = "infinite";
+
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Plane {
+        Distance(f32),
+        Word(String),
+    }
+
+    pub fn serialize<S: Serializer>(far: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+        if far.is_infinite() { INFINITE.serialize(serializer) } else { far.serialize(serializer) }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
+        match Plane::deserialize(deserializer)? {
+            Plane::Distance(far) => Ok(far),
+            Plane::Word(word) if word == INFINITE => Ok(f32::INFINITY),
+            Plane::Word(word) => Err(D::Error::custom(format!("far is '{word}': expected a distance or '{INFINITE}'"))),
+        }
     }
 }

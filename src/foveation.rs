@@ -6,6 +6,7 @@ use crate::kernel::foveate;
 
 /// Filter by which a renderer shades coarse regions. Default: [`Mip`](Self::Mip). Example: [`Foveation`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Filter {
     /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels
@@ -45,6 +46,7 @@ pub enum Filter {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Foveation {
     /// Filter of coarse regions. Default [`Filter::Mip`].
     pub filter: Filter,

@@ -155,6 +155,9 @@ fn checked_projection(columns: [[f32; 4]; 4]) -> Result<[[f32; 4]; 4], SettingsE
     if columns.iter().flatten().any(|v| !v.is_finite()) {
         return refuse("finite numbers");
     }
+    if w[2].abs() == 1.0 && z[3].abs() != 1.0 {
+        return refuse("a matrix stored by columns; transpose this one");
+    }
     if z[3] == 0.0 && w[3] != 0.0 {
         return refuse("a perspective projection; this one is orthographic");
     }
@@ -166,7 +169,7 @@ fn checked_projection(columns: [[f32; 4]; 4]) -> Result<[[f32; 4]; 4], SettingsE
     }
     let zeros = [x[1], x[2], x[3], y[0], y[2], y[3], w[0], w[1], w[3]];
     if zeros != [0.0; 9] || z[3] != -1.0 || x[0] <= 0.0 || y[1] <= 0.0 {
-        return refuse("a perspective projection alone, by columns; not multiplied by a view, and not transposed");
+        return refuse("a perspective projection alone, not multiplied by a view");
     }
     Ok(columns)
 }

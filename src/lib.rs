@@ -92,6 +92,7 @@ mod image;
 #[doc(hidden)]
 pub mod kernel;
 mod method;
+mod resize;
 mod settings;
 #[doc(hidden)]
 #[cfg(feature = "gpu")]

@@ -13,6 +13,7 @@ use crate::foveation::Foveation;
 /// assert_eq!(Method::from_name("smr"), Some(Method::Smr));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Method {
     /// No method: the foveated frame unchanged, except that non-finite pixels are black. No history.
@@ -31,6 +32,7 @@ pub enum Method {
 /// Sampler of [`Method::Wrs`]: rule by which a reservoir chooses between its sample and the candidate. Both give the
 /// same probability to each candidate. Default: [`AChao`](Self::AChao). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Sampler {
     /// A-Chao, as in the paper: each frame draws anew against the ratio of weight sums.
@@ -44,6 +46,7 @@ pub enum Sampler {
 /// Bias of [`Method::Wrs`]: decay of history's weight, without which new candidates would hardly ever be taken.
 /// Default: [`Bernoulli`](Self::Bernoulli). Example: [`Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Bias {
     /// Bernoulli survival (eq. 5 of the paper): weight sums grow like a square root instead of linearly.
@@ -60,6 +63,7 @@ pub enum Bias {
 
 /// Color difference that a [`Gate`] measures. Default: [`DeltaE94`](Self::DeltaE94). Example: [`Gate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum GateMetric {
     /// Delta E 94: lightness, chroma and hue.
@@ -81,6 +85,7 @@ pub enum GateMetric {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Gate {
     /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
@@ -110,6 +115,7 @@ impl Default for Gate {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct DepthTest {
     /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where
     /// motion or depth is imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
@@ -137,6 +143,7 @@ impl Default for DepthTest {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Smr {
     /// Share of equally coarse history in the output: 0 to 0.98. More reduces the flicker of coarse regions in motion,
     /// and follows changes of light later. Default 0.9.
@@ -173,6 +180,7 @@ impl Default for Smr {
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Settings {
     /// Method: how history is stored and combined with the frame. Default [`Method::Smr`].
     pub method: Method,

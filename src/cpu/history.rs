@@ -3,6 +3,7 @@
 use super::mip_chain::MipChain;
 use crate::frame::{ContextDesc, ViewFrame};
 use crate::method::HistoryLayout;
+use crate::resize::Resize;
 use crate::uniforms::Held;
 use glam::Vec4;
 
@@ -78,6 +79,24 @@ impl History {
             filled: false,
             held: vec![Held::default(); view_count as usize],
         }
+    }
+
+    /// This history resampled to the size of `desc`, whose layout is the same.
+    pub(super) fn resized(&self, resize: &Resize, desc: &ContextDesc) -> Self {
+        let mut next = Self::new(desc);
+        next.held = self.held.iter().map(|held| resize.held(*held)).collect();
+        next.filled = self.filled;
+        let past = &self.previous;
+        let len = self.view_len;
+        next.previous.reservoirs = past.reservoirs.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.previous.surfaces = past.surfaces.chunks(len).flat_map(|v| resize.surfaces(v)).collect();
+        for (mip_chain, words) in next.previous.mip_chains.iter_mut().zip(next.previous.surfaces.chunks(next.view_len))
+        {
+            mip_chain.build(words);
+        }
+        next
     }
 
     pub(super) fn layout(&self) -> HistoryLayout {

@@ -7,6 +7,7 @@ mod history;
 mod inputs;
 mod mip_chain;
 mod none_pass;
+mod resize;
 mod smr_pass;
 mod surface_history;
 mod surface_pass;
@@ -21,6 +22,7 @@ use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
 use crate::image::Image;
 use crate::method::HistoryLayout;
+use crate::resize::Resize;
 use crate::settings::{Method, Settings};
 use crate::stats::FrameStats;
 
@@ -117,7 +119,8 @@ impl CpuAfterimage {
         Ok(())
     }
 
-    /// Changes the size of the views, and discards history even if the size is the same.
+    /// Changes the size of the views, and discards history even if the size is the same;
+    /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
     /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
@@ -125,6 +128,20 @@ impl CpuAfterimage {
         check_size(size_px)?;
         self.desc.size_px = size_px;
         self.history = History::new(&self.desc);
+        Ok(())
+    }
+
+    /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
+    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa and smr are
+    /// filtered, and their levels of detail follow the scale.
+    ///
+    /// # Errors
+    /// As for [`resize`](Self::resize).
+    pub fn resize_keeping_history(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
+        check_size(size_px)?;
+        let resize = Resize::new(self.desc.size_px, size_px);
+        self.desc.size_px = size_px;
+        self.history = self.history.resized(&resize, &self.desc);
         Ok(())
     }
 

@@ -26,7 +26,7 @@ use wgpu::{
 /// Binding number of the debug view in `shaders/pass/output_and_view.wgsl`.
 const DEBUG_BINDING: u32 = 16;
 
-/// The pass, with placeholders for absent inputs: 1x1 textures and a buffer.
+/// The pass, with placeholders for absent inputs.
 #[derive(Debug)]
 pub(super) struct MethodPass {
     shader: ComputeShader,
@@ -35,10 +35,27 @@ pub(super) struct MethodPass {
     method: Method,
     history: HistoryLayout,
     output: TextureFormat,
-    no_float: TextureView,
-    no_word: TextureView,
-    no_out: [TextureView; 3],
+    absent: Placeholders,
     no_counters: Buffer,
+}
+
+/// Placeholders for absent textures: 1x1.
+#[derive(Debug)]
+pub(super) struct Placeholders {
+    pub float: TextureView,
+    pub word: TextureView,
+    /// Those of [`written`].
+    pub out: [TextureView; 3],
+}
+
+impl Placeholders {
+    pub fn new(device: &Device, history: HistoryLayout) -> Self {
+        Self {
+            float: stand_in(device, TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING),
+            word: stand_in(device, TextureFormat::Rg32Uint, TextureUsages::TEXTURE_BINDING),
+            out: written(history).map(|format| stand_in(device, format, TextureUsages::STORAGE_BINDING)),
+        }
+    }
 }
 
 /// A frame to record: its description, and what follows from it.
@@ -73,9 +90,7 @@ impl MethodPass {
             method: settings.method,
             history,
             output,
-            no_float: stand_in(device, TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING),
-            no_word: stand_in(device, TextureFormat::Rg32Uint, TextureUsages::TEXTURE_BINDING),
-            no_out: written(history).map(|format| stand_in(device, format, TextureUsages::STORAGE_BINDING)),
+            absent: Placeholders::new(device, history),
             no_counters,
         }
     }
@@ -126,7 +141,7 @@ impl MethodPass {
         let uniforms = FrameUniforms { first_view: batch.views.start, ..job.uniforms };
         let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
         let optional =
-            |textures: Option<Textures<'_>>| textures.map_or_else(|| self.no_float.clone(), |t| t.bind(batch));
+            |textures: Option<Textures<'_>>| textures.map_or_else(|| self.absent.float.clone(), |t| t.bind(batch));
         let inputs = [
             frame.color.bind(batch),
             optional(frame.depth),
@@ -138,26 +153,26 @@ impl MethodPass {
         let debug = target.debug.map(|d| d.output.bind(batch));
         let (past, next) = history.split();
         let (past, next) = (&past.views, &next.targets);
-        let candidates = history.candidates().map_or(&self.no_float, |c| &c.view);
+        let candidates = history.candidates().map_or(&self.absent.float, |c| &c.view);
         let past_or = |i: usize, absent| past.get(i).unwrap_or(absent);
-        let next_or = |i: usize| next.get(i).unwrap_or(&self.no_out[i]);
+        let next_or = |i: usize| next.get(i).unwrap_or(&self.absent.out[i]);
         let history_views = match self.history {
             HistoryLayout::Nothing => vec![],
             HistoryLayout::Reservoirs { .. } => vec![
-                past_or(0, &self.no_word),
-                past_or(1, &self.no_word),
-                past_or(2, &self.no_float),
+                past_or(0, &self.absent.word),
+                past_or(1, &self.absent.word),
+                past_or(2, &self.absent.float),
                 next_or(0),
                 next_or(1),
                 next_or(2),
             ],
             HistoryLayout::Surfaces { .. } => vec![
                 &lod,
-                past_or(0, &self.no_word),
-                past_or(1, &self.no_float),
+                past_or(0, &self.absent.word),
+                past_or(1, &self.absent.float),
                 next_or(0),
                 next_or(1),
-                past_or(2, &self.no_word),
+                past_or(2, &self.absent.word),
                 candidates,
                 next_or(2),
             ],
@@ -205,7 +220,7 @@ fn writing(device: &Device, source: &str, output: TextureFormat) -> String {
 }
 
 /// Formats of the history textures that a pass writes.
-fn written(history: HistoryLayout) -> [TextureFormat; 3] {
+pub(super) fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
         HistoryLayout::Surfaces { .. } => [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint],
         _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],

@@ -16,6 +16,9 @@ mod input;
 mod method_pass;
 mod mip_chain;
 mod output;
+// For the tests, which compare struct layouts.
+#[doc(hidden)]
+pub mod resize;
 mod textures;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
@@ -35,6 +38,7 @@ use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, check_size};
 use crate::kernel::debug_view::DebugView;
 use crate::method::HistoryLayout;
+use crate::resize::Resize;
 use crate::settings::{Method, Settings};
 use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
@@ -173,7 +177,8 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Changes the size of the views, and discards history even if the size is the same.
+    /// Changes the size of the views, and discards history even if the size is the same;
+    /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
     /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
@@ -181,6 +186,38 @@ impl Afterimage {
         check_size(size_px)?;
         self.desc.size_px = size_px;
         self.history = self.passes.history(device, &self.desc);
+        Ok(())
+    }
+
+    /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
+    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa and smr are
+    /// filtered, and their levels of detail follow the scale.
+    ///
+    /// Records a pass into `encoder`, and compiles its pipeline. Records nothing if there is no history yet.
+    ///
+    /// # Errors
+    /// As for [`resize`](Self::resize).
+    pub fn resize_keeping_history(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        size_px: [u32; 2],
+    ) -> Result<(), FrameError> {
+        check_size(size_px)?;
+        let resize = Resize::new(self.desc.size_px, size_px);
+        self.desc.size_px = size_px;
+        let mut history = self.passes.history(device, &self.desc);
+        history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
+        if self.history.is_filled() {
+            let (past, next) = (self.history.split().0, history.split().1);
+            resize::record(device, encoder, &resize, history.layout(), self.desc.view_count, [past, next]);
+            if let Some(mip_chain) = &self.passes.mip_chain {
+                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
+                mip_chain.record(device, &mut pass, &next.mip_levels);
+            }
+            history.swap();
+        }
+        self.history = history;
         Ok(())
     }
 

@@ -17,6 +17,7 @@ pub mod pack;
 pub mod reproject;
 pub mod resample;
 pub mod reservoir;
+pub mod resize;
 pub mod rng;
 pub mod sanitize;
 pub mod surface;

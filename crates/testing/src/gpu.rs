@@ -56,8 +56,13 @@ pub fn adapter() -> Option<&'static wgpu::Adapter> {
 
 /// A fresh device with default limits. Uncaptured errors panic.
 pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+    device_with(&wgpu::DeviceDescriptor::default())
+}
+
+/// A fresh device of a description. Uncaptured errors panic.
+pub fn device_with(desc: &wgpu::DeviceDescriptor<'_>) -> Option<(wgpu::Device, wgpu::Queue)> {
     let adapter = adapter()?;
-    let desc = wgpu::DeviceDescriptor { label: Some("test"), ..Default::default() };
+    let desc = wgpu::DeviceDescriptor { label: Some("test"), ..desc.clone() };
     Some(pollster::block_on(adapter.request_device(&desc)).expect("a device with default limits"))
 }
 

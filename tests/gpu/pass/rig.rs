@@ -2,7 +2,7 @@
 
 use crate::images::{Images, OneView};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
@@ -44,7 +44,12 @@ pub struct Rig {
     pub gpu: Afterimage,
     /// Of the frames to come.
     pub exposure: Exposure,
+    /// Whether inputs and outputs are regions of larger textures, one texture a view, in the frames to come.
+    pub scattered: bool,
+    /// Debug view to draw beside the next frames, and what it showed.
+    pub beside: Option<DebugView>,
     textures: Textures,
+    debug: Texture,
     counters: Buffer,
 }
 
@@ -62,7 +67,8 @@ struct Textures {
 impl Textures {
     fn new(device: &Device, context: &ContextDesc) -> Self {
         let texture = |format, usage| make_texture(device, context, format, usage);
-        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
+        let write = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
         Self {
             color: texture(TextureFormat::Rgba32Float, read),
             depth: texture(TextureFormat::R32Float, read),
@@ -70,7 +76,7 @@ impl Textures {
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read),
             noise: texture(TextureFormat::Rg32Float, read),
-            output: texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC),
+            output: texture(TextureFormat::Rgba32Float, write),
         }
     }
 }
@@ -92,13 +98,19 @@ impl Rig {
 
     /// With another text of the pass on the GPU.
     pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
-        let (device, queue) = afterimage_testing::gpu::device()?;
+        // One storage texture more than WebGPU's default, for views beside the frame.
+        let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
+        let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = afterimage_testing::gpu::device_with(&desc)?;
         let context = ContextDesc { settings, ..context };
         let made = || Afterimage::with_shader(&device, &context, TextureFormat::Rgba32Float, source);
         Some(Self {
             cpu: CpuAfterimage::new(&context).unwrap(),
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
             textures: Textures::new(&device, &context),
+            debug: debug_texture(&device, &context),
+            scattered: false,
+            beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("counters"),
                 size: COUNTERS_BYTES,
@@ -118,6 +130,30 @@ impl Rig {
         self.gpu.resize(&self.device, size).unwrap();
         self.context.size_px = size;
         self.textures = Textures::new(&self.device, &self.context);
+        self.debug = debug_texture(&self.device, &self.context);
+    }
+
+    /// Changes the size of both executors, which keep their history, and of the textures.
+    pub fn resize_keeping_history(&mut self, size: [u32; 2]) {
+        self.cpu.resize_keeping_history(size).unwrap();
+        afterimage_testing::gpu::validated(&self.device, "resize", || {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            self.gpu.resize_keeping_history(&self.device, &mut encoder, size).unwrap();
+            self.queue.submit([encoder.finish()]);
+        });
+        self.context.size_px = size;
+        self.textures = Textures::new(&self.device, &self.context);
+        self.debug = debug_texture(&self.device, &self.context);
+    }
+
+    /// Stored history of both executors.
+    pub fn histories(&self) -> [Vec<[u32; 3]>; 2] {
+        [held_words(&self.cpu), self.read().words]
+    }
+
+    /// What was drawn beside the last frame: linear color as halves.
+    pub fn beside(&self) -> Vec<u32> {
+        self.read_texture(&self.debug)
     }
 
     /// Stores motion as halves on the device from now on.
@@ -219,13 +255,39 @@ impl Rig {
             reset,
             ..Frame::new(&self.textures.color, &facts, index)
         };
-        let target = Target { counters: count.then_some(&self.counters), ..Target::new(&self.textures.output) };
+        let debug = self.beside.map(|view| DebugTarget { view, output: (&self.debug).into() });
+        let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(&self.textures.output) };
+        let scattered = |texture, number| Scattered::new(&self.device, &self.queue, texture, number);
+        let textures = &self.textures;
+        let inputs =
+            [&textures.color, &textures.depth, &textures.motion, &textures.trust, &textures.lod, &textures.noise];
+        let inputs: Vec<_> = (0..).zip(inputs).filter(|_| self.scattered).map(|(i, t)| scattered(t, i)).collect();
+        let outputs: Vec<_> = [(&textures.output, 6), (&self.debug, 7)]
+            .into_iter()
+            .filter(|_| self.scattered)
+            .map(|(t, i)| scattered(t, i))
+            .collect();
+        let regions: Vec<_> = inputs.iter().chain(&outputs).map(Scattered::regions).collect();
+        let of = |i: usize, plain| regions.get(i).map_or(plain, |r| afterimage::gpu::Textures::Regions(r));
+        let frame = Frame {
+            color: of(0, frame.color),
+            depth: frame.depth.map(|t| of(1, t)),
+            motion: frame.motion.map(|t| of(2, t)),
+            trust: frame.trust.map(|t| of(3, t)),
+            lod: frame.lod.map(|t| of(4, t)),
+            noise: frame.noise.map(|t| of(5, t)),
+            ..frame
+        };
+        let debug = target.debug.map(|d| DebugTarget { output: of(7, d.output), ..d });
+        let target = Target { output: of(6, target.output), debug, ..target };
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
+            inputs.iter().for_each(|i| i.scatter(&mut encoder));
             match view {
                 None => self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap(),
                 Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, target, view).unwrap(),
             };
+            outputs.iter().for_each(|o| o.gather(&mut encoder));
             self.queue.submit([encoder.finish()]);
         });
     }
@@ -344,6 +406,76 @@ impl Rig {
     fn read_texture(&self, texture: &Texture) -> Vec<u32> {
         afterimage_testing::gpu::read_texture(&self.device, &self.queue, texture)
     }
+}
+
+/// The views of a texture, as regions of larger textures that contain NaN elsewhere.
+struct Scattered<'a> {
+    texture: &'a Texture,
+    places: Vec<(Texture, [u32; 2])>,
+}
+
+impl<'a> Scattered<'a> {
+    /// Origins and sizes follow from `number` and the view's index.
+    fn new(device: &Device, queue: &Queue, texture: &'a Texture, number: u32) -> Self {
+        let place = |view: u32| {
+            let origin = [3 + 2 * number + view, 1 + number + 5 * view];
+            let larger = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("scattered"),
+                size: wgpu::Extent3d {
+                    width: texture.width() + origin[0] + number % 3,
+                    height: texture.height() + origin[1] + view,
+                    depth_or_array_layers: view + 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: texture.format(),
+                usage: texture.usage() | TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
+                view_formats: &[],
+            });
+            afterimage_testing::gpu::fill_level(queue, &larger, 0, 0xff);
+            (larger, origin)
+        };
+        Self { texture, places: (0..texture.depth_or_array_layers()).map(place).collect() }
+    }
+
+    /// Each view is in the last layer of its texture.
+    fn regions(&self) -> Vec<Region<'_>> {
+        let region = |(texture, origin_px): &'_ (Texture, _)| (texture.depth_or_array_layers() - 1, *origin_px);
+        let regions = self.places.iter().map(|place| (&place.0, region(place)));
+        regions.map(|(texture, (layer, origin_px))| Region { texture, origin_px, layer }).collect()
+    }
+
+    fn scatter(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.copy(encoder, |plain, place| (plain, place));
+    }
+
+    fn gather(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.copy(encoder, |plain, place| (place, plain));
+    }
+
+    fn copy<'t>(
+        &'t self,
+        encoder: &mut wgpu::CommandEncoder,
+        order: impl Fn(
+            wgpu::TexelCopyTextureInfo<'t>,
+            wgpu::TexelCopyTextureInfo<'t>,
+        ) -> (wgpu::TexelCopyTextureInfo<'t>, wgpu::TexelCopyTextureInfo<'t>),
+    ) {
+        for (view, (texture, [x, y])) in (0..).zip(&self.places) {
+            let at = |x, y, z| wgpu::Origin3d { x, y, z };
+            let plain = wgpu::TexelCopyTextureInfo { origin: at(0, 0, view), ..self.texture.as_image_copy() };
+            let place = wgpu::TexelCopyTextureInfo { origin: at(*x, *y, view), ..texture.as_image_copy() };
+            let (width, height) = (self.texture.width(), self.texture.height());
+            let (from, to) = order(plain, place);
+            encoder.copy_texture_to_texture(from, to, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+        }
+    }
+}
+
+fn debug_texture(device: &Device, context: &ContextDesc) -> Texture {
+    let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+    make_texture(device, context, TextureFormat::Rgba16Float, usage)
 }
 
 pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {

@@ -141,6 +141,12 @@ fn a_wrong_match_is_caught() {
 }
 
 #[test]
+fn a_wrong_size_is_caught() {
+    caught(surfaces::PROBES, "old_position", "* ratio - 0.5", "* ratio");
+    caught(surfaces::PROBES, "resized_lod", "lod + shift", "lod - shift");
+}
+
+#[test]
 fn a_wrong_antialiasing_is_caught() {
     caught(surfaces::PROBES, "to_ycocg", "0.5 * (r.x - r.z)", "0.5 * (r.z - r.x)");
     caught(surfaces::PROBES, "roots_of_ycocg", "outer - y.y", "outer + y.z");

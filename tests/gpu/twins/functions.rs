@@ -86,6 +86,11 @@ fn resample_is_bit_equal() {
 }
 
 #[test]
+fn resize_is_bit_equal() {
+    check_module(surfaces::PROBES, "resize");
+}
+
+#[test]
 fn taa_is_bit_equal() {
     check_module(surfaces::PROBES, "taa");
 }

@@ -5,6 +5,7 @@ use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
 use afterimage::kernel::resample;
 use afterimage::kernel::resample::{Gathered, Resampled};
+use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
 use afterimage::kernel::taa;
@@ -88,6 +89,34 @@ fn push_box(d: &mut Draws, row: &mut Vec<u32>, center: [f32; 3]) {
 }
 
 pub const PROBES: &[Probe] = &[
+    Probe {
+        name: "old_position",
+        module: "resize",
+        words: [3, 1],
+        wgsl: "out_f(old_position(in_u(0u), in_f(1u), in_u(2u)));",
+        rust: |r, o| o.f(resize::old_position(r.u(0), r.f(1), r.u(2))),
+        rows: || {
+            let ratios = [around(&[0.5, 1.0, 4.0 / 3.0]), floats(&[1.0 / 16384.0, 16384.0])].concat();
+            Rows::new(3)
+                .cross(&[&[0, 1, 2, 719, 16383], &ratios, &[1, 2, 1080, 16384]])
+                .random("old_position", |d, row| {
+                    row.extend([d.bits() % 16384, range(d, 0.1, 8.0), 1 + d.bits() % 16384])
+                })
+        },
+    },
+    Probe {
+        name: "resized_lod",
+        module: "resize",
+        words: [2, 1],
+        wgsl: "out_f(resized_lod(in_f(0u), in_f(1u)));",
+        rust: |r, o| o.f(resize::resized_lod(r.f(0), r.f(1))),
+        rows: || {
+            let lods = [around(&[0.5, 4.0, MAX_LOD]), floats(&[0.0])].concat();
+            Rows::new(2)
+                .cross(&[&lods, &floats(&[-14.0, -1.0, -0.1, 0.0, 0.1, 1.0, 14.0])])
+                .random("resized_lod", |d, row| row.extend([range(d, 0.0, 9.0), range(d, -3.0, 3.0)]))
+        },
+    },
     Probe {
         name: "half14_bits",
         module: "surface",

@@ -1,0 +1,70 @@
+//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs}_pass.wgsl`.
+
+use crate::kernel::depth::same_surface;
+use crate::kernel::resample::{Gathered, TAP_RELATIVE, TAPS, catmull_rom, gather, linear_weights, resolve, tap_at};
+use crate::kernel::resize::{old_position, resized_lod};
+use crate::kernel::sanitize::MAX_HALF;
+use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
+use crate::resize::Resize;
+use glam::Vec3;
+use rayon::prelude::*;
+
+impl Resize {
+    /// `values` of one view of the old size, at the nearest pixel of each pixel of the new size.
+    pub(super) fn nearest<T: Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
+        self.map(|x, y| values[self.index(self.nearest_to(self.old_position_of(x, y)))])
+    }
+
+    /// Packed surfaces of one view of the new size, from those of the old size.
+    pub(super) fn surfaces(&self, words: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let last = self.old_size_px.map(|s| s as i32 - 1);
+        let surface_at = |x: i32, y: i32| {
+            unpack_surface(words[self.index([x.clamp(0, last[0]) as u32, y.clamp(0, last[1]) as u32])])
+        };
+        self.map(|x, y| {
+            let position = self.old_position_of(x, y);
+            let nearest = self.nearest_to(position);
+            let nearest = surface_at(nearest[0] as i32, nearest[1] as i32);
+            if nearest.lod < 0.0 {
+                return pack_surface(Surface { color: Vec3::ZERO, ..nearest });
+            }
+            let whole = position.map(f32::floor);
+            let fraction = [position[0] - whole[0], position[1] - whole[1]];
+            let (sharp, smooth) = (fraction.map(catmull_rom), fraction.map(linear_weights));
+            let mut gathered = Gathered::default();
+            for tap in 0..TAPS {
+                let [i, j] = tap_at(tap);
+                let s = surface_at(whole[0] as i32 + i as i32 - 1, whole[1] as i32 + j as i32 - 1);
+                let alike = nearest.disparity < 0.0 || same_surface(nearest.disparity, s.disparity, TAP_RELATIVE, 0.0);
+                let [i, j] = [i as usize, j as usize];
+                let (sharp, smooth) = (sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
+                gathered = gather(gathered, s, s.lod >= 0.0 && alike, sharp, smooth);
+            }
+            let resampled = resolve(gathered, nearest);
+            pack_surface(Surface {
+                color: resampled.sharp.min(Vec3::splat(MAX_HALF)),
+                lod: resized_lod(resampled.lod, self.lod_shift),
+                disparity: nearest.disparity,
+            })
+        })
+    }
+
+    fn map<T: Send>(&self, pixel: impl Fn(u32, u32) -> T + Sync) -> Vec<T> {
+        let [width, height] = self.size_px;
+        (0..width * height).into_par_iter().map(|i| pixel(i % width, i / width)).collect()
+    }
+
+    fn index(&self, [x, y]: [u32; 2]) -> usize {
+        y as usize * self.old_size_px[0] as usize + x as usize
+    }
+
+    fn old_position_of(&self, x: u32, y: u32) -> [f32; 2] {
+        let [width, height] = self.old_size_px;
+        [old_position(x, self.ratio[0], width), old_position(y, self.ratio[1], height)]
+    }
+
+    fn nearest_to(&self, position: [f32; 2]) -> [u32; 2] {
+        let [width, height] = self.old_size_px;
+        [((position[0] + 0.5) as u32).min(width - 1), ((position[1] + 0.5) as u32).min(height - 1)]
+    }
+}

@@ -1,0 +1,32 @@
+//! Change of a context's size that keeps history, for both executors.
+
+use crate::uniforms::Held;
+
+/// Sizes before and after, and what follows from them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Resize {
+    pub old_size_px: [u32; 2],
+    pub size_px: [u32; 2],
+    /// Old size over new size, for each axis.
+    pub ratio: [f32; 2],
+    /// Change of levels of detail: log2 of the new over the old edge of a pixel's area.
+    pub lod_shift: f32,
+}
+
+impl Resize {
+    pub fn new(old_size_px: [u32; 2], size_px: [u32; 2]) -> Self {
+        let ratio = [0, 1].map(|i| old_size_px[i] as f32 / size_px[i] as f32);
+        Self { old_size_px, size_px, ratio, lod_shift: -0.5 * (ratio[0] * ratio[1]).log2() }
+    }
+
+    /// What is held of a view, in pixels of the new size.
+    pub fn held(&self, held: Held) -> Held {
+        let position = |px: [f32; 2]| [0, 1].map(|i| (px[i] + 0.5) / self.ratio[i] - 0.5);
+        let vector = |px: [f32; 2]| [0, 1].map(|i| px[i] / self.ratio[i]);
+        Held {
+            gaze_px: held.gaze_px.map(position),
+            jitter_px: vector(held.jitter_px),
+            previous_jitter_px: vector(held.previous_jitter_px),
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! View geometry and camera motion from an engine's matrices, and gazes in every form.
+
+use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
+use afterimage_testing::Draws;
+use glam::camera::rh::proj::{directx, opengl};
+use glam::camera::rh::view::look_to_mat4;
+use glam::{Mat4, Vec3, Vec4};
+
+const SIZE: [u32; 2] = [1600, 900];
+
+/// Projections of one field of view, with every depth range.
+fn projections(fov_y: f32, aspect: f32) -> [Mat4; 5] {
+    [
+        directx::perspective(fov_y, aspect, 0.1, 100.0),
+        opengl::perspective(fov_y, aspect, 0.1, 100.0),
+        directx::perspective_infinite(fov_y, aspect, 0.1),
+        directx::perspective_infinite_reverse(fov_y, aspect, 0.1),
+        // Reversed and finite: near and far swapped.
+        directx::perspective(fov_y, aspect, 100.0, 0.1),
+    ]
+}
+
+/// Off-axis projection of a headset's eye, from tangents; y up.
+fn off_axis([left, right]: [f32; 2], [down, up]: [f32; 2]) -> Mat4 {
+    let (width, height) = (right - left, up - down);
+    Mat4::from_cols(
+        Vec4::new(2.0 / width, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, 2.0 / height, 0.0, 0.0),
+        Vec4::new((right + left) / width, (up + down) / height, 0.0, -1.0),
+        Vec4::new(0.0, 0.0, 0.05, 0.0),
+    )
+}
+
+fn assert_same(a: ViewGeometry, b: ViewGeometry) {
+    for px in [[0.0, 0.0], [1599.0, 899.0], [300.0, 700.0]] {
+        let (a, b) = (a.ray(px), b.ray(px));
+        assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-5), "{a:?}, {b:?}");
+    }
+}
+
+#[test]
+fn a_projection_has_the_geometry_of_its_angles() {
+    let hfov = 80.0_f32;
+    let fov_y = 2.0 * ((0.5 * hfov.to_radians()).tan() * 900.0 / 1600.0).atan();
+    let flat = ViewGeometry::flat(SIZE, hfov).unwrap();
+    for matrix in projections(fov_y, 16.0 / 9.0) {
+        assert_same(ViewGeometry::from_projection(SIZE, matrix.to_cols_array_2d()).unwrap(), flat);
+    }
+    let eye = off_axis([-1.2, 0.9], [-1.0, 1.1]).to_cols_array_2d();
+    // y is down here: the top edge is -1.1.
+    assert_same(
+        ViewGeometry::from_projection(SIZE, eye).unwrap(),
+        ViewGeometry::off_axis(SIZE, [-1.2, 0.9], [-1.1, 1.0]).unwrap(),
+    );
+}
+
+#[test]
+fn matrices_that_are_no_perspective_projection_are_refused() {
+    let good = directx::perspective_infinite_reverse(1.0, 1.5, 0.1);
+    let refused = |matrix: Mat4| ViewGeometry::from_projection(SIZE, matrix.to_cols_array_2d()).unwrap_err().expected;
+    assert!(refused(directx::orthographic(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0)).contains("orthographic"));
+    assert!(
+        refused(glam::camera::lh::proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.1)).contains("left-handed")
+    );
+    assert!(refused(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * good).contains("y down"));
+    assert!(refused(good.transpose()).contains("transpose this one"));
+    assert!(refused(good * Mat4::from_rotation_y(0.3)).contains("not multiplied by a view"));
+    assert!(refused(Mat4::NAN).contains("finite"));
+    assert!(refused(Mat4::ZERO).contains("perspective"));
+}
+
+#[test]
+fn camera_motion_leads_a_point_to_where_it_was() {
+    let mut draws = Draws::new("camera motion");
+    let mut number = |low, high| draws.range(low, high);
+    for projection in projections(1.0, 16.0 / 9.0).into_iter().chain([off_axis([-1.2, 0.9], [-1.0, 1.1])]) {
+        // Far from the world's origin, as in large worlds.
+        let eye = Vec3::new(number(-500.0, 500.0), number(-500.0, 500.0), number(-500.0, 500.0));
+        let view = |eye: Vec3, yaw: f32| look_to_mat4(eye, Vec3::new(yaw.sin(), 0.1, -yaw.cos()), Vec3::Y);
+        let (now, before) = (view(eye, 0.30), view(eye + Vec3::new(0.2, -0.1, 0.15), 0.27));
+        let geometry = ViewGeometry::from_projection(SIZE, projection.to_cols_array_2d()).unwrap();
+        let [projection, vp, previous] =
+            [projection, projection * now, projection * before].map(|m| m.to_cols_array_2d());
+        let moved = ViewFrame::new(geometry, Gaze::Lost).moved(projection, vp, previous).unwrap();
+        let matrix = moved.previous_from_current.unwrap();
+        for _ in 0..20 {
+            // A point in view space, x right, y down, z forward.
+            let point = [number(-2.0, 2.0), number(-2.0, 2.0), number(2.0, 20.0)];
+            let world = now.inverse().transform_point3(Vec3::new(point[0], -point[1], -point[2]));
+            let expected = before.transform_point3(world) * Vec3::new(1.0, -1.0, -1.0);
+            let row = |i: usize| (0..3).map(|j| matrix[i][j] * point[j]).sum::<f32>() + matrix[i][3];
+            let found = Vec3::new(row(0), row(1), row(2));
+            assert!((found - expected).length() < 5e-3 * expected.length(), "{found} instead of {expected}");
+            // The planted error: the camera did not move.
+            assert!((Vec3::from(point) - expected).length() > 1e-2 * expected.length());
+        }
+    }
+    let projection = directx::perspective_infinite_reverse(1.0, 1.5, 0.1).to_cols_array_2d();
+    let view = ViewFrame::new(ViewGeometry::from_projection(SIZE, projection).unwrap(), Gaze::Lost);
+    let singular = view.moved(projection, [[0.0; 4]; 4], projection).unwrap_err();
+    assert_eq!((singular.setting, singular.expected.as_str()), ("clip_from_world", "finite numbers, and an inverse"));
+    assert_eq!(view.moved(projection, projection, [[f32::NAN; 4]; 4]).unwrap_err().setting, "previous_clip_from_world");
+}
+
+#[test]
+fn a_gaze_is_the_same_in_every_form() {
+    let geometry = ViewGeometry::off_axis(SIZE, [-1.2, 0.9], [-1.1, 1.0]).unwrap();
+    for px in [[-0.5, -0.5], [0.0, 0.0], [800.0, 450.0], [1599.5, 899.5], [1700.0, -30.0]] {
+        let uv = [(px[0] + 0.5) / 1600.0, (px[1] + 0.5) / 900.0];
+        let ray = geometry.ray(px).map(|v| 3.5 * v);
+        for gaze in [Gaze::At { px }, Gaze::Uv { uv }, Gaze::Direction { view: ray }] {
+            let found = gaze.resolve(Some([9.0, 9.0]), &geometry);
+            assert!((0..2).all(|i| (found[i] - px[i]).abs() < 1e-2), "{gaze:?}: {found:?} instead of {px:?}");
+        }
+    }
+    // Without a position the last known one is used, and before it the middle.
+    let lost = [
+        Gaze::Lost,
+        Gaze::At { px: [f32::NAN, 3.0] },
+        Gaze::Uv { uv: [0.5, f32::INFINITY] },
+        Gaze::Direction { view: [0.1, 0.2, -1.0] },
+        Gaze::Direction { view: [f32::NAN; 3] },
+        Gaze::Uv { uv: [0.5, 0.5] }.if_confident(0.2, 0.5),
+        Gaze::Uv { uv: [0.5, 0.5] }.if_confident(f32::NAN, 0.0),
+    ];
+    for gaze in lost {
+        assert_eq!(gaze.resolve(Some([9.0, 8.0]), &geometry), [9.0, 8.0], "{gaze:?}");
+        assert_eq!(gaze.resolve(None, &geometry), [799.5, 449.5], "{gaze:?}");
+    }
+    // Angles stay finite.
+    assert_eq!(Gaze::At { px: [1e30, -1e30] }.resolve(None, &geometry), [1e6, -1e6]);
+}
+
+#[test]
+fn wrong_jitters_and_depth_conventions_are_refused() {
+    use afterimage::cpu::{CpuAfterimage, Frame};
+    use afterimage::{DepthConvention, Image};
+    let size = [8, 6];
+    let mut post = CpuAfterimage::new(&ContextDesc::new(size)).unwrap();
+    let color = Image::filled(size, [0.5; 3]);
+    let good = ViewFrame::new(ViewGeometry::flat(size, 70.0).unwrap(), Gaze::Lost);
+    let mut refusal = |view: ViewFrame| {
+        let mut output = [color.clone()];
+        post.process(&Frame::new(&[&color], &[view], 0), &mut output).unwrap_err().to_string()
+    };
+    for jitter_px in [[f32::NAN, 0.0], [0.0, f32::INFINITY], [17.0, 0.0]] {
+        let text = refusal(ViewFrame { jitter_px, ..good });
+        assert!(text.starts_with("jitter_px of view 0 is (") && text.contains("at most 16 pixels"), "{text}");
+    }
+    let text = refusal(ViewFrame { depth: Some(DepthConvention::Reversed { near: 0.0, far: 1.0 }), ..good });
+    assert!(text.starts_with("depth convention of view 0 is near 0, far 1: expected planes"), "{text}");
+    let flat = Some(DepthConvention::Orthographic { near: 0.1, far: 9.0 });
+    let text = refusal(ViewFrame { depth: flat, previous_from_current: Some([[0.0; 4]; 4]), ..good });
+    assert!(text.contains("given with orthographic depth"), "{text}");
+}
