@@ -61,7 +61,7 @@ fn every_planted_error_in_the_pass_is_caught() {
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(px.x, px.y, frame.frame_low + 1u, constants.key)"),
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(0u, px.y, frame.frame_low, constants.key)"),
         // Inputs ignored: trust, exposure, depth.
-        ("past = scale_by_trust(past, textureLoad(trust_in, px, view, 0).x, SAMPLER);", ""),
+        ("past = scale_by_trust(past, trust_at(px, view), SAMPLER);", ""),
         ("past.color = expose(past.color, frame.exposure);", ""),
         ("if !is_same_surface(", "if false && !is_same_surface("),
         // Wrong counters.

@@ -79,7 +79,7 @@ const SHARED: &[(&str, &str)] = &[
     ("source.texel + vec2<i32>(at) - 1", "source.texel + vec2<i32>(at)"),
     ("catmull_rom(source.fraction.x)", "catmull_rom(source.fraction.y)"),
     // Inputs ignored (trust, exposure) and depth tests omitted.
-    ("confidence = trust(textureLoad(trust_in, px, view, 0).x);", ""),
+    ("confidence = trust(trust_at(px, view));", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
     ("if !is_same_surface(", "if false && !is_same_surface("),
     ("same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
@@ -129,7 +129,7 @@ fn every_planted_error_in_smr_is_caught() {
                 "textureLoad(past_mips, four.low, view, level - 1u)",
                 "textureLoad(past_mips, four.low, 1u - view, level - 1u)",
             ),
-            ("textureStore(next_mips, id.xy, group.z,", "textureStore(next_mips, id.xy, 1u - group.z,"),
+            ("textureStore(next_mips, id.xy, view,", "textureStore(next_mips, id.xy, 1u - view,"),
             ("first = past_level(at, level, view);", "first = past_level(at, min(level + 1u, last), view);"),
             (
                 "let second = past_level(at, min(level + 1u, last), view);",
@@ -192,7 +192,10 @@ fn every_planted_error_in_noisy_smr_is_caught() {
             ),
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
             // Stored noise not scaled to the exposure; two sigmas instead of three.
-            ("return expose_noise(stored, frame.exposure);", "return stored;"),
+            (
+                "return expose_noise(unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x), frame.exposure);",
+                "return unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x);",
+            ),
             ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
             // Weights of the mean, and confidence in a finer or a coarser history.
             ("history.samples / (history.samples + candidate.samples)", "0.5"),

@@ -1,4 +1,5 @@
 //#use inputs
+//#use output
 // Moves the bytes of wrs_pass with depth and motion, and computes nothing: the time that benches hold the passes
 // against. Bound in place of wrs_pass; the history that it leaves is worthless.
 
@@ -19,7 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     if px.x >= frame.size.x || px.y >= frame.size.y {
         return;
     }
-    let candidate = color(textureLoad(color_in, px, view, 0).xyz);
+    let candidate = color(color_at(px, view).xyz);
     let motion = textureLoad(motion_in, px, view, 0).xy;
     let depth = textureLoad(depth_in, px, view, 0).x;
     let words = textureLoad(past_colors, px, view, 0).xy;
