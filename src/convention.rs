@@ -99,8 +99,8 @@ impl MotionConvention {
         jittered: false,
     };
 
-    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. A jitter in
-    /// it remains: see [`jitter_offset`](Self::jitter_offset).
+    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. A jitter
+    /// in it remains: see [`jitter_offset`](Self::jitter_offset).
     #[doc(hidden)]
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
         let [w, h] = size_px.map(|s| s as f32);

@@ -193,8 +193,8 @@ pub(crate) fn camera_motion(
     let projection = matrix("clip_from_view", checked_projection(clip_from_view)?)?;
     let world_from_clip = matrix("clip_from_world", clip_from_world)?.inverse();
     let previous = matrix("previous_clip_from_world", previous_clip_from_world)?;
-    // Both frames have the same projection, or one that differs in field of view or planes only: the distance, which the
-    // depth test needs, is the previous clip w in either case.
+    // Both frames have the same projection, or one that differs in field of view or planes only: the distance, which
+    // the depth test needs, is the previous clip w in either case.
     let previous_from_current = projection.inverse() * previous * world_from_clip * projection;
     let flip = DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
     let rows = (flip * previous_from_current * flip).transpose();

@@ -173,7 +173,8 @@ pub fn array_view(texture: &Texture) -> TextureView {
     levels_view(texture, 0, Some(1), None)
 }
 
-/// View of one layer, or of all, as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first` on.
+/// View of one layer, or of all, as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first`
+/// on.
 pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>, layer: Option<u32>) -> TextureView {
     let aspect =
         if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };

@@ -311,7 +311,8 @@ impl Afterimage {
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
     /// color, into the target's output. Counters, if any, are those of `record`. History is unchanged: call it before
-    /// `record`, with another output, for any number of views. A [`DebugTarget`] is faster: it needs no pass of its own.
+    /// `record`, with another output, for any number of views. A [`DebugTarget`] is faster: it needs no pass of its
+    /// own.
     ///
     /// ```no_run
     /// # fn example(

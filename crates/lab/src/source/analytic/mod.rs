@@ -170,6 +170,19 @@ impl AnalyticSource {
         Some(image(self.info.size, pixels))
     }
 
+    /// Frame `index` of a projection that is jittered by `jitter_px` (what is at `p` without jitter is at
+    /// `p + jitter_px`), with one color sample a pixel, as a rasterizer draws it. Motion vectors contain no jitter.
+    ///
+    /// # Panics
+    /// If the jitter is not finite.
+    pub fn jittered_frame(&self, index: u64, jitter_px: [f32; 2]) -> SourceFrame {
+        let [width, height] = self.info.size.map(|s| s as f32);
+        let first = self.view.ray([-0.5 - jitter_px[0], -0.5 - jitter_px[1]]);
+        let last = self.view.ray([width - 0.5 - jitter_px[0], height - 0.5 - jitter_px[1]]);
+        let view = ViewGeometry::off_axis(self.info.size, [first[0], last[0]], [first[1], last[1]]);
+        self.cast(index, &view.expect("finite tangents"), &Pattern::new(1))
+    }
+
     fn caster<'a>(&'a self, stage: &'a Stage) -> Caster<'a> {
         Caster::new(stage, &self.view, &self.pattern)
     }
@@ -187,9 +200,9 @@ impl AnalyticSource {
         stage
     }
 
-    fn cast(&self, index: u64) -> SourceFrame {
+    fn cast(&self, index: u64, view: &ViewGeometry, pattern: &Pattern) -> SourceFrame {
         let stage = self.stage(index);
-        let caster = self.caster(&stage);
+        let caster = Caster::new(&stage, view, pattern);
         let empty = Geometry { depth: f32::INFINITY, motion: [0.0; 2] };
         let pixels =
             caster.render(([0.0; 3], empty), |x, y, tile| (caster.color(x, y, tile), caster.geometry(x, y, tile)));
@@ -211,7 +224,7 @@ impl AnalyticSource {
         if let Some(base) = &self.base {
             return base.clone();
         }
-        let base = self.cast(0);
+        let base = self.cast(0, &self.view, &self.pattern);
         self.base.insert(base).clone()
     }
 
@@ -246,7 +259,7 @@ impl FrameSource for AnalyticSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let mut frame = match self.kind {
-            Kind::Lateral | Kind::Turn | Kind::Occluder => self.cast(index),
+            Kind::Lateral | Kind::Turn | Kind::Occluder => self.cast(index, &self.view, &self.pattern),
             Kind::Still => self.cached(),
             Kind::Scroll => self.scrolled(index),
             Kind::LightStep => {
