@@ -190,8 +190,8 @@ fn record_compiles_nothing_after_prewarm() {
                 trust: variant.trust.then_some((&one).into()),
                 lod: variant.lod.then_some((&one).into()),
                 noise: settings.noisy.then_some((&two).into()),
-                exposure: if index % 3 == 0 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same },
-                reset: if index % 5 == 0 { Reset::All } else { Reset::None },
+                exposure: if index.is_multiple_of(3) { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same },
+                reset: if index.is_multiple_of(5) { Reset::All } else { Reset::None },
                 ..Frame::new(
                     if variant.regions { Textures::Regions(&region) } else { (&color).into() },
                     &views,

@@ -62,10 +62,7 @@ fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
         afterimage_testing::gpu::write_layer(&rig.queue, &rig.full, 0, bytemuck::cast_slice(&halves));
         let scene = Scene::mono(nasty(SIZE, "unused"), [40.0, 30.0]);
         let mut encoder = rig.device.create_command_encoder(&Default::default());
-        let frame = SimulatorFrame {
-            lod: Some((&rig.lod).into()),
-            ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views)
-        };
+        let frame = SimulatorFrame { lod: Some(&rig.lod), ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views) };
         rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
         rig.queue.submit([encoder.finish()]);
         let words = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.output);
@@ -107,7 +104,7 @@ fn what_does_not_fit_is_refused_and_nothing_recorded() {
     let larger = texture(&device, &desc([98, 61], 1, Foveation::default()), TextureFormat::Rgba16Float, read);
     let views = [looking(ViewGeometry::flat(SIZE, 70.0).unwrap(), [0.0, 0.0])];
     let other = [looking(ViewGeometry::flat([98, 61], 70.0).unwrap(), [0.0, 0.0])];
-    let good = SimulatorFrame { lod: Some((&lod).into()), ..SimulatorFrame::new(&full, &output, &views) };
+    let good = SimulatorFrame { lod: Some(&lod), ..SimulatorFrame::new(&full, &output, &views) };
     let mut encoder = device.create_command_encoder(&Default::default());
     let mut refused = |frame: SimulatorFrame<'_>| post.record(&device, &mut encoder, &frame).unwrap_err();
     assert!(matches!(refused(SimulatorFrame { views: &[], ..good }), FrameError::ViewCount { .. }));
@@ -117,8 +114,8 @@ fn what_does_not_fit_is_refused_and_nothing_recorded() {
         (SimulatorFrame { full: &scalar, ..good }, "the full-rate frame is a texture of format R32Float"),
         (SimulatorFrame { full: &output, ..good }, "TEXTURE_BINDING"),
         (SimulatorFrame { output: &half, ..good }, "output is a texture of format Rgba16Float, the wrong format"),
-        (SimulatorFrame { lod: Some((&scalar).into()), ..good }, "STORAGE_BINDING"),
-        (SimulatorFrame { lod: Some((&half).into()), ..good }, "levels of detail is a texture of format Rgba16Float"),
+        (SimulatorFrame { lod: Some(&scalar), ..good }, "STORAGE_BINDING"),
+        (SimulatorFrame { lod: Some(&half), ..good }, "levels of detail is a texture of format Rgba16Float"),
     ] {
         let message = refused(frame).to_string();
         assert!(message.contains(words), "{message}");

@@ -110,10 +110,8 @@ impl Rig {
         self.upload(&scene.images);
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
-            let frame = SimulatorFrame {
-                lod: Some((&self.lod).into()),
-                ..SimulatorFrame::new(&self.full, &self.output, &scene.views)
-            };
+            let frame =
+                SimulatorFrame { lod: Some(&self.lod), ..SimulatorFrame::new(&self.full, &self.output, &scene.views) };
             self.post.record(&self.device, &mut encoder, &frame).unwrap();
             self.queue.submit([encoder.finish()]);
         });
