@@ -46,8 +46,8 @@ pub(crate) fn check(
 ///
 /// # #[cfg(feature = "gpu")]
 /// # {
-/// use afterimage::CreateError;
 /// use afterimage::gpu::Afterimage;
+/// use afterimage::{CreateError, wgpu};
 ///
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 /// let desc = ContextDesc::new([640, 360]);
@@ -92,6 +92,7 @@ pub enum CreateError {
 ///
 /// # #[cfg(feature = "gpu")]
 /// # {
+/// # use afterimage::wgpu;
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 /// # let desc = afterimage::ContextDesc::new([640, 360]);
 /// # let mut post = afterimage::gpu::Afterimage::new(&device, &desc, wgpu::TextureFormat::Rgba16Float).unwrap();

@@ -15,6 +15,7 @@ pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 /// the texture alone.
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// # fn example<'a>(output: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
 /// use afterimage::gpu::Target;
 ///
@@ -51,6 +52,7 @@ impl<'a> From<&'a Texture> for Target<'a> {
 /// Timestamp queries around the passes of a frame.
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// # fn example<'a>(output: &'a wgpu::Texture, queries: &'a wgpu::QuerySet) {
 /// use afterimage::gpu::{Target, Timestamps};
 ///

@@ -124,8 +124,8 @@ impl Afterimage {
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
     ///
     /// ```
-    /// use afterimage::ContextDesc;
     /// use afterimage::gpu::Afterimage;
+    /// use afterimage::{ContextDesc, wgpu};
     ///
     /// let desc = ContextDesc::new([1920, 1080]);
     /// let device = wgpu::DeviceDescriptor { required_limits: Afterimage::required_limits(&desc), ..Default::default() };
@@ -227,6 +227,7 @@ impl Afterimage {
     /// `record`, with another output.
     ///
     /// ```no_run
+    /// # use afterimage::wgpu;
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
     /// #     frame: &afterimage::gpu::Frame<'_>, debug_output: &wgpu::Texture, output: &wgpu::Texture,

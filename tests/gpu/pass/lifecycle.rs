@@ -3,12 +3,12 @@
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, Method, MotionConvention, MotionDirection,
     MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, YAxis,
 };
 use afterimage_testing::holds;
-use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [70, 40];
 
