@@ -60,8 +60,8 @@
 //!
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
 #![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
-//!   records compute passes into your wgpu command encoder. The feature `wgpu-30`, on by default, or else `wgpu-29` says
-//!   which major version of wgpu that is; [`wgpu`] is it. The application chooses its backends.
+//!   records compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on by default) or wgpu 29
+//!   (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends.
 #![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
 #![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
 //!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
@@ -87,6 +87,7 @@ compile_error!(
      default, or `wgpu-29` with `default-features = false`"
 );
 
+// The name `wgpu` for the chosen version, in this crate and for its users.
 #[cfg(feature = "wgpu-29")]
 pub extern crate wgpu_29 as wgpu;
 #[cfg(all(feature = "gpu", not(feature = "wgpu-29")))]

@@ -137,11 +137,7 @@ pub fn run_probe(
 }
 
 /// Waits for submitted work and reads a buffer with usage `COPY_SRC`: values of `T`.
-pub fn read_buffer<T: bytemuck::Pod>(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    buffer: &wgpu::Buffer,
-) -> Vec<T> {
+pub fn read_buffer<T: bytemuck::Pod>(device: &wgpu::Device, queue: &wgpu::Queue, buffer: &wgpu::Buffer) -> Vec<T> {
     let (sender, receiver) = mpsc::channel();
     wgpu::util::DownloadBuffer::read_buffer(device, queue, &buffer.slice(..), move |bytes| {
         let _ = sender.send(bytes.map(|bytes| bytes.to_vec()));
