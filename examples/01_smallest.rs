@@ -5,9 +5,9 @@
 mod headless;
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use headless::Headless;
-use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [256, 64];
 

@@ -6,9 +6,9 @@
 mod headless;
 
 use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::wgpu::{self, Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 use afterimage::{COUNTERS_BYTES, ContextDesc, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
 use headless::Headless;
-use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
 /// Event of the application before a frame.
 #[derive(Clone, Copy)]

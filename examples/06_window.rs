@@ -8,9 +8,9 @@
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::wgpu::{self, CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
 use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use std::{error::Error, sync::Arc};
-use wgpu::{CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
@@ -133,6 +133,9 @@ impl App {
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&self.device, &mut encoder, &output, &screen);
         self.queue.submit([encoder.finish()]);
+        #[cfg(feature = "wgpu-29")]
+        target.present();
+        #[cfg(feature = "wgpu-30")]
         self.queue.present(target);
         self.index += 1;
         Ok(())

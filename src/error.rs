@@ -42,12 +42,13 @@ pub(crate) fn check(
 /// A context that cannot be created.
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// use afterimage::ContextDesc;
 ///
 /// # #[cfg(feature = "gpu")]
 /// # {
-/// use afterimage::CreateError;
 /// use afterimage::gpu::Afterimage;
+/// use afterimage::{CreateError, wgpu};
 ///
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 /// let desc = ContextDesc::new([640, 360]);
@@ -92,6 +93,7 @@ pub enum CreateError {
 ///
 /// # #[cfg(feature = "gpu")]
 /// # {
+/// # use afterimage::wgpu;
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 /// # let desc = afterimage::ContextDesc::new([640, 360]);
 /// # let mut post = afterimage::gpu::Afterimage::new(&device, &desc, wgpu::TextureFormat::Rgba16Float).unwrap();

@@ -259,6 +259,8 @@ pub trait Executor {
 ///
 /// ```
 /// # #[cfg(feature = "gpu")]
+/// # use afterimage::wgpu;
+/// # #[cfg(feature = "gpu")]
 /// # fn example(color: &wgpu::Texture, depth: &wgpu::Texture, motion: &wgpu::Texture, views: &[afterimage::ViewFrame]) {
 /// use afterimage::Reset;
 /// use afterimage::gpu::Frame;

@@ -9,6 +9,7 @@
 //!
 #![cfg_attr(feature = "gpu", doc = "```")]
 #![cfg_attr(not(feature = "gpu"), doc = "```ignore")]
+//! # use afterimage::wgpu;
 //! # let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
 //! # let texture = |usage| device.create_texture(&wgpu::TextureDescriptor {
 //! #     label: None,
@@ -59,8 +60,8 @@
 //!
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
 #![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
-//!   (feature `gpu`, on by default) records compute passes into your wgpu command encoder. The application chooses
-//!   wgpu's backends.
+//!   records compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on by default) or wgpu 29
+//!   (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends.
 #![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
 #![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
 //!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
@@ -75,7 +76,22 @@
 //! metrics.
 
 #[cfg(not(any(feature = "cpu", feature = "gpu")))]
-compile_error!("afterimage has no executor: enable the feature `gpu` (wgpu) or `cpu` (images in memory)");
+compile_error!(
+    "afterimage has no executor: enable one of the features `wgpu-30`, `wgpu-29` and `cpu` (images in memory)"
+);
+#[cfg(all(feature = "gpu", not(any(feature = "wgpu-29", feature = "wgpu-30"))))]
+compile_error!("afterimage has no wgpu: enable the feature `wgpu-30` or `wgpu-29`, the one that your application uses");
+#[cfg(all(feature = "wgpu-29", feature = "wgpu-30"))]
+compile_error!(
+    "afterimage works with one major version of wgpu at a time: enable either the feature `wgpu-30`, which is on by \
+     default, or `wgpu-29` with `default-features = false`"
+);
+
+// The name `wgpu` for the chosen version, in this crate and for its users.
+#[cfg(feature = "wgpu-29")]
+pub extern crate wgpu_29 as wgpu;
+#[cfg(all(feature = "gpu", not(feature = "wgpu-29")))]
+pub extern crate wgpu_30 as wgpu;
 
 mod convention;
 #[cfg(feature = "cpu")]

@@ -2,11 +2,11 @@
 //! CPU time; a real one spends none, and there the elapsed time counts.
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use rustix::time::{ClockId, clock_gettime};
-use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [320, 180];
 

@@ -1,8 +1,8 @@
 //! Ten thousand frames with resizes leak no memory. A file of its own, for a process of its own.
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
-use wgpu::{TextureFormat, TextureUsages};
 
 #[test]
 fn ten_thousand_frames_with_resizes_leak_nothing() {

@@ -6,8 +6,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
-# Every package with every feature: one set of features, so that tests, examples and documentation share compiled dependencies.
-everything=(--locked --workspace --all-features)
+# Every package with every feature, on the newest wgpu: one set of features, so that tests, examples and documentation share
+# compiled dependencies. Not --all-features, since wgpu-30 and wgpu-29 exclude each other.
+everything=(--locked --workspace --features cpu,serde,view,ablation)
+# The same on the other wgpu.
+everything_29=(--locked --workspace --no-default-features --features wgpu-29,cpu,serde,view,ablation)
 target="${CARGO_TARGET_DIR:-target}"
 # Incremental compilation pays off in later builds only, and costs time in this one.
 export CARGO_INCREMENTAL=0
@@ -40,6 +43,7 @@ cargo fmt --check
 
 step "lints: every target, and the combinations of features that users build"
 cargo clippy "${everything[@]}" --all-targets -- -D warnings
+cargo clippy "${everything_29[@]}" --lib --bins --examples -- -D warnings
 cargo clippy --locked -p afterimage -- -D warnings
 cargo clippy --locked -p afterimage --no-default-features --features cpu -- -D warnings
 # What `cargo demo` builds.
@@ -47,12 +51,12 @@ cargo clippy --locked -p afterimage-cli --no-default-features -- -D warnings
 # The fuzzing targets have a lock file of their own, which changes of dependencies must not leave behind.
 cargo metadata --locked --format-version 1 --manifest-path crates/tool/tests/fuzz/Cargo.toml >/dev/null
 
-step "the drop-in against wgpu 29"
-tests/wgpu29.sh
-
 if [ ! -d ../shared/data ]; then
     printf '\nWARNING: no ../shared/data here: tests on rendered sequences and recorded scanpaths are SKIPPED\n'
 fi
+
+step "tests on wgpu 29: the drop-in on the GPU, the renderers' twins, lost devices, arithmetic"
+cargo test "${everything_29[@]}" --test gpu --test gpu_cost --test gpu_memory --test twins --test device_loss --test self_test
 
 step "tests"
 # Tests of hard cases write what they measure here. When all have run, it is compared with the table in docs/stability.md.

@@ -1,7 +1,8 @@
 //! A device without a window, with uploads and downloads of textures, for the examples.
 #![allow(dead_code, reason = "no example uses all of it")]
 
-use wgpu::{Buffer, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
+use afterimage::wgpu::util::DownloadBuffer;
+use afterimage::wgpu::{self, Buffer, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
 
 /// A device and its queue.
 pub struct Headless {
@@ -64,7 +65,7 @@ impl Headless {
     /// All pixels of a layer of an `Rgba32Float` texture whose width is a multiple of 16, row after row.
     pub fn read(&self, texture: &Texture, layer: u32) -> Vec<[f32; 4]> {
         let (width, height) = (texture.width(), texture.height());
-        let buffer = self.buffer(u64::from(width * height * 16), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let buffer = self.buffer(u64::from(width * height * 16), BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let mut from = texture.as_image_copy();
         from.origin.z = layer;
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 16), rows_per_image: None };
@@ -72,21 +73,16 @@ impl Headless {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
         encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, size);
         self.submit(encoder);
-        bytemuck::cast_slice(&self.map(&buffer)).to_vec()
+        bytemuck::pod_collect_to_vec(&self.read_buffer(&buffer))
     }
 
     /// The bytes of a buffer with the usage `COPY_SRC`.
     pub fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
-        let buffer = self.buffer(from.size(), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-        let mut encoder = self.encoder();
-        encoder.copy_buffer_to_buffer(from, 0, &buffer, 0, from.size());
-        self.submit(encoder);
-        self.map(&buffer)
-    }
-
-    fn map(&self, buffer: &Buffer) -> Vec<u8> {
-        buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("the buffer maps"));
+        let (sender, receiver) = std::sync::mpsc::channel();
+        DownloadBuffer::read_buffer(&self.device, &self.queue, &from.slice(..), move |bytes| {
+            let _ = sender.send(bytes.expect("the buffer maps").to_vec());
+        });
         self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        buffer.get_mapped_range(..).expect("the buffer is mapped").to_vec()
+        receiver.recv().expect("the buffer was mapped")
     }
 }

@@ -1,6 +1,6 @@
 //! Buffers with initial contents.
 
-use wgpu::{Buffer, BufferUsages, BufferViewMut, Device};
+use wgpu::{Buffer, BufferUsages, Device};
 
 /// A buffer that contains `bytes`, whose length must be a multiple of 4; at least 4 bytes large. Not wgpu's
 /// `create_buffer_init`, which panics on a lost device (H77).
@@ -12,27 +12,29 @@ pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -
         usage,
         mapped_at_creation: true,
     });
-    if buffer.slice(..).get_mapped_range_mut().fill(bytes) {
+    // On a lost device the buffer is not mapped. wgpu 30 says so, wgpu 29 panics.
+    #[cfg(feature = "wgpu-29")]
+    let mapped = (!is_lost(device)).then(|| buffer.get_mapped_range_mut(..));
+    #[cfg(feature = "wgpu-30")]
+    let mapped = buffer.get_mapped_range_mut(..).ok();
+    if let Some(mut mapped) = mapped {
+        mapped.copy_from_slice(bytes);
+        drop(mapped);
         buffer.unmap();
     }
     buffer
 }
 
-/// Result of mapping a buffer: a view in wgpu 29, a `Result` in wgpu 30, which is an error on a lost device.
-trait Mapped {
-    /// Writes `bytes`; returns whether the buffer is mapped.
-    fn fill(self, bytes: &[u8]) -> bool;
-}
-
-impl Mapped for BufferViewMut {
-    fn fill(mut self, bytes: &[u8]) -> bool {
-        self.copy_from_slice(bytes);
-        true
-    }
-}
-
-impl<E> Mapped for Result<BufferViewMut, E> {
-    fn fill(self, bytes: &[u8]) -> bool {
-        self.is_ok_and(|view| view.fill(bytes))
-    }
+/// Whether the device is lost, which wgpu reports to the application only: a buffer that cannot be unmapped is a
+/// validation error. Devices do not recover, so that all buffers from before are valid if this one is.
+#[cfg(feature = "wgpu-29")]
+fn is_lost(device: &Device) -> bool {
+    use std::future::Future;
+    use std::task::{Context, Poll, Waker};
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let desc =
+        wgpu::BufferDescriptor { label: None, size: 4, usage: BufferUsages::MAP_WRITE, mapped_at_creation: true };
+    device.create_buffer(&desc).unmap();
+    let error = std::pin::pin!(scope.pop()).poll(&mut Context::from_waker(Waker::noop()));
+    matches!(error, Poll::Ready(Some(_)))
 }

@@ -28,6 +28,7 @@ impl<'a> Frame<'a> {
 /// also accepts a texture alone.
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// # fn example<'a>(output: &'a wgpu::Texture, view: &'a wgpu::Texture, counters: &'a wgpu::Buffer) {
 /// use afterimage::DebugView;
 /// use afterimage::gpu::{DebugTarget, Target};
@@ -91,6 +92,7 @@ impl<'a> From<Textures<'a>> for Target<'a> {
 /// color and output alone.
 ///
 /// ```no_run
+/// # use afterimage::wgpu;
 /// # fn example(post: &afterimage::gpu::Afterimage, device: &wgpu::Device) {
 /// use afterimage::gpu::Variant;
 ///
@@ -143,6 +145,7 @@ impl Variant {
 /// Timestamp queries around the passes of a frame.
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// # fn example<'a>(output: &'a wgpu::Texture, queries: &'a wgpu::QuerySet) {
 /// use afterimage::gpu::{Target, Timestamps};
 ///

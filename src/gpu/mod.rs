@@ -138,8 +138,9 @@ impl Afterimage {
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
     ///
     /// ```
-    /// use afterimage::ContextDesc;
+    /// # use afterimage::wgpu;
     /// use afterimage::gpu::Afterimage;
+    /// use afterimage::{ContextDesc, wgpu};
     ///
     /// let desc = ContextDesc::new([1920, 1080]);
     /// let device = wgpu::DeviceDescriptor { required_limits: Afterimage::required_limits(&desc), ..Default::default() };
@@ -315,6 +316,7 @@ impl Afterimage {
     /// own.
     ///
     /// ```no_run
+    /// # use afterimage::wgpu;
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
     /// #     frame: &afterimage::gpu::Frame<'_>, views: &[wgpu::Texture; 2], output: &wgpu::Texture,

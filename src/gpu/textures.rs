@@ -10,6 +10,7 @@ use wgpu::{Texture, TextureView};
 /// (a view in the corner of a larger texture), atlases and double-wide stereo, and for one texture an eye:
 ///
 /// ```
+/// # use afterimage::wgpu;
 /// # fn example(color: &wgpu::Texture, depth: &wgpu::Texture, left: &wgpu::Texture, right: &wgpu::Texture) {
 /// use afterimage::gpu::{Region, Textures};
 ///

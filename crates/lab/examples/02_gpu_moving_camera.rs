@@ -3,10 +3,10 @@
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, Verdict, ViewFrame};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::{AnalyticSource, FrameSource};
-use wgpu::{TextureFormat, TextureUsages};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::find(true).ok_or("no adapter")?;

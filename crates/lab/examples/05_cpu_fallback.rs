@@ -5,13 +5,13 @@
 use afterimage::cpu::{self, CpuAfterimage};
 use afterimage::gpu::{self, Afterimage};
 use afterimage::simulator::Pyramid;
+use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::sync::Arc;
-use wgpu::{Texture, TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [320, 180];
 

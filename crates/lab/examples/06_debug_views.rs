@@ -4,12 +4,12 @@
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::simulator::Pyramid;
+use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, DebugView, Foveation, Gaze, Image, ViewFrame};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
-use wgpu::{TextureFormat, TextureUsages};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::find(true).ok_or("no adapter")?;

@@ -7,6 +7,12 @@
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
+// The name `wgpu` for the chosen version.
+#[cfg(feature = "wgpu-29")]
+extern crate wgpu_29 as wgpu;
+#[cfg(feature = "wgpu-30")]
+extern crate wgpu_30 as wgpu;
+
 pub mod clock;
 pub mod device;
 pub mod error;

@@ -1,5 +1,6 @@
 //! Every part that can be left out of the passes is there, and leaving it out changes what is shown.
 
+use afterimage::wgpu::naga;
 use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::ablation::{PARTS, Part};

@@ -1,5 +1,6 @@
 //! What `afterimage info adapters --self-test` asks, on the adapter of this machine: hard case H84.
 
+use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use afterimage_lab::self_test::self_test;
 use afterimage_testing::holds;

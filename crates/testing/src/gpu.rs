@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 use std::io::Write;
-use std::sync::OnceLock;
+use std::sync::{OnceLock, mpsc};
 
 /// Initial value of every word of a probe's output. A word that keeps it was not written, and fails the comparison.
 pub const SENTINEL: u32 = 0xdead_beef;
@@ -25,7 +25,9 @@ fn find_adapter() -> Option<wgpu::Adapter> {
     match pollster::block_on(instance.request_adapter(&options)) {
         Ok(adapter) => {
             let info = adapter.get_info();
-            say(&format!("adapter: {}, {}, {}, {:?}", info.name, info.driver, info.driver_info, info.backend));
+            let wgpu = if cfg!(feature = "wgpu-29") { "wgpu 29" } else { "wgpu 30" };
+            let (name, driver, version, backend) = (&info.name, &info.driver, &info.driver_info, info.backend);
+            say(&format!("adapter: {name}, {driver}, {version}, {backend:?}, {wgpu}"));
             Some(adapter)
         }
         Err(error) => {
@@ -117,7 +119,6 @@ pub fn run_probe(
             bytes,
             wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
         );
-        let readback = buffer("probe readback", bytes, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
         queue.write_buffer(&input, 0, bytemuck::cast_slice(inputs));
         queue.write_buffer(&output, 0, bytemuck::cast_slice(&vec![SENTINEL; out_words]));
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -135,14 +136,20 @@ pub fn run_probe(
             pass.set_bind_group(0, &group, &[]);
             pass.dispatch_workgroups((out_words as u32).div_ceil(WORKGROUP), 1, 1);
         }
-        encoder.copy_buffer_to_buffer(&output, 0, &readback, 0, bytes);
         queue.submit([encoder.finish()]);
-        readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("the readback maps"));
-        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        let words = bytemuck::cast_slice(&readback.get_mapped_range(..).expect("the readback is mapped")).to_vec();
-        readback.unmap();
-        words
+        read_buffer(device, queue, &output)
     })
+}
+
+/// Waits for submitted work and reads a buffer with usage `COPY_SRC`: values of `T`.
+pub fn read_buffer<T: bytemuck::Pod>(device: &wgpu::Device, queue: &wgpu::Queue, buffer: &wgpu::Buffer) -> Vec<T> {
+    let (sender, receiver) = mpsc::channel();
+    wgpu::util::DownloadBuffer::read_buffer(device, queue, &buffer.slice(..), move |bytes| {
+        let _ = sender.send(bytes.map(|bytes| bytes.to_vec()));
+    });
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    let bytes = receiver.recv().expect("the callback ran").expect("the buffer maps");
+    bytemuck::pod_collect_to_vec(&bytes)
 }
 
 /// Writes one array layer of a texture.
@@ -181,7 +188,7 @@ pub fn read_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
         size: u64::from(padded) * u64::from(rows),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
     let layout =
@@ -193,11 +200,6 @@ pub fn read_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::
         texture.size(),
     );
     queue.submit([encoder.finish()]);
-    buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-    let mapped = buffer.get_mapped_range(..).expect("the readback is mapped");
-    mapped
-        .chunks_exact(padded as usize)
-        .flat_map(|r| bytemuck::cast_slice::<u8, u32>(&r[..row as usize]).to_vec())
-        .collect()
+    let words: Vec<u32> = read_buffer(device, queue, &buffer);
+    words.chunks_exact(padded as usize / 4).flat_map(|r| &r[..row as usize / 4]).copied().collect()
 }

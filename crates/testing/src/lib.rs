@@ -1,6 +1,13 @@
 //! Helpers shared by tests: statistical tests with printed p-values, independent seeds, GPU access, the register of
 //! hard cases.
 
+// The name `wgpu` for the chosen version.
+#[cfg(feature = "wgpu-29")]
+extern crate wgpu_29 as wgpu;
+#[cfg(all(feature = "wgpu-30", not(feature = "wgpu-29")))]
+extern crate wgpu_30 as wgpu;
+
+#[cfg(any(feature = "wgpu-29", feature = "wgpu-30"))]
 pub mod gpu;
 pub mod hard_case;
 pub mod panics;

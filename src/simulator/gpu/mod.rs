@@ -56,6 +56,7 @@ impl<'a> SimulatorFrame<'a> {
 /// for [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
 ///
 /// ```no_run
+/// # use afterimage::wgpu;
 /// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
 /// #     views: &[afterimage::ViewFrame]) -> Result<(), Box<dyn std::error::Error>> {
 /// use afterimage::ContextDesc;

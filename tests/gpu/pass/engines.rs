@@ -4,11 +4,11 @@
 use super::rig::{Rig, View, make_texture, noise, noise_view};
 use afterimage::gpu::{Afterimage, Frame, Region, Target, Textures, Variant};
 use afterimage::shader::SHADERS;
+use afterimage::wgpu::{self, Features, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Image, Method, MotionConvention, Reset, Settings,
     ViewFrame,
 };
-use wgpu::{Features, TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [70, 41];
 

@@ -3,6 +3,7 @@
 use afterimage::gpu::uniforms::{CandidateUniforms, FrameUniforms, MAX_VIEWS, ViewUniforms};
 use afterimage::shader::SHADERS;
 use afterimage::simulator::gpu::uniforms::FoveationUniforms;
+use afterimage::wgpu::naga;
 use std::mem::offset_of;
 
 /// Name and offset of each member of a WGSL struct, and its size.

@@ -6,12 +6,12 @@ use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
+use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
     COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Gaze, Image, Reset, Settings,
     ViewFrame, ViewGeometry,
 };
 use afterimage_testing::Draws;
-use wgpu::{Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 
 /// Images of one view of one frame.
 #[derive(Clone)]
@@ -351,24 +351,8 @@ impl Rig {
     }
 
     fn read_counters(&self) -> FrameStats {
-        let readback = self.readback(COUNTERS_BYTES);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&self.counters, 0, &readback, 0, COUNTERS_BYTES);
-        FrameStats::from_counters(&self.bytes(encoder, &readback)).unwrap()
-    }
-
-    fn readback(&self, size: u64) -> Buffer {
-        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let desc = wgpu::BufferDescriptor { label: Some("readback"), size, usage, mapped_at_creation: false };
-        self.device.create_buffer(&desc)
-    }
-
-    /// Contents of a readback buffer after the recorded commands.
-    fn bytes(&self, encoder: wgpu::CommandEncoder, buffer: &Buffer) -> Vec<u8> {
-        self.queue.submit([encoder.finish()]);
-        buffer.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        buffer.get_mapped_range(..).expect("the readback is mapped").to_vec()
+        let bytes: Vec<u8> = afterimage_testing::gpu::read_buffer(&self.device, &self.queue, &self.counters);
+        FrameStats::from_counters(&bytes).unwrap()
     }
 
     fn upload(&self, views: &[View]) {

@@ -5,8 +5,8 @@ use afterimage::gpu::Timestamps;
 use afterimage::kernel::pack::half_bits;
 use afterimage::shader::SHADERS;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
-use wgpu::{TextureFormat, TextureUsages};
 
 const SIZE: [u32; 2] = [97, 61];
 
@@ -142,11 +142,12 @@ fn the_device_times_all_passes_of_a_filter() {
         ty: wgpu::QueryType::Timestamp,
         count: 2,
     });
-    let buffer = |usage| {
-        rig.device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false })
-    };
-    let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
-    let readback = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+    let resolved = rig.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 16,
+        usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
     let scene = Scene::mono(nasty([640, 360], "timed"), [0.0, 0.0]);
     let mut encoder = rig.device.create_command_encoder(&Default::default());
     let frame = SimulatorFrame {
@@ -155,11 +156,8 @@ fn the_device_times_all_passes_of_a_filter() {
     };
     rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
     encoder.resolve_query_set(&queries, 0..2, &resolved, 0);
-    encoder.copy_buffer_to_buffer(&resolved, 0, &readback, 0, 16);
     rig.queue.submit([encoder.finish()]);
-    readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-    rig.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let ticks: Vec<u64> = bytemuck::cast_slice(&readback.get_mapped_range(..).unwrap()).to_vec();
+    let ticks: Vec<u64> = afterimage_testing::gpu::read_buffer(&rig.device, &rig.queue, &resolved);
     println!("{} ticks of {} ns", ticks[1] - ticks[0], rig.queue.get_timestamp_period());
     assert!(ticks[0] > 0 && ticks[1] > ticks[0]);
 }

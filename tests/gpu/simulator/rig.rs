@@ -3,9 +3,9 @@
 use afterimage::shader::SHADERS;
 use afterimage::simulator::Pyramid;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::wgpu::{self, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
-use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 
 /// Full-rate frames and gazes, one a view.
 #[derive(Clone)]

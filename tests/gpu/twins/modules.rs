@@ -3,6 +3,7 @@
 
 use super::library::{FOLDER, PRIVATE, RUST_ONLY, SHADERS, WGSL_ONLY, probes};
 use afterimage::shader::Composed;
+use afterimage::wgpu::naga;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -1,6 +1,7 @@
 //! A probe: one library function over a table of words, on the adapter and by its Rust twin.
 
 use super::library::{SHADERS, table_data};
+use afterimage::wgpu;
 use glam::Vec3;
 
 /// A function under test.

@@ -7,6 +7,8 @@ mod clock;
 #[cfg(feature = "full")]
 mod headless;
 #[cfg(feature = "full")]
+mod mapped;
+#[cfg(feature = "full")]
 mod timestamps;
 
 #[cfg(feature = "full")]
@@ -15,6 +17,8 @@ pub use bandwidth::copy_ms_per_byte;
 pub use clock::PassClock;
 #[cfg(feature = "full")]
 pub use headless::Headless;
+#[cfg(feature = "full")]
+pub use mapped::mapped;
 #[cfg(feature = "full")]
 pub use timestamps::DeviceClock;
 

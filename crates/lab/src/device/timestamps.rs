@@ -1,6 +1,6 @@
 //! Times of passes from timestamp queries.
 
-use super::Headless;
+use super::{Headless, mapped};
 use afterimage::gpu::Timestamps;
 use std::ops::Range;
 use std::sync::Arc;
@@ -65,19 +65,19 @@ impl DeviceClock {
 
     /// Milliseconds of every span. Values of spans that were not resolved are undefined. Empty on a lost device.
     pub fn take_ms(&self) -> Vec<f64> {
-        let ticks: Vec<u64> = match self.readback.slice(..).get_mapped_range() {
-            Ok(mapped) => mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect(),
-            Err(_) => vec![],
+        let ticks: Vec<u64> = match mapped(&self.readback) {
+            Some(bytes) => bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect(),
+            None => vec![],
         };
         self.readback.unmap();
         let spans = ticks.as_chunks::<2>().0;
         spans.iter().map(|[begin, end]| end.saturating_sub(*begin) as f64 * self.period_ms).collect()
     }
 
-    /// Waits for submitted work and returns the milliseconds of every span.
+    /// Waits for submitted work and returns the milliseconds of every span. Empty on a lost device.
     pub fn wait_ms(&self, gpu: &Headless) -> Vec<f64> {
-        self.start_reading();
+        let done = self.start_reading();
         gpu.wait();
-        self.take_ms()
+        if done.load(Ordering::Acquire) { self.take_ms() } else { vec![] }
     }
 }

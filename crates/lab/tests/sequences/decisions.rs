@@ -5,12 +5,12 @@ use super::rig::{Rig, View, make_texture};
 use super::sequences::{SIZE, reset, trust, view};
 use afterimage::gpu::{Frame, Recorded, Target};
 use afterimage::kernel::debug_view::view_color;
+use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{
     COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
     Verdict, ViewFrame, Warning,
 };
 use afterimage_lab::source::AnalyticSource;
-use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
 fn source(scene: &str) -> AnalyticSource {
     AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()

@@ -5,10 +5,10 @@ use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated};
 use super::surfaces_variants::{both_methods, settings};
 use afterimage::gpu::Afterimage;
+use afterimage::wgpu::{self, TextureFormat};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Reset, Settings, ViewFrame};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::holds;
-use wgpu::TextureFormat;
 
 #[test]
 fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {

@@ -1,6 +1,6 @@
 //! Manifests of published packages: what they include, and what they depend on.
 
-use super::tree::{Tree, expect_none, read};
+use super::tree::{PACKAGES, Tree, expect_none, read};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
 
@@ -94,6 +94,48 @@ fn without_version(manifest: &Table, workspace: &Table) -> Vec<String> {
         .filter(|(name, given)| lacks_version(name, given))
         .map(|(name, _)| format!("{name} has no version"))
         .collect()
+}
+
+/// Disagreements with the workspace about the versions of wgpu, its dependencies `wgpu_NN`: each is a feature
+/// `wgpu-NN`, the newest is the default, and docs.rs does not build them together.
+fn wgpu_versions(manifest: &Table, workspace: &Table) -> Vec<String> {
+    let shared = workspace["workspace"]["dependencies"].as_table().unwrap();
+    let versions: BTreeSet<String> =
+        shared.keys().filter_map(|name| name.strip_prefix("wgpu_")).map(|version| format!("wgpu-{version}")).collect();
+    let newest = versions.last().expect("the workspace depends on wgpu");
+    let features = manifest.get("features").and_then(Value::as_table);
+    let has = |name: &String| features.is_some_and(|f| f.contains_key(name));
+    let lacks = versions.iter().filter(|v| !has(v)).map(|v| format!("no feature {v}"));
+    let default = features.and_then(|f| f.get("default")).and_then(Value::as_array);
+    let is_newest = default.is_some_and(|d| d.iter().filter_map(Value::as_str).eq([newest.as_str()]));
+    let old = (!is_newest).then(|| format!("the default is not {newest}"));
+    let page = manifest["package"].get("metadata").and_then(|m| m.get("docs")).and_then(|d| d.get("rs"));
+    let together = page.is_some_and(|p| p.get("all-features").is_some_and(|all| all.as_bool() != Some(false)));
+    lacks.chain(old).chain(together.then(|| "docs.rs builds all features together".to_owned())).collect()
+}
+
+#[test]
+fn all_packages_have_the_same_versions_of_wgpu() {
+    let workspace: Table = read("Cargo.toml").parse().unwrap();
+    let mut violations = vec![];
+    for package in PACKAGES {
+        let path = format!("{package}Cargo.toml");
+        let found = wgpu_versions(&read(&path).parse().unwrap(), &workspace);
+        violations.extend(found.iter().map(|v| format!("{path}: {v}")));
+    }
+    expect_none("versions of wgpu", &violations);
+}
+
+#[test]
+fn another_version_of_wgpu_is_found() {
+    let table = |text: &str| -> Table { text.parse().unwrap() };
+    let workspace = table("[workspace.dependencies]\nglam = '1'\nwgpu_8 = '8'\nwgpu_9 = '9'");
+    let sound = "[package]\n[features]\ndefault = ['wgpu-9']\nwgpu-8 = []\nwgpu-9 = []";
+    assert_eq!(wgpu_versions(&table(sound), &workspace), Vec::<String>::new());
+    let planted = "[package.metadata.docs.rs]\nall-features = true\n[features]\ndefault = ['wgpu-8']\nwgpu-8 = []";
+    let expected = ["no feature wgpu-9", "the default is not wgpu-9", "docs.rs builds all features together"];
+    assert_eq!(wgpu_versions(&table(planted), &workspace), expected);
+    assert_eq!(wgpu_versions(&table("[package]"), &workspace).len(), 3);
 }
 
 #[test]

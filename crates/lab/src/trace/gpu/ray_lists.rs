@@ -2,6 +2,7 @@
 
 use super::compute::{Kernel, bind_group, empty_buffer};
 use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
+use crate::device::mapped;
 use crate::shader::SHADERS;
 use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
@@ -116,8 +117,8 @@ impl GpuRays {
         self.queue.submit([encoder.finish()]);
         readback.map_async(wgpu::MapMode::Read, .., |_| ());
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
-        let mapped = readback.get_mapped_range(..).expect("the buffer was mapped and waited for");
-        let words: &[[u32; 4]] = bytemuck::cast_slice(&mapped);
+        let bytes = mapped(&readback).expect("the buffer was mapped and waited for");
+        let words: &[[u32; 4]] = bytemuck::cast_slice(&bytes);
         let hit = |&[triangle, t, u, v]: &[u32; 4]| {
             let found = match self.query {
                 HitQuery::Closest => triangle != u32::MAX,

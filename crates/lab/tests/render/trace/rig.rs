@@ -1,5 +1,6 @@
 //! Traces scenes on the CPU and on the device.
 
+use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Camera, Scene};
 use afterimage_lab::trace::cpu::CpuTracer;

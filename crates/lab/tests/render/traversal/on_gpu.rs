@@ -1,6 +1,7 @@
 //! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
 use super::scenes::{all, direction, no_rays, rays, soup, sphere};
+use afterimage::wgpu;
 use afterimage_lab::scene::{Alpha, Material};
 use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
 use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};

@@ -1,6 +1,7 @@
 //! The device decodes triangle records as the CPU does, bit for bit.
 
 use super::scenes::{direction, soup};
+use afterimage::wgpu;
 use afterimage_lab::scene::{Alpha, Material, Triangles};
 use afterimage_lab::shader::SHADERS;
 use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage, geometry_constants, traversal_constants};
@@ -119,9 +120,7 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
         let storage_in = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let input = buffer(weights.len() * 8, storage_in);
         queue.write_buffer(&input, 0, bytemuck::cast_slice(&weights));
-        let bytes = weights.len() * WORDS * 4;
-        let output = buffer(bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let readback = buffer(bytes, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let output = buffer(weights.len() * WORDS * 4, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
@@ -138,12 +137,8 @@ fn differing(storage: Storage, source: impl Fn(String) -> String) -> Option<usiz
             pass.set_bind_group(0, &group, &[]);
             pass.dispatch_workgroups((weights.len() as u32).div_ceil(64), 1, 1);
         }
-        encoder.copy_buffer_to_buffer(&output, 0, &readback, 0, bytes as u64);
         queue.submit([encoder.finish()]);
-        readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        let mapped = readback.get_mapped_range(..).expect("the readback is mapped");
-        bytemuck::cast_slice::<u8, u32>(&mapped).to_vec()
+        afterimage_testing::gpu::read_buffer::<u32>(&device, &queue, &output)
     });
     let expected = expected(&geometry, &weights);
     let lines = words.chunks(WORDS).zip(expected.chunks(WORDS));

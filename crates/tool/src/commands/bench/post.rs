@@ -8,13 +8,13 @@ use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{ContextDesc, CreateError, Filter, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use serde::Serialize;
 use std::sync::Arc;
-use wgpu::{Texture, TextureUsages};
 
 static MODULES: &[Module] = &[module!("bench", "copy_pass")];
 

@@ -1,6 +1,7 @@
 //! `afterimage info adapters`: lists the adapters and tests their arithmetic.
 
 use crate::failure::Failure;
+use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use afterimage_lab::self_test::self_test;
 

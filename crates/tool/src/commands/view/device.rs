@@ -2,6 +2,7 @@
 
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
+use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

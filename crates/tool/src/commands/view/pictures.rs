@@ -2,12 +2,12 @@
 
 use super::screen::{Scene, Screen};
 use crate::failure::Failure;
+use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric;
 use afterimage_lab::picture::{to_rgb8, write_png};
 use image::RgbImage;
 use std::path::{Path, PathBuf};
-use wgpu::{Texture, TextureFormat, TextureUsages};
 
 /// The output of both sides at its own resolution, split as on screen, without overlays.
 pub fn picture(gpu: &Headless, sides: [&Texture; 2], divider: Option<f32>, exposure_ev: f32) -> RgbImage {

@@ -3,12 +3,12 @@
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
+use afterimage::wgpu::Texture;
 use afterimage::{ContextDesc, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use std::sync::Arc;
-use wgpu::Texture;
 
 /// Same formats as in `run`, so that both give the same pictures.
 const FORMATS: DeviceFormats = DeviceFormats::EXACT;

@@ -5,13 +5,13 @@ use super::device;
 use super::shader::SHADERS;
 use super::state::Side;
 use afterimage::ViewGeometry;
-use afterimage_lab::device::Headless;
+use afterimage::wgpu::{self, BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
+use afterimage_lab::device::{Headless, mapped};
 use afterimage_lab::metric::psnr_db;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
 
 /// Eccentricity where the periphery begins, degrees, as in the reports.
 const PERIPHERY_DEG: f32 = 7.5;
@@ -118,8 +118,8 @@ impl Quality {
         encoder.copy_buffer_to_buffer(&self.sums, 0, &readback.buffer, 0, self.sums.size());
         gpu.queue.submit([encoder.finish()]);
         let done = Arc::new(AtomicBool::new(false));
-        let mapped = done.clone();
-        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| mapped.store(r.is_ok(), Ordering::Release));
+        let is_mapped = done.clone();
+        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| is_mapped.store(r.is_ok(), Ordering::Release));
         readback.done = Some(done);
     }
 
@@ -129,8 +129,8 @@ impl Quality {
         // `Viewer::frame` handles a lost device.
         let _ = gpu.device.poll(wgpu::PollType::Poll);
         readback.done.take_if(|done| done.load(Ordering::Acquire))?;
-        let sums = readback.buffer.slice(..).get_mapped_range().ok().map(|mapped| {
-            let tiles = mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f32; 2]>);
+        let sums = mapped(&readback.buffer).map(|bytes| {
+            let tiles = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f32; 2]>);
             tiles.fold([0.0, 0.0], |sum: [f64; 2], tile| [0, 1].map(|i| sum[i] + f64::from(tile[i])))
         });
         readback.buffer.unmap();
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use afterimage::Image;
     use afterimage::kernel::color::srgb_encode;
-    use wgpu::{TextureFormat, TextureUsages};
+    use afterimage::wgpu::{TextureFormat, TextureUsages};
 
     const SIZE: [u32; 2] = [150, 70];
     const GAIN: f32 = 1.5;

@@ -5,6 +5,7 @@ use super::layout::Layout;
 use super::shader::SHADERS;
 use afterimage::ViewGeometry;
 use afterimage::gpu::Timestamps;
+use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;

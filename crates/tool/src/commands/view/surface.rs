@@ -2,8 +2,8 @@
 
 use super::device::Device;
 use crate::failure::Failure;
+use afterimage::wgpu::{self, CurrentSurfaceTexture, PresentMode, SurfaceConfiguration, SurfaceTexture, TextureFormat};
 use std::sync::Arc;
-use wgpu::{CurrentSurfaceTexture, PresentMode, SurfaceConfiguration, SurfaceTexture, TextureFormat};
 use winit::window::Window;
 
 /// Result of acquiring a surface texture.
@@ -37,6 +37,7 @@ impl Surface {
         let config = SurfaceConfiguration {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             format,
+            #[cfg(feature = "wgpu-30")]
             color_space: wgpu::SurfaceColorSpace::Auto,
             width: size[0].max(1),
             height: size[1].max(1),

@@ -2,11 +2,11 @@
 //! waiting for it.
 
 use afterimage::gpu::Timestamps;
+use afterimage::wgpu::{self, CommandEncoder};
 use afterimage_lab::device::{DeviceClock, Headless};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use wgpu::CommandEncoder;
 
 /// Passes that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -196,6 +196,9 @@ impl Viewer {
         self.measure();
         self.draw(&target.texture.create_view(&Default::default()))?;
         self.window.pre_present_notify();
+        #[cfg(feature = "wgpu-29")]
+        target.present();
+        #[cfg(feature = "wgpu-30")]
         self.resources.device.gpu.queue.present(target);
         self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;

@@ -186,6 +186,7 @@ fn block_end(text: &str, from: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use afterimage::wgpu::naga;
     use afterimage_lab::shader::SHADERS;
 
     #[test]

@@ -7,6 +7,7 @@ use super::super::state::Side;
 use super::super::times::Pass;
 use super::Viewer;
 use crate::failure::Failure;
+use afterimage::wgpu;
 
 impl Viewer {
     /// Takes finished measurements of quality, and starts new ones at the panel's interval.
