@@ -135,7 +135,7 @@ impl App {
         self.queue.submit([encoder.finish()]);
         #[cfg(feature = "wgpu-29")]
         target.present();
-        #[cfg(feature = "wgpu-30")]
+        #[cfg(not(feature = "wgpu-29"))]
         self.queue.present(target);
         self.index += 1;
         Ok(())

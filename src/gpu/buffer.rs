@@ -15,7 +15,7 @@ pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -
     // On a lost device the buffer is not mapped. wgpu 30 says so, wgpu 29 panics.
     #[cfg(feature = "wgpu-29")]
     let mapped = (!is_lost(device)).then(|| buffer.get_mapped_range_mut(..));
-    #[cfg(feature = "wgpu-30")]
+    #[cfg(not(feature = "wgpu-29"))]
     let mapped = buffer.get_mapped_range_mut(..).ok();
     if let Some(mut mapped) = mapped {
         mapped.copy_from_slice(bytes);

@@ -3,7 +3,7 @@
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::wgpu::{self, TextureFormat, TextureUsages};
+use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, Method, MotionConvention, MotionDirection,
     MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, YAxis,
@@ -169,9 +169,6 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         lost.device.set_device_lost_callback(move |why, _| {
             let _ = lost_reason.set(why);
         });
-        // wgpu 29 reports the use of what was created on a lost device to this handler; the default one panics.
-        #[cfg(feature = "wgpu-29")]
-        lost.device.on_uncaptured_error(Arc::new(|_| ()));
         run(&mut lost, 0..4);
         let desc = wgpu::BufferDescriptor {
             label: None,
@@ -180,14 +177,28 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
             mapped_at_creation: false,
         };
         let buffer = lost.device.create_buffer(&desc);
+        let textures = |rig: &Rig| {
+            let texture = |usage| make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, usage);
+            (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING))
+        };
+        let record = |rig: &mut Rig, (color, output): (Texture, Texture)| {
+            let facts = [noise_view("lost", &rig.context).facts];
+            let mut encoder = rig.device.create_command_encoder(&Default::default());
+            rig.gpu.record(&rig.device, &mut encoder, &Frame::new(&color, &facts, 4), &output).unwrap();
+            rig.queue.submit([encoder.finish()]);
+        };
+        let textures_before = textures(&lost);
         lost.device.destroy();
         // Until the caller learns of it, recording continues without a panic, whatever the context has to create.
-        let facts = [noise_view("lost", &lost.context).facts];
-        let texture = |usage| make_texture(&lost.device, &lost.context, TextureFormat::Rgba32Float, usage);
-        let (color, output) = (texture(TextureUsages::TEXTURE_BINDING), texture(TextureUsages::STORAGE_BINDING));
-        let mut encoder = lost.device.create_command_encoder(&Default::default());
-        lost.gpu.record(&lost.device, &mut encoder, &Frame::new(&color, &facts, 4), &output).unwrap();
-        lost.queue.submit([encoder.finish()]);
+        record(&mut lost, textures_before);
+        // wgpu 29 reports views of textures that were created on the lost device. The default handler panics.
+        #[cfg(feature = "wgpu-29")]
+        lost.device.on_uncaptured_error(Arc::new(|error| {
+            let text = error.to_string();
+            assert!(text.contains("create_view") && text.contains("is invalid"), "{text}");
+        }));
+        let textures_after = textures(&lost);
+        record(&mut lost, textures_after);
         lost.gpu.resize(&lost.device, [33, 17]).unwrap();
         lost.gpu.forget();
         // The caller gets typed errors of wgpu: the reason, and a readback that does not map.

@@ -7,7 +7,7 @@ pub fn mapped(buffer: &Buffer) -> Option<BufferView> {
     let view = buffer.get_mapped_range(..);
     #[cfg(feature = "wgpu-29")]
     let view = Some(view);
-    #[cfg(feature = "wgpu-30")]
+    #[cfg(not(feature = "wgpu-29"))]
     let view = view.ok();
     view
 }

@@ -198,7 +198,7 @@ impl Viewer {
         self.window.pre_present_notify();
         #[cfg(feature = "wgpu-29")]
         target.present();
-        #[cfg(feature = "wgpu-30")]
+        #[cfg(not(feature = "wgpu-29"))]
         self.resources.device.gpu.queue.present(target);
         self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;
