@@ -21,8 +21,8 @@ const RELIGHT_BLOCKS: [f32; 2] = [8.0, 0.5];
 /// point-sampled blocks, where a gain that follows aliasing often helps by chance.
 const RELIT: f32 = 1.0;
 const RELIT_BLOCKS: f32 = 0.5;
-/// Share of the difference between what is observed and what finer history predicts that is added to history in a frame.
-/// More follows slow changes of light sooner and lets more of the candidates' aliasing into history.
+/// Share of the difference between what is observed and what finer history predicts that is added to history in a
+/// frame. More follows slow changes of light sooner and lets more of the candidates' aliasing into history.
 const CORRECTION: f32 = 0.2;
 const CORRECTION_BLOCKS: f32 = 0.1;
 /// Share of the contrast that widens the gate for history that is not finer; for finer history it is 1.
@@ -109,8 +109,8 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
     ReuseWeight { finer, share: finer + (alike * calm) * accumulate }
 }
 
-/// Gain of relighting for one color channel: the ratio of what is observed and what history predicts, blended to 1 where
-/// light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
+/// Gain of relighting for one color channel: the ratio of what is observed and what history predicts, blended to 1
+/// where light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
 #[inline]
 pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1]);
