@@ -187,6 +187,8 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let whole_level = exposed(past.level);
     let next_level = exposed(past.next_level);
     let blocks = FILTER == FILTER_BLOCK;
+    // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+    let gauss = FILTER == FILTER_GAUSS;
     let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
     let around = candidates_around(px, view, candidate, radius, blocks || changed);
     var predicted = matched;
@@ -196,17 +198,17 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let evidence = Evidence(
         candidate,
         select(candidate, around, blocks),
-        around,
-        candidate,
+        select(around, candidate, gauss),
+        select(candidate, around, gauss),
         lod,
         exposed(history.sharp),
         history.lod,
-        any(source.fraction != vec2<f32>(0.0)),
+        any(source.fraction != vec2<f32>(0.0)) && !gauss,
         matched,
         whole_level,
         next_level,
-        select(next_level, matched, blocks),
-        predicted,
+        select(next_level, matched, blocks || gauss),
+        select(predicted, next_level, gauss),
         source.trust,
         0.0,
         vec2<f32>(1.0),

@@ -10,6 +10,7 @@
 
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::Pixel;
+use crate::foveation::Filter;
 use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
@@ -137,23 +138,25 @@ impl Smr {
             mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
         let radius = 0.75 * approx::exp2(lod);
         let blocks = self.params.blocks;
+        // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+        let gauss = self.settings.foveation.filter == Filter::Gauss;
         let changed = self.params.relight && matched::is_changed(candidate, matched, level, next_level);
         let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };
         let predicted = if blocks { view.expose(view.sampled(source, [x, y], lod)) } else { matched };
         let evidence = Evidence {
             candidate,
             compared: if blocks { around } else { candidate },
-            compared_coarser: around,
-            observed: candidate,
+            compared_coarser: if gauss { candidate } else { around },
+            observed: if gauss { around } else { candidate },
             lod,
             history: view.expose(history.sharp),
             history_lod: history.lod,
-            resampled: source.fraction != [0.0; 2],
+            resampled: source.fraction != [0.0; 2] && !gauss,
             matched,
             level,
             next_level,
-            matched_coarser: if blocks { matched } else { next_level },
-            predicted,
+            matched_coarser: if blocks || gauss { matched } else { next_level },
+            predicted: if gauss { next_level } else { predicted },
             trust: source.trust,
             noise: 0.0,
             confidence: [1.0; 2],

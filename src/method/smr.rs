@@ -61,8 +61,8 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     SmrParams {
         accumulate: settings.smr.accumulate,
         // Rejecting coarse history costs little detail, so it must fit more strictly. Aliasing of blocks and noise need
-        // averaging.
-        accumulate_tolerance: if settings.noisy {
+        // averaging, and Gaussian blurs never agree with levels of history exactly.
+        accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
             0.5
         } else if blocks {
             0.67
