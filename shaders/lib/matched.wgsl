@@ -1,3 +1,4 @@
+//#use approx
 // Twin of src/kernel/matched.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
@@ -5,7 +6,12 @@ const COARSER_WIDTH: f32 = 0.25;
 const GATE_FROM: f32 = 3.0;
 const GATE_WIDTH: f32 = 6.0;
 const RELIGHT: vec2<f32> = vec2<f32>(1.5, 0.5);
-const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);
+const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);
+const RELIT: f32 = 1.0;
+const RELIT_BLOCKS: f32 = 0.5;
+const CORRECTION: f32 = 0.2;
+const CORRECTION_BLOCKS: f32 = 0.1;
+const ALIKE_CONTRAST: f32 = 0.5;
 const GAIN_LEAST: f32 = 0.2;
 const GAIN_MOST: f32 = 5.0;
 const DARK: f32 = 0.002;
@@ -65,8 +71,8 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
 }
 
 // matched::gain
-fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
-    let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);
+fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
+    let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN_LEAST, GAIN_MOST);
     let share = changed * smooth_step(0.05, 0.1, abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
@@ -78,26 +84,24 @@ fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
 }
 
 // matched::is_changed
-fn is_changed(
-    compared: vec3<f32>,
-    matched: vec3<f32>,
-    level: vec3<f32>,
-    next_level: vec3<f32>,
-    blocks: bool,
-) -> bool {
-    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks, 0.0);
+fn is_changed(compared: vec3<f32>, matched: vec3<f32>, level: vec3<f32>, next_level: vec3<f32>) -> bool {
+    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0);
 }
 
 struct Evidence {
     candidate: vec3<f32>,
     compared: vec3<f32>,
     compared_coarser: vec3<f32>,
+    observed: vec3<f32>,
     lod: f32,
     history: vec3<f32>,
     history_lod: f32,
+    resampled: bool,
     matched: vec3<f32>,
     level: vec3<f32>,
     next_level: vec3<f32>,
+    matched_coarser: vec3<f32>,
+    predicted: vec3<f32>,
     trust: f32,
     noise: f32,
     confidence: vec2<f32>,
@@ -116,31 +120,40 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     var contrast = root_difference(e.level, e.next_level);
     var d = root_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
+    var worn = 0.0;
     if p.relight {
         let low = relight_from(contrast, p.blocks, e.noise);
-        let changed = smooth_step(low, low, d);
+        let changed = smooth_step(low, low, root_difference(e.observed, e.predicted));
         let gains = vec3<f32>(
-            gain(e.compared_coarser.x, e.next_level.x, changed),
-            gain(e.compared_coarser.y, e.next_level.y, changed),
-            gain(e.compared_coarser.z, e.next_level.z, changed),
+            gain(e.observed.x, e.predicted.x, changed),
+            gain(e.observed.y, e.predicted.y, changed),
+            gain(e.observed.z, e.predicted.z, changed),
         );
-        let relit = root_difference(e.compared, gains * e.matched);
-        if relit < d {
+        let unlit = root_difference(e.compared_coarser, e.matched_coarser);
+        let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
+        if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) {
             d = relit;
             k = gains;
-            contrast *= sqrt((gains.x + gains.y + gains.z) * (1.0f / 3.0f));
+            let mean = (gains.x + gains.y + gains.z) * (1.0f / 3.0f);
+            contrast *= sqrt(mean);
+            worn = select(abs(ln(mean) * LOG2_E), 0.0, p.noisy);
         }
     }
-    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer);
+    let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;
+    let slack = contrast * (ALIKE_CONTRAST + (1.0 - ALIKE_CONTRAST) * reuse.finer);
     let scale = select(1.0, 4.0, p.blocks);
-    let fit = 1.0 - smooth_step(tolerance * (GATE_FROM * scale + contrast) + e.noise, tolerance * (GATE_WIDTH * scale), d);
+    let keep = p.tolerance * (width * (GATE_FROM * scale) + slack);
+    let fit = 1.0 - smooth_step(keep + e.noise, (p.tolerance * (GATE_WIDTH * scale)) * width, d);
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
-    let history = k * e.history;
+    let correction = select(CORRECTION, CORRECTION_BLOCKS, p.blocks);
+    let finer = select(0.0, reuse.finer, e.resampled && !p.noisy);
+    let missed = (e.observed - k * e.predicted) * correction;
+    let history = max(missed * finer + k * e.history, vec3<f32>(0.0));
     let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;
     if reuse.finer > 0.0 {
-        lod = min(e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance), e.lod);
+        lod = min((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + worn, e.lod);
     } else if p.noisy {
         lod = e.lod + max(e.history_lod - e.lod, 0.0) * share;
     }

@@ -77,6 +77,34 @@ fn past_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
     );
 }
 
+fn past_texel(x: u32, y: u32, view: u32) -> vec4<f32> {
+    return mip_texel(textureLoad(past_surfaces, min(vec2<u32>(x, y), frame.size - 1u), view, 0).xy);
+}
+
+// History where and as the block around pixel `px`, of level of detail `lod`, was sampled: the texel of history that
+// corresponds to the one that the block filter reads.
+fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32> {
+    let level = u32(lod + 0.5);
+    let finer = min(block_sample_level(level), textureNumLevels(past_mips));
+    let texel_px = f32(1u << finer);
+    let texel_x = block_sample(px.x >> level, level, frame.size.x);
+    let texel_y = block_sample(px.y >> level, level, frame.size.y);
+    let texel = vec2<f32>(f32(texel_x), f32(texel_y));
+    let at = source.at + (((texel + 0.5) * texel_px - 0.5) - vec2<f32>(px));
+    if finer > 0u {
+        return past_level(at, finer, view);
+    }
+    let x = split(at.x, frame.size.x);
+    let y = split(at.y, frame.size.y);
+    return mip_bilinear(
+        past_texel(x.whole, y.whole, view),
+        past_texel(x.whole + 1u, y.whole, view),
+        past_texel(x.whole, y.whole + 1u, view),
+        past_texel(x.whole + 1u, y.whole + 1u, view),
+        vec2<f32>(x.fraction, y.fraction),
+    );
+}
+
 struct Matching {
     matched: vec3<f32>,
     level: vec3<f32>,
@@ -159,24 +187,29 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let matched = exposed(past.matched);
     let whole_level = exposed(past.level);
     let next_level = exposed(past.next_level);
-    var compared = candidate;
-    var reach = radius;
+    let blocks = FILTER == FILTER_BLOCK;
+    // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+    let gauss = FILTER == FILTER_GAUSS;
+    let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
+    let around = candidates_around(px, view, candidate, radius, blocks || changed);
+    var predicted = matched;
     if FILTER == FILTER_BLOCK {
-        compared = candidates_around(px, view, candidate, radius, true);
-        reach = 2.0 * radius;
+        predicted = exposed(past_sampled(source, px, lod, view));
     }
-    let changed = RELIGHT_ON != 0u && is_changed(compared, matched, whole_level, next_level, FILTER == FILTER_BLOCK);
-    let coarser = candidates_around(px, view, candidate, reach, changed);
     let evidence = Evidence(
         candidate,
-        compared,
-        coarser,
+        select(candidate, around, blocks),
+        select(around, candidate, gauss),
+        select(candidate, around, gauss),
         lod,
         exposed(history.sharp),
         history.lod,
+        any(source.fraction != vec2<f32>(0.0)) && !gauss,
         matched,
         whole_level,
         next_level,
+        select(next_level, matched, blocks || gauss),
+        select(predicted, next_level, gauss),
         source.trust,
         0.0,
         vec2<f32>(1.0),
@@ -228,12 +261,16 @@ fn averaged_pixel(
         candidate,
         around.compared.xyz,
         around.coarser.xyz,
+        around.compared.xyz,
         lod,
         shown,
         history.lod,
+        any(source.fraction != vec2<f32>(0.0)),
         matched,
         exposed(past.level),
         exposed(past.next_level),
+        exposed(past.next_level),
+        matched,
         source.trust,
         noise_difference(past_noise, noise_around, luma(matched)),
         confidence,

@@ -75,7 +75,13 @@ impl MipChain {
         ([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], [fx, fy])
     }
 
-    fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
+    /// Coarsest level.
+    pub fn last_level(&self) -> u32 {
+        self.levels.len() as u32
+    }
+
+    /// Color at a position in pixels, of `level` from 1.
+    pub fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
         let ([a, b, c, d], fraction) = self.around(at, level);
         mip_bilinear([a, b], [c, d], fraction)
     }

@@ -2,13 +2,15 @@
 //! `docs/method.md` has the equations. Twin: `shaders/pass/smr_pass.wgsl`.
 //!
 //! Each pixel reads its color, depth, three motion vectors, twelve stored surfaces, eight texels of their mip chain
-//! and, where light changed, four more colors (neighbours share most of these reads). It writes one surface, a third of
+//! and, where light changed, four more colors (neighbours share most of these reads). Point-sampled blocks always read
+//! these four colors, and four more texels of history. It writes one surface, a third of
 //! a texel of the mip chain and one color. Memory traffic: 48 bytes a pixel with color and motion as halves. With noisy
 //! candidates it also reads their noise, the noise of one surface and eight texels of the candidates' mip chain, and
 //! writes one word of noise: 80 bytes a pixel, including the passes that compute that mip chain.
 
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::Pixel;
+use crate::foveation::Filter;
 use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
@@ -135,24 +137,26 @@ impl Smr {
         let [matched, level, next_level] =
             mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
         let radius = 0.75 * approx::exp2(lod);
-        let (compared, reach) = if self.params.blocks {
-            (self.around(view, x, y, candidate, radius), 2.0 * radius)
-        } else {
-            (candidate, radius)
-        };
-        let changed =
-            self.params.relight && matched::is_changed(compared, matched, level, next_level, self.params.blocks);
-        let compared_coarser = if changed { self.around(view, x, y, candidate, reach) } else { Vec3::ZERO };
+        let blocks = self.params.blocks;
+        // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+        let gauss = self.settings.foveation.filter == Filter::Gauss;
+        let changed = self.params.relight && matched::is_changed(candidate, matched, level, next_level);
+        let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };
+        let predicted = if blocks { view.expose(view.sampled(source, [x, y], lod)) } else { matched };
         let evidence = Evidence {
             candidate,
-            compared,
-            compared_coarser,
+            compared: if blocks { around } else { candidate },
+            compared_coarser: if gauss { candidate } else { around },
+            observed: if gauss { around } else { candidate },
             lod,
             history: view.expose(history.sharp),
             history_lod: history.lod,
+            resampled: source.fraction != [0.0; 2] && !gauss,
             matched,
             level,
             next_level,
+            matched_coarser: if blocks || gauss { matched } else { next_level },
+            predicted: if gauss { next_level } else { predicted },
             trust: source.trust,
             noise: 0.0,
             confidence: [1.0; 2],
@@ -195,12 +199,16 @@ impl Smr {
             candidate,
             compared: compared.truncate(),
             compared_coarser: coarser.truncate(),
+            observed: compared.truncate(),
             lod,
             history: exposed,
             history_lod: history.lod,
+            resampled: source.fraction != [0.0; 2],
             matched,
             level,
             next_level,
+            matched_coarser: next_level,
+            predicted: matched,
             trust: source.trust,
             confidence,
             noise: noise::noise_difference(past, around, color::luma(matched)),

@@ -4,13 +4,15 @@
 use super::history::PastSurfaces;
 use super::inputs::Inputs;
 use crate::kernel::depth;
+use crate::kernel::foveate::{block_sample, block_sample_level, split};
+use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample;
 use crate::kernel::resample::{Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
 use crate::kernel::sanitize;
-use crate::kernel::surface::{Surface, unpack_surface};
+use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::wrs::expose;
 use glam::Vec3;
 
@@ -98,6 +100,29 @@ impl SurfaceHistory<'_> {
             gathered = resample::gather(gathered, s, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
         }
         resample::resolve(gathered, source.nearest)
+    }
+
+    /// History where and as the block around pixel `px`, of level of detail `lod`, was sampled: the texel of history
+    /// that corresponds to the one that the block filter reads.
+    #[inline(always)]
+    pub fn sampled(&self, source: &Source, px: [u32; 2], lod: f32) -> Vec3 {
+        let mip_chain = self.past.mip_chain.expect("smr stores a mip chain");
+        let level = (lod + 0.5) as u32;
+        let finer = block_sample_level(level).min(mip_chain.last_level());
+        let texel_px = (1_u32 << finer) as f32;
+        let at = [0, 1].map(|i| {
+            let texel = block_sample(px[i] >> level, level, self.inputs.size[i]);
+            source.at[i] + (((texel as f32 + 0.5) * texel_px - 0.5) - px[i] as f32)
+        });
+        if finer > 0 {
+            return mip_chain.bilinear(at, finer);
+        }
+        let [width, height] = self.inputs.size;
+        let (x, fx) = split(at[0], width);
+        let (y, fy) = split(at[1], height);
+        let texel =
+            |x: u32, y: u32| mip_texel(self.past.words[(y.min(height - 1) * width + x.min(width - 1)) as usize]);
+        mip_bilinear([texel(x, y), texel(x + 1, y)], [texel(x, y + 1), texel(x + 1, y + 1)], [fx, fy])
     }
 
     /// Noise of the nearest texel, scaled to this frame's exposure.

@@ -1,7 +1,9 @@
 //! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as,
 //! low-passed to the candidate's level of detail, it explains the candidate. `docs/method.md` derives the equations.
 
+use super::approx;
 use glam::{Vec3, Vec4};
+use std::f32::consts::LOG2_E;
 
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 pub const QUALITY_WIDTH: f32 = 0.1;
@@ -14,7 +16,17 @@ const GATE: [f32; 2] = [3.0, 6.0];
 /// it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
 /// [`RELIGHT`] for point-sampled blocks: higher, because their aliasing must not pass for a change of light.
-const RELIGHT_BLOCKS: [f32; 2] = [12.0, 2.0];
+const RELIGHT_BLOCKS: [f32; 2] = [8.0, 0.5];
+/// Share of their difference that candidate and history may keep after relighting, if it is to be used. Less for
+/// point-sampled blocks, where a gain that follows aliasing often helps by chance.
+const RELIT: f32 = 1.0;
+const RELIT_BLOCKS: f32 = 0.5;
+/// Share of the difference between what is observed and what finer history predicts that is added to history in a
+/// frame. More follows slow changes of light sooner and lets more of the candidates' aliasing into history.
+const CORRECTION: f32 = 0.2;
+const CORRECTION_BLOCKS: f32 = 0.1;
+/// Share of the contrast that widens the gate for history that is not finer; for finer history it is 1.
+const ALIKE_CONTRAST: f32 = 0.5;
 /// Smallest and largest gain of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
 /// Added to linear values to keep ratios and slopes of dark colors finite.
@@ -27,7 +39,7 @@ const COHERENT: [f32; 2] = [0.5, 0.1];
 pub struct SmrParams {
     /// Share of equally coarse history in the output, in \[0, 1).
     pub accumulate: f32,
-    /// Tolerance for equally coarse history, as a share of that for finer history, in (0, 1\].
+    /// Tolerance for equally coarse history, as a share of that for finer history, in (0, 1\]; without contrast.
     pub accumulate_tolerance: f32,
     /// Factor on the gate's differences.
     pub tolerance: f32,
@@ -97,11 +109,11 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
     ReuseWeight { finer, share: finer + (alike * calm) * accumulate }
 }
 
-/// Gain of relighting for one color channel: the ratio of candidate and history at a coarse level, blended to 1 where
-/// light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
+/// Gain of relighting for one color channel: the ratio of what is observed and what history predicts, blended to 1
+/// where light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
 #[inline]
-pub fn gain(candidate: f32, history: f32, changed: f32) -> f32 {
-    let ratio = ((candidate + DARK) / (history + DARK)).clamp(GAIN[0], GAIN[1]);
+pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
+    let ratio = ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1]);
     let share = changed * smooth_step(0.05, 0.1, (ratio - 1.0).abs());
     // A share of 1 gives the ratio bit for bit. Mesa rewrites 1 + (ratio - 1) * share into this form, too.
     (1.0 - share) + ratio * share
@@ -118,8 +130,8 @@ pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
 /// Whether candidate and history differ by more than detail explains. Only then does relighting need the candidate's
 /// neighbours.
 #[inline]
-pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3, blocks: bool) -> bool {
-    root_difference(compared, matched) > relight_from(root_difference(level, next_level), blocks, 0.0)
+pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3) -> bool {
+    root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0)
 }
 
 /// Inputs of [`decide`] for one pixel.
@@ -130,20 +142,29 @@ pub struct Evidence {
     /// Color that is compared with history: the candidate, or a mean of its neighbourhood where it is a point sample or
     /// noisy.
     pub compared: Vec3,
-    /// Candidate one level coarser; used only where [`is_changed`].
+    /// Candidate at the level of detail of `matched_coarser`; used only where [`is_changed`].
     pub compared_coarser: Vec3,
+    /// What history is corrected and relit by: the candidate, or a mean of its neighbourhood where it is noisy.
+    pub observed: Vec3,
     /// Level of detail of the candidate.
     pub lod: f32,
     /// History at full sharpness.
     pub history: Vec3,
     /// Level of detail that history was shaded at.
     pub history_lod: f32,
+    /// Whether history was read between texels.
+    pub resampled: bool,
     /// History at the level of detail of `compared`.
     pub matched: Vec3,
     /// History at the next finer whole level, or at that of `compared` if it is whole.
     pub level: Vec3,
     /// History at the whole level after `level`.
     pub next_level: Vec3,
+    /// History where and as `compared_coarser` was shaded.
+    pub matched_coarser: Vec3,
+    /// History where and as `observed` was shaded: the same low-pass at the same place. Two different ones would make a
+    /// gain of every edge, and gains are stored: edges would grow rings, frame by frame.
+    pub predicted: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
     /// Difference of `compared` and `matched` that noise alone can make, in units of [`root_difference`]; 0 for
@@ -175,28 +196,41 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
+    // Levels of detail that relighting costs: a gain multiplies the errors of history, too.
+    let mut worn = 0.0;
     if p.relight {
         let from = relight_from(contrast, p.blocks, e.noise);
-        let changed = smooth_step(from, from, d);
-        let (c, h) = (e.compared_coarser, e.next_level);
+        let changed = smooth_step(from, from, root_difference(e.observed, e.predicted));
+        let (c, h) = (e.observed, e.predicted);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
-        let relit = root_difference(e.compared, gains * e.matched);
-        if relit < d {
+        // The gain makes history agree with what it was computed from, so it is judged elsewhere.
+        let unlit = root_difference(e.compared_coarser, e.matched_coarser);
+        let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
+        if relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT }) {
             d = relit;
             k = gains;
-            contrast *= ((gains.x + gains.y + gains.z) * (1.0 / 3.0)).sqrt();
+            let mean = (gains.x + gains.y + gains.z) * (1.0 / 3.0);
+            contrast *= mean.sqrt();
+            worn = if p.noisy { 0.0 } else { (approx::ln(mean) * LOG2_E).abs() };
         }
     }
-    let tolerance = p.tolerance * (p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer);
+    let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;
+    let slack = contrast * (ALIKE_CONTRAST + (1.0 - ALIKE_CONTRAST) * reuse.finer);
     let scale = if p.blocks { 4.0 } else { 1.0 };
-    let fit = 1.0 - smooth_step(tolerance * (GATE[0] * scale + contrast) + e.noise, tolerance * (GATE[1] * scale), d);
+    let keep = p.tolerance * (width * (GATE[0] * scale) + slack);
+    let fit = 1.0 - smooth_step(keep + e.noise, (p.tolerance * (GATE[1] * scale)) * width, d);
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
-    let history = k * e.history;
+    let correction = if p.blocks { CORRECTION_BLOCKS } else { CORRECTION };
+    // History that is read where it was stored has not changed since. Noise is averaged by accumulation.
+    let finer = if e.resampled && !p.noisy { reuse.finer } else { 0.0 };
+    // The constant with the first factor: shader compilers order such products this way.
+    let missed = (e.observed - k * e.predicted) * correction;
+    let history = (missed * finer + k * e.history).max(Vec3::ZERO);
     // A share of 1 gives history bit for bit, a share of 0 the candidate.
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
     let lod = if reuse.finer > 0.0 {
-        (e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)).min(e.lod)
+        ((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + worn).min(e.lod)
     } else if p.noisy {
         e.lod + (e.history_lod - e.lod).max(0.0) * share
     } else {

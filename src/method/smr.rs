@@ -60,9 +60,15 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
         accumulate: settings.smr.accumulate,
-        // Rejecting coarse history costs little detail, so it must fit more strictly; except blocks, whose aliasing
-        // needs averaging.
-        accumulate_tolerance: if blocks { 1.0 } else { 0.5 },
+        // Rejecting coarse history costs little detail, so it must fit more strictly. Aliasing of blocks and noise need
+        // averaging, and Gaussian blurs never agree with levels of history exactly.
+        accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
+            0.5
+        } else if blocks {
+            0.67
+        } else {
+            0.17
+        },
         tolerance: settings.smr.tolerance,
         blocks,
         relight: settings.smr.relight,

@@ -3,7 +3,7 @@
 use afterimage::Image;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::metric::{FrameErrors, Reference, Scorer, Scores, psnr_db};
+use afterimage_lab::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
 use afterimage_lab::pipeline::{MethodOutput, Step};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,8 @@ pub struct MethodReport {
     pub scores: Scores,
     /// PSNR of the last frame alone.
     pub psnr_last_frame_db: Option<f64>,
+    /// Crop that loses most against the foveated frame; `None` if `none` was not run, or not for three frames.
+    pub worst_crop: Option<WorstCrop>,
     /// Input pixels that were NaN or infinite.
     pub nonfinite_in: u64,
     /// Output pixels that were NaN or infinite.
@@ -49,6 +51,7 @@ pub struct Share {
 #[derive(Default)]
 pub struct MethodAccumulator {
     scorer: Scorer,
+    crops: Crops,
     wall_ms: Vec<f64>,
     cpu_ms: Vec<Option<f64>>,
     cost_ms: Vec<f64>,
@@ -63,16 +66,20 @@ pub struct MethodAccumulator {
 }
 
 impl MethodAccumulator {
-    /// Adds a frame: the method's output, and its sRGB-encoded image.
+    /// Adds a frame: the method's output, its sRGB-encoded image, and that of the foveated frame, if there is one.
     pub fn push(
         &mut self,
         frame: &SourceFrame,
         reference: &Reference<'_>,
         encoded: &Image<[f32; 3]>,
+        foveated: Option<&Image<[f32; 3]>>,
         shown: &MethodOutput,
         step: &Step,
     ) {
         self.last = Some(self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg));
+        if let Some(foveated) = foveated {
+            self.crops.push(reference.encoded(), encoded, foveated);
+        }
         self.traffic = shown.traffic_bytes_per_pixel;
         self.wall_ms.push(shown.wall_ms);
         self.cpu_ms.push(shown.cpu_ms);
@@ -117,6 +124,7 @@ impl MethodAccumulator {
             cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
             scores: self.scorer.scores(),
             psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
+            worst_crop: self.crops.worst(),
             nonfinite_in: self.nonfinite_in,
             nonfinite_out: self.nonfinite_out,
             flushed: share(self.flushed, self.pixels),

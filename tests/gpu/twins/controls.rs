@@ -133,8 +133,15 @@ fn a_wrong_match_is_caught() {
         "(history_lod - lod) / COARSER_WIDTH",
         "(lod - history_lod) / COARSER_WIDTH",
     );
-    caught(matching::PROBES, "gain", "(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)");
-    caught(matching::PROBES, "decide", "if relit < d {", "if relit > d {");
+    caught(
+        matching::PROBES,
+        "gain",
+        "(observed + DARK) / (predicted + DARK)",
+        "(predicted + DARK) / (observed + DARK)",
+    );
+    caught(matching::PROBES, "decide", "if relit < unlit *", "if relit > unlit *");
+    caught(matching::PROBES, "decide", "missed * finer + k * e.history", "k * e.history");
+    caught(matching::PROBES, "decide", "abs(ln(mean) * LOG2_E)", "0.0");
     caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
     caught(matching::PROBES, "mip_mean", "(a + b + c + d)", "(a + b + c + c)");
     caught(matching::PROBES, "mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");

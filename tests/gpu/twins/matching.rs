@@ -76,20 +76,23 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
     })
 }
 
-const EVIDENCE: usize = 24;
-const DECIDE_IN: usize = EVIDENCE + 9;
+const DECIDE_IN: usize = 43;
 
 fn decide(r: &Row<'_>, o: &mut Out) {
     let e = Evidence {
         candidate: r.v(0),
         compared: r.v(3),
         compared_coarser: r.v(6),
+        observed: r.v(33),
         lod: r.f(9),
         history: r.v(10),
         history_lod: r.f(13),
+        resampled: r.u(42) != 0,
         matched: r.v(14),
         level: r.v(17),
         next_level: r.v(20),
+        matched_coarser: r.v(36),
+        predicted: r.v(39),
         trust: r.f(23),
         noise: r.f(29),
         confidence: [r.f(31), r.f(32)],
@@ -134,6 +137,9 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
         &confidence,
         &confidence,
     ]);
+    lists.extend([&c[..]; 3]);
+    lists.extend([&h[..]; 6]);
+    lists.push(&[0, 1]);
     Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
         let candidate = stored_color(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
@@ -155,6 +161,11 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
         row.push(noisy[d.bits() as usize % noisy.len()]);
         let confidence = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
         push(row, &confidence);
+        let observed = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
+        let [coarser, other] = [0; 2].map(|_| like(d, matched).map(|x| x.max(0.0)));
+        let predicted = if d.bits() & 1 == 0 { matched } else { other };
+        push(row, &[observed, coarser, predicted].concat());
+        row.push(d.bits() & 1);
     })
 }
 
@@ -165,7 +176,7 @@ macro_rules! decide_probe {
             module: "matched",
             words: [DECIDE_IN, 6],
             wgsl: concat!(
-                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_f(9u), in_v(10u), in_f(13u), in_v(14u), in_v(17u), in_v(20u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
+                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_v(33u), in_f(9u), in_v(10u), in_f(13u), in_u(42u) != 0u, in_v(14u), in_v(17u), in_v(20u), in_v(36u), in_v(39u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
     let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
                 $blocks,
                 ", ",
@@ -292,15 +303,14 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "is_changed",
         module: "matched",
-        words: [13, 1],
-        wgsl: "out_b(is_changed(in_v(0u), in_v(3u), in_v(6u), in_v(9u), in_u(12u) != 0u));",
-        rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9), r.u(12) != 0)),
+        words: [12, 1],
+        wgsl: "out_b(is_changed(in_v(0u), in_v(3u), in_v(6u), in_v(9u)));",
+        rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9))),
         rows: || {
-            Rows::new(13).random("is_changed", |d, row| {
+            Rows::new(12).random("is_changed", |d, row| {
                 let compared = stored_color(d);
                 let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
                 push(row, &[compared, matched, level, next].concat());
-                row.push(d.bits() & 1);
             })
         },
     },

@@ -1,9 +1,10 @@
 //! Streaming image quality metrics: PSNR, SSIM and FLIP over the whole frame and by eccentricity, PSNR weighted by
-//! visual acuity, retention of detail from earlier foveas, flicker, and ghosting.
+//! visual acuity, retention of detail from earlier foveas, flicker, ghosting, and the worst crop.
 //!
 //! All compare sRGB-encoded RGB in \[0, 1\] with the full-rate frame of the same time. `docs/metrics.md` has the
 //! formulas.
 
+mod crop;
 pub mod flip;
 mod ghost;
 mod mean;
@@ -12,6 +13,7 @@ mod score;
 mod ssim;
 mod track;
 
+pub use crop::{CROP_FROM_FRAME, CROP_INVISIBLE_DB, CROP_PX, Crops, WorstCrop};
 pub use flip::Flip;
 pub use ghost::{GHOST_FRAMES, Ghost};
 pub use reference::{Reference, References};

@@ -17,3 +17,4 @@ mod surfaces_controls;
 mod surfaces_lifecycle;
 mod surfaces_scenes;
 mod surfaces_variants;
+mod worst_crops;

@@ -119,11 +119,11 @@ fn every_planted_error_in_smr_is_caught() {
             // Candidate and history swapped: in the output, the comparison and the gain.
             ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
             ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
-            ("(candidate + DARK) / (history + DARK)", "(history + DARK) / (candidate + DARK)"),
+            ("(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
             // Fit, gate and gain 1 % off.
             ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
             ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
-            ("clamp((candidate + DARK)", "clamp(1.01 * (candidate + DARK)"),
+            ("clamp((observed + DARK)", "clamp(1.01 * (observed + DARK)"),
             // Mip chain of the other view; levels and texels one off.
             (
                 "textureLoad(past_mips, four.low, view, level - 1u)",
@@ -161,9 +161,9 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
-            ("compared = candidates_around(px, view, candidate, radius, true);", ""),
-            ("reach = 2.0 * radius;", ""),
-            ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(12.0, 2.0);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
+            ("select(candidate, around, blocks)", "candidate"),
+            ("predicted = exposed(past_sampled(source, px, lod, view));", ""),
+            ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
             ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),
         ],
     );

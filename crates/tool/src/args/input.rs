@@ -17,7 +17,7 @@ use clap::{Args, ValueEnum};
 #[derive(Args, Clone, Debug)]
 pub struct InputArgs {
     /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with
-    /// NAME one of still, lateral, turn, occluder, light-step, scroll
+    /// NAME one of still, lateral, turn, occluder, light-step, spin, scroll
     #[arg(value_name = "INPUT")]
     pub name: String,
     /// Frames per second, for view an upper limit; default: the input's, else 60

@@ -9,7 +9,7 @@ use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::output::Output;
 use crate::progress;
 use crate::report::sheet::{Column, Sheet};
-use afterimage::{DebugView, Foveation, FrameError, Image, ViewGeometry};
+use afterimage::{DebugView, Foveation, FrameError, Image, Method, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
@@ -200,21 +200,21 @@ impl Clip {
         if self.write_reference {
             self.write_frame(out, "reference", index, &frame.color, reference.encoded())?;
         }
-        accumulators
-            .par_iter_mut()
-            .zip(&self.methods)
-            .zip(&step.outputs)
-            .map(|((accumulator, (name, _)), shown)| {
-                let encoded = metric::encode(&shown.image, self.exposure_ev);
-                accumulator.push(frame, reference, &encoded, shown, step);
-                self.write_frame(out, name, index, &shown.image, &encoded)?;
+        let encoded: Vec<_> =
+            step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
+        let foveated = self.methods.iter().position(|m| m.0 == Method::None.name()).map(|i| &encoded[i]);
+        accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
+            |((accumulator, (name, _)), (shown, encoded))| {
+                accumulator.push(frame, reference, encoded, foveated, shown, step);
+                self.write_frame(out, name, index, &shown.image, encoded)?;
                 for (debug, picture) in self.debug.iter().zip(&shown.debug) {
                     let folder = format!("debug/{name}/{}", debug.name());
                     out.picture(&folder, index, &to_rgb8(&metric::encode(picture, 0.0)))?;
                 }
-                Ok(encoded)
-            })
-            .collect()
+                Ok::<(), Failure>(())
+            },
+        )?;
+        Ok(encoded)
     }
 
     fn write_frame(

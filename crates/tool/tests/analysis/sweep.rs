@@ -27,6 +27,7 @@ fn measurement(point: Point, ms: f64, control_ms: f64, flip: f64) -> Measurement
         cpu_ms: Some(ms),
         scores: Default::default(),
         psnr_last_frame_db: None,
+        worst_crop: None,
         nonfinite_in: 0,
         nonfinite_out: 0,
         flushed: None,

@@ -45,6 +45,9 @@ fn run_writes_what_the_contract_says() {
             assert!(m.get(key).is_some(), "{method}.{key}");
         }
     }
+    assert_eq!(report["methods"]["none"]["worst_crop"]["delta_db"], 0.0, "none is compared with itself");
+    let worst = &report["methods"]["wrs"]["worst_crop"];
+    assert!(worst["delta_db"].as_f64().unwrap() <= 0.0 && worst["frame"].as_u64().unwrap() >= 2, "{worst}");
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 48);
     // 160 pixels over 70 degrees.
     assert!((report["flip_pixels_per_degree"].as_f64().unwrap() - 1.994).abs() < 1e-3);

@@ -34,7 +34,7 @@ fn post(x: f32, z: f32, radius: f32, top: f32, material: Material) -> Object {
 }
 
 fn block(centre: [f32; 3], half: [f32; 3], material: Material) -> Object {
-    let shape = Shape::Block { centre: centre.into(), half: half.into() };
+    let shape = Shape::Block { centre: centre.into(), half: half.into(), axes: Mat3::IDENTITY };
     fixed(shape, material)
 }
 
@@ -98,7 +98,7 @@ fn scene(extra: Vec<Object>, camera: fn(f64) -> Camera) -> Scene {
     let mut objects = walls();
     objects.extend(things());
     objects.extend(extra);
-    Scene { objects, camera, floor: 0, panel: None }
+    Scene { objects, camera, floor: 0, panel: None, ambient: 1.0 }
 }
 
 /// `still` and `light-step`.
@@ -170,6 +170,22 @@ pub(super) fn occluder() -> Scene {
         }
     }
     scene
+}
+
+/// `spin`: a box turns in front of the wall and sways. There is hardly any light but the sun's, so each
+/// side comes out of near-black shadow as it turns to the left.
+pub(super) fn spin() -> Scene {
+    let mut objects = walls();
+    objects.push(Object {
+        path: Some(|t| Pose {
+            offset: Vec3::new((0.4 * t.sin()) as f32, (0.1 * (1.7 * t).sin()) as f32, 0.0),
+            spin: Mat3::from_rotation_y((1.5 * t).rem_euclid(TAU) as f32) * Mat3::from_rotation_x(0.35),
+        }),
+        ..block([-0.2, 0.0, 6.4], [0.55; 3], Material::Gallery)
+    });
+    // Near the wall the roof of slats does not shade the box.
+    let camera = |_: f64| Camera::looking(Vec3::new(0.0, 0.0, 2.9), 0.0, 0.0);
+    Scene { objects, camera, floor: 0, panel: None, ambient: 0.02 }
 }
 
 /// Half size of the scrolling panel in metres, and its distance.

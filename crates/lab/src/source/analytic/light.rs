@@ -23,7 +23,7 @@ pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n:
     let sun = if facing > 0.0 { facing * sunlight(stage, &tile.casters[index], point + n * NEAR) } else { 0.0 };
     let upward = 0.5 - 0.5 * n.y;
     let open = if index == stage.floor { open_floor(stage, &tile.standing, point) } else { corner(FLOOR - point.y) };
-    BOUNCE.lerp(SKY, upward) * open + SUN * sun
+    BOUNCE.lerp(SKY, upward) * (open * stage.ambient) + SUN * sun
 }
 
 /// Visible share of the sun from a point, given the objects that may cast a shadow there.
@@ -67,7 +67,7 @@ fn occluder(shape: &Shape) -> Option<(Vec3, f32)> {
     match *shape {
         Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => Some((centre, radius)),
         Shape::Post { centre, radius, .. } => Some((centre.with_y(FLOOR - radius), radius)),
-        Shape::Block { centre, half } if centre.y + half.y > FLOOR - 0.1 => {
+        Shape::Block { centre, half, .. } if centre.y + half.y > FLOOR - 0.1 => {
             let radius = half.x.max(half.z);
             Some((centre.with_y(FLOOR - radius), radius))
         }

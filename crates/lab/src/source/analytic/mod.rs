@@ -8,6 +8,7 @@
 //! | `turn` | the camera, rotation only, at most 17 degrees a second | camera rotation: every pixel moves, nothing is disoccluded |
 //! | `occluder` | a fence and a rolling ball in front, a spinning globe, the camera a little | motion of objects |
 //! | `light-step` | none; the light falls to 0.45 for 0.75 s | change without motion |
+//! | `spin` | a box, turning out of near-black shadow into the sun | change of light on a moving surface |
 //! | `scroll` | the page on a panel, without motion vectors | content with wrong motion vectors |
 
 mod cast;
@@ -57,15 +58,17 @@ enum Kind {
     Turn,
     Occluder,
     LightStep,
+    Spin,
     Scroll,
 }
 
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 7] = [
     ("still", Kind::Still),
     ("lateral", Kind::Lateral),
     ("turn", Kind::Turn),
     ("occluder", Kind::Occluder),
     ("light-step", Kind::LightStep),
+    ("spin", Kind::Spin),
     ("scroll", Kind::Scroll),
 ];
 
@@ -130,6 +133,7 @@ impl AnalyticSource {
             Kind::Lateral => (courtyard::lateral(), SAMPLES_MOVING),
             Kind::Turn => (courtyard::turn(), SAMPLES_MOVING),
             Kind::Occluder => (courtyard::occluder(), SAMPLES_MOVING),
+            Kind::Spin => (courtyard::spin(), SAMPLES_MOVING),
             Kind::Scroll => (courtyard::scroll(), SAMPLES_MOVING),
         };
         Ok(Self {
@@ -259,7 +263,7 @@ impl FrameSource for AnalyticSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let mut frame = match self.kind {
-            Kind::Lateral | Kind::Turn | Kind::Occluder => self.cast(index, &self.view, &self.pattern),
+            Kind::Lateral | Kind::Turn | Kind::Occluder | Kind::Spin => self.cast(index, &self.view, &self.pattern),
             Kind::Still => self.cached(),
             Kind::Scroll => self.scrolled(index),
             Kind::LightStep => {

@@ -19,7 +19,7 @@ pub(super) struct Pose {
 pub(super) struct Object {
     pub shape: Shape,
     pub material: Material,
-    /// Pose at a time in seconds; `None` for static objects. Only spheres rotate: other shapes keep their axes.
+    /// Pose at a time in seconds; `None` for static objects. Only spheres and blocks rotate.
     pub path: Option<fn(f64) -> Pose>,
 }
 
@@ -65,6 +65,8 @@ pub(super) struct Scene {
     pub floor: usize,
     /// Index of the panel whose content moves without motion vectors.
     pub panel: Option<usize>,
+    /// Factor on the light that does not come from the sun.
+    pub ambient: f32,
 }
 
 /// An object at the time of a frame.
@@ -86,6 +88,7 @@ pub(super) struct Stage {
     pub cameras: [Camera; 2],
     pub floor: usize,
     pub panel: Option<usize>,
+    pub ambient: f32,
 }
 
 impl Scene {
@@ -97,7 +100,7 @@ impl Scene {
             .map(|object| {
                 let poses = object.path.map(|path| [path(now), path(before)]);
                 Placed {
-                    shape: poses.map_or(object.shape, |p| object.shape.moved(p[0].offset)),
+                    shape: poses.map_or(object.shape, |p| object.shape.moved(p[0].offset, p[0].spin)),
                     material: object.material,
                     poses,
                     casters: Vec::new(),
@@ -113,7 +116,13 @@ impl Scene {
                 .map(|caster| caster as u16)
                 .collect();
         }
-        Stage { objects, cameras: [(self.camera)(now), (self.camera)(before)], floor: self.floor, panel: self.panel }
+        Stage {
+            objects,
+            cameras: [(self.camera)(now), (self.camera)(before)],
+            floor: self.floor,
+            panel: self.panel,
+            ambient: self.ambient,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Shapes in world space, and their intersection with rays.
 
 use super::noise::split;
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 /// A ray. Its direction has z = 1 in view space, so that the ray parameter of a hit is its depth.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +25,8 @@ pub(super) enum Shape {
     Sphere { centre: Vec3, radius: f32 },
     /// A vertical cylinder without caps.
     Post { centre: Vec3, radius: f32, half_height: f32 },
-    /// A box along the axes.
-    Block { centre: Vec3, half: Vec3 },
+    /// A box along the columns of `axes`, a rotation.
+    Block { centre: Vec3, half: Vec3, axes: Mat3 },
 }
 
 /// Alpha test of a rectangle.
@@ -68,15 +68,25 @@ pub(super) struct Surface {
     pub uv: Vec2,
 }
 
+impl Surface {
+    /// This geometry in a space in which its axes are the columns of `axes`.
+    fn turned(self, axes: Mat3) -> Self {
+        Self { normal: axes * self.normal, tangents: self.tangents.map(|t| axes * t), uv: self.uv }
+    }
+}
+
 impl Shape {
-    /// This shape, translated.
-    pub fn moved(self, by: Vec3) -> Self {
+    /// This shape, translated. Blocks are turned by `spin`, too; other shapes keep their axes.
+    pub fn moved(self, by: Vec3, spin: Mat3) -> Self {
         let mut moved = self;
         match &mut moved {
-            Self::Rect { centre, .. }
-            | Self::Sphere { centre, .. }
-            | Self::Post { centre, .. }
-            | Self::Block { centre, .. } => *centre += by,
+            Self::Rect { centre, .. } | Self::Sphere { centre, .. } | Self::Post { centre, .. } => {
+                *centre += by;
+            }
+            Self::Block { centre, axes, .. } => {
+                *centre += by;
+                *axes = spin;
+            }
         }
         moved
     }
@@ -87,7 +97,7 @@ impl Shape {
             Self::Rect { centre, half, .. } => (centre, half.length()),
             Self::Sphere { centre, radius } => (centre, radius),
             Self::Post { centre, radius, half_height } => (centre, radius.hypot(half_height)),
-            Self::Block { centre, half } => (centre, half.length()),
+            Self::Block { centre, half, .. } => (centre, half.length()),
         }
     }
 
@@ -99,7 +109,9 @@ impl Shape {
             Self::Post { centre, radius, half_height } => {
                 (centre, [Vec3::X * radius, Vec3::Y * half_height, Vec3::Z * radius])
             }
-            Self::Block { centre, half } => (centre, [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z]),
+            Self::Block { centre, half, axes } => {
+                (centre, [axes.x_axis * half.x, axes.y_axis * half.y, axes.z_axis * half.z])
+            }
         };
         std::array::from_fn(|i| {
             let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
@@ -114,7 +126,7 @@ impl Shape {
             Self::Rect { centre, u, v, half, cutout } => return hit_rect(ray, [centre, u, v], half, cutout, near, far),
             Self::Sphere { centre, radius } => hit_ball(ray, centre, radius, near)?,
             Self::Post { centre, radius, half_height } => hit_post(ray, centre, radius, half_height, near)?,
-            Self::Block { centre, half } => hit_block(ray, centre, half, near)?,
+            Self::Block { centre, half, axes } => hit_block(ray, centre, half, axes, near)?,
         };
         (t > near && t < far).then_some(t)
     }
@@ -145,7 +157,7 @@ impl Shape {
                     uv: Vec2::new(radius * local.x.atan2(local.z), local.y),
                 }
             }
-            Self::Block { centre, half } => block_surface(point - centre, half),
+            Self::Block { centre, half, axes } => block_surface(axes.transpose() * (point - centre), half).turned(axes),
         }
     }
 }
@@ -197,11 +209,12 @@ fn hit_post(ray: &Ray, centre: Vec3, radius: f32, half_height: f32, near: f32) -
 }
 
 #[inline]
-fn hit_block(ray: &Ray, centre: Vec3, half: Vec3, near: f32) -> Option<f32> {
+fn hit_block(ray: &Ray, centre: Vec3, half: Vec3, axes: Mat3, near: f32) -> Option<f32> {
+    let direction = axes.transpose() * ray.direction;
     // A zero in the direction would give inf - inf for a ray whose origin is level with the centre.
     let tiny = Vec3::splat(1e-12);
-    let inverse = Vec3::select(ray.direction.abs().cmplt(tiny), tiny, ray.direction).recip();
-    let middle = (centre - ray.origin) * inverse;
+    let inverse = Vec3::select(direction.abs().cmplt(tiny), tiny, direction).recip();
+    let middle = axes.transpose() * (centre - ray.origin) * inverse;
     let reach = half * inverse.abs();
     let enter = (middle - reach).max_element();
     let leave = (middle + reach).min_element();

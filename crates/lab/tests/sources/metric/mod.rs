@@ -1,5 +1,6 @@
 //! Metrics against hand-calculated cases and an oracle in f64, and the cost of gaze latency (H68).
 
+mod crop;
 mod flip;
 mod weighted;
 

@@ -150,9 +150,11 @@ fn play(
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
         sums.samples = result.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
+        let foveated = batch.subjects.iter().position(|s| s.method.name() == Method::None.name());
+        let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
         let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
-            accumulator.push(result.frame, result.reference, &encoded, shown, result.step);
+            accumulator.push(result.frame, result.reference, &encoded, foveated.as_ref(), shown, result.step);
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };
         let subjects = batch.subjects.par_iter().zip(&result.step.outputs[1..]);

@@ -96,6 +96,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
         cpu_ms: Some(ms),
         scores,
         psnr_last_frame_db: db(error),
+        worst_crop: None,
         nonfinite_in: 0,
         nonfinite_out: 0,
         flushed: Some(0.02),

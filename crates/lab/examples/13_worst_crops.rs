@@ -1,0 +1,108 @@
+//! Finds the crops of 64x64 pixels in which a method is worst against the foveated frame, over clips, scanpaths,
+//! filters and rates.
+//!
+//! `cargo run --release -p afterimage-lab --example 13_worst_crops FRAMES SCANPATH.csv[,...] INPUT...`; INPUT as for
+//! `afterimage run`. Scenes (`builtin:NAME`, .gltf, .glb) are rasterised, which needs an adapter; a software one is
+//! enough.
+
+use afterimage::{Filter, Foveation, FrameError, Method, Settings, ViewGeometry};
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::metric::{Crops, encode};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
+use afterimage_lab::source::{self, FrameSource, RasterSource, ReadLimits, SceneOptions};
+use rayon::prelude::*;
+
+/// Size of analytic and rasterised frames in pixels.
+const SIZE: [u32; 2] = [480, 270];
+const RATES: [[u32; 2]; 3] = [[2, 4], [4, 8], [8, 16]];
+/// Start of the clips in the scanpaths, in seconds.
+const START_S: f64 = 1.0;
+
+const METHODS: [(&str, Method); 3] = [("taa", Method::Taa), ("wrs", Method::Wrs), ("smr", Method::Smr)];
+
+/// A clip with a gaze and a foveation.
+struct Row {
+    name: String,
+    gaze: FrameGaze,
+    pipeline: Pipeline,
+    crops: [Crops; METHODS.len()],
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [frames, scanpaths, inputs @ ..] = &args[..] else {
+        return Err("usage: 13_worst_crops FRAMES SCANPATH.csv[,...] INPUT...".into());
+    };
+    let frames: u64 = frames.parse()?;
+    println!("PSNR of the worst crop minus that of the foveated frame in dB (frame: x, y)");
+    println!("{:64}{}", "clip", METHODS.map(|m| format!("{:>24}", m.0)).concat());
+    for input in inputs {
+        let mut source = open(input)?;
+        let mut rows = rows(source.as_ref(), input, scanpaths)?;
+        for index in 0..frames {
+            let frame = source.frame(index)?;
+            let full = encode(&frame.color, 0.0);
+            rows.par_iter_mut().try_for_each(|row| {
+                let step = row.pipeline.step(index, &frame, row.gaze.px(index))?;
+                let shown: Vec<_> = step.outputs.iter().map(|output| encode(&output.image, 0.0)).collect();
+                let (foveated, methods) = shown.split_first().expect("the first method is none");
+                for (crops, shown) in row.crops.iter_mut().zip(methods) {
+                    crops.push(&full, shown, foveated);
+                }
+                Ok::<(), FrameError>(())
+            })?;
+        }
+        for row in &rows {
+            let cell = |crops: &Crops| {
+                let text = crops
+                    .worst()
+                    .map_or("-".into(), |w| format!("{:.2} ({}: {}, {})", w.delta_db, w.frame, w.x_px, w.y_px));
+                format!("{text:>24}")
+            };
+            println!("{:64}{}", row.name, row.crops.each_ref().map(cell).concat());
+        }
+    }
+    Ok(())
+}
+
+fn open(input: &str) -> Result<Box<dyn FrameSource>, Box<dyn std::error::Error>> {
+    let (limits, options) = (ReadLimits::default(), SceneOptions { size: Some(SIZE), ..Default::default() });
+    if source::is_scene(input) {
+        let device = Headless::find_roomy(true).ok_or("there is no adapter; install mesa-vulkan-drivers")?;
+        return Ok(Box::new(RasterSource::open(input, &limits, &options, None, device)?));
+    }
+    let options = if input.starts_with("analytic:") { options } else { SceneOptions::default() };
+    Ok(source::open(input, &limits, &options)?)
+}
+
+/// All gazes and foveations of a clip.
+fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
+    let info = source.info();
+    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
+    let method = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
+    let kinds: Vec<_> = [Method::None].into_iter().chain(METHODS.map(|m| m.1)).map(method).collect();
+    let mut rows = vec![];
+    for file in scanpaths.split(',') {
+        let path = read_csv(file)?;
+        for filter in [Filter::Mip, Filter::Block] {
+            for [rate_mid, rate_far] in RATES {
+                let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
+                let fps = info.fps.unwrap_or(60.0);
+                let map = GazeMap::default_for(path.screen());
+                rows.push(Row {
+                    name: format!("{} {} {filter:?} {rate_mid}/{rate_far}", last(input), last(file)),
+                    gaze: FrameGaze::new(&path, &geometry, map, START_S, fps.into())?,
+                    pipeline: Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?,
+                    crops: Default::default(),
+                });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Last part of a path.
+fn last(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}

@@ -1,0 +1,93 @@
+//! Worst crop: the small part of a frame in which a method loses most against the foveated frame.
+
+use super::psnr_db;
+use afterimage::Image;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Side of a crop in pixels.
+pub const CROP_PX: u32 = 64;
+
+/// First frame of a clip whose crops count: before it there is almost no history.
+pub const CROP_FROM_FRAME: u64 = 2;
+
+/// PSNR in dB beyond which the error of a crop cannot be seen: a root mean square of 0.8 steps of 8-bit output. A
+/// difference between two larger PSNRs counts as 0.
+pub const CROP_INVISIBLE_DB: f64 = 50.0;
+
+/// The crop of a clip in which a method loses most against the foveated frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WorstCrop {
+    /// PSNR of the method minus PSNR of the foveated frame, in dB, each at most [`CROP_INVISIBLE_DB`]. Negative: the
+    /// method is worse.
+    pub delta_db: f64,
+    /// Frame of the crop, from 0.
+    pub frame: u64,
+    /// Left edge of the crop in pixels.
+    pub x_px: u32,
+    /// Top edge of the crop in pixels.
+    pub y_px: u32,
+}
+
+/// Compares the crops of a method with those of the foveated frame over a clip.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Crops {
+    frames: u64,
+    worst: Option<WorstCrop>,
+}
+
+impl Crops {
+    /// Adds the next frame: full-rate reference, the method's output, and the foveated frame (the output of
+    /// [`Method::None`](afterimage::Method::None)), all sRGB-encoded.
+    ///
+    /// Crops tile the frame from its top left corner; the last column and row are moved inwards to fit. A frame smaller
+    /// than a crop is one crop.
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    pub fn push(&mut self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>, foveated: &Image<[f32; 3]>) {
+        let size = reference.size();
+        assert!(output.size() == size && foveated.size() == size);
+        let frame = self.frames;
+        self.frames += 1;
+        if frame < CROP_FROM_FRAME {
+            return;
+        }
+        let [columns, rows] = size.map(|len| (0..len).step_by(CROP_PX as usize).map(move |at| inwards(at, len)));
+        for y_px in rows {
+            for x_px in columns.clone() {
+                let shown_db = |image| visible_db(crop_mse(reference, image, [x_px, y_px]));
+                let delta_db = shown_db(output) - shown_db(foveated);
+                if self.worst.is_none_or(|worst| delta_db < worst.delta_db) {
+                    self.worst = Some(WorstCrop { delta_db, frame, x_px, y_px });
+                }
+            }
+        }
+    }
+
+    /// The worst crop so far; the earliest of equally bad ones. `None` before frame [`CROP_FROM_FRAME`].
+    pub fn worst(&self) -> Option<WorstCrop> {
+        self.worst
+    }
+}
+
+/// Position of a crop along `len` pixels, moved inwards if it would cross the border.
+fn inwards(at: u32, len: u32) -> u32 {
+    at.min(len.saturating_sub(CROP_PX))
+}
+
+/// PSNR in dB of a mean squared error, at most [`CROP_INVISIBLE_DB`].
+fn visible_db(mse: f64) -> f64 {
+    psnr_db(mse).map_or(CROP_INVISIBLE_DB, |db| db.min(CROP_INVISIBLE_DB))
+}
+
+fn crop_mse(reference: &Image<[f32; 3]>, image: &Image<[f32; 3]>, [x_px, y_px]: [u32; 2]) -> f64 {
+    let columns = x_px as usize..reference.width().min((x_px + CROP_PX) as usize);
+    let rows = y_px as usize..reference.height().min((y_px + CROP_PX) as usize);
+    let count = 3 * columns.len() * rows.len();
+    let row_sum = |y: usize| {
+        let pairs = reference.row(y)[columns.clone()].iter().zip(&image.row(y)[columns.clone()]);
+        pairs.map(|(r, s)| f64::from((Vec3::from(*s) - Vec3::from(*r)).length_squared())).sum::<f64>()
+    };
+    rows.map(row_sum).sum::<f64>() / count as f64
+}
