@@ -80,6 +80,7 @@ compile_error!("afterimage has no executor: enable the feature `gpu` (wgpu) or `
 mod convention;
 #[cfg(feature = "cpu")]
 pub mod cpu;
+mod doctor;
 mod error;
 mod foveation;
 mod frame;
@@ -102,6 +103,7 @@ mod uniforms;
 mod warning;
 
 pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+pub use doctor::{Check, Fault, Finding, Outcome};
 pub use error::{CreateError, FrameError, SettingsError};
 pub use foveation::{Filter, Foveation};
 pub use frame::{ContextDesc, Executor, Exposure, Frame, Gaze, Reset, ViewFrame};

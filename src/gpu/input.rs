@@ -13,6 +13,25 @@ pub(super) fn check(
     frame: &Frame<'_>,
     target: &Target<'_>,
 ) -> Result<(), FrameError> {
+    check_inputs(desc, frame)?;
+    if let Some(counters) = target.counters {
+        check_words("counters", counters, COUNTERS_BYTES, "at least afterimage::COUNTERS_BYTES")?;
+    }
+    check_texture(desc, "output", target.output, TextureUsages::STORAGE_BINDING)?;
+    if target.output.format() == output_format {
+        Ok(())
+    } else {
+        Err(refuse(
+            "output",
+            target.output,
+            "not the context's".into(),
+            "the output format given to Afterimage::new; or create a context for this one",
+        ))
+    }
+}
+
+/// Checks a frame without its target.
+pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
     let inputs = [
         ("color", Some(frame.color), 3),
@@ -28,20 +47,7 @@ pub(super) fn check(
             check_readable(input, texture, channels)?;
         }
     }
-    if let Some(counters) = target.counters {
-        check_counters(counters)?;
-    }
-    check_texture(desc, "output", target.output, TextureUsages::STORAGE_BINDING)?;
-    if target.output.format() == output_format {
-        Ok(())
-    } else {
-        Err(refuse(
-            "output",
-            target.output,
-            "not the context's".into(),
-            "the output format given to Afterimage::new; or create a context for this one",
-        ))
-    }
+    Ok(())
 }
 
 /// Checks size, layers, samples and usage of a texture.
@@ -84,11 +90,16 @@ pub(crate) fn check_texture(
     Ok(())
 }
 
-/// Checks size and usages of the counters' buffer.
-fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
-    let refuse = |problem, expected| Err(FrameError::Buffer { input: "counters", problem, expected });
-    if buffer.size() < COUNTERS_BYTES {
-        return refuse(format!("of {} bytes", buffer.size()), "at least afterimage::COUNTERS_BYTES");
+/// Checks size and usages of a buffer of the caller's, which is cleared and written.
+pub(super) fn check_words(
+    input: &'static str,
+    buffer: &Buffer,
+    bytes: u64,
+    expected_size: &'static str,
+) -> Result<(), FrameError> {
+    let refuse = |problem, expected| Err(FrameError::Buffer { input, problem, expected });
+    if buffer.size() < bytes {
+        return refuse(format!("of {} bytes", buffer.size()), expected_size);
     }
     if !buffer.usage().contains(BufferUsages::STORAGE | BufferUsages::COPY_DST) {
         return refuse(format!("with the usages {:?}", buffer.usage()), "the usages STORAGE and COPY_DST");

@@ -1,0 +1,54 @@
+//! Checks of a renderer's inputs: what is found, and the rules by which it is found. The executors gather the evidence
+//! (`cpu::Doctor`, `gpu::Doctor`); the rules are the same for both.
+
+mod finding;
+mod motion;
+mod observation;
+
+pub use finding::{Check, Fault, Finding, Outcome};
+#[cfg(feature = "cpu")]
+pub(crate) use observation::Tile;
+#[cfg(feature = "gpu")]
+pub(crate) use observation::tile_count;
+pub(crate) use observation::{Description, Observation, maps};
+
+use crate::error::SettingsError;
+use crate::frame::ContextDesc;
+
+/// Number of frames that are kept; with more, the oldest ones are forgotten.
+const KEPT: usize = 64;
+
+/// Observations of the last frames.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chart {
+    observations: Vec<Observation>,
+}
+
+impl Chart {
+    /// Adds the observation of a frame.
+    pub fn add(&mut self, observation: Observation) {
+        if self.observations.len() == KEPT {
+            self.observations.remove(0);
+        }
+        self.observations.push(observation);
+    }
+
+    /// Words of the observations, in their order.
+    pub fn words(&self) -> Vec<&[u32]> {
+        self.observations.iter().map(|o| &o.words[..]).collect()
+    }
+
+    /// One finding a check.
+    pub fn findings(&self, desc: &ContextDesc) -> Vec<Finding> {
+        vec![motion::check(desc, &self.observations)]
+    }
+}
+
+/// Rejects the index of a view that a context does not have.
+pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
+    if view < desc.view_count as usize {
+        return Ok(());
+    }
+    let expected = format!("the index of one of the context's {} views", desc.view_count);
+    Err(SettingsError { setting: "view", found: view.to_string(), expected })
+}
