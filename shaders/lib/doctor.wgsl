@@ -61,22 +61,17 @@ fn lattice_texel(point: u32, level: u32, len: u32) -> u32 {
     return min((point << level) + lattice_offset(level), max(len, 1u) - 1u);
 }
 
-// doctor::spline_weights
-fn spline_weights(t: f32) -> vec4<f32> {
-    let u = 1.0 - t;
-    return vec4<f32>(u * u * u, (3.0 * t - 6.0) * (t * t) + 4.0, (3.0 * u - 6.0) * (u * u) + 4.0, t * t * t);
+// doctor::between
+fn between(a: f32, b: f32, t: f32) -> f32 {
+    return a + (b - a) * t;
 }
 
-// doctor::weighted
-fn weighted(values: vec4<f32>, weights: vec4<f32>) -> f32 {
-    let left = values.x * weights.x + values.y * weights.y;
-    let right = values.z * weights.z + values.w * weights.w;
-    return left + right;
-}
-
-// doctor::spline_difference
-fn spline_difference(a: f32, b: f32) -> f32 {
-    return abs(a - b) * (1.0f / 36.0f);
+// doctor::spline
+fn spline(values: vec4<f32>, t: f32) -> f32 {
+    let first = between(values.x, values.y, (t + 2.0) * (1.0f / 3.0f));
+    let second = between(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
+    let third = between(values.z, values.w, t * (1.0f / 3.0f));
+    return between(between(first, second, (t + 1.0) * 0.5), between(second, third, t * 0.5), t);
 }
 
 // doctor::stored_motion

@@ -33,7 +33,7 @@ var<workgroup> sums: array<atomic<u32>, SUMS>;
 
 struct Axis {
     texels: vec4<u32>,
-    weights: vec4<f32>,
+    fraction: f32,
 }
 
 fn axis_at(at: f32, len: u32, level: u32) -> Axis {
@@ -46,7 +46,7 @@ fn axis_at(at: f32, len: u32, level: u32) -> Axis {
             lattice_texel(min(near.whole + 1u, count - 1u), level, len),
             lattice_texel(min(near.whole + 2u, count - 1u), level, len),
         ),
-        spline_weights(near.fraction),
+        near.fraction,
     );
 }
 
@@ -55,26 +55,26 @@ fn half_size() -> vec2<u32> {
 }
 
 fn row_now(x: Axis, y: u32) -> f32 {
-    return weighted(
+    return spline(
         vec4<f32>(
             textureLoad(light_now, vec2<u32>(x.texels.x, y), 0, 0).x,
             textureLoad(light_now, vec2<u32>(x.texels.y, y), 0, 0).x,
             textureLoad(light_now, vec2<u32>(x.texels.z, y), 0, 0).x,
             textureLoad(light_now, vec2<u32>(x.texels.w, y), 0, 0).x,
         ),
-        x.weights,
+        x.fraction,
     );
 }
 
 fn row_past(x: Axis, y: u32) -> f32 {
-    return weighted(
+    return spline(
         vec4<f32>(
             textureLoad(light_past, vec2<u32>(x.texels.x, y), 0, 0).x,
             textureLoad(light_past, vec2<u32>(x.texels.y, y), 0, 0).x,
             textureLoad(light_past, vec2<u32>(x.texels.z, y), 0, 0).x,
             textureLoad(light_past, vec2<u32>(x.texels.w, y), 0, 0).x,
         ),
-        x.weights,
+        x.fraction,
     );
 }
 
@@ -83,7 +83,7 @@ fn lookup_now(at: vec2<f32>, level: u32) -> f32 {
     let y = axis_at(at.y, half_size().y, level);
     let rows =
         vec4<f32>(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
-    return weighted(rows, y.weights);
+    return spline(rows, y.fraction);
 }
 
 fn lookup_past(at: vec2<f32>, level: u32) -> f32 {
@@ -91,7 +91,7 @@ fn lookup_past(at: vec2<f32>, level: u32) -> f32 {
     let y = axis_at(at.y, half_size().y, level);
     let rows =
         vec4<f32>(row_past(x, y.texels.x), row_past(x, y.texels.y), row_past(x, y.texels.z), row_past(x, y.texels.w));
-    return weighted(rows, y.weights);
+    return spline(rows, y.fraction);
 }
 
 fn add(word: u32, count: u32) {
@@ -115,7 +115,7 @@ fn match_sample(px: vec2<u32>, level: u32) {
         let map = frame.maps[h];
         let moved = select(stored, stored.yx, map.z > 0.0);
         let predicted = lookup_past(vec2<f32>(at.x + moved.x * map.x, at.y + moved.y * map.y), level);
-        add(ERRORS + h, fixed(spline_difference(shown, predicted)));
+        add(ERRORS + h, fixed(abs(shown - predicted)));
     }
 }
 
@@ -136,9 +136,9 @@ fn add_pixel(px: vec2<u32>) {
         let before = signal_at(px, axis, -1);
         let after = signal_at(px, axis, 1);
         add(STEPS + boundary_class(along), fixed(abs(at - before)));
-        let class = kink_class(along);
-        add(BENDS + class, fixed(bend(before, at, after)));
-        add(DECODED_BENDS + class, fixed(bend(srgb_decode(before), srgb_decode(at), srgb_decode(after))));
+        let kink = kink_class(along);
+        add(BENDS + kink, fixed(bend(before, at, after)));
+        add(DECODED_BENDS + kink, fixed(bend(srgb_decode(before), srgb_decode(at), srgb_decode(after))));
         for (var i = 0u; i < WIDE; i++) {
             let reach = 2 << i;
             add(WIDE_BENDS + i, fixed(bend(signal_at(px, axis, -reach), at, signal_at(px, axis, reach))));

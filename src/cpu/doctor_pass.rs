@@ -68,7 +68,7 @@ impl Examined<'_> {
         for (h, map) in self.maps.iter().enumerate() {
             let [x, y] = if map[2] > 0.0 { [stored[1], stored[0]] } else { stored };
             let predicted = lookup(self.past, [at[0] + x * map[0], at[1] + y * map[1]], level);
-            words[ERRORS as usize + h] += fixed(spline_difference(shown, predicted));
+            words[ERRORS as usize + h] += fixed((shown - predicted).abs());
         }
     }
 
@@ -83,10 +83,10 @@ impl Examined<'_> {
             let (before, after) = (tap(-1), tap(1));
             let mut add = |word: u32, difference: f32| words[word as usize] += fixed(difference);
             add(STEPS + boundary_class(px[axis]), (at - before).abs());
-            let class = kink_class(px[axis]);
-            add(BENDS + class, bend(before, at, after));
+            let kink = kink_class(px[axis]);
+            add(BENDS + kink, bend(before, at, after));
             let [before, at_decoded, after] = [before, at, after].map(color::srgb_decode);
-            add(DECODED_BENDS + class, bend(before, at_decoded, after));
+            add(DECODED_BENDS + kink, bend(before, at_decoded, after));
             for i in 0..WIDE {
                 let reach = 2 << i;
                 add(WIDE_BENDS + i, bend(tap(-reach), at, tap(reach)));
@@ -122,15 +122,15 @@ impl Examined<'_> {
     }
 }
 
-/// Light at a position in texels, times 36: a spline over the points of a lattice.
+/// Light at a position in texels: a spline over the points of a lattice.
 fn lookup(light: &Image<f32>, at: [f32; 2], level: u32) -> f32 {
     let axis = |i: usize| {
         let len = light.size()[i];
         let count = lattice_len(len, level);
         let (near, fraction) = foveate::split(lattice_coordinate(at[i], level), count);
         let points = [near.max(1) - 1, near, (near + 1).min(count - 1), (near + 2).min(count - 1)];
-        (points.map(|point| lattice_texel(point, level, len) as usize), spline_weights(fraction))
+        (points.map(|point| lattice_texel(point, level, len) as usize), fraction)
     };
     let ((columns, across), (rows, down)) = (axis(0), axis(1));
-    weighted(rows.map(|y| weighted(columns.map(|x| light.at(x, y)), across)), down)
+    spline(rows.map(|y| spline(columns.map(|x| light.at(x, y)), across)), down)
 }

@@ -91,26 +91,22 @@ pub fn lattice_texel(point: u32, level: u32, len: u32) -> u32 {
     ((point << level) + lattice_offset(level)).min(len.max(1) - 1)
 }
 
-/// Weights, times 6, of four lattice points by a cubic B-spline, at fraction `t` from the second to the third. A spline
-/// smooths: interpolation of point samples would favor short vectors, because it follows what aliases on the lattice.
+/// Linear interpolation: `a` for `t` = 0, `b` for 1.
 #[inline]
-pub fn spline_weights(t: f32) -> [f32; 4] {
-    let u = 1.0 - t;
-    [u * u * u, (3.0 * t - 6.0) * (t * t) + 4.0, (3.0 * u - 6.0) * (u * u) + 4.0, t * t * t]
+pub fn between(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
 }
 
-/// Sum of four values by weight.
+/// Uniform cubic B-spline of four values at equal distances, at fraction `t` from the second to the third, by de Boor's
+/// algorithm: interpolations only, whose order no compiler changes. It smooths: interpolation of point samples would
+/// favor short vectors, because it follows what aliases on the lattice.
 #[inline]
-pub fn weighted(values: [f32; 4], weights: [f32; 4]) -> f32 {
-    let left = values[0] * weights[0] + values[1] * weights[1];
-    let right = values[2] * weights[2] + values[3] * weights[3];
-    left + right
-}
-
-/// Difference of two splines along both axes: their weights sum to 36.
-#[inline]
-pub fn spline_difference(a: f32, b: f32) -> f32 {
-    (a - b).abs() * (1.0 / 36.0)
+pub fn spline(values: [f32; 4], t: f32) -> f32 {
+    let [a, b, c, d] = values;
+    let first = between(a, b, (t + 2.0) * (1.0 / 3.0));
+    let second = between(b, c, (t + 1.0) * (1.0 / 3.0));
+    let third = between(c, d, t * (1.0 / 3.0));
+    between(between(first, second, (t + 1.0) * 0.5), between(second, third, t * 0.5), t)
 }
 
 /// Component of a stored motion vector, limited in length.
