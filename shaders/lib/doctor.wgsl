@@ -21,8 +21,7 @@ const BRIGHT: u32 = CODES + 1u;
 const SUMS: u32 = BRIGHT + 1u;
 const DEPTH: u32 = SUMS;
 const MOTION: u32 = DEPTH + DEPTHS;
-const LOD: u32 = MOTION + 2u;
-const WORDS: u32 = LOD + 1u;
+const WORDS: u32 = MOTION + 2u;
 
 const MAX_SIGNAL: f32 = 64.0;
 const MAX_STORED_MOTION: f32 = 65536.0;

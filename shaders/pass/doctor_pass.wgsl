@@ -4,11 +4,10 @@
 // Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
 // tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
 //
-// 416 reads of light and 68 of color an invocation, most of them cached; 216 bytes written a tile.
+// 416 reads of light and 68 of color an invocation, most of them cached; 212 bytes written a tile.
 
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
-override HAS_LOD: u32 = 1u;
 
 // src/gpu/doctor.rs: DoctorUniforms, which documents the fields
 struct DoctorUniforms {
@@ -22,12 +21,11 @@ struct DoctorUniforms {
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
-@group(0) @binding(4) var lod_in: texture_2d_array<f32>;
-@group(0) @binding(5) var light_now: texture_2d_array<f32>;
-@group(0) @binding(6) var light_past: texture_2d_array<f32>;
+@group(0) @binding(4) var light_now: texture_2d_array<f32>;
+@group(0) @binding(5) var light_past: texture_2d_array<f32>;
 // First pixel, level of the lattice.
-@group(0) @binding(7) var<storage, read> tiles: array<vec4<u32>>;
-@group(0) @binding(8) var<storage, read_write> words: array<u32>;
+@group(0) @binding(6) var<storage, read> tiles: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read_write> words: array<u32>;
 
 var<workgroup> sums: array<atomic<u32>, SUMS>;
 
@@ -150,7 +148,7 @@ fn kept_depth(px: vec2<u32>) -> u32 {
     return kept_bits(textureLoad(depth_in, px, frame.view, 0).x);
 }
 
-// Copies stored depths, motion and level of detail.
+// Copies stored depths and motion.
 fn copy_middle(px: vec2<u32>, to: u32) {
     let step = DEPTH_STEP_PX;
     for (var i = SUMS; i < WORDS; i++) {
@@ -167,9 +165,6 @@ fn copy_middle(px: vec2<u32>, to: u32) {
         let stored = textureLoad(motion_in, px, frame.view, 0).xy;
         words[to + MOTION] = kept_bits(stored.x);
         words[to + MOTION + 1u] = kept_bits(stored.y);
-    }
-    if HAS_LOD != 0u {
-        words[to + LOD] = kept_bits(textureLoad(lod_in, px, frame.view, 0).x);
     }
 }
 

@@ -58,7 +58,6 @@ impl Doctor {
             color: frame.color[view],
             depth: frame.depth.map(|d| d[view]),
             motion: frame.motion.map(|m| m[view]),
-            lod: frame.lod.map(|l| l[view]),
             now: &light,
             past: past.as_ref().map_or(&light, |p| &p.light),
             maps: &maps(desc),

@@ -12,7 +12,6 @@ pub(super) struct Examined<'a> {
     pub color: &'a Image<[f32; 3]>,
     pub depth: Option<&'a Image<f32>>,
     pub motion: Option<&'a Image<[f32; 2]>>,
-    pub lod: Option<&'a Image<f32>>,
     /// [`light`] of this frame and of the one before.
     pub now: &'a Image<f32>,
     pub past: &'a Image<f32>,
@@ -101,7 +100,7 @@ impl Examined<'_> {
         signal(self.color.at(at[0] as usize, at[1] as usize)[1])
     }
 
-    /// Copies stored depths, motion and level of detail.
+    /// Copies stored depths and motion.
     fn copy_middle(&self, middle: [u32; 2], words: &mut [u32]) {
         let [x, y] = middle.map(|m| m as usize);
         let step = DEPTH_STEP_PX as usize;
@@ -115,9 +114,6 @@ impl Examined<'_> {
             for (word, v) in (MOTION..).zip(motion.at(x, y)) {
                 words[word as usize] = kept_bits(v);
             }
-        }
-        if let Some(lod) = self.lod {
-            words[LOD as usize] = kept_bits(lod.at(x, y));
         }
     }
 }

@@ -1,9 +1,14 @@
 //! Checks of a renderer's inputs: what is found, and the rules by which it is found. The executors gather the evidence
 //! (`cpu::Doctor`, `gpu::Doctor`); the rules are the same for both.
 
+mod color;
+mod depth;
 mod finding;
+mod foveation;
+mod jitter;
 mod motion;
 mod observation;
+mod sharpness;
 
 pub use finding::{Check, Fault, Finding, Outcome};
 #[cfg(feature = "cpu")]
@@ -40,7 +45,12 @@ impl Chart {
 
     /// One finding a check.
     pub fn findings(&self, desc: &ContextDesc) -> Vec<Finding> {
-        vec![motion::check(desc, &self.observations)]
+        let seen = &self.observations;
+        let [gaze, foveation] = foveation::check(desc, seen);
+        let motion = motion::check(desc, seen);
+        let jitter = jitter::check(desc, seen, &motion);
+        let depth = depth::check(desc, seen, &motion);
+        vec![motion, jitter, depth, color::check(desc, seen), gaze, foveation]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::convention::MotionUnit;
 use crate::frame::{ContextDesc, Gaze, ViewFrame};
-use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, LOD, MOTION, TILE_PX, WORDS};
+use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
 
 /// Largest number of tiles along an axis.
 const MAX_TILES: u32 = 32;
@@ -77,11 +77,6 @@ impl Evidence<'_> {
     /// Stored motion vector in the middle.
     pub fn motion(&self) -> [f32; 2] {
         [self.float(MOTION), self.float(MOTION + 1)]
-    }
-
-    /// Level of detail input in the middle.
-    pub fn lod(&self) -> f32 {
-        self.float(LOD)
     }
 }
 

@@ -77,7 +77,7 @@ impl Doctor {
         debug_assert!(view < MAX_VIEWS);
         let float = float_texture();
         let light = [uniform(), float, storage_texture(TextureFormat::R32Float)];
-        let types = [uniform(), float, float, float, float, float, float, storage_buffer(true), storage_buffer(false)];
+        let types = [uniform(), float, float, float, float, float, storage_buffer(true), storage_buffer(false)];
         let light_source = SHADERS.compose("doctor_light_pass").source;
         let half = desc.size_px.map(|s| level_len(s, 1));
         Ok(Self {
@@ -163,7 +163,7 @@ impl Doctor {
             .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage doctor"), timestamp_writes: None });
         let color = array_view(frame.color);
         let optional = |texture: Option<&Texture>| texture.map_or_else(|| self.absent.clone(), array_view);
-        let (depth, motion, lod) = (optional(frame.depth), optional(frame.motion), optional(frame.lod));
+        let (depth, motion) = (optional(frame.depth), optional(frame.motion));
         let [w, h] = self.desc.size_px;
         let layer = self.view as u32;
         let bytes = [w, h, layer, 0];
@@ -187,17 +187,13 @@ impl Doctor {
         let tiles = filled(device, "afterimage doctor tiles", bytemuck::cast_slice(&tiles), BufferUsages::STORAGE);
         // Without a frame before, the frame is compared with itself, and the result is not used.
         let past = if now.has_past { &self.light[1] } else { &self.light[0] };
-        let textures = [&color, &depth, &motion, &lod, &self.light[0], past];
+        let textures = [&color, &depth, &motion, &self.light[0], past];
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(textures.map(BindingResource::TextureView))
             .chain([tiles.as_entire_binding(), words.as_entire_binding()]);
         let group = self.pass.group(device, resources);
         let flag = |is_there: bool| u32::from(is_there);
-        let overrides = [
-            ("HAS_DEPTH", flag(frame.depth.is_some())),
-            ("HAS_MOTION", flag(frame.motion.is_some())),
-            ("HAS_LOD", flag(frame.lod.is_some())),
-        ];
+        let overrides = [("HAS_DEPTH", flag(frame.depth.is_some())), ("HAS_MOTION", flag(frame.motion.is_some()))];
         pass.set_pipeline(&self.pass.pipeline(device, &overrides));
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(now.tiles.len() as u32, 1, 1);

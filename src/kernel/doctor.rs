@@ -43,10 +43,8 @@ pub const SUMS: u32 = BRIGHT + 1;
 pub const DEPTH: u32 = SUMS;
 /// Word of a tile: stored motion vector in the middle, as bits.
 pub const MOTION: u32 = DEPTH + DEPTHS;
-/// Word of a tile: level of detail in the middle, as bits.
-pub const LOD: u32 = MOTION + 2;
 /// Number of words of a tile.
-pub const WORDS: u32 = LOD + 1;
+pub const WORDS: u32 = MOTION + 2;
 
 /// Brightest signal; brighter pixels count as this one.
 pub const MAX_SIGNAL: f32 = 64.0;

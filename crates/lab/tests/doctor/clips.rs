@@ -61,8 +61,10 @@ pub fn eye(size: [u32; 2], index: usize, count: usize) -> [f32; 2] {
     [w * base[0] + 0.4 * index as f32, h * base[1] + 0.25 * index as f32]
 }
 
-/// Reversed depth with the near plane that all clips are delivered with.
+/// Reversed depth, with which all clips are delivered rightly.
 pub const REVERSED: DepthConvention = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
+/// The same, not reversed.
+pub const FORWARD: DepthConvention = DepthConvention::Forward { near: 0.1, far: f32::INFINITY };
 
 /// Value that `convention` stores for a distance.
 pub fn stored(convention: DepthConvention, z: f32) -> f32 {

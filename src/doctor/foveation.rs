@@ -1,0 +1,211 @@
+//! Rule of the gaze and of the foveation: the frame is as sharp as both say.
+
+use super::finding::{Check, Fault, Finding};
+use super::observation::Observation;
+use super::sharpness::{Measured, agrees, is_inside, measure, range};
+use crate::foveation::{Filter, Foveation};
+use crate::frame::ContextDesc;
+use crate::geometry::ViewGeometry;
+use crate::kernel::doctor::TILE_PX;
+
+/// Least number of tiles with measurable sharpness.
+const TILES: usize = 12;
+/// Number of tiles, and share of all, by which one description must agree better than another.
+const BETTER_TILES: f64 = 6.0;
+const BETTER_SHARE: f64 = 0.03;
+/// Share of the tiles that agree with a right description.
+const AGREE: f64 = 0.75;
+
+/// A measured tile.
+struct Measurement {
+    measured: Measured,
+    /// Corners, and what lies between them, in pixels.
+    points: [[f32; 2]; 9],
+    geometry: ViewGeometry,
+    gaze_px: [f32; 2],
+}
+
+/// A change of gaze positions, and the line of code that makes it.
+struct Change {
+    line: &'static str,
+    apply: fn([f32; 2], [f32; 2]) -> [f32; 2],
+}
+
+/// Mistakes with positions: axes, origins and units. `size`: of the view.
+const CHANGES: [Change; 8] = [
+    Change { line: "[x, height - 1.0 - y]", apply: |[x, y], [_, h]| [x, h - 1.0 - y] },
+    Change { line: "[width - 1.0 - x, y]", apply: |[x, y], [w, _]| [w - 1.0 - x, y] },
+    Change { line: "[y, x]", apply: |[x, y], _| [y, x] },
+    Change { line: "[x * width - 0.5, y * height - 0.5]", apply: |[x, y], [w, h]| [x * w - 0.5, y * h - 0.5] },
+    Change {
+        line: "[x * width - 0.5, (1.0 - y) * height - 0.5]",
+        apply: |[x, y], [w, h]| [x * w - 0.5, (1.0 - y) * h - 0.5],
+    },
+    Change { line: "[x + 0.5 * width, y + 0.5 * height]", apply: |[x, y], [w, h]| [x + 0.5 * w, y + 0.5 * h] },
+    Change { line: "[2.0 * x, 2.0 * y]", apply: |[x, y], _| [2.0 * x, 2.0 * y] },
+    Change { line: "[0.5 * x, 0.5 * y]", apply: |[x, y], _| [0.5 * x, 0.5 * y] },
+];
+
+/// A foveation that differs in one respect from the stated one.
+struct Candidate {
+    foveation: Foveation,
+    fault: Fault,
+    /// Whether it differs much. Regions that differ by less than a factor of 2 often agree as well.
+    is_coarse: bool,
+}
+
+/// Findings on the gaze and on the foveation.
+pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Finding; 2] {
+    let both = |why| [Check::Gaze, Check::Foveation].map(|check| Finding::cannot_tell(check, why));
+    if observations.iter().any(|o| o.now.has_lod) {
+        return both("levels of detail are given, so that gaze and foveation are not used");
+    }
+    let stated = desc.settings.foveation;
+    let tiles = measurements(desc, observations);
+    if tiles.len() < TILES {
+        return both("too few tiles show detail");
+    }
+    let all = tiles.len() as f64;
+    let agreeing = |foveation: &Foveation, change: Option<&Change>| {
+        tiles.iter().filter(|t| t.agrees(foveation, change)).count() as f64
+    };
+    let of_stated = agreeing(&stated, None);
+    let better = (BETTER_SHARE * all).max(BETTER_TILES);
+    let evidence = |best: f64| {
+        vec![
+            ("tiles with detail", all),
+            ("share that agrees", of_stated / all),
+            ("share that agrees with the best alternative", best / all),
+        ]
+    };
+    let has_gaze = observations.iter().any(|o| o.now.has_gaze);
+    let changes: Vec<_> = CHANGES.iter().map(|c| (c, agreeing(&stated, Some(c)))).collect();
+    let candidates: Vec<_> = candidates(&stated)
+        .into_iter()
+        .map(|c| {
+            let count = agreeing(&c.foveation, None);
+            (c, count)
+        })
+        .collect();
+    let most = |counts: &mut dyn Iterator<Item = f64>| counts.fold(0.0, f64::max);
+    let best_change = if has_gaze { most(&mut changes.iter().map(|c| c.1)) } else { 0.0 };
+    let best_candidate = most(&mut candidates.iter().map(|c| c.1));
+    let confidence = |gain: f64| 1.0 - (-gain / (2.0 * better)).exp();
+    let unclear = |check, best| Finding {
+        evidence: evidence(best),
+        ..Finding::cannot_tell(check, "the frame is as sharp as several descriptions say, or as none")
+    };
+
+    if best_change >= of_stated + better && best_change >= best_candidate + better && best_change >= AGREE * all {
+        let (change, _) = changes.iter().find(|c| c.1 == best_change).expect("it is the largest");
+        let mend = format!("let gaze = Gaze::At {{ px: {} }}; // of the position x, y", change.line);
+        let gaze =
+            Finding::wrong(Check::Gaze, Fault::Gaze, confidence(best_change - of_stated), evidence(best_change), mend);
+        return [gaze, Finding::cannot_tell(Check::Foveation, "the gaze is wrong")];
+    }
+    if best_candidate >= of_stated + better && best_candidate >= best_change + better && best_candidate >= AGREE * all {
+        // In their order: where nothing is foveated, huge regions agree, too.
+        let first = candidates.iter().find(|c| c.1 > best_candidate - 0.5 * better).expect("it is the largest");
+        let is_plain = first.0.fault == Fault::NotFoveated;
+        let largest = candidates.iter().find(|c| c.1 == best_candidate).expect("it is the largest");
+        let best = if is_plain { &first.0 } else { &largest.0 };
+        let is_rival = |c: &&(Candidate, f64)| c.0.fault != best.fault && best.fault != Fault::NotFoveated;
+        let rival = most(&mut candidates.iter().filter(is_rival).map(|c| c.1));
+        if best_candidate < rival + 0.5 * better {
+            return [Check::Gaze, Check::Foveation].map(|check| unclear(check, best_candidate));
+        }
+        let foveation = Finding::wrong(
+            Check::Foveation,
+            best.fault,
+            confidence(best_candidate - of_stated.max(rival)),
+            evidence(best_candidate),
+            line(&stated, &best.foveation),
+        );
+        return [Finding::cannot_tell(Check::Gaze, "the foveation is wrong"), foveation];
+    }
+    if of_stated < AGREE * all {
+        return [(Check::Gaze, best_change), (Check::Foveation, best_candidate)].map(|(c, best)| unclear(c, best));
+    }
+    let told = |check, best: f64, why| {
+        if of_stated >= best + better {
+            Finding::fits(check, confidence(of_stated - best), evidence(best))
+        } else {
+            Finding { evidence: evidence(best), ..Finding::cannot_tell(check, why) }
+        }
+    };
+    let gaze = if has_gaze {
+        told(Check::Gaze, best_change, "other positions agree as well: look away from the middle of the view")
+    } else {
+        Finding::cannot_tell(Check::Gaze, "the gaze is lost")
+    };
+    let best_coarse = most(&mut candidates.iter().filter(|c| c.0.is_coarse).map(|c| c.1));
+    [gaze, told(Check::Foveation, best_coarse, "other regions and rates agree as well")]
+}
+
+fn measurements(desc: &ContextDesc, observations: &[Observation]) -> Vec<Measurement> {
+    let mut found = vec![];
+    for observation in observations {
+        for (tile, evidence) in observation.tiles().filter(|(tile, _)| is_inside(tile, desc.size_px)) {
+            let Some(measured) = measure(&evidence) else { continue };
+            let [x, y] = tile.origin_px.map(|o| o as f32);
+            let half = 0.5 * (TILE_PX - 1) as f32;
+            let points = std::array::from_fn(|i| [x + half * (i % 3) as f32, y + half * (i / 3) as f32]);
+            let (geometry, gaze_px) = (observation.now.view.geometry, observation.now.gaze_px);
+            found.push(Measurement { measured, points, geometry, gaze_px });
+        }
+    }
+    found
+}
+
+impl Measurement {
+    fn agrees(&self, foveation: &Foveation, change: Option<&Change>) -> bool {
+        let size = self.geometry.size_px().map(|s| s as f32);
+        let gaze_px = change.map_or(self.gaze_px, |c| (c.apply)(self.gaze_px, size));
+        let ecc_deg = self.points.map(|px| self.geometry.eccentricity_deg(px, gaze_px));
+        agrees(self.measured, foveation.filter, range(foveation, &ecc_deg))
+    }
+}
+
+/// Foveations that differ in one respect.
+fn candidates(stated: &Foveation) -> Vec<Candidate> {
+    let mut all = vec![];
+    let mut add = |fault, foveation: Foveation| {
+        if foveation.validate().is_ok() && foveation.rate_far > 1 && foveation != *stated {
+            let ratios = [foveation.fovea_deg / stated.fovea_deg, foveation.mid_deg / stated.mid_deg];
+            let is_coarse = ratios.iter().all(|r| *r == 1.0) || ratios.iter().any(|r| *r <= 0.5 || *r >= 2.0);
+            all.push(Candidate { foveation, fault, is_coarse });
+        }
+    };
+    add(Fault::NotFoveated, Foveation { filter: Filter::Off, ..*stated });
+    for filter in [Filter::Mip, Filter::Block] {
+        if filter != stated.filter {
+            add(Fault::FoveationFilter, Foveation { filter, ..*stated });
+        }
+    }
+    for factor in [0.5, 2.0, 0.67, 1.5, 0.33, 3.0] {
+        let [fovea_deg, mid_deg] = [stated.fovea_deg, stated.mid_deg].map(|deg| (factor * deg).min(180.0));
+        add(Fault::FoveationRegions, Foveation { fovea_deg, mid_deg, ..*stated });
+        add(Fault::FoveationRegions, Foveation { fovea_deg, ..*stated });
+        add(Fault::FoveationRegions, Foveation { mid_deg, ..*stated });
+    }
+    for (mul, div) in [(1, 2), (2, 1), (1, 4), (4, 1), (1, 8), (8, 1)] {
+        let [rate_mid, rate_far] = [stated.rate_mid, stated.rate_far].map(|rate| rate * mul / div);
+        add(Fault::FoveationRates, Foveation { rate_mid, rate_far, ..*stated });
+        add(Fault::FoveationRates, Foveation { rate_mid, ..*stated });
+        add(Fault::FoveationRates, Foveation { rate_far, ..*stated });
+    }
+    all
+}
+
+/// Line that changes the stated foveation to the right one.
+fn line(stated: &Foveation, right: &Foveation) -> String {
+    let mut fields = vec![];
+    let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));
+    field(stated.filter != right.filter, format!("filter: Filter::{:?}", right.filter));
+    field(stated.fovea_deg != right.fovea_deg, format!("fovea_deg: {:?}", right.fovea_deg));
+    field(stated.mid_deg != right.mid_deg, format!("mid_deg: {:?}", right.mid_deg));
+    field(stated.rate_mid != right.rate_mid, format!("rate_mid: {}", right.rate_mid));
+    field(stated.rate_far != right.rate_far, format!("rate_far: {}", right.rate_far));
+    let fields = fields.join(", ");
+    format!("desc.settings.foveation = Foveation {{ {fields}, ..desc.settings.foveation }};")
+}
