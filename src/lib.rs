@@ -48,6 +48,8 @@
 //!   and all tunables.
 //! - [`Frame`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: what happened in a frame, as counters, messages and images.
+//! - `gpu::Doctor`, `cpu::Doctor`, [`Finding`]: checks whether frames are what their description says; for the day when
+//!   the picture looks wrong (`07_doctor.rs`).
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: what can go wrong.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
 //! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`),

@@ -28,8 +28,8 @@ const MAX_STORED_MOTION: f32 = 65536.0;
 
 // doctor::signal
 fn signal(green: f32) -> f32 {
-    if is_finite(green) {
-        return clamp(green, 0.0, MAX_SIGNAL);
+    if is_finite(green) && green >= 1e-30 {
+        return min(green, MAX_SIGNAL);
     }
     return 0.0;
 }

@@ -14,7 +14,7 @@ const TILES: usize = 12;
 const BETTER_TILES: f64 = 6.0;
 const BETTER_SHARE: f64 = 0.03;
 /// Share of the tiles that agree with a right description.
-const AGREE: f64 = 0.75;
+const AGREE: f64 = 0.94;
 
 /// A measured tile.
 struct Measurement {

@@ -17,9 +17,6 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
     if observations.iter().all(|o| o.now.jitter_px.is_none()) {
         return cannot_tell("the jitter of the frames is not given");
     }
-    if matches!(motion.outcome, Outcome::Wrong(_)) {
-        return cannot_tell("the motion vectors are wrong");
-    }
     let steps: Vec<_> = observations.iter().map(|o| step(desc, o)).collect();
     let (mut product, mut of_jitter, mut of_motion, mut count) = (0.0, 0.0, 0.0, 0);
     for pair in steps.windows(2) {
@@ -46,6 +43,10 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
         return Finding { evidence, ..cannot_tell("the camera moves too irregularly") };
     }
     if share < 0.5 {
+        // Vectors in a larger unit, or too short, hide their jitter.
+        if matches!(motion.outcome, Outcome::Wrong(_)) {
+            return cannot_tell("the motion vectors are wrong");
+        }
         return Finding::fits(Check::Jitter, confidence, evidence);
     }
     let mend = "motion -= previous_jitter_px - jitter_px; // where your shader writes it";

@@ -46,11 +46,20 @@ impl Chart {
     /// One finding a check.
     pub fn findings(&self, desc: &ContextDesc) -> Vec<Finding> {
         let seen = &self.observations;
-        let [gaze, foveation] = foveation::check(desc, seen);
         let motion = motion::check(desc, seen);
         let jitter = jitter::check(desc, seen, &motion);
         let depth = depth::check(desc, seen, &motion);
-        vec![motion, jitter, depth, color::check(desc, seen), gaze, foveation]
+        let color = color::check(desc, seen);
+        let [gaze, foveation] = foveation::check(desc, seen);
+        // A fault that looks like others, too, is mended first.
+        let after = |first: &Finding, why, finding: Finding| match first.fault() {
+            Some(_) => Finding::cannot_tell(finding.check, why),
+            None => finding,
+        };
+        let motion = after(&jitter, "the vectors contain the jitter", motion);
+        let gaze = after(&color, "colors are encoded", gaze);
+        let foveation = after(&color, "colors are encoded", foveation);
+        vec![motion, jitter, depth, color, gaze, foveation]
     }
 }
 

@@ -52,10 +52,10 @@ pub const MAX_SIGNAL: f32 = 64.0;
 pub const MAX_STORED_MOTION: f32 = 65536.0;
 
 /// Signal of a pixel: its green channel, which is most of its luma and, unlike luma, is a mean of means and an encoding
-/// of an encoding. In \[0, 64\]; 0 for numbers that are not finite.
+/// of an encoding. 0, or from 1e-30 to 64; 0 for numbers that are not finite.
 #[inline]
 pub fn signal(green: f32) -> f32 {
-    if sanitize::is_finite(green) { green.clamp(0.0, MAX_SIGNAL) } else { 0.0 }
+    if sanitize::is_finite(green) && green >= 1e-30 { green.min(MAX_SIGNAL) } else { 0.0 }
 }
 
 /// Root of the mean signal of 2x2 pixels: about as bright as it looks.

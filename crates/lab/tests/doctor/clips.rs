@@ -78,13 +78,17 @@ pub fn stored(convention: DepthConvention, z: f32) -> f32 {
 impl Delivery {
     /// The clip foveated as `foveation` says, rightly described.
     pub fn right(clip: &Clip, foveation: Foveation) -> Self {
+        Self::looking(clip, foveation, |i| eye(clip.size(), i, clip.frames.len()))
+    }
+
+    /// The same, with the gaze at `gaze_px` in each frame.
+    pub fn looking(clip: &Clip, foveation: Foveation, gaze_px: impl Fn(usize) -> [f32; 2]) -> Self {
         let mut desc = ContextDesc::new(clip.size());
         desc.settings.foveation = foveation;
         desc.depth = REVERSED;
         desc.motion = MotionConvention::default();
-        let count = clip.frames.len();
         let frames = clip.frames.iter().enumerate().map(|(i, frame)| {
-            let gaze_px = eye(clip.size(), i, count);
+            let gaze_px = gaze_px(i);
             let view = ViewFrame {
                 previous_from_current: frame.previous_from_current,
                 ..ViewFrame::new(clip.geometry, Gaze::At { px: gaze_px })

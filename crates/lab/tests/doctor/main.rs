@@ -3,4 +3,5 @@
 mod clips;
 mod confusion;
 mod planted;
+mod right;
 mod twins;
