@@ -127,7 +127,8 @@ fn add_pixel(px: vec2<u32>) {
     let at = signal_at(px, vec2<i32>(0), 0);
     add(LIGHT, fixed(at));
     add(CODES, select(0u, 1u, is_code(at)));
-    add(BRIGHT, select(0u, 1u, at > 1.0));
+    let green = textureLoad(color_in, px, frame.view, 0).y;
+    add(BROKEN, select(1u, 0u, is_finite(green)));
     for (var a = 0u; a < 2u; a++) {
         let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), a == 0u);
         let along = select(px.y, px.x, a == 0u);

@@ -68,7 +68,7 @@ impl Doctor {
         Ok(())
     }
 
-    /// One finding for each [`Check`](crate::Check), from all frames seen so far (the last 64).
+    /// One finding for each [`Check`](crate::Check), from all frames seen so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
         self.chart.findings(&self.desc)
     }

@@ -76,7 +76,8 @@ impl Examined<'_> {
         let at = self.signal(px, 0, 0);
         words[LIGHT as usize] += fixed(at);
         words[CODES as usize] += u32::from(is_code(at));
-        words[BRIGHT as usize] += u32::from(at > 1.0);
+        let green = self.color.at(px[0] as usize, px[1] as usize)[1];
+        words[BROKEN as usize] += u32::from(!sanitize::is_finite(green));
         for axis in 0..2 {
             let tap = |offset: i32| self.signal(px, axis, offset);
             let (before, after) = (tap(-1), tap(1));

@@ -21,6 +21,8 @@ struct Measurement {
     measured: Measured,
     /// Corners, and what lies between them, in pixels.
     points: [[f32; 2]; 9],
+    /// Eccentricities of the points.
+    ecc_deg: [f32; 9],
     geometry: ViewGeometry,
     gaze_px: [f32; 2],
 }
@@ -149,9 +151,10 @@ fn measurements(desc: &ContextDesc, observations: &[Observation]) -> Vec<Measure
             let Some(measured) = measure(&evidence) else { continue };
             let [x, y] = tile.origin_px.map(|o| o as f32);
             let half = 0.5 * (TILE_PX - 1) as f32;
-            let points = std::array::from_fn(|i| [x + half * (i % 3) as f32, y + half * (i / 3) as f32]);
+            let points: [[f32; 2]; 9] = std::array::from_fn(|i| [x + half * (i % 3) as f32, y + half * (i / 3) as f32]);
             let (geometry, gaze_px) = (observation.now.view.geometry, observation.now.gaze_px);
-            found.push(Measurement { measured, points, geometry, gaze_px });
+            let ecc_deg = points.map(|px| geometry.eccentricity_deg(px, gaze_px));
+            found.push(Measurement { measured, points, ecc_deg, geometry, gaze_px });
         }
     }
     found
@@ -159,9 +162,13 @@ fn measurements(desc: &ContextDesc, observations: &[Observation]) -> Vec<Measure
 
 impl Measurement {
     fn agrees(&self, foveation: &Foveation, change: Option<&Change>) -> bool {
-        let size = self.geometry.size_px().map(|s| s as f32);
-        let gaze_px = change.map_or(self.gaze_px, |c| (c.apply)(self.gaze_px, size));
-        let ecc_deg = self.points.map(|px| self.geometry.eccentricity_deg(px, gaze_px));
+        let ecc_deg = match change {
+            None => self.ecc_deg,
+            Some(change) => {
+                let gaze_px = (change.apply)(self.gaze_px, self.geometry.size_px().map(|s| s as f32));
+                self.points.map(|px| self.geometry.eccentricity_deg(px, gaze_px))
+            }
+        };
         agrees(self.measured, foveation.filter, range(foveation, &ecc_deg))
     }
 }

@@ -21,7 +21,7 @@ use crate::error::SettingsError;
 use crate::frame::ContextDesc;
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
-const KEPT: usize = 64;
+const KEPT: usize = 16;
 
 /// Observations of the last frames.
 #[derive(Clone, Debug, Default)]

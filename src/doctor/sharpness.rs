@@ -2,7 +2,7 @@
 
 use super::observation::{Evidence, Tile};
 use crate::foveation::{Filter, Foveation};
-use crate::kernel::doctor::{BENDS, BOUNDARIES, DECODED_BENDS, KINKS, LIGHT, STEPS, TILE_PX, WIDE_BENDS};
+use crate::kernel::doctor::{BENDS, BOUNDARIES, BROKEN, DECODED_BENDS, KINKS, LIGHT, STEPS, TILE_PX, WIDE_BENDS};
 
 /// Number of neighbours in a tile across boundaries of each class.
 const STEP_COUNTS: [f64; BOUNDARIES as usize] = [256.0, 128.0, 64.0, 32.0, 32.0];
@@ -37,8 +37,11 @@ pub(super) fn is_inside(tile: &Tile, size_px: [u32; 2]) -> bool {
     (0..2).all(|i| tile.origin_px[i] >= 8 && tile.origin_px[i] + TILE_PX + 8 <= size_px[i])
 }
 
-/// Sharpness of a tile; `None` if it is flat, or smooth for another reason.
+/// Sharpness of a tile; `None` if it is flat, broken, or smooth for another reason.
 pub(super) fn measure(evidence: &Evidence<'_>) -> Option<Measured> {
+    if evidence.word(BROKEN) > 0 {
+        return None;
+    }
     let pixels = f64::from(TILE_PX * TILE_PX);
     let flat = FLAT * (evidence.sum(LIGHT) / pixels + 0.01);
     let steps: [f64; BOUNDARIES as usize] = std::array::from_fn(|i| evidence.sum(STEPS + i as u32) / STEP_COUNTS[i]);
@@ -71,7 +74,7 @@ pub(super) fn agrees(measured: Measured, filter: Filter, [least, most]: [f64; 2]
     match (measured, filter) {
         (Measured::Fine, Filter::Off) => true,
         (Measured::Fine, Filter::Block) => least < 1.2,
-        (Measured::Fine, _) => least < 2.1,
+        (Measured::Fine, _) => least < 1.9,
         (Measured::Interpolated { lod }, Filter::Mip) => lod >= least.min(4.5) - 0.6 && lod <= most + 0.6,
         (Measured::Blocks { level }, Filter::Block) => {
             let level = f64::from(level);

@@ -19,7 +19,7 @@ use wgpu::{
 };
 
 /// Frames that may be recorded before the words of the first are read.
-const PENDING: usize = 64;
+const PENDING: usize = 16;
 
 /// `DoctorUniforms` in `shaders/pass/doctor_pass.wgsl`.
 #[repr(C)]
@@ -146,7 +146,7 @@ impl Doctor {
         true
     }
 
-    /// One finding for each [`Check`](crate::Check), from all frames read so far (the last 64).
+    /// One finding for each [`Check`](crate::Check), from all frames read so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
         self.chart.findings(&self.desc)
     }

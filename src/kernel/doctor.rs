@@ -35,10 +35,10 @@ pub const WIDE_BENDS: u32 = DECODED_BENDS + KINKS;
 pub const LIGHT: u32 = WIDE_BENDS + WIDE;
 /// Word of a tile: number of pixels on a code of 8 bits.
 pub const CODES: u32 = LIGHT + 1;
-/// Word of a tile: number of pixels above 1.
-pub const BRIGHT: u32 = CODES + 1;
+/// Word of a tile: number of pixels that are not finite.
+pub const BROKEN: u32 = CODES + 1;
 /// Number of words that are sums over a tile.
-pub const SUMS: u32 = BRIGHT + 1;
+pub const SUMS: u32 = BROKEN + 1;
 /// Word of a tile: stored depths, as bits.
 pub const DEPTH: u32 = SUMS;
 /// Word of a tile: stored motion vector in the middle, as bits.
