@@ -2,12 +2,37 @@
 
 use super::doctor_pass::{self, Examined};
 use super::{Frame, check_inputs};
-use crate::doctor::{Chart, Description, Finding, Observation, maps};
+use crate::doctor::{Chart, Description, Finding, Observation, continues, maps};
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Reset};
+use crate::frame::ContextDesc;
 use crate::image::Image;
 
-/// Checks whether the frames of a renderer are what a [`ContextDesc`] says.
+/// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
+/// foveation of one view. Give it some consecutive frames in which the camera moves and the eye looks around.
+///
+/// ```
+/// use afterimage::cpu::{Doctor, Frame};
+/// use afterimage::{ContextDesc, Fault, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+///
+/// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.
+/// let size = [160, 96];
+/// let pattern = |x: f32, y: f32| 0.5 + 0.2 * (0.4 * x + 0.2 * y).sin() + 0.2 * (0.1 * x - 0.3 * y).cos();
+/// let motion = Image::filled(size, [2.0, 0.0]);
+/// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 30.0] })];
+///
+/// let mut desc = ContextDesc::new(size);
+/// desc.settings.foveation.filter = Filter::Off;
+/// let mut doctor = Doctor::new(&desc, 0)?;
+/// for index in 0..4 {
+///     let color = Image::from_fn(size, |[x, y]| [pattern(x as f32 - 2.0 * index as f32, y as f32); 3]);
+///     let frame = Frame { motion: Some(&[&motion]), ..Frame::new(&[&color], &views, index) };
+///     doctor.observe(&frame, None)?;
+/// }
+/// let finding = &doctor.findings()[0];
+/// assert_eq!(finding.fault(), Some(Fault::MotionDirection));
+/// println!("{finding}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Doctor {
     desc: ContextDesc,
@@ -39,20 +64,20 @@ impl Doctor {
     /// and down, by which the projection moved this frame's picture, if it is known.
     ///
     /// # Errors
-    /// [`FrameError`] as for [`CpuAfterimage::process`](super::CpuAfterimage::process); then the frame was not looked at.
+    /// [`FrameError`] if a size, a number of images or a value does not fit the description; then the frame was not
+    /// looked at.
     pub fn observe(&mut self, frame: &Frame<'_>, jitter_px: Option<[f32; 2]>) -> Result<(), FrameError> {
         check_inputs(&self.desc, frame)?;
         let (desc, view) = (&self.desc, self.view);
         let light = doctor_pass::light(frame.color[view]);
-        let past = self.past.take().filter(|_| frame.reset == Reset::None);
-        let held = past.as_ref().map(|p| p.gaze_px);
-        let gaze_px = frame.views[view].gaze.resolve(held, desc.size_px);
+        let gaze_px = frame.views[view].gaze.resolve(self.past.as_ref().map(|p| p.gaze_px), desc.size_px);
+        let past = self.past.take().filter(|_| continues(frame));
         let now = Description {
             has_depth: frame.depth.is_some(),
             has_motion: frame.motion.is_some(),
             has_lod: frame.lod.is_some(),
             jitter_px,
-            ..Description::new(desc, frame.views[view], gaze_px, held)
+            ..Description::new(desc, frame.views[view], gaze_px, past.as_ref().map(|p| p.gaze_px))
         };
         let examined = Examined {
             color: frame.color[view],

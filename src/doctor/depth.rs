@@ -266,7 +266,7 @@ fn parallax(desc: &ContextDesc, observations: &[Observation]) -> Option<Vec<Para
             let along = (moved[0] * per_disparity[0] + moved[1] * per_disparity[1]) / length;
             let across = (moved[0] * per_disparity[1] - moved[1] * per_disparity[0]) / length;
             let px_long = f64::from(scale[0]);
-            if !(length > 0.0) || along.abs().max(across.abs()) < PARALLAX_PX * px_long {
+            if length.is_nan() || length <= 0.0 || along.abs().max(across.abs()) < PARALLAX_PX * px_long {
                 continue;
             }
             if along <= 0.0 || across.abs() > 0.3 * along {

@@ -65,7 +65,7 @@ pub enum Outcome {
     Wrong(Fault),
 }
 
-/// Result of one check. Displays as one line.
+/// Result of one check. Displays as one line: outcome, confidence, figures, and what mends a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// What was checked.

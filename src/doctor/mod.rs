@@ -18,7 +18,7 @@ pub(crate) use observation::tile_count;
 pub(crate) use observation::{Description, Observation, maps};
 
 use crate::error::SettingsError;
-use crate::frame::ContextDesc;
+use crate::frame::{ContextDesc, Executor, Exposure, Frame, Reset};
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
 const KEPT: usize = 16;
@@ -61,6 +61,11 @@ impl Chart {
         let foveation = after(&color, "colors are encoded", foveation);
         vec![motion, jitter, depth, color, gaze, foveation]
     }
+}
+
+/// Whether a frame can be compared with the one before.
+pub(crate) fn continues<E: Executor>(frame: &Frame<'_, E>) -> bool {
+    frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 
 /// Rejects the index of a view that a context does not have.

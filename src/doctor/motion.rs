@@ -85,7 +85,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
         };
     }
     let right = &hypotheses[plainest];
-    // Frames that are compared on a coarse lattice favor short vectors. Vectors that are twice too long explain nothing.
+    // Frames that are compared on a coarse lattice favor short vectors. Vectors that are twice too long explain little.
     let is_shorter = right.factors[0].abs() == 0.5 && !right.swapped;
     let stated_gain = compare(&tiles, STATED, NOTHING).gain;
     if over_stated.significance < WRONG || is_shorter && stated_gain > 0.3 * over_nothing.gain {

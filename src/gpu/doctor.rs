@@ -5,9 +5,9 @@ use super::compute::{ComputeShader, float_texture, storage_buffer, storage_textu
 use super::history::array_view;
 use super::input::{check_inputs, check_words};
 use super::{Frame, MAX_VIEWS};
-use crate::doctor::{Chart, Description, Finding, Observation, check_view, maps, tile_count};
+use crate::doctor::{Chart, Description, Finding, Observation, check_view, continues, maps, tile_count};
 use crate::error::{CreateError, FrameError};
-use crate::frame::{ContextDesc, Reset};
+use crate::frame::ContextDesc;
 use crate::kernel::doctor::{HYPOTHESES, WORDS};
 use crate::kernel::foveate::level_len;
 use crate::shader::SHADERS;
@@ -37,8 +37,9 @@ struct DoctorUniforms {
 /// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
 /// foveation of one view.
 ///
-/// It looks at the same frames as the post-process, one after the other, for a second or less. `record` never submits,
+/// Give it some consecutive frames in which the camera moves and the eye looks around. `record` never submits,
 /// maps or waits: the caller reads its buffer back, when that suits, and gives the bytes to [`read`](Self::read).
+/// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
 #[derive(Debug)]
 pub struct Doctor {
     desc: ContextDesc,
@@ -99,8 +100,9 @@ impl Doctor {
     }
 
     /// Records the look at a frame, the same that the post-process gets, into `encoder`. Writes `words`: a buffer of
-    /// [`words_bytes`](Self::words_bytes) with the usages `STORAGE`, `COPY_DST` and (to read it back) `COPY_SRC`. `jitter_px`:
-    /// offset in pixels, right and down, by which the projection moved this frame's picture, if it is known.
+    /// [`words_bytes`](Self::words_bytes) with the usages `STORAGE`, `COPY_DST` and (to read it back) `COPY_SRC`.
+    /// `jitter_px`: offset in pixels, right and down, by which the projection moved this frame's picture, if it is
+    /// known.
     ///
     /// # Errors
     /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded.
@@ -114,15 +116,14 @@ impl Doctor {
     ) -> Result<(), FrameError> {
         check_inputs(&self.desc, frame)?;
         check_words("words", words, self.words_bytes(), "at least Doctor::words_bytes")?;
-        let past = self.past.filter(|_| frame.reset == Reset::None);
-        let held = past.map(|p| p.gaze_px);
-        let gaze_px = frame.views[self.view].gaze.resolve(held, self.desc.size_px);
+        let gaze_px = frame.views[self.view].gaze.resolve(self.past.map(|p| p.gaze_px), self.desc.size_px);
+        let past = self.past.filter(|_| continues(frame));
         let now = Description {
             has_depth: frame.depth.is_some(),
             has_motion: frame.motion.is_some(),
             has_lod: frame.lod.is_some(),
             jitter_px,
-            ..Description::new(&self.desc, frame.views[self.view], gaze_px, held)
+            ..Description::new(&self.desc, frame.views[self.view], gaze_px, past.map(|p| p.gaze_px))
         };
         self.dispatch(device, encoder, frame, &now, words);
         self.light.swap(0, 1);

@@ -73,7 +73,7 @@ pub fn lattice_offset(level: u32) -> u32 {
 /// Number of lattice points along `len` texels, at least 1.
 #[inline]
 pub fn lattice_len(len: u32, level: u32) -> u32 {
-    ((len.max(1) - 1).max(lattice_offset(level)) - lattice_offset(level) >> level) + 1
+    (((len.max(1) - 1).max(lattice_offset(level)) - lattice_offset(level)) >> level) + 1
 }
 
 /// Coordinate `x` in texels, in lattice points of `level`.
@@ -144,7 +144,7 @@ pub fn bend(before: f32, at: f32, after: f32) -> f32 {
 pub fn is_code(signal: f32) -> bool {
     let code = signal * 255.0;
     let whole = (code + 0.5).floor();
-    (code - whole).abs() <= 0.015625 && whole >= 1.0 && whole <= 254.0
+    (code - whole).abs() <= 0.015625 && (1.0..=254.0).contains(&whole)
 }
 
 /// Bits of a stored number that the rules read: those of NaN, infinities and numbers below the normal range (which

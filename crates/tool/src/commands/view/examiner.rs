@@ -1,5 +1,5 @@
-//! The doctor in the viewer: looks at the frames that the methods get, and reads its words a few frames later, without a
-//! stall.
+//! The doctor in the viewer: looks at the frames that the methods get, and reads its words a few frames later, without
+//! a stall.
 
 use crate::failure::Failure;
 use afterimage::gpu::{Doctor, Frame};
