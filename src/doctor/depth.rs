@@ -3,6 +3,7 @@
 //! distances from buffers, and implausible distances a reversed buffer from one that is not.
 
 use super::finding::{Check, Fault, Finding, Outcome};
+use super::motion::OPEN_Y_AXIS;
 use super::observation::Observation;
 use crate::convention::DepthConvention;
 use crate::frame::ContextDesc;
@@ -51,7 +52,7 @@ impl Shape {
 
     /// Line that states this shape. `scale`: disparity over [`Self::disparity`], if known.
     fn line(self, scale: Option<f64>) -> String {
-        let near = scale.map_or("YOUR_NEAR_PLANE".to_owned(), |s| format!("{:.4}", 1.0 / s));
+        let near = scale.map_or("YOUR_NEAR_PLANE".to_owned(), |s| format!("{:.3}", 1.0 / s));
         match self {
             Self::Linear => "desc.depth = DepthConvention::Linear;".into(),
             Self::Forward => format!("desc.depth = DepthConvention::Forward {{ near: {near}, far: f32::INFINITY }};"),
@@ -125,10 +126,9 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
         return Some(Finding::fits(Check::Depth, confidence, evidence));
     }
     // Vectors of another length, too, look like other distances.
-    let open_y = "direction and unit fit, but nothing moves up or down: the y axis is open";
     let why = match motion.outcome {
         Outcome::Fits => None,
-        Outcome::CannotTell(why) if why == open_y => None,
+        Outcome::CannotTell(why) if why == OPEN_Y_AXIS => None,
         Outcome::Wrong(_) => Some("the motion vectors are wrong"),
         Outcome::CannotTell(_) => Some("distances or the length of the motion vectors are wrong"),
     };
@@ -137,12 +137,9 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
     }
     let line = match desc.depth {
         DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => {
-            format!(
-                "// near plane (or the unit of previous_from_current): {:.4} instead of {near}",
-                f64::from(near) / scale
-            )
+            stated.line(Some(scale / f64::from(near)))
         }
-        _ => format!("// distances in the unit of previous_from_current: depth *= {:.4};", 1.0 / scale),
+        _ => format!("depth *= {:.4}; // or another unit of previous_from_current", 1.0 / scale),
     };
     Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
 }

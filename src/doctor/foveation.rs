@@ -49,6 +49,7 @@ const CHANGES: [Change; 8] = [
 ];
 
 /// A foveation that differs in one respect from the stated one.
+#[derive(Clone)]
 struct Candidate {
     foveation: Foveation,
     fault: Fault,
@@ -56,97 +57,122 @@ struct Candidate {
     is_coarse: bool,
 }
 
+/// Numbers of tiles that agree with descriptions.
+struct Agreement {
+    all: f64,
+    stated: f64,
+    /// By how many tiles one description must agree better than another.
+    better: f64,
+}
+
+impl Agreement {
+    fn evidence(&self, best: f64) -> Vec<(&'static str, f64)> {
+        vec![
+            ("tiles with detail", self.all),
+            ("share that agrees", self.stated / self.all),
+            ("share that agrees with the best alternative", best / self.all),
+        ]
+    }
+
+    fn confidence(&self, gain: f64) -> f64 {
+        1.0 - (-gain / (2.0 * self.better)).exp()
+    }
+
+    /// Whether a description with `count` agreeing tiles is right, and the stated one and those with `rival` are not.
+    fn is_right(&self, count: f64, rival: f64) -> bool {
+        count >= AGREE * self.all && count >= self.stated.max(rival) + self.better
+    }
+
+    /// That the description is right, if no alternative agrees as well.
+    fn fits(&self, check: Check, best: f64, why_not: &'static str) -> Finding {
+        if self.stated >= best + self.better {
+            Finding::fits(check, self.confidence(self.stated - best), self.evidence(best))
+        } else {
+            Finding { evidence: self.evidence(best), ..Finding::cannot_tell(check, why_not) }
+        }
+    }
+}
+
+/// The first of those with the largest count.
+fn largest<T>(counts: &[(T, f64)]) -> &(T, f64) {
+    counts.iter().reduce(|best, c| if c.1 > best.1 { c } else { best }).expect("the lists are not empty")
+}
+
 /// Findings on the gaze and on the foveation.
 pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Finding; 2] {
-    let both = |why| [Check::Gaze, Check::Foveation].map(|check| Finding::cannot_tell(check, why));
+    let neither = |why| [Check::Gaze, Check::Foveation].map(|check| Finding::cannot_tell(check, why));
     if observations.iter().any(|o| o.now.has_lod) {
-        return both("levels of detail are given, so that gaze and foveation are not used");
+        return neither("levels of detail are given, so that gaze and foveation are not used");
     }
-    let stated = desc.settings.foveation;
+    if !observations.iter().any(|o| o.now.has_gaze) {
+        return neither("the gaze is lost");
+    }
     let tiles = measurements(desc, observations);
     if tiles.len() < TILES {
-        return both("too few tiles show detail");
+        return neither("too few tiles show detail");
     }
-    let all = tiles.len() as f64;
+    let stated = desc.settings.foveation;
     let agreeing = |foveation: &Foveation, change: Option<&Change>| {
         tiles.iter().filter(|t| t.agrees(foveation, change)).count() as f64
     };
-    let of_stated = agreeing(&stated, None);
-    let better = (BETTER_SHARE * all).max(BETTER_TILES);
-    let evidence = |best: f64| {
-        vec![
-            ("tiles with detail", all),
-            ("share that agrees", of_stated / all),
-            ("share that agrees with the best alternative", best / all),
-        ]
-    };
-    let has_gaze = observations.iter().any(|o| o.now.has_gaze);
+    let all = tiles.len() as f64;
+    let agreement = Agreement { all, stated: agreeing(&stated, None), better: (BETTER_SHARE * all).max(BETTER_TILES) };
     let changes: Vec<_> = CHANGES.iter().map(|c| (c, agreeing(&stated, Some(c)))).collect();
-    let candidates: Vec<_> = candidates(&stated)
-        .into_iter()
-        .map(|c| {
-            let count = agreeing(&c.foveation, None);
-            (c, count)
-        })
-        .collect();
-    let most = |counts: &mut dyn Iterator<Item = f64>| counts.fold(0.0, f64::max);
-    let best_change = if has_gaze { most(&mut changes.iter().map(|c| c.1)) } else { 0.0 };
-    let best_candidate = most(&mut candidates.iter().map(|c| c.1));
-    let confidence = |gain: f64| 1.0 - (-gain / (2.0 * better)).exp();
-    let unclear = |check, best| Finding {
-        evidence: evidence(best),
-        ..Finding::cannot_tell(check, "the frame is as sharp as several descriptions say, or as none")
+    let count = |c: Candidate| {
+        let count = agreeing(&c.foveation, None);
+        (c, count)
     };
+    let candidates: Vec<_> = candidates(&stated).into_iter().map(count).collect();
+    let (change, of_change) = *largest(&changes);
+    let of_candidate = largest(&candidates).1;
 
-    if best_change >= of_stated + better && best_change >= best_candidate + better && best_change >= AGREE * all {
-        let (change, _) = changes.iter().find(|c| c.1 == best_change).expect("it is the largest");
+    if agreement.is_right(of_change, of_candidate) {
         let mend = format!("let gaze = Gaze::At {{ px: {} }}; // of the position x, y", change.line);
-        let gaze =
-            Finding::wrong(Check::Gaze, Fault::Gaze, confidence(best_change - of_stated), evidence(best_change), mend);
+        let confidence = agreement.confidence(of_change - agreement.stated);
+        let gaze = Finding::wrong(Check::Gaze, Fault::Gaze, confidence, agreement.evidence(of_change), mend);
         return [gaze, Finding::cannot_tell(Check::Foveation, "the gaze is wrong")];
     }
-    if best_candidate >= of_stated + better && best_candidate >= best_change + better && best_candidate >= AGREE * all {
-        // In their order: where nothing is foveated, huge regions agree, too.
-        let first = candidates.iter().find(|c| c.1 > best_candidate - 0.5 * better).expect("it is the largest");
-        let is_plain = first.0.fault == Fault::NotFoveated;
-        let largest = candidates.iter().find(|c| c.1 == best_candidate).expect("it is the largest");
-        let best = if is_plain { &first.0 } else { &largest.0 };
-        let is_rival = |c: &&(Candidate, f64)| c.0.fault != best.fault && best.fault != Fault::NotFoveated;
-        let rival = most(&mut candidates.iter().filter(is_rival).map(|c| c.1));
-        if best_candidate < rival + 0.5 * better {
-            return [Check::Gaze, Check::Foveation].map(|check| unclear(check, best_candidate));
-        }
-        let foveation = Finding::wrong(
-            Check::Foveation,
-            best.fault,
-            confidence(best_candidate - of_stated.max(rival)),
-            evidence(best_candidate),
-            line(&stated, &best.foveation),
-        );
-        return [Finding::cannot_tell(Check::Gaze, "the foveation is wrong"), foveation];
+    if agreement.is_right(of_candidate, of_change)
+        && let Some(finding) = another(&agreement, &stated, &candidates)
+    {
+        return [Finding::cannot_tell(Check::Gaze, "the foveation is wrong"), finding];
     }
-    if of_stated < AGREE * all {
-        return [(Check::Gaze, best_change), (Check::Foveation, best_candidate)].map(|(c, best)| unclear(c, best));
+    if agreement.stated < AGREE * all {
+        let why = "the frame is as sharp as several descriptions say, or as none";
+        let gaze = Finding { evidence: agreement.evidence(of_change), ..Finding::cannot_tell(Check::Gaze, why) };
+        let evidence = agreement.evidence(of_candidate);
+        return [gaze, Finding { evidence, ..Finding::cannot_tell(Check::Foveation, why) }];
     }
-    let told = |check, best: f64, why| {
-        if of_stated >= best + better {
-            Finding::fits(check, confidence(of_stated - best), evidence(best))
-        } else {
-            Finding { evidence: evidence(best), ..Finding::cannot_tell(check, why) }
+    let of_coarse = candidates.iter().filter(|c| c.0.is_coarse).map(|c| c.1).fold(0.0, f64::max);
+    [
+        agreement.fits(Check::Gaze, of_change, "other positions agree as well: look away from the middle of the view"),
+        agreement.fits(Check::Foveation, of_coarse, "other regions and rates agree as well"),
+    ]
+}
+
+/// That the foveation is another one; `None` if several kinds of faults agree as well.
+fn another(agreement: &Agreement, stated: &Foveation, candidates: &[(Candidate, f64)]) -> Option<Finding> {
+    let (mut best, count) = largest(candidates).clone();
+    let enough = count - 0.5 * agreement.better;
+    let mut rival = 0.0;
+    // Where nothing is foveated, huge regions agree, too.
+    match candidates.iter().find(|c| c.0.fault == Fault::NotFoveated && c.1 > enough) {
+        Some((plain, _)) => best = plain.clone(),
+        None => {
+            let others = candidates.iter().filter(|c| c.0.fault != best.fault);
+            rival = others.map(|c| c.1).fold(0.0, f64::max);
         }
-    };
-    let gaze = if has_gaze {
-        told(Check::Gaze, best_change, "other positions agree as well: look away from the middle of the view")
-    } else {
-        Finding::cannot_tell(Check::Gaze, "the gaze is lost")
-    };
-    let best_coarse = most(&mut candidates.iter().filter(|c| c.0.is_coarse).map(|c| c.1));
-    [gaze, told(Check::Foveation, best_coarse, "other regions and rates agree as well")]
+    }
+    (rival <= enough).then(|| {
+        let confidence = agreement.confidence(count - agreement.stated.max(rival));
+        let line = line(stated, &best.foveation);
+        Finding::wrong(Check::Foveation, best.fault, confidence, agreement.evidence(count), line)
+    })
 }
 
 fn measurements(desc: &ContextDesc, observations: &[Observation]) -> Vec<Measurement> {
     let mut found = vec![];
-    for observation in observations {
+    for observation in observations.iter().filter(|o| o.now.has_gaze) {
         for (tile, evidence) in observation.tiles().filter(|(tile, _)| is_inside(tile, desc.size_px)) {
             let Some(measured) = measure(&evidence) else { continue };
             let [x, y] = tile.origin_px.map(|o| o as f32);

@@ -19,6 +19,9 @@ const WRONG: f64 = 7.0;
 /// Gain over no motion from which vectors explain a frame. Tiny vectors gain little, but in every tile.
 const GAIN: f64 = 0.025;
 
+/// Why the vertical axis cannot be told, although all else fits.
+pub(super) const OPEN_Y_AXIS: &str = "direction and unit fit, but nothing moves up or down: the y axis is open";
+
 const NOTHING: usize = 0;
 const STATED: usize = 1;
 
@@ -79,7 +82,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
         return if rivals.peek().is_none() {
             Finding::fits(Check::Motion, confidence(over_nothing.significance), evidence)
         } else if rivals.all(|h| hypotheses[h] == Hypothesis { factors: [1.0, -1.0], ..hypotheses[STATED] }) {
-            cannot_tell("direction and unit fit, but nothing moves up or down: the y axis is open")
+            cannot_tell(OPEN_Y_AXIS)
         } else {
             cannot_tell("several conventions explain the motion")
         };

@@ -201,14 +201,14 @@ pub const PLANTED: [Planted; 31] = [
         name: "depth: near plane 4 times too far",
         check: Check::Depth,
         fault: Fault::DepthPlanes,
-        mend: "near plane",
+        mend: "DepthConvention::Reversed { near: 0.1",
         plant: |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.4, far: f32::INFINITY },
     },
     Planted {
         name: "depth: near plane 4 times too near",
         check: Check::Depth,
         fault: Fault::DepthPlanes,
-        mend: "near plane",
+        mend: "DepthConvention::Reversed { near: 0.1",
         plant: |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.025, far: f32::INFINITY },
     },
     Planted {
