@@ -3,6 +3,8 @@
 //!
 //! Rows of pixels are processed in parallel; the result does not depend on the number of threads.
 
+mod doctor;
+mod doctor_pass;
 mod history;
 mod inputs;
 mod mip_chain;
@@ -15,6 +17,7 @@ mod taa_pass;
 mod wrs_pass;
 
 pub use crate::kernel::debug_view::PixelTrace;
+pub use doctor::Doctor;
 #[doc(hidden)]
 pub use history::History;
 
@@ -202,7 +205,9 @@ impl CpuAfterimage {
         output: &mut [Image<[f32; 3]>],
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
-        self.check(frame, output, traces.as_deref())?;
+        check_inputs(&self.desc, frame)?;
+        check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
+        check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let pass = Pass { desc: &self.desc, history: &mut self.history, frame, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
@@ -220,40 +225,34 @@ impl CpuAfterimage {
         }
         Ok(stats)
     }
+}
 
-    fn check(
-        &self,
-        frame: &Frame<'_>,
-        output: &[Image<[f32; 3]>],
-        traces: Option<&[Image<PixelTrace>]>,
-    ) -> Result<(), FrameError> {
-        frame.check(&self.desc)?;
-        self.check_sizes("color", Some(frame.color.iter().map(|i| i.size())))?;
-        self.check_sizes("depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
-        self.check_sizes("motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
-        self.check_sizes("trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
-        self.check_sizes("lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
-        self.check_sizes("noise", frame.noise.map(|n| n.iter().map(|i| i.size())))?;
-        self.check_sizes("output", Some(output.iter().map(Image::size)))?;
-        self.check_sizes("traces", traces.map(|t| t.iter().map(Image::size)))
-    }
+/// Checks a frame without its outputs.
+fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
+    frame.check(desc)?;
+    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
+    check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
+    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
+    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
+    check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
+}
 
-    /// Checks that an input, if given, has one image of the context's size for each view.
-    fn check_sizes(
-        &self,
-        input: &'static str,
-        sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
-    ) -> Result<(), FrameError> {
-        let Some(sizes) = sizes else { return Ok(()) };
-        let (found, expected) = (sizes.len(), self.desc.view_count as usize);
-        if found != expected {
-            return Err(FrameError::ViewCount { found, expected });
-        }
-        for (view, found) in sizes.enumerate() {
-            if found != self.desc.size_px {
-                return Err(FrameError::Size { input, view, found, expected: self.desc.size_px });
-            }
-        }
-        Ok(())
+/// Checks that an input, if given, has one image of the context's size for each view.
+fn check_sizes(
+    desc: &ContextDesc,
+    input: &'static str,
+    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
+) -> Result<(), FrameError> {
+    let Some(sizes) = sizes else { return Ok(()) };
+    let (found, expected) = (sizes.len(), desc.view_count as usize);
+    if found != expected {
+        return Err(FrameError::ViewCount { found, expected });
     }
+    for (view, found) in sizes.enumerate() {
+        if found != desc.size_px {
+            return Err(FrameError::Size { input, view, found, expected: desc.size_px });
+        }
+    }
+    Ok(())
 }

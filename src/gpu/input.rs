@@ -15,6 +15,28 @@ pub(super) fn check(
     frame: &Frame<'_>,
     target: &Target<'_>,
 ) -> Result<(), FrameError> {
+    check_inputs(desc, frame)?;
+    if let Some(counters) = target.counters {
+        check_words("counters", counters, COUNTERS_BYTES, "at least afterimage::COUNTERS_BYTES")?;
+    }
+    let expected = "the output format given to Afterimage::new; or create a context for this one";
+    check_output(desc, "output", target.output, output_format, expected)?;
+    let Some(debug) = target.debug else { return Ok(()) };
+    check_output(desc, "debug view", debug.output, DEBUG_FORMAT, "Rgba16Float")?;
+    let found = device.limits().max_storage_textures_per_shader_stage;
+    if found < STORAGE_TEXTURES_WITH_VIEW {
+        return Err(FrameError::Value {
+            what: "debug view",
+            view: 0,
+            found: format!("beside the output, on a device with max_storage_textures_per_shader_stage of {found}"),
+            expected: "a limit of 5; or Afterimage::record_view",
+        });
+    }
+    Ok(())
+}
+
+/// Checks a frame without its target.
+pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
     let inputs = [
         ("color", Some(frame.color), 3),
@@ -30,22 +52,6 @@ pub(super) fn check(
         for texture in textures.iter() {
             check_readable(input, texture, channels)?;
         }
-    }
-    if let Some(counters) = target.counters {
-        check_counters(counters)?;
-    }
-    let expected = "the output format given to Afterimage::new; or create a context for this one";
-    check_output(desc, "output", target.output, output_format, expected)?;
-    let Some(debug) = target.debug else { return Ok(()) };
-    check_output(desc, "debug view", debug.output, DEBUG_FORMAT, "Rgba16Float")?;
-    let found = device.limits().max_storage_textures_per_shader_stage;
-    if found < STORAGE_TEXTURES_WITH_VIEW {
-        return Err(FrameError::Value {
-            what: "debug view",
-            view: 0,
-            found: format!("beside the output, on a device with max_storage_textures_per_shader_stage of {found}"),
-            expected: "a limit of 5; or Afterimage::record_view",
-        });
     }
     Ok(())
 }
@@ -157,11 +163,16 @@ fn check_usage(input: &'static str, texture: &Texture, usage: TextureUsages) -> 
     Ok(())
 }
 
-/// Checks size and usages of the counters' buffer.
-fn check_counters(buffer: &Buffer) -> Result<(), FrameError> {
-    let refuse = |problem, expected| Err(FrameError::Buffer { input: "counters", problem, expected });
-    if buffer.size() < COUNTERS_BYTES {
-        return refuse(format!("of {} bytes", buffer.size()), "at least afterimage::COUNTERS_BYTES");
+/// Checks size and usages of a buffer of the caller's, which is cleared and written.
+pub(super) fn check_words(
+    input: &'static str,
+    buffer: &Buffer,
+    bytes: u64,
+    expected_size: &'static str,
+) -> Result<(), FrameError> {
+    let refuse = |problem, expected| Err(FrameError::Buffer { input, problem, expected });
+    if buffer.size() < bytes {
+        return refuse(format!("of {} bytes", buffer.size()), expected_size);
     }
     if !buffer.usage().contains(BufferUsages::STORAGE | BufferUsages::COPY_DST) {
         return refuse(format!("with the usages {:?}", buffer.usage()), "the usages STORAGE and COPY_DST");

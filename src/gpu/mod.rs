@@ -10,6 +10,7 @@ mod buffer;
 // For this workspace's other crates.
 #[doc(hidden)]
 pub mod compute;
+mod doctor;
 mod frame;
 mod history;
 mod input;
@@ -26,6 +27,7 @@ pub mod uniforms;
 
 #[doc(hidden)]
 pub use buffer::filled;
+pub use doctor::Doctor;
 pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
 #[doc(hidden)]
 pub use history::array_view;

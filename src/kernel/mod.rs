@@ -10,6 +10,7 @@ pub mod approx;
 pub mod color;
 pub mod debug_view;
 pub mod depth;
+pub mod doctor;
 pub mod foveate;
 pub mod matched;
 pub mod noise;

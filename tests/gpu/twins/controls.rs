@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, foveation, matching, mathematics, state, surfaces};
+use super::{decisions, doctor, foveation, matching, mathematics, state, surfaces};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -72,6 +72,18 @@ fn one_wrong_last_bit_is_caught() {
 #[test]
 fn an_unwritten_word_is_caught() {
     caught(state::PROBES, "unpack", "out_u(s.age);", "");
+}
+
+#[test]
+fn wrong_evidence_is_caught() {
+    caught(doctor::PROBES, "spline", "(t + 1.0) * 0.5", "(t + 1.0) * 0.51");
+    caught(doctor::PROBES, "lattice_texel", "(point << level) + lattice_offset(level)", "point << level");
+    caught(doctor::PROBES, "lattice_len", "max(len, 1u) - 1u, lattice_offset", "len, lattice_offset");
+    caught(doctor::PROBES, "kink_class", "at + (at & 1u)", "at");
+    caught(doctor::PROBES, "bend", "(after - at) - (at - before)", "(after - at) + (at - before)");
+    caught(doctor::PROBES, "is_code", "whole <= 254.0", "whole <= 255.0");
+    caught(doctor::PROBES, "kept_bits", "select(bits, 0u, size < 0x00800000u)", "bits");
+    caught(doctor::PROBES, "signal", "green >= 1e-30", "green >= 0.0");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{decisions, foveation, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, matching, mathematics, noise, state, surfaces};
 use afterimage_testing::holds;
 
 #[test]
@@ -33,6 +33,11 @@ fn debug_view_is_bit_equal() {
 #[test]
 fn depth_is_bit_equal_h41_h42_h44_h45_h46_h47() {
     check_module(mathematics::PROBES, "depth");
+}
+
+#[test]
+fn doctor_is_bit_equal() {
+    check_module(doctor::PROBES, "doctor");
 }
 
 #[test]

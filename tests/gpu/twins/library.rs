@@ -1,7 +1,7 @@
 //! The library under test: the drop-in's.
 
 use super::probe::Probe;
-use super::{decisions, foveation, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, matching, mathematics, noise, state, surfaces};
 pub use afterimage::shader::SHADERS;
 
 /// Where `shaders/lib` and `src/kernel` are.
@@ -22,6 +22,7 @@ pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "pcg4d
 pub fn probes() -> impl Iterator<Item = &'static Probe> {
     let lists = [
         decisions::PROBES,
+        doctor::PROBES,
         foveation::PROBES,
         matching::PROBES,
         noise::PROBES,

@@ -4,6 +4,7 @@
 mod composer;
 mod controls;
 mod decisions;
+mod doctor;
 mod foveation;
 mod functions;
 mod hard_colors;

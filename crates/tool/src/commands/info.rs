@@ -4,6 +4,7 @@ mod adapters;
 mod scene;
 
 use crate::failure::Failure;
+use afterimage::{ContextDesc, Filter, Gaze, Reset, ViewFrame, ViewGeometry, cpu};
 use afterimage_lab::error::InputError;
 use afterimage_lab::scanpath::{GazeMap, read_csv};
 use afterimage_lab::source;
@@ -47,7 +48,8 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;
-    Ok(frames_info(source.as_mut())?)
+    frames_info(source.as_mut())?;
+    inputs_look(source.as_mut())
 }
 
 fn scanpath_info(path: &str) -> Result<(), InputError> {
@@ -123,6 +125,40 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
             check.best,
             explains(best)
         ),
+    }
+    Ok(())
+}
+
+/// Frames that the doctor looks at.
+const EXAMINED: u64 = 8;
+
+/// Prints what the doctor says of the first frames, which are at full rate.
+fn inputs_look(source: &mut dyn FrameSource) -> Result<(), Failure> {
+    let info = source.info().clone();
+    if info.still || info.frames == Some(1) {
+        return Ok(());
+    }
+    let mut desc = ContextDesc::new(info.size);
+    desc.settings.foveation.filter = Filter::Off;
+    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
+    let mut doctor = cpu::Doctor::new(&desc, 0)?;
+    for index in 0..EXAMINED.min(info.frames.unwrap_or(EXAMINED)) {
+        let frame = source.frame(index)?;
+        let previous_from_current = frame.previous_from_current;
+        let views = [ViewFrame { previous_from_current, ..ViewFrame::new(geometry, Gaze::Lost) }];
+        let (color, depth, motion) = ([&frame.color], frame.depth.as_ref(), frame.motion.as_ref());
+        let (depth, motion) = (depth.map(|d| [d]), motion.map(|m| [m]));
+        let looked_at = cpu::Frame {
+            depth: depth.as_ref().map(|d| &d[..]),
+            motion: motion.as_ref().map(|m| &m[..]),
+            reset: if frame.cut { Reset::All } else { Reset::None },
+            ..cpu::Frame::new(&color, &views, index)
+        };
+        doctor.observe(&looked_at)?;
+    }
+    say!("inputs look:");
+    for finding in doctor.findings() {
+        say!("  {finding}");
     }
     Ok(())
 }

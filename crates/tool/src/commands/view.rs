@@ -3,6 +3,7 @@
 mod app;
 mod auto_scale;
 mod device;
+mod examiner;
 mod fly_camera;
 mod frame_loader;
 mod graph;

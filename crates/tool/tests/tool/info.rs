@@ -16,6 +16,7 @@ fn scanpath_writes_what_run_reads_and_info_explains_both() {
     succeeds(&run("analytic:scroll", &folder.text("out"), &[SMALL, &["--gaze", &csv, "--start", "1"]].concat()));
     let text = succeeds(&["info", "analytic:lateral"]);
     assert!(text.contains("640x360") && text.contains("motion convention: as read"), "{text}");
+    assert!(text.contains("inputs look:\n  motion: ") && !text.contains("WRONG"), "{text}");
     refuses(&["scanpath", "--seconds=-1", "--out", &csv], &["-1"]);
     refuses(&["scanpath", "--out", &format!("{csv}/x.csv")], &["cannot be written"]);
     assert!(succeeds(&["info", "adapters"]).contains("CPU"));

@@ -49,6 +49,7 @@ fn rows(state: &State) -> Vec<Row> {
         row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
         row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
         row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
+        row("inputs", if state.is_examined { "checked" } else { "off" }, "I", Action::Examine),
         row("gaze mark", on_off(state.is_marked), "G", Action::Mark),
         row("frozen", on_off(state.is_frozen), "Space", Action::Freeze),
     ]);

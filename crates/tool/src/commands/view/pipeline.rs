@@ -1,10 +1,11 @@
 //! GPU passes of the viewer: foveate the full-rate frame, then run the method of each side. Nothing is read back.
 
+use super::examiner::Examiner;
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::wgpu::Texture;
-use afterimage::{ContextDesc, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
@@ -26,6 +27,9 @@ pub struct ViewPipeline {
     geometry: ViewGeometry,
     inputs: DeviceInputs,
     runs: Vec<SideRun>,
+    /// While the inputs are checked.
+    examiner: Option<Examiner>,
+    desc: ContextDesc,
     // Properties of the uploaded frame.
     previous_from_current: Option<[[f32; 4]; 4]>,
     cut: bool,
@@ -45,9 +49,12 @@ impl ViewPipeline {
         state: &State,
         settings: &dyn Fn(Shows) -> Settings,
     ) -> Result<Self, Failure> {
+        let desc = desc(&geometry, settings(Shows::Post(Method::None)));
         let mut pipeline = Self {
-            inputs: DeviceInputs::new(gpu, &desc(&geometry, settings(Shows::Post(Method::None))), FORMATS)?,
+            inputs: DeviceInputs::new(gpu, &desc, FORMATS)?,
             runs: vec![],
+            examiner: None,
+            desc,
             previous_from_current: None,
             cut: false,
             index: 0,
@@ -60,7 +67,8 @@ impl ViewPipeline {
 
     /// Applies changes of the state to methods and foveation. Resets all history.
     pub fn adapt(&mut self, state: &State, settings: &dyn Fn(Shows) -> Settings) -> Result<(), Failure> {
-        self.inputs.set_foveation(&desc(&self.geometry, settings(Shows::Post(Method::None))))?;
+        self.desc = desc(&self.geometry, settings(Shows::Post(Method::None)));
+        self.inputs.set_foveation(&self.desc)?;
         let sides = state.shown_sides();
         self.runs.truncate(sides.len());
         for (i, &side) in sides.iter().enumerate() {
@@ -97,6 +105,7 @@ impl ViewPipeline {
     /// Resets the history of all methods.
     pub fn forget(&mut self) {
         self.index = 0;
+        self.examiner = None;
         self.runs.iter_mut().filter_map(|side| side.run.as_mut()).for_each(|run| run.post_mut().forget());
     }
 
@@ -127,6 +136,15 @@ impl ViewPipeline {
         let reset = if cut || self.index == 0 { Reset::All } else { Reset::None };
         let frame = self.inputs.frame(&views, self.index, reset, false);
         let frame = if again { self.inputs.again(frame) } else { frame };
+        if state.is_examined {
+            let examiner = match &mut self.examiner {
+                Some(examiner) => examiner,
+                none => none.insert(Examiner::new(gpu, &self.desc)?),
+            };
+            examiner.look(gpu, &frame)?;
+        } else {
+            self.examiner = None;
+        }
         for (side, pass) in self.runs.iter_mut().zip([Pass::Left, Pass::Right]) {
             let Some(run) = &mut side.run else { continue };
             if let Some(debug) = state.debug {
@@ -138,6 +156,11 @@ impl ViewPipeline {
         }
         self.index += 1;
         Ok(())
+    }
+
+    /// What is found about the inputs; nothing unless they are checked.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.examiner.as_ref().map(Examiner::findings).unwrap_or_default()
     }
 
     /// The full-rate frame.

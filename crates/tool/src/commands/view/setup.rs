@@ -57,6 +57,7 @@ impl Setup {
             is_frozen: false,
             is_playing: args.gaze.is_some(),
             is_flying: None,
+            is_examined: false,
             is_marked: true,
             has_panel: !args.no_panel,
         }

@@ -70,6 +70,8 @@ pub enum Action {
     Freeze,
     Play,
     Fly,
+    /// Check the inputs.
+    Examine,
     Mark,
     Panel,
     Restart,
@@ -118,6 +120,8 @@ pub struct State {
     pub is_playing: bool,
     /// Whether the user steers the camera; `None`: the input has no camera.
     pub is_flying: Option<bool>,
+    /// Whether the inputs are checked.
+    pub is_examined: bool,
     /// Whether the gaze and the fovea are marked.
     pub is_marked: bool,
     pub has_panel: bool,
@@ -166,6 +170,7 @@ impl State {
             Action::Freeze => self.is_frozen = !self.is_frozen,
             Action::Play => self.is_playing = !self.is_playing,
             Action::Fly => self.is_flying = self.is_flying.map(|is_flying| !is_flying),
+            Action::Examine => self.is_examined = !self.is_examined,
             Action::Mark => self.is_marked = !self.is_marked,
             Action::Panel => self.has_panel = !self.has_panel,
             Action::Restart => {
@@ -230,6 +235,7 @@ pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
         KeyCode::KeyP => Action::Play,
         KeyCode::KeyC => Action::Fly,
         KeyCode::KeyG => Action::Mark,
+        KeyCode::KeyI => Action::Examine,
         KeyCode::KeyH => Action::Panel,
         KeyCode::KeyR => Action::Restart,
         KeyCode::F12 if shift => Action::Window,
@@ -255,6 +261,7 @@ pub(super) mod tests {
             is_frozen: false,
             is_playing: false,
             is_flying: None,
+            is_examined: false,
             is_marked: true,
             has_panel: true,
         }

@@ -17,6 +17,7 @@ use super::times::Pass;
 use crate::failure::Failure;
 use afterimage_lab::source::CameraPose;
 use glam::DMat4;
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Duration;
 use winit::window::Window;
@@ -59,6 +60,8 @@ pub struct Viewer {
     pub is_stale: bool,
     /// Pictures to save after the next frame.
     to_save: Vec<Effect>,
+    /// Faults of the inputs that the terminal shows already.
+    told: HashSet<afterimage::Outcome>,
 }
 
 impl Viewer {
@@ -85,6 +88,7 @@ impl Viewer {
             pose: None,
             is_stale: true,
             to_save: vec![],
+            told: HashSet::new(),
         };
         viewer.request_frame();
         Ok(viewer)

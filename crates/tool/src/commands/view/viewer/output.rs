@@ -7,6 +7,7 @@ use super::super::state::Side;
 use super::super::times::Pass;
 use super::Viewer;
 use crate::failure::Failure;
+use afterimage::Outcome;
 use afterimage::wgpu;
 
 impl Viewer {
@@ -36,11 +37,22 @@ impl Viewer {
         let panel_scale = self.panel_scale();
         if self.state.has_panel && (self.is_stale || self.stats.is_due()) {
             let [w, h] = self.resources.pipeline.geometry().size_px();
-            let lines = vec![
+            let mut lines = vec![
                 shortened(self.setup.info.name.rsplit(['/', '\\']).next().unwrap_or_default()),
                 format!("{w}x{h}, {:.2} of the input, {:.1} fps", self.scale, self.stats.fps()),
                 shortened(&self.resources.device.gpu.info.name),
             ];
+            for finding in self.resources.pipeline.findings() {
+                let outcome = match finding.outcome {
+                    Outcome::Fits => "fits",
+                    Outcome::CannotTell(_) => "cannot tell",
+                    Outcome::Wrong(fault) => fault.name(),
+                };
+                lines.push(format!("{}: {outcome}", finding.check.name()));
+                if finding.fault().is_some() && self.told.insert(finding.outcome) {
+                    eprintln!("afterimage: inputs: {finding}");
+                }
+            }
             self.stats.draw(&self.state, lines);
             self.resources.screen.set_panel(&self.resources.device.gpu, &self.stats.panel);
         }

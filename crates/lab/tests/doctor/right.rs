@@ -1,0 +1,131 @@
+//! Right inputs, ordinary and odd, are never accused.
+
+use super::clips::{Clip, Delivery, foveations};
+use super::planted::jitter;
+use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame};
+use afterimage_testing::Draws;
+
+/// Fails if a finding accuses; prints what is found.
+fn is_not_accused(what: &str, delivery: &Delivery) {
+    let findings = delivery.findings();
+    let names: Vec<_> = findings.iter().map(|f| format!("{} {:?}", f.check.name(), f.outcome)).collect();
+    println!("{what}: {}", names.join(", "));
+    for finding in &findings {
+        assert_eq!(finding.fault(), None, "{what}: {finding}");
+        assert!((0.0..=1.0).contains(&finding.confidence), "{what}: {finding}");
+        assert!(finding.evidence.iter().all(|e| e.1.is_finite()), "{what}: {finding}");
+    }
+}
+
+fn all_foveations() -> Vec<Foveation> {
+    let mut all = foveations().to_vec();
+    let default = Foveation::default();
+    all.extend([Filter::Mip, Filter::Block, Filter::Gauss, Filter::Off].map(|filter| Foveation { filter, ..default }));
+    all
+}
+
+fn scene(name: &'static str) -> Clip {
+    Clip::open(name, Some([240, 136]), 3, 4)
+}
+
+fn gazes(delivery: &mut Delivery, gaze: impl Fn(usize) -> Gaze) {
+    for (i, frame) in delivery.frames.iter_mut().enumerate() {
+        frame.view = ViewFrame { gaze: gaze(i), ..frame.view };
+    }
+}
+
+#[test]
+fn clips_under_every_filter() {
+    for name in ["still", "lateral", "turn", "occluder", "light-step", "scroll"] {
+        let clip = scene(["analytic:", name].concat().leak());
+        for foveation in all_foveations() {
+            let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);
+            is_not_accused(&what, &Delivery::right(&clip, foveation));
+        }
+    }
+}
+
+#[test]
+fn gazes_everywhere() {
+    let clip = scene("analytic:turn");
+    let [w, h] = clip.size().map(|s| s as f32);
+    let positions = [
+        ("in the middle", [0.5 * w, 0.5 * h]),
+        ("in a corner", [0.0, 0.0]),
+        ("outside", [1.4 * w, -0.3 * h]),
+        ("far outside", [-1e5, 0.0]),
+        ("on the middle row", [0.9 * w, 0.5 * h]),
+    ];
+    for foveation in foveations() {
+        for (what, px) in positions {
+            is_not_accused(
+                &format!("gaze {what}, {:?}", foveation.filter),
+                &Delivery::looking(&clip, foveation, |_| px),
+            );
+        }
+        // Lost: the description does not say where the frame is sharp.
+        let mut lost = Delivery::looking(&clip, foveation, |_| [0.5 * w - 0.5, 0.5 * h - 0.5]);
+        gazes(&mut lost, |_| Gaze::Lost);
+        is_not_accused(&format!("gaze lost, {:?}", foveation.filter), &lost);
+    }
+}
+
+#[test]
+fn frames_that_show_nothing_or_nonsense() {
+    let clip = scene("analytic:lateral");
+    let mut draws = Draws::new("nonsense");
+    for foveation in foveations() {
+        let right = Delivery::right(&clip, foveation);
+        let filter = foveation.filter;
+        for (what, value) in [("gray", 0.18), ("black", 0.0), ("NaN", f32::NAN)] {
+            let mut plain = right.clone();
+            plain.frames.iter_mut().for_each(|f| f.color = Image::filled(clip.size(), [value; 3]));
+            is_not_accused(&format!("{what}, {filter:?}"), &plain);
+        }
+        let mut riddled = right.clone();
+        for frame in &mut riddled.frames {
+            for pixel in frame.color.pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
+                *pixel = [f32::NAN, f32::INFINITY, 0.5];
+            }
+            for depth in frame.depth.as_mut().unwrap().pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
+                *depth = f32::NAN;
+            }
+            for motion in frame.motion.as_mut().unwrap().pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
+                *motion = [f32::INFINITY, f32::NAN];
+            }
+        }
+        is_not_accused(&format!("riddled, {filter:?}"), &riddled);
+        let mut bare = right.clone();
+        for frame in &mut bare.frames {
+            (frame.depth, frame.motion) = (None, None);
+        }
+        is_not_accused(&format!("color alone, {filter:?}"), &bare);
+        let mut jittered = right.clone();
+        jittered.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
+        is_not_accused(&format!("jitter that the vectors lack, {filter:?}"), &jittered);
+        let mut unknown = right.clone();
+        unknown.frames.iter_mut().for_each(|f| f.view.previous_from_current = None);
+        is_not_accused(&format!("a camera of unknown motion, {filter:?}"), &unknown);
+    }
+    // Nothing but noise, described as full rate.
+    let mut noise = Delivery::right(&clip, Foveation { filter: Filter::Off, ..Foveation::default() });
+    for frame in &mut noise.frames {
+        frame.color = frame.color.map(|_| [0; 3].map(|_| draws.uniform()));
+    }
+    is_not_accused("noise", &noise);
+}
+
+#[test]
+fn frames_of_any_size() {
+    for size in [[1, 1], [7, 3], [16, 16], [33, 17], [150, 20]] {
+        let clip = Clip::open("analytic:turn", Some(size), 1, 3);
+        is_not_accused(&format!("{size:?}"), &Delivery::right(&clip, Foveation::default()));
+    }
+}
+
+#[test]
+fn nothing_seen_tells_nothing() {
+    let mut none = Delivery::right(&scene("analytic:turn"), Foveation::default());
+    none.frames.clear();
+    assert!(none.findings().iter().all(|f| f.confidence == 0.0 && f.mend.is_none()));
+}

@@ -1,0 +1,167 @@
+//! The words of both executors, bit for bit, on clips that are damaged here and there; planted errors in the shader.
+
+use super::clips::{Clip, Delivered, Delivery, foveations};
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::{self, BufferUsages, Texture, TextureFormat, TextureUsages};
+use afterimage::{Image, Reset, cpu, gpu};
+use afterimage_testing::Draws;
+
+/// A foveated clip of an odd size, with broken pixels, and the levels of detail of each frame.
+fn damaged() -> (Delivery, Vec<Image<f32>>) {
+    let clip = Clip::open("analytic:occluder", Some([203, 117]), 1, 3);
+    let foveation = foveations()[0];
+    let mut delivery = Delivery::right(&clip, foveation);
+    let mut draws = Draws::new("a damaged clip");
+    for frame in &mut delivery.frames {
+        for _ in 0..200 {
+            let i = (draws.uniform() * frame.color.pixels().len() as f32) as usize;
+            let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -3.0, 1e-41][draws.bits() as usize % 6];
+            match draws.bits() % 3 {
+                0 => frame.color.pixels_mut()[i][1] = bad,
+                1 => frame.motion.as_mut().unwrap().pixels_mut()[i][(draws.bits() % 2) as usize] = bad,
+                _ => frame.depth.as_mut().unwrap().pixels_mut()[i] = bad,
+            }
+        }
+    }
+    let lods = delivery.frames.iter().map(|f| {
+        let afterimage::Gaze::At { px } = f.view.gaze else { panic!("the gaze is known") };
+        foveation.lod_map(&clip.geometry, px, &clip.geometry.eccentricity_map(px))
+    });
+    let lods = lods.collect();
+    (delivery, lods)
+}
+
+/// Optional inputs that a frame has.
+#[derive(Clone, Copy)]
+struct Given {
+    depth: bool,
+    motion: bool,
+    lod: bool,
+}
+
+const ALL: Given = Given { depth: true, motion: true, lod: true };
+
+fn on_cpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given) -> Vec<Vec<u32>> {
+    let mut doctor = cpu::Doctor::new(&delivery.desc, 0).unwrap();
+    for (i, (f, lod)) in delivery.frames.iter().zip(lods).enumerate() {
+        let (color, views, lod) = ([&f.color], [f.view], [lod]);
+        let (depth, motion) = ([f.depth.as_ref().unwrap()], [f.motion.as_ref().unwrap()]);
+        let frame = cpu::Frame {
+            depth: given.depth.then_some(&depth[..]),
+            motion: given.motion.then_some(&motion[..]),
+            lod: given.lod.then_some(&lod[..]),
+            reset: if i == 0 { Reset::All } else { Reset::None },
+            ..cpu::Frame::new(&color, &views, i as u64)
+        };
+        doctor.observe(&frame).unwrap();
+    }
+    doctor.words().into_iter().map(<[u32]>::to_vec).collect()
+}
+
+/// `None`, after a message, without an adapter.
+fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: &str) -> Option<Vec<Vec<u32>>> {
+    let (device, queue) = afterimage_testing::gpu::device()?;
+    let [width, height] = delivery.desc.size_px;
+    let texture = |format| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("test"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    };
+    let [color, depth, motion, lod_in] =
+        [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float, TextureFormat::R32Float]
+            .map(texture);
+    let mut doctor = afterimage_testing::gpu::validated(&device, "new", || {
+        gpu::Doctor::with_shader(&device, &delivery.desc, 0, source).unwrap()
+    });
+    let bytes = doctor.words_bytes();
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+    let buffer = |usage| {
+        device.create_buffer(&wgpu::BufferDescriptor { label: None, size: bytes, usage, mapped_at_creation: false })
+    };
+    let words = buffer(usage);
+    let write = |texture: &Texture, bytes: &[u8]| afterimage_testing::gpu::write_layer(&queue, texture, 0, bytes);
+    for (i, (Delivered { color: c, depth: d, motion: m, view, .. }, lod)) in
+        delivery.frames.iter().zip(lods).enumerate()
+    {
+        let rgba: Vec<[f32; 4]> = c.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
+        write(&color, bytemuck::cast_slice(&rgba));
+        write(&depth, bytemuck::cast_slice(d.as_ref().unwrap().pixels()));
+        write(&motion, bytemuck::cast_slice(m.as_ref().unwrap().pixels()));
+        write(&lod_in, bytemuck::cast_slice(lod.pixels()));
+        let views = [*view];
+        let frame = gpu::Frame {
+            depth: given.depth.then_some((&depth).into()),
+            motion: given.motion.then_some((&motion).into()),
+            lod: given.lod.then_some((&lod_in).into()),
+            reset: if i == 0 { Reset::All } else { Reset::None },
+            ..gpu::Frame::new(&color, &views, i as u64)
+        };
+        let readback = buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        afterimage_testing::gpu::validated(&device, "record", || {
+            let mut encoder = device.create_command_encoder(&Default::default());
+            doctor.record(&device, &mut encoder, &frame, &words).unwrap();
+            encoder.copy_buffer_to_buffer(&words, 0, &readback, 0, bytes);
+            queue.submit([encoder.finish()]);
+        });
+        readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
+        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        assert!(doctor.read(&afterimage_lab::device::mapped(&readback).expect("the readback is mapped")));
+    }
+    Some(doctor.words().into_iter().map(<[u32]>::to_vec).collect())
+}
+
+/// Words that differ, and all.
+fn differences(a: &[Vec<u32>], b: &[Vec<u32>]) -> (usize, usize) {
+    let pairs = || a.iter().flatten().zip(b.iter().flatten());
+    assert_eq!(a.iter().map(Vec::len).collect::<Vec<_>>(), b.iter().map(Vec::len).collect::<Vec<_>>());
+    (pairs().filter(|(a, b)| a != b).count(), pairs().count())
+}
+
+#[test]
+fn words_are_equal_bit_for_bit() {
+    let clip = damaged();
+    let source = SHADERS.compose("doctor_pass").source;
+    let none = Given { depth: false, motion: false, lod: false };
+    for given in [ALL, Given { depth: false, ..ALL }, Given { motion: false, ..ALL }, none] {
+        let cpu = on_cpu(&clip, given);
+        let Some(gpu) = on_gpu(&clip, given, &source) else { return };
+        let (different, all) = differences(&cpu, &gpu);
+        println!("{different} of {all} words differ");
+        let words = afterimage::kernel::doctor::WORDS as usize;
+        let mut by_word = std::collections::BTreeMap::new();
+        for (i, (a, b)) in cpu.iter().flatten().zip(gpu.iter().flatten()).enumerate().filter(|(_, (a, b))| a != b) {
+            by_word.entry(i % words).or_insert((0, *a, *b)).0 += 1;
+        }
+        println!("differing words of a tile (count, an example): {by_word:?}");
+        assert_eq!(different, 0);
+    }
+}
+
+#[test]
+fn errors_planted_in_the_shader_are_caught() {
+    let clip = damaged();
+    let cpu = on_cpu(&clip, ALL);
+    let source = SHADERS.compose("doctor_pass").source;
+    for (right, wrong) in [
+        ("at.x + moved.x * map.x", "at.x - moved.x * map.x"),
+        ("select(stored, stored.yx, map.z > 0.0)", "stored"),
+        ("boundary_class(at + (at & 1u)) - 1u", "boundary_class(at) % KINKS"),
+        ("bend(srgb_decode(before), srgb_decode(at), srgb_decode(after))", "bend(before, at, after)"),
+        ("kept_depth(px + vec2<u32>(0u, step))", "kept_depth(px)"),
+        ("t * (1.0f / 3.0f)", "t * 0.5"),
+        ("if !(is_finite(given.x) && is_finite(given.y))", "if !is_finite(given.x)"),
+    ] {
+        assert_eq!(source.matches(right).count(), 1, "'{right}' in the pass");
+        let Some(gpu) = on_gpu(&clip, ALL, &source.replace(right, wrong)) else { return };
+        let (different, all) = differences(&cpu, &gpu);
+        println!("'{right}' -> '{wrong}': {different} of {all} words differ");
+        assert!(different > 0, "planted error not caught: '{right}' -> '{wrong}'");
+    }
+}

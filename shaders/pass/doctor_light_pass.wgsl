@@ -1,0 +1,30 @@
+//#use doctor
+// Roots of the mean signal of 2x2 pixels of a view, for the comparison of frames. CPU twin: light in
+// src/cpu/doctor_pass.rs. One invocation a texel.
+//
+// 4 reads of a color and 1 write of 4 bytes a texel.
+
+// Width and height in pixels; first pixel of the view, x in the low half, y in the high half.
+@group(0) @binding(0) var<uniform> view: vec4<u32>;
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var light_out: texture_storage_2d_array<r32float, write>;
+
+fn signal_at(at: vec2<u32>) -> f32 {
+    let first = vec2<u32>(view.z & 0xffffu, view.z >> 16u);
+    return signal(textureLoad(color_in, min(at, view.xy - 1u) + first, 0, 0).y);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let first = 2u * id.xy;
+    if any(first >= view.xy) {
+        return;
+    }
+    let light = root_mean(
+        signal_at(first),
+        signal_at(first + vec2<u32>(1u, 0u)),
+        signal_at(first + vec2<u32>(0u, 1u)),
+        signal_at(first + vec2<u32>(1u, 1u)),
+    );
+    textureStore(light_out, id.xy, 0u, vec4<f32>(light, 0.0, 0.0, 0.0));
+}

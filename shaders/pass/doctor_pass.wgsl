@@ -1,0 +1,198 @@
+//#use color
+//#use doctor
+//#use foveate
+// Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
+// tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
+//
+// 416 reads of light and 68 of color an invocation, most of them cached; 212 bytes written a tile.
+
+override HAS_DEPTH: u32 = 1u;
+override HAS_MOTION: u32 = 1u;
+
+// src/gpu/doctor.rs: DoctorUniforms, which documents the fields
+struct DoctorUniforms {
+    size: vec2<u32>,
+    color_origin: u32,
+    depth_origin: u32,
+    motion_origin: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
+    maps: array<vec4<f32>, HYPOTHESES>,
+}
+
+@group(0) @binding(0) var<uniform> frame: DoctorUniforms;
+@group(0) @binding(1) var color_in: texture_2d_array<f32>;
+@group(0) @binding(2) var depth_in: texture_2d_array<f32>;
+@group(0) @binding(3) var motion_in: texture_2d_array<f32>;
+@group(0) @binding(4) var light_now: texture_2d_array<f32>;
+@group(0) @binding(5) var light_past: texture_2d_array<f32>;
+// First pixel, level of the lattice.
+@group(0) @binding(6) var<storage, read> tiles: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read_write> words: array<u32>;
+
+var<workgroup> sums: array<atomic<u32>, SUMS>;
+
+// First pixel of the view in an input.
+fn first_px(origin: u32) -> vec2<u32> {
+    return vec2<u32>(origin & 0xffffu, origin >> 16u);
+}
+
+struct Axis {
+    texels: vec4<u32>,
+    fraction: f32,
+}
+
+fn axis_at(at: f32, len: u32, level: u32) -> Axis {
+    let count = lattice_len(len, level);
+    let near = split(lattice_coordinate(at, level), count);
+    return Axis(
+        vec4<u32>(
+            lattice_texel(max(near.whole, 1u) - 1u, level, len),
+            lattice_texel(near.whole, level, len),
+            lattice_texel(min(near.whole + 1u, count - 1u), level, len),
+            lattice_texel(min(near.whole + 2u, count - 1u), level, len),
+        ),
+        near.fraction,
+    );
+}
+
+fn half_size() -> vec2<u32> {
+    return vec2<u32>(level_len(frame.size.x, 1u), level_len(frame.size.y, 1u));
+}
+
+fn row_now(x: Axis, y: u32) -> f32 {
+    return spline(
+        vec4<f32>(
+            textureLoad(light_now, vec2<u32>(x.texels.x, y), 0, 0).x,
+            textureLoad(light_now, vec2<u32>(x.texels.y, y), 0, 0).x,
+            textureLoad(light_now, vec2<u32>(x.texels.z, y), 0, 0).x,
+            textureLoad(light_now, vec2<u32>(x.texels.w, y), 0, 0).x,
+        ),
+        x.fraction,
+    );
+}
+
+fn row_past(x: Axis, y: u32) -> f32 {
+    return spline(
+        vec4<f32>(
+            textureLoad(light_past, vec2<u32>(x.texels.x, y), 0, 0).x,
+            textureLoad(light_past, vec2<u32>(x.texels.y, y), 0, 0).x,
+            textureLoad(light_past, vec2<u32>(x.texels.z, y), 0, 0).x,
+            textureLoad(light_past, vec2<u32>(x.texels.w, y), 0, 0).x,
+        ),
+        x.fraction,
+    );
+}
+
+fn lookup_now(at: vec2<f32>, level: u32) -> f32 {
+    let x = axis_at(at.x, half_size().x, level);
+    let y = axis_at(at.y, half_size().y, level);
+    let rows =
+        vec4<f32>(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
+    return spline(rows, y.fraction);
+}
+
+fn lookup_past(at: vec2<f32>, level: u32) -> f32 {
+    let x = axis_at(at.x, half_size().x, level);
+    let y = axis_at(at.y, half_size().y, level);
+    let rows =
+        vec4<f32>(row_past(x, y.texels.x), row_past(x, y.texels.y), row_past(x, y.texels.z), row_past(x, y.texels.w));
+    return spline(rows, y.fraction);
+}
+
+fn add(word: u32, count: u32) {
+    atomicAdd(&sums[word], count);
+}
+
+// Compares the frame at a pixel with the previous one, where each hypothesis says that it was.
+fn match_sample(px: vec2<u32>, level: u32) {
+    if HAS_MOTION == 0u {
+        return;
+    }
+    let given = textureLoad(motion_in, px + first_px(frame.motion_origin), 0, 0).xy;
+    if !(is_finite(given.x) && is_finite(given.y)) {
+        return;
+    }
+    let stored = vec2<f32>(stored_motion(given.x), stored_motion(given.y));
+    let at = vec2<f32>(px / 2u);
+    let shown = lookup_now(at, level);
+    add(MATCHED, 1u);
+    for (var h = 0u; h < HYPOTHESES; h++) {
+        let map = frame.maps[h];
+        let moved = select(stored, stored.yx, map.z > 0.0);
+        let predicted = lookup_past(vec2<f32>(at.x + moved.x * map.x, at.y + moved.y * map.y), level);
+        add(ERRORS + h, fixed(abs(shown - predicted)));
+    }
+}
+
+fn signal_at(px: vec2<u32>, axis: vec2<i32>, offset: i32) -> f32 {
+    let at = clamp(vec2<i32>(px) + axis * offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    return signal(textureLoad(color_in, vec2<u32>(at) + first_px(frame.color_origin), 0, 0).y);
+}
+
+// Adds the differences of a pixel from its neighbours along both axes.
+fn add_pixel(px: vec2<u32>) {
+    let at = signal_at(px, vec2<i32>(0), 0);
+    add(LIGHT, fixed(at));
+    add(CODES, select(0u, 1u, is_code(at)));
+    let green = textureLoad(color_in, px + first_px(frame.color_origin), 0, 0).y;
+    add(BROKEN, select(1u, 0u, is_finite(green)));
+    for (var a = 0u; a < 2u; a++) {
+        let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), a == 0u);
+        let along = select(px.y, px.x, a == 0u);
+        let before = signal_at(px, axis, -1);
+        let after = signal_at(px, axis, 1);
+        add(STEPS + boundary_class(along), fixed(abs(at - before)));
+        let kink = kink_class(along);
+        add(BENDS + kink, fixed(bend(before, at, after)));
+        add(DECODED_BENDS + kink, fixed(bend(srgb_decode(before), srgb_decode(at), srgb_decode(after))));
+        for (var i = 0u; i < WIDE; i++) {
+            let reach = 2 << i;
+            add(WIDE_BENDS + i, fixed(bend(signal_at(px, axis, -reach), at, signal_at(px, axis, reach))));
+        }
+    }
+}
+
+fn kept_depth(px: vec2<u32>) -> u32 {
+    return kept_bits(textureLoad(depth_in, px + first_px(frame.depth_origin), 0, 0).x);
+}
+
+// Copies stored depths and motion.
+fn copy_middle(px: vec2<u32>, to: u32) {
+    let step = DEPTH_STEP_PX;
+    for (var i = SUMS; i < WORDS; i++) {
+        words[to + i] = 0u;
+    }
+    if HAS_DEPTH != 0u {
+        words[to + DEPTH] = kept_depth(px);
+        words[to + DEPTH + 1u] = kept_depth(px - vec2<u32>(step, 0u));
+        words[to + DEPTH + 2u] = kept_depth(px + vec2<u32>(step, 0u));
+        words[to + DEPTH + 3u] = kept_depth(px - vec2<u32>(0u, step));
+        words[to + DEPTH + 4u] = kept_depth(px + vec2<u32>(0u, step));
+    }
+    if HAS_MOTION != 0u {
+        let stored = textureLoad(motion_in, px + first_px(frame.motion_origin), 0, 0).xy;
+        words[to + MOTION] = kept_bits(stored.x);
+        words[to + MOTION + 1u] = kept_bits(stored.y);
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(local_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) index: u32,
+    @builtin(workgroup_id) group: vec3<u32>) {
+    let tile = tiles[group.x];
+    let first = tile.xy + 2u * id.xy;
+    match_sample(first, tile.z);
+    for (var i = 0u; i < 4u; i++) {
+        add_pixel(first + vec2<u32>(i & 1u, i >> 1u));
+    }
+    workgroupBarrier();
+    let to = group.x * WORDS;
+    if index < SUMS {
+        words[to + index] = atomicLoad(&sums[index]);
+    }
+    if index == 0u {
+        copy_middle(tile.xy + TILE_PX / 2u, to);
+    }
+}

@@ -1,0 +1,108 @@
+//! Checker of a renderer's inputs, on images in memory.
+
+use super::doctor_pass::{self, Examined};
+use super::{Frame, check_inputs};
+use crate::doctor::{Chart, Description, Finding, Observation, continues, maps};
+use crate::error::{FrameError, SettingsError};
+use crate::frame::ContextDesc;
+use crate::image::Image;
+
+/// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
+/// foveation of one view. Give it some consecutive frames in which the camera moves and the eye looks around.
+///
+/// ```
+/// use afterimage::cpu::{Doctor, Frame};
+/// use afterimage::{ContextDesc, Fault, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+///
+/// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.
+/// let size = [160, 96];
+/// let pattern = |x: f32, y: f32| 0.5 + 0.2 * (0.4 * x + 0.2 * y).sin() + 0.2 * (0.1 * x - 0.3 * y).cos();
+/// let motion = Image::filled(size, [2.0, 0.0]);
+/// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 30.0] })];
+///
+/// let mut desc = ContextDesc::new(size);
+/// desc.settings.foveation.filter = Filter::Off;
+/// let mut doctor = Doctor::new(&desc, 0)?;
+/// for index in 0..4 {
+///     let color = Image::from_fn(size, |[x, y]| [pattern(x as f32 - 2.0 * index as f32, y as f32); 3]);
+///     let frame = Frame { motion: Some(&[&motion]), ..Frame::new(&[&color], &views, index) };
+///     doctor.observe(&frame)?;
+/// }
+/// let finding = &doctor.findings()[0];
+/// assert_eq!(finding.fault(), Some(Fault::MotionDirection));
+/// println!("{finding}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Doctor {
+    desc: ContextDesc,
+    view: usize,
+    chart: Chart,
+    /// Light, gaze and jitter of the last frame.
+    past: Option<Past>,
+}
+
+#[derive(Clone, Debug)]
+struct Past {
+    light: Image<f32>,
+    gaze_px: [f32; 2],
+    jitter_px: [f32; 2],
+}
+
+impl Doctor {
+    /// A doctor that has seen nothing, for view `view` of a context of `desc`.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the description is out of range, or has no such view.
+    pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
+        crate::doctor::check_view(desc, view)?;
+        desc.validate()?;
+        Ok(Self { desc: *desc, view, chart: Chart::default(), past: None })
+    }
+
+    /// Looks at a frame: the same that the post-process gets, one after the other.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a size, a number of images or a value does not fit the description; then the frame was not
+    /// looked at.
+    pub fn observe(&mut self, frame: &Frame<'_>) -> Result<(), FrameError> {
+        check_inputs(&self.desc, frame)?;
+        let view = self.view;
+        let facts = frame.views[view];
+        let jitter_px = facts.jitter_px;
+        self.desc.depth = facts.depth_convention(&self.desc);
+        let desc = &self.desc;
+        let light = doctor_pass::light(frame.color[view]);
+        let gaze_px = facts.gaze.resolve(self.past.as_ref().map(|p| p.gaze_px), &facts.geometry);
+        let past = self.past.take().filter(|_| continues(frame));
+        let now = Description {
+            has_depth: frame.depth.is_some(),
+            has_motion: frame.motion.is_some(),
+            has_lod: frame.lod.is_some(),
+            ..Description::new(desc, facts, gaze_px, past.as_ref().map(|p| p.gaze_px))
+        };
+        let examined = Examined {
+            color: frame.color[view],
+            depth: frame.depth.map(|d| d[view]),
+            motion: frame.motion.map(|m| m[view]),
+            now: &light,
+            past: past.as_ref().map_or(&light, |p| &p.light),
+            maps: &maps(desc),
+        };
+        let words = doctor_pass::words(&examined, &now.tiles);
+        self.chart.add(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words });
+        self.past = Some(Past { light, gaze_px, jitter_px });
+        Ok(())
+    }
+
+    /// One finding for each [`Check`](crate::Check), from all frames seen so far (the last 16).
+    pub fn findings(&self) -> Vec<Finding> {
+        self.chart.findings(&self.desc)
+    }
+
+    /// Words of the frames seen so far, for the tests.
+    #[doc(hidden)]
+    pub fn words(&self) -> Vec<&[u32]> {
+        self.chart.words()
+    }
+}

@@ -1,0 +1,236 @@
+//! Checker of a renderer's inputs, recorded into the caller's command encoder.
+
+use super::buffer::filled;
+use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uniform};
+use super::history::array_view;
+use super::input::{check_inputs, check_words};
+use super::textures::Batch;
+use super::{Frame, MAX_VIEWS, Textures};
+use crate::doctor::{Chart, Description, Finding, Observation, check_view, continues, maps, tile_count};
+use crate::error::{CreateError, FrameError};
+use crate::frame::ContextDesc;
+use crate::kernel::doctor::{HYPOTHESES, WORDS};
+use crate::kernel::foveate::level_len;
+use crate::shader::SHADERS;
+use bytemuck::{Pod, Zeroable};
+use std::collections::VecDeque;
+use wgpu::{
+    BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat,
+    TextureUsages, TextureView,
+};
+
+/// Frames that may be recorded before the words of the first are read.
+const PENDING: usize = 16;
+
+/// `DoctorUniforms` in `shaders/pass/doctor_pass.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct DoctorUniforms {
+    /// Width and height of a view in pixels.
+    size: [u32; 2],
+    /// First pixel of the view in the color input: x in the low half, y in the high half.
+    color_origin: u32,
+    /// The same for depth.
+    depth_origin: u32,
+    /// The same for motion vectors.
+    motion_origin: u32,
+    /// Padding to a multiple of 16 bytes.
+    unused: [u32; 3],
+    /// Maps of the hypotheses.
+    maps: [[f32; 4]; HYPOTHESES as usize],
+}
+
+/// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
+/// foveation of one view.
+///
+/// Give it some consecutive frames in which the camera moves and the eye looks around. `record` never submits,
+/// maps or waits: the caller reads its buffer back, when that suits, and gives the bytes to [`read`](Self::read).
+/// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
+#[derive(Debug)]
+pub struct Doctor {
+    desc: ContextDesc,
+    view: usize,
+    light_pass: ComputeShader,
+    pass: ComputeShader,
+    /// Light of the last frame, and of the one before.
+    light: [TextureView; 2],
+    absent: TextureView,
+    past: Option<Past>,
+    pending: VecDeque<Observation>,
+    chart: Chart,
+}
+
+/// What is kept of the last frame, besides its light.
+#[derive(Clone, Copy, Debug)]
+struct Past {
+    gaze_px: [f32; 2],
+    jitter_px: [f32; 2],
+}
+
+impl Doctor {
+    /// A doctor that has seen nothing, for view `view` of a context of `desc`.
+    ///
+    /// # Errors
+    /// [`CreateError`] if the description is out of range, or has no such view, or a limit of the device is too low.
+    pub fn new(device: &Device, desc: &ContextDesc, view: usize) -> Result<Self, CreateError> {
+        Self::with_shader(device, desc, view, &SHADERS.compose("doctor_pass").source)
+    }
+
+    /// A doctor with another shader, for tests that plant errors.
+    #[doc(hidden)]
+    pub fn with_shader(device: &Device, desc: &ContextDesc, view: usize, source: &str) -> Result<Self, CreateError> {
+        super::validate(device, desc, TextureFormat::Rgba16Float)?;
+        check_view(desc, view)?;
+        debug_assert!(view < MAX_VIEWS);
+        let float = float_texture();
+        let light = [uniform(), float, storage_texture(TextureFormat::R32Float)];
+        let types = [uniform(), float, float, float, float, float, storage_buffer(true), storage_buffer(false)];
+        let light_source = SHADERS.compose("doctor_light_pass").source;
+        let half = desc.size_px.map(|s| level_len(s, 1));
+        Ok(Self {
+            desc: *desc,
+            view,
+            light_pass: ComputeShader::new(device, "afterimage doctor light", light_source, &light),
+            pass: ComputeShader::new(device, "afterimage doctor", source.to_owned(), &types),
+            light: [half; 2].map(|size| array_view(&light_texture(device, size))),
+            absent: array_view(&light_texture(device, [1, 1])),
+            past: None,
+            pending: VecDeque::new(),
+            chart: Chart::default(),
+        })
+    }
+
+    /// Size in bytes of the words that a frame writes.
+    pub fn words_bytes(&self) -> u64 {
+        4 * u64::from(WORDS) * u64::from(tile_count(self.desc.size_px).max(1))
+    }
+
+    /// Records the look at a frame, the same that the post-process gets, into `encoder`. Writes `words`: a buffer of
+    /// [`words_bytes`](Self::words_bytes) with the usages `STORAGE`, `COPY_DST` and (to read it back) `COPY_SRC`.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded.
+    pub fn record(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        words: &Buffer,
+    ) -> Result<(), FrameError> {
+        check_inputs(&self.desc, frame)?;
+        check_words("words", words, self.words_bytes(), "at least Doctor::words_bytes")?;
+        let view = frame.views[self.view];
+        let jitter_px = view.jitter_px;
+        let gaze_px = view.gaze.resolve(self.past.map(|p| p.gaze_px), &view.geometry);
+        self.desc.depth = view.depth_convention(&self.desc);
+        let past = self.past.filter(|_| continues(frame));
+        let now = Description {
+            has_depth: frame.depth.is_some(),
+            has_motion: frame.motion.is_some(),
+            has_lod: frame.lod.is_some(),
+            ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
+        };
+        self.dispatch(device, encoder, frame, &now, words);
+        self.light.swap(0, 1);
+        self.past = Some(Past { gaze_px, jitter_px });
+        if self.pending.len() == PENDING {
+            self.pending.pop_front();
+        }
+        self.pending.push_back(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words: vec![] });
+        Ok(())
+    }
+
+    /// Takes the words of the earliest recorded frame that has not been read, as the device wrote them. `false` if
+    /// there is no such frame, or there are too few bytes.
+    pub fn read(&mut self, words: &[u8]) -> bool {
+        let Some(bytes) = words.get(..self.words_bytes() as usize) else { return false };
+        let Some(mut observation) = self.pending.pop_front() else { return false };
+        let count = observation.now.tiles.len() * WORDS as usize;
+        let word = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        observation.words = bytes.chunks_exact(4).take(count).map(word).collect();
+        self.chart.add(observation);
+        true
+    }
+
+    /// One finding for each [`Check`](crate::Check), from all frames read so far (the last 16).
+    pub fn findings(&self) -> Vec<Finding> {
+        self.chart.findings(&self.desc)
+    }
+
+    fn dispatch(
+        &self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        frame: &Frame<'_>,
+        now: &Description,
+        words: &Buffer,
+    ) {
+        let mut pass = encoder
+            .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage doctor"), timestamp_writes: None });
+        let first = self.view as u32;
+        let batch = Batch { views: first..first + 1, regions: true };
+        let color = frame.color.bind(&batch);
+        let optional =
+            |textures: Option<Textures<'_>>| textures.map_or_else(|| self.absent.clone(), |t| t.bind(&batch));
+        let (depth, motion) = (optional(frame.depth), optional(frame.motion));
+        let origin = |textures: Option<Textures<'_>>| textures.map_or(0, |t| t.packed_origin(self.view));
+        let [w, h] = self.desc.size_px;
+        let bytes = [w, h, origin(Some(frame.color)), 0];
+        let view = filled(device, "afterimage doctor view", bytemuck::bytes_of(&bytes), BufferUsages::UNIFORM);
+        let resources = [
+            view.as_entire_binding(),
+            BindingResource::TextureView(&color),
+            BindingResource::TextureView(&self.light[0]),
+        ];
+        let group = self.light_pass.group(device, resources);
+        let half = [w, h].map(|s| level_len(s, 1));
+        self.light_pass.dispatch(device, &mut pass, &[], &group, half, 1);
+
+        let uniforms = DoctorUniforms {
+            size: [w, h],
+            color_origin: origin(Some(frame.color)),
+            depth_origin: origin(frame.depth),
+            motion_origin: origin(frame.motion),
+            unused: [0; 3],
+            maps: maps(&self.desc),
+        };
+        let uniforms = filled(device, "afterimage doctor", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let tiles: Vec<[u32; 4]> =
+            now.tiles.iter().map(|t| [t.origin_px[0], t.origin_px[1], t.lattice_level, 0]).collect();
+        if tiles.is_empty() {
+            return;
+        }
+        let tiles = filled(device, "afterimage doctor tiles", bytemuck::cast_slice(&tiles), BufferUsages::STORAGE);
+        // Without a frame before, the frame is compared with itself, and the result is not used.
+        let past = if now.has_past { &self.light[1] } else { &self.light[0] };
+        let textures = [&color, &depth, &motion, &self.light[0], past];
+        let resources = std::iter::once(uniforms.as_entire_binding())
+            .chain(textures.map(BindingResource::TextureView))
+            .chain([tiles.as_entire_binding(), words.as_entire_binding()]);
+        let group = self.pass.group(device, resources);
+        let flag = |is_there: bool| u32::from(is_there);
+        let overrides = [("HAS_DEPTH", flag(frame.depth.is_some())), ("HAS_MOTION", flag(frame.motion.is_some()))];
+        pass.set_pipeline(&self.pass.pipeline(device, &overrides));
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(now.tiles.len() as u32, 1, 1);
+    }
+
+    /// Words of the frames read so far, for the tests.
+    #[doc(hidden)]
+    pub fn words(&self) -> Vec<&[u32]> {
+        self.chart.words()
+    }
+}
+
+fn light_texture(device: &Device, size: [u32; 2]) -> Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("afterimage doctor light"),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::R32Float,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    })
+}
