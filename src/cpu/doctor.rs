@@ -25,7 +25,8 @@ use crate::image::Image;
 /// let mut doctor = Doctor::new(&desc, 0)?;
 /// for index in 0..4 {
 ///     let color = Image::from_fn(size, |[x, y]| [pattern(x as f32 - 2.0 * index as f32, y as f32); 3]);
-///     let frame = Frame { motion: Some(&[&motion]), ..Frame::new(&[&color], &views, index) };
+///     let (colors, motions) = ([&color], [&motion]);
+///     let frame = Frame { motion: Some(&motions), ..Frame::new(&colors, &views, index) };
 ///     doctor.observe(&frame)?;
 /// }
 /// let finding = &doctor.findings()[0];

@@ -77,3 +77,48 @@ impl Examiner {
         self.doctor.findings()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use afterimage::{Fault, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+    use wgpu::{TextureFormat, TextureUsages};
+
+    const SIZE: [u32; 2] = [160, 96];
+
+    /// Faults found in frames that move to the right by 2 pixels, with vectors of that sign. `waits`: for each frame.
+    fn faults(waits: bool) -> Option<Vec<Fault>> {
+        let Some(gpu) = Headless::find(true) else {
+            assert!(std::env::var("AFTERIMAGE_GPU").is_err(), "AFTERIMAGE_GPU is set, but there is no adapter");
+            eprintln!("SKIPPED: no adapter");
+            return None;
+        };
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let [color, motion] = [(); 2].map(|()| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage));
+        gpu.write_rgb(&motion, 0, &Image::filled(SIZE, [2.0, 0.0, 0.0]));
+        let mut desc = ContextDesc::new(SIZE);
+        desc.settings.foveation.filter = Filter::Off;
+        let mut examiner = Examiner::new(&gpu, &desc).unwrap();
+        let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), Gaze::At { px: [40.0, 30.0] })];
+        for index in 0..12 {
+            let shown = |[x, y]: [u32; 2]| {
+                let x = x as f32 - 2.0 * index as f32;
+                [0.5 + 0.2 * (0.4 * x + 0.2 * y as f32).sin() + 0.2 * (0.1 * x - 0.3 * y as f32).cos(); 3]
+            };
+            gpu.write_rgb(&color, 0, &Image::from_fn(SIZE, shown));
+            let frame = Frame { motion: Some(&motion), ..Frame::new(&color, &views, index) };
+            examiner.look(&gpu, &frame).unwrap();
+            if waits {
+                gpu.wait();
+            }
+        }
+        Some(examiner.findings().iter().filter_map(Finding::fault).collect())
+    }
+
+    #[test]
+    fn it_names_a_wrong_sign_and_skips_frames_rather_than_wait() {
+        let Some(found) = faults(true) else { return };
+        assert_eq!(found, [Fault::MotionDirection]);
+        assert!(faults(false).unwrap().iter().all(|f| *f == Fault::MotionDirection));
+    }
+}
