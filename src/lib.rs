@@ -63,9 +63,9 @@
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
 #![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
 //!   records compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on by default) or wgpu 29
-//!   (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends. A lost device is no
-//!   panic; but wgpu 29 reports views of textures that are created after the loss, as in `resize`, to the device's error
-//!   handler (`on_uncaptured_error`), and its default handler panics.
+//!   (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends. On a lost
+//!   device nothing panics, with one exception: wgpu 29 reports views of textures that are created after the loss, as
+//!   in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
 #![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
 #![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
 //!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
