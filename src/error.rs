@@ -42,7 +42,6 @@ pub(crate) fn check(
 /// A context that cannot be created.
 ///
 /// ```
-/// # use afterimage::wgpu;
 /// use afterimage::ContextDesc;
 ///
 /// # #[cfg(feature = "gpu")]

@@ -140,7 +140,6 @@ impl Afterimage {
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
     ///
     /// ```
-    /// # use afterimage::wgpu;
     /// use afterimage::gpu::Afterimage;
     /// use afterimage::{ContextDesc, wgpu};
     ///

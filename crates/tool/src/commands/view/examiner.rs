@@ -106,7 +106,7 @@ mod tests {
                 [0.5 + 0.2 * (0.4 * x + 0.2 * y as f32).sin() + 0.2 * (0.1 * x - 0.3 * y as f32).cos(); 3]
             };
             gpu.write_rgb(&color, 0, &Image::from_fn(SIZE, shown));
-            let frame = Frame { motion: Some(&motion), ..Frame::new(&color, &views, index) };
+            let frame = Frame { motion: Some((&motion).into()), ..Frame::new(&color, &views, index) };
             examiner.look(&gpu, &frame).unwrap();
             if waits {
                 gpu.wait();
