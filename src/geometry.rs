@@ -81,7 +81,7 @@ impl ViewGeometry {
     /// ```
     /// use afterimage::ViewGeometry;
     ///
-    /// // Bevy's and Unreal's kind: infinite, reversed, near plane at 0.1; 90 degrees high.
+    /// // Bevy's kind: infinite, reversed, near plane at 0.1; 90 degrees high.
     /// let clip_from_view = [[0.5625, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
     /// let view = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
     /// assert!((view.hfov_deg() - 121.3).abs() < 0.1);
