@@ -60,6 +60,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "mip_chain_pass"),
     module!("pass", "inputs"),
     module!("pass", "none_pass"),
+    module!("pass", "origin"),
     module!("pass", "output"),
     module!("pass", "output_and_view"),
     module!("pass", "resize_reservoirs_pass"),

@@ -1,4 +1,5 @@
 //#use noise
+//#use origin
 //#use surface
 // First level of the mip chain of noisy candidates: means of 2x2 pixels without non-finite ones; at odd borders a
 // missing pixel is replaced by its neighbour. CPU twin: MipChain::build_candidates in src/cpu/mip_chain.rs.
@@ -21,10 +22,6 @@ struct CandidateUniforms {
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var noise_in: texture_2d_array<f32>;
 @group(0) @binding(3) var coarse: texture_storage_2d_array<rgba16float, write>;
-
-fn from_origin(px: vec2<u32>, origin: u32) -> vec2<u32> {
-    return px + vec2<u32>(origin & 0xffffu, origin >> 16u);
-}
 
 fn texel(at: vec2<u32>, layer: u32) -> vec4<f32> {
     let px = min(at, frame.size - 1u);

@@ -1,4 +1,5 @@
 //#use doctor
+//#use origin
 // Roots of the mean signal of 2x2 pixels of a view, for the comparison of frames. CPU twin: light in
 // src/cpu/doctor_pass.rs. One invocation a texel.
 //
@@ -10,8 +11,7 @@
 @group(0) @binding(2) var light_out: texture_storage_2d_array<r32float, write>;
 
 fn signal_at(at: vec2<u32>) -> f32 {
-    let first = vec2<u32>(view.z & 0xffffu, view.z >> 16u);
-    return signal(textureLoad(color_in, min(at, view.xy - 1u) + first, 0, 0).y);
+    return signal(textureLoad(color_in, from_origin(min(at, view.xy - 1u), view.z), 0, 0).y);
 }
 
 @compute @workgroup_size(64, 1)

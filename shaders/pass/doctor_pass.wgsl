@@ -1,6 +1,7 @@
 //#use color
 //#use doctor
 //#use foveate
+//#use origin
 // Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
 // tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
 //
@@ -32,11 +33,6 @@ struct DoctorUniforms {
 @group(0) @binding(7) var<storage, read_write> words: array<u32>;
 
 var<workgroup> sums: array<atomic<u32>, SUMS>;
-
-// First pixel of the view in an input.
-fn first_px(origin: u32) -> vec2<u32> {
-    return vec2<u32>(origin & 0xffffu, origin >> 16u);
-}
 
 struct Axis {
     texels: vec4<u32>,
@@ -110,7 +106,7 @@ fn match_sample(px: vec2<u32>, level: u32) {
     if HAS_MOTION == 0u {
         return;
     }
-    let given = textureLoad(motion_in, px + first_px(frame.motion_origin), 0, 0).xy;
+    let given = textureLoad(motion_in, from_origin(px, frame.motion_origin), 0, 0).xy;
     if !(is_finite(given.x) && is_finite(given.y)) {
         return;
     }
@@ -128,7 +124,7 @@ fn match_sample(px: vec2<u32>, level: u32) {
 
 fn signal_at(px: vec2<u32>, axis: vec2<i32>, offset: i32) -> f32 {
     let at = clamp(vec2<i32>(px) + axis * offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    return signal(textureLoad(color_in, vec2<u32>(at) + first_px(frame.color_origin), 0, 0).y);
+    return signal(textureLoad(color_in, from_origin(vec2<u32>(at), frame.color_origin), 0, 0).y);
 }
 
 // Adds the differences of a pixel from its neighbours along both axes.
@@ -136,7 +132,7 @@ fn add_pixel(px: vec2<u32>) {
     let at = signal_at(px, vec2<i32>(0), 0);
     add(LIGHT, fixed(at));
     add(CODES, select(0u, 1u, is_code(at)));
-    let green = textureLoad(color_in, px + first_px(frame.color_origin), 0, 0).y;
+    let green = textureLoad(color_in, from_origin(px, frame.color_origin), 0, 0).y;
     add(BROKEN, select(1u, 0u, is_finite(green)));
     for (var a = 0u; a < 2u; a++) {
         let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), a == 0u);
@@ -155,7 +151,7 @@ fn add_pixel(px: vec2<u32>) {
 }
 
 fn kept_depth(px: vec2<u32>) -> u32 {
-    return kept_bits(textureLoad(depth_in, px + first_px(frame.depth_origin), 0, 0).x);
+    return kept_bits(textureLoad(depth_in, from_origin(px, frame.depth_origin), 0, 0).x);
 }
 
 // Copies stored depths and motion.
@@ -172,7 +168,7 @@ fn copy_middle(px: vec2<u32>, to: u32) {
         words[to + DEPTH + 4u] = kept_depth(px + vec2<u32>(0u, step));
     }
     if HAS_MOTION != 0u {
-        let stored = textureLoad(motion_in, px + first_px(frame.motion_origin), 0, 0).xy;
+        let stored = textureLoad(motion_in, from_origin(px, frame.motion_origin), 0, 0).xy;
         words[to + MOTION] = kept_bits(stored.x);
         words[to + MOTION + 1u] = kept_bits(stored.y);
     }

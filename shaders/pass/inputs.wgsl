@@ -1,6 +1,7 @@
 //#use acuity
 //#use depth
 //#use noise
+//#use origin
 //#use reproject
 //#use sanitize
 //#use view_uniforms
@@ -69,7 +70,7 @@ fn texel_of(px: vec2<u32>, origin: u32) -> vec2<u32> {
     if REGIONS == 0u {
         return px;
     }
-    return px + vec2<u32>(origin & 0xffffu, origin >> 16u);
+    return from_origin(px, origin);
 }
 
 // Layer of an input or output.

@@ -48,6 +48,7 @@ use crate::uniforms::Held;
 use history::History;
 use method_pass::{Job, MethodPass};
 use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
+use resize::ResizePass;
 use uniforms::FrameUniforms;
 use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
@@ -77,6 +78,8 @@ struct Passes {
     method: MethodPass,
     mip_chain: Option<MipChainPass>,
     candidates: Option<CandidatePass>,
+    /// Made at the first change of size that keeps history.
+    resize: Option<ResizePass>,
 }
 
 impl Passes {
@@ -85,7 +88,15 @@ impl Passes {
             method: MethodPass::new(device, settings, output, source),
             mip_chain: (settings.method == Method::Smr).then(|| MipChainPass::new(device, MipChainKind::Surfaces)),
             candidates: None,
+            resize: None,
         }
+    }
+
+    fn resize(&mut self, device: &Device, layout: HistoryLayout) -> Option<&ResizePass> {
+        if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
+            self.resize = ResizePass::new(device, layout);
+        }
+        self.resize.as_ref()
     }
 
     fn history(&mut self, device: &Device, desc: &ContextDesc) -> History {
@@ -195,7 +206,8 @@ impl Afterimage {
     /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa and smr are
     /// filtered, and their levels of detail follow the scale.
     ///
-    /// Records a pass into `encoder`, and compiles its pipeline. Records nothing if there is no history yet.
+    /// Records a pass into `encoder`, whose pipeline is compiled at the first call. Records nothing if there is no
+    /// history yet.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).
@@ -212,7 +224,9 @@ impl Afterimage {
         history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
         if self.history.is_filled() {
             let (past, next) = (self.history.split().0, history.split().1);
-            resize::record(device, encoder, &resize, history.layout(), self.desc.view_count, [past, next]);
+            if let Some(pass) = self.passes.resize(device, history.layout()) {
+                pass.record(device, encoder, &resize, self.desc.view_count, [past, next]);
+            }
             if let Some(mip_chain) = &self.passes.mip_chain {
                 let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
                 mip_chain.record(device, &mut pass, &next.mip_levels);
@@ -250,10 +264,11 @@ impl Afterimage {
     /// Number of compiled pipelines, for tests.
     #[doc(hidden)]
     pub fn pipeline_count(&self) -> usize {
-        let Passes { method, mip_chain, candidates } = &self.passes;
+        let Passes { method, mip_chain, candidates, resize } = &self.passes;
         method.pipeline_count()
             + mip_chain.as_ref().map_or(0, MipChainPass::pipeline_count)
             + candidates.as_ref().map_or(0, CandidatePass::pipeline_count)
+            + resize.as_ref().map_or(0, ResizePass::pipeline_count)
     }
 
     /// Size in bytes of the textures that the context holds between frames.

@@ -4,7 +4,7 @@ use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
 use super::history::Planes;
 use super::method_pass::{Placeholders, written};
-use crate::method::HistoryLayout;
+use crate::method::{HistoryLayout, Overrides};
 use crate::resize::Resize;
 use crate::shader::SHADERS;
 use bytemuck::{Pod, Zeroable};
@@ -26,51 +26,79 @@ pub struct ResizeUniforms {
     pub unused: u32,
 }
 
-/// Records the pass that fills `next`, of the new size, from `past`; but for the mip chain's second level and all after
-/// it.
-pub(super) fn record(
-    device: &Device,
-    encoder: &mut CommandEncoder,
-    resize: &Resize,
+/// Pass for histories of one layout.
+#[derive(Debug)]
+pub(super) struct ResizePass {
+    shader: ComputeShader,
+    overrides: Overrides,
+    /// Edge in pixels of the block that an invocation processes.
+    block_px: u32,
     layout: HistoryLayout,
-    view_count: u32,
-    [past, next]: [&Planes; 2],
-) {
-    let [first, second, third] = written(layout).map(storage_texture);
-    let (name, types, block_px, overrides) = match layout {
-        HistoryLayout::Nothing => return,
-        HistoryLayout::Reservoirs { keys } => (
-            "resize_reservoirs_pass",
-            vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],
-            1,
-            vec![("HAS_KEYS", u32::from(keys))],
-        ),
-        HistoryLayout::Surfaces { levels, noisy } => (
-            "resize_surfaces_pass",
-            vec![uniform(), uint_texture(), uint_texture(), first, second, third],
-            2,
-            vec![("NOISY", u32::from(noisy)), ("HAS_MIPS", u32::from(levels > 0))],
-        ),
-    };
-    let shader = ComputeShader::new(device, "afterimage resize", SHADERS.compose(name).source, &types);
-    let uniforms = ResizeUniforms {
-        size: resize.size_px,
-        old_size: resize.old_size_px,
-        ratio: resize.ratio,
-        lod_shift: resize.lod_shift,
-        unused: 0,
-    };
-    let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
-    let absent = Placeholders::new(device, layout);
-    let (past, next) = (&past.views, &next.targets);
-    let next_or = |i: usize| next.get(i).unwrap_or(&absent.out[i]);
-    let read = match layout {
-        HistoryLayout::Surfaces { .. } => vec![&past[0], past.get(2).unwrap_or(&absent.word)],
-        _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&absent.float)],
-    };
-    let views = read.into_iter().chain([next_or(0), next_or(1), next_or(2)]).map(BindingResource::TextureView);
-    let group = shader.group(device, std::iter::once(uniforms.as_entire_binding()).chain(views));
-    let mut pass =
-        encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage resize"), ..Default::default() });
-    shader.dispatch(device, &mut pass, &overrides, &group, resize.size_px.map(|s| s.div_ceil(block_px)), view_count);
+    absent: Placeholders,
+}
+
+impl ResizePass {
+    /// `None` for a layout without history.
+    pub fn new(device: &Device, layout: HistoryLayout) -> Option<Self> {
+        let [first, second, third] = written(layout).map(storage_texture);
+        let (name, types, block_px, overrides) = match layout {
+            HistoryLayout::Nothing => return None,
+            HistoryLayout::Reservoirs { keys } => (
+                "resize_reservoirs_pass",
+                vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],
+                1,
+                vec![("HAS_KEYS", u32::from(keys))],
+            ),
+            HistoryLayout::Surfaces { levels, noisy } => (
+                "resize_surfaces_pass",
+                vec![uniform(), uint_texture(), uint_texture(), first, second, third],
+                2,
+                vec![("NOISY", u32::from(noisy)), ("HAS_MIPS", u32::from(levels > 0))],
+            ),
+        };
+        let shader = ComputeShader::new(device, "afterimage resize", SHADERS.compose(name).source, &types);
+        Some(Self { shader, overrides, block_px, layout, absent: Placeholders::new(device, layout) })
+    }
+
+    /// Layout of the histories.
+    pub fn layout(&self) -> HistoryLayout {
+        self.layout
+    }
+
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.shader.pipeline_count()
+    }
+
+    /// Records the pass that fills `next`, of the new size, from `past`; but for the mip chain's second level and all
+    /// after it.
+    pub fn record(
+        &self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        resize: &Resize,
+        view_count: u32,
+        [past, next]: [&Planes; 2],
+    ) {
+        let uniforms = ResizeUniforms {
+            size: resize.size_px,
+            old_size: resize.old_size_px,
+            ratio: resize.ratio,
+            lod_shift: resize.lod_shift,
+            unused: 0,
+        };
+        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let (past, next) = (&past.views, &next.targets);
+        let next_or = |i: usize| next.get(i).unwrap_or(&self.absent.out[i]);
+        let read = match self.layout {
+            HistoryLayout::Surfaces { .. } => vec![&past[0], past.get(2).unwrap_or(&self.absent.word)],
+            _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&self.absent.float)],
+        };
+        let views = read.into_iter().chain([next_or(0), next_or(1), next_or(2)]).map(BindingResource::TextureView);
+        let group = self.shader.group(device, std::iter::once(uniforms.as_entire_binding()).chain(views));
+        let label = Some("afterimage resize");
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() });
+        let blocks = resize.size_px.map(|s| s.div_ceil(self.block_px));
+        self.shader.dispatch(device, &mut pass, &self.overrides, &group, blocks, view_count);
+    }
 }
