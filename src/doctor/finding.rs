@@ -34,7 +34,8 @@ pub enum Fault {
     MotionScale,
     /// x and y of the motion vectors are swapped.
     MotionAxes,
-    /// The motion vectors contain the projection's jitter.
+    /// The motion vectors contain the projection's jitter, or lack it, against
+    /// [`MotionConvention::jittered`](crate::MotionConvention::jittered).
     MotionJitter,
     /// Depth values have another convention.
     DepthConvention,

@@ -62,6 +62,16 @@ pub fn jitter(index: usize) -> [f32; 2] {
     [radical(2), radical(3)]
 }
 
+/// Jitters the frames' projections; the vectors contain it.
+pub fn contain_jitter(delivery: &mut Delivery) {
+    for (i, frame) in delivery.frames.iter_mut().enumerate() {
+        let [now, past] = [jitter(i + 1), jitter(i)];
+        frame.view.jitter_px = now;
+        let motion = frame.motion.as_ref();
+        frame.motion = motion.map(|m| m.map(|v| [v[0] + past[0] - now[0], v[1] + past[1] - now[1]]));
+    }
+}
+
 const PIXELS: MotionConvention = MotionConvention {
     unit: MotionUnit::Pixels,
     direction: MotionDirection::PreviousMinusCurrent,
@@ -71,7 +81,7 @@ const PIXELS: MotionConvention = MotionConvention {
 const UV: MotionConvention = MotionConvention { unit: MotionUnit::Uv, ..PIXELS };
 const NDC: MotionConvention = MotionConvention { unit: MotionUnit::Ndc, ..PIXELS };
 
-pub const PLANTED: [Planted; 31] = [
+pub const PLANTED: [Planted; 32] = [
     Planted {
         name: "vectors: current minus previous",
         check: Check::Motion,
@@ -154,13 +164,16 @@ pub const PLANTED: [Planted; 31] = [
         check: Check::Jitter,
         fault: Fault::MotionJitter,
         mend: "desc.motion.jittered = true;",
+        plant: |_, d| contain_jitter(d),
+    },
+    Planted {
+        name: "vectors: without jitter, stated with it",
+        check: Check::Jitter,
+        fault: Fault::MotionJitter,
+        mend: "desc.motion.jittered = false;",
         plant: |_, d| {
-            for (i, frame) in d.frames.iter_mut().enumerate() {
-                let [now, past] = [jitter(i + 1), jitter(i)];
-                frame.view.jitter_px = now;
-                let motion = frame.motion.as_ref();
-                frame.motion = motion.map(|m| m.map(|v| [v[0] + past[0] - now[0], v[1] + past[1] - now[1]]));
-            }
+            d.desc.motion.jittered = true;
+            d.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
         },
     },
     Planted {

@@ -1,7 +1,7 @@
 //! Right inputs, ordinary and odd, are never accused.
 
 use super::clips::{Clip, Delivery, foveations};
-use super::planted::jitter;
+use super::planted::{contain_jitter, jitter};
 use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame};
 use afterimage_testing::Draws;
 
@@ -103,6 +103,10 @@ fn frames_that_show_nothing_or_nonsense() {
         let mut jittered = right.clone();
         jittered.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
         is_not_accused(&format!("jitter that the vectors lack, {filter:?}"), &jittered);
+        let mut contained = right.clone();
+        contained.desc.motion.jittered = true;
+        contain_jitter(&mut contained);
+        is_not_accused(&format!("jitter that the vectors contain as stated, {filter:?}"), &contained);
         let mut unknown = right.clone();
         unknown.frames.iter_mut().for_each(|f| f.view.previous_from_current = None);
         is_not_accused(&format!("a camera of unknown motion, {filter:?}"), &unknown);
