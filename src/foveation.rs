@@ -20,6 +20,10 @@ pub enum Filter {
     Block,
     /// Full rate everywhere; no foveation.
     Off,
+    /// One point sample a block that moves from frame to frame, so that every pixel is sampled sooner or later
+    /// ([`Foveation::lattices`]): renderers that draw small, jittered views. Regions are rectangles, without blends.
+    /// Frames need [`ViewFrame::lattices`](crate::ViewFrame::lattices).
+    Sparse,
 }
 
 /// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual
@@ -141,7 +145,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => 0.0,
             Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.sigma_mid_px(), self.sigma_far_px()),
-            Filter::Mip | Filter::Block => {
+            Filter::Mip | Filter::Block | Filter::Sparse => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }
@@ -154,7 +158,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => [0.0, 0.0],
             Filter::Gauss => [self.sigma_mid_px(), self.sigma_far_px()],
-            Filter::Mip | Filter::Block => [self.lod_mid(), self.lod_far()],
+            Filter::Mip | Filter::Block | Filter::Sparse => [self.lod_mid(), self.lod_far()],
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
 use crate::geometry::{ViewGeometry, camera_motion};
+use crate::lattice::Lattices;
 use crate::settings::Settings;
 use std::fmt::Debug;
 
@@ -109,12 +110,15 @@ pub struct ViewFrame {
     /// Convention of this view's depth values in this frame. `None`: the context's ([`ContextDesc::depth`]). History
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
+    /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): those that the renderer
+    /// drew, for the gaze that it used. `None`: every pixel of the color input is one.
+    pub lattices: Option<Lattices>,
 }
 
 impl ViewFrame {
     /// A view of unknown camera motion, without jitter.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
-        Self { geometry, gaze, previous_from_current: None, jitter_px: [0.0; 2], depth: None }
+        Self { geometry, gaze, previous_from_current: None, jitter_px: [0.0; 2], depth: None, lattices: None }
     }
 
     /// This view with the camera motion between two frames, from an engine's matrices: the projection
@@ -170,6 +174,9 @@ impl ViewFrame {
         let [x, y] = self.jitter_px;
         if !(x.abs() <= MAX_JITTER_PX && y.abs() <= MAX_JITTER_PX) {
             return refuse("jitter_px", format!("({x}, {y})"), "finite offsets of at most 16 pixels, usually below 1");
+        }
+        if let Some(lattices) = &self.lattices {
+            lattices.check(view, desc.size_px)?;
         }
         let Some(matrix) = self.previous_from_current else {
             return Ok(());

@@ -4,7 +4,7 @@ use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::{DMat4, DVec4, Vec2};
+use glam::{DMat4, DVec4, Vec2, Vec3};
 
 /// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
 /// headset).
@@ -137,6 +137,24 @@ impl ViewGeometry {
     /// Eccentricity: true visual angle in degrees between the rays through `px` and `gaze_px`.
     pub fn eccentricity_deg(&self, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
         acuity::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
+    }
+
+    /// Smallest rectangle of pixels around all that lies within `radius_deg` of the gaze: first pixel, and pixel after
+    /// the last; clamped to the view, empty if nothing of it lies in the view.
+    pub(crate) fn around_px(&self, gaze_px: [f32; 2], radius_deg: f32) -> [[u32; 2]; 2] {
+        let gaze = Vec3::from(self.ray(gaze_px)).normalize();
+        let edges = [0, 1].map(|axis| {
+            // Planes through the other axis that touch the cone around the gaze ray.
+            let angle = gaze[axis].atan2(gaze.z);
+            let reach = (radius_deg.to_radians().sin() / gaze[axis].hypot(gaze.z)).min(1.0).asin();
+            [-1.0, 1.0].map(|side| {
+                let tangent = (angle + side * reach).clamp(-1.57, 1.57).tan();
+                (tangent - self.offset[axis]) / self.scale[axis]
+            })
+        });
+        let clamped = |px: f32, axis: usize| px.clamp(0.0, self.size_px[axis] as f32) as u32;
+        let low = [0, 1].map(|axis| clamped((edges[axis][0] - 0.5).ceil(), axis));
+        [low, [0, 1].map(|axis| clamped((edges[axis][1] + 0.5).floor() + 1.0, axis))]
     }
 
     /// Eccentricity of every pixel in degrees, for a gaze position in pixels. Needs the feature `cpu`.

@@ -112,6 +112,7 @@ mod image;
 // For this workspace's other crates and for research; not part of the stable API.
 #[doc(hidden)]
 pub mod kernel;
+mod lattice;
 mod method;
 mod resize;
 mod settings;
@@ -133,6 +134,7 @@ pub use geometry::ViewGeometry;
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
+pub use lattice::{Lattice, Lattices};
 pub use settings::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
 pub use stats::{COUNTERS_BYTES, FrameStats};
 pub use warning::Warning;

@@ -12,6 +12,7 @@ pub mod debug_view;
 pub mod depth;
 pub mod doctor;
 pub mod foveate;
+pub mod lattice;
 pub mod matched;
 pub mod noise;
 pub mod pack;

@@ -122,8 +122,8 @@ impl GpuSimulator {
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
             Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
-            // Off: blocks of one pixel.
-            Filter::Off => levels(0, "block_show"),
+            // Blocks of one pixel: only the samples of a sparse frame are read.
+            Filter::Off | Filter::Sparse => levels(0, "block_show"),
             Filter::Gauss => {
                 let format = TextureFormat::Rgba32Float;
                 let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;

@@ -1,0 +1,212 @@
+//! Lattices: where the samples of a sparse foveated frame lie.
+
+use crate::error::{FrameError, SettingsError};
+use crate::foveation::Foveation;
+use crate::geometry::ViewGeometry;
+use crate::kernel::lattice::offset_px;
+
+/// Regular grid of samples, `first_px + step * (i, j)`, each of which is one pixel of the full-rate frame.
+///
+/// It covers the blocks of `step` x `step` pixels, aligned to the frame's corner, in which its samples lie. A renderer
+/// draws it as a small view of its own: `points` pixels of resolution, for the covered rectangle, with the projection
+/// shifted by `first_px % step` (`docs/integration.md`). The shift changes from frame to frame, so that every pixel is
+/// sampled sooner or later: [`Foveation::lattices`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Lattice {
+    /// Distance of neighbouring samples in pixels: a power of two, at most [`Foveation::MAX_RATE`]. 1: full rate.
+    pub step: u32,
+    /// Pixel of the top-left sample.
+    pub first_px: [u32; 2],
+    /// Number of samples along x and y, at least 1. Samples beyond the frame are ignored.
+    pub points: [u32; 2],
+    /// Texel of the top-left sample in an atlas, in which neighbouring samples are neighbouring texels. `None`: samples
+    /// lie at their own pixels of images of the frame's size; what lies between them is not read.
+    pub atlas_texel: Option<[u32; 2]>,
+}
+
+impl Lattice {
+    /// Lattice of the blocks that contain pixels of the rectangle from `low_px` (inclusive) to `high_px` (exclusive).
+    /// `offset_px`: position of the samples in their blocks, below `step`.
+    pub fn covering(step: u32, low_px: [u32; 2], high_px: [u32; 2], offset_px: [u32; 2]) -> Self {
+        let first_block = low_px.map(|v| v / step);
+        let points = [0, 1].map(|i| high_px[i].div_ceil(step).saturating_sub(first_block[i]).max(1));
+        let first_px = [0, 1].map(|i| first_block[i] * step + offset_px[i]);
+        Self { step, first_px, points, atlas_texel: None }
+    }
+
+    /// Position of the samples in their blocks, in pixels.
+    pub fn offset_px(&self) -> [u32; 2] {
+        self.first_px.map(|v| v % self.step)
+    }
+
+    /// First pixel, and pixel after the last, of the covered rectangle. It may extend beyond the frame.
+    pub fn covered_px(&self) -> [[u32; 2]; 2] {
+        let low = self.first_px.map(|v| v - v % self.step);
+        [low, [0, 1].map(|i| low[i] + self.points[i] * self.step)]
+    }
+
+    /// Whether the pixel lies in the covered rectangle.
+    pub fn covers(&self, px: [u32; 2]) -> bool {
+        let [low, high] = self.covered_px();
+        (0..2).all(|i| (low[i]..high[i]).contains(&px[i]))
+    }
+
+    /// Whether a sample lies at the pixel.
+    pub fn samples(&self, px: [u32; 2]) -> bool {
+        self.covers(px) && px.map(|v| v % self.step) == self.offset_px()
+    }
+}
+
+/// Stack of lattices of a view, finest first: a pixel is shaded by the first one that covers it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Lattices {
+    stack: [Lattice; Self::MAX],
+    count: usize,
+}
+
+impl Lattices {
+    /// Largest number of lattices in a stack.
+    pub const MAX: usize = 4;
+
+    /// A stack, finest first.
+    ///
+    /// # Errors
+    /// [`SettingsError`] unless there are 1 to [`MAX`](Self::MAX) lattices of different steps in ascending order, each
+    /// a power of two of at most [`Foveation::MAX_RATE`], with at least one sample, and either all or none in an atlas.
+    pub fn new(lattices: &[Lattice]) -> Result<Self, SettingsError> {
+        let refuse = |setting, found: String, expected: String| Err(SettingsError { setting, found, expected });
+        if lattices.is_empty() || lattices.len() > Self::MAX {
+            return refuse("lattices", lattices.len().to_string(), format!("1 to {}", Self::MAX));
+        }
+        let largest = 2 * crate::frame::ContextDesc::MAX_SIDE;
+        let mut last_step = 0;
+        for lattice in lattices {
+            if !lattice.step.is_power_of_two() || lattice.step > Foveation::MAX_RATE || lattice.step <= last_step {
+                let expected = format!("powers of two, at most {}, ascending", Foveation::MAX_RATE);
+                return refuse("lattice step", lattice.step.to_string(), expected);
+            }
+            last_step = lattice.step;
+            if lattice.points.iter().any(|n| !(1..=largest).contains(n)) {
+                let [x, y] = lattice.points;
+                return refuse("lattice points", format!("{x} x {y}"), format!("1 to {largest} along each axis"));
+            }
+            if lattice.first_px.iter().any(|&v| v > largest) {
+                let [x, y] = lattice.first_px;
+                return refuse("lattice first_px", format!("({x}, {y})"), format!("at most {largest}"));
+            }
+            if lattice.atlas_texel.is_some() != lattices[0].atlas_texel.is_some() {
+                return refuse("lattice atlas_texel", "given for some lattices".into(), "all or none".into());
+            }
+        }
+        let mut stack = [Lattice::default(); Self::MAX];
+        stack[..lattices.len()].copy_from_slice(lattices);
+        Ok(Self { stack, count: lattices.len() })
+    }
+
+    /// The lattices, finest first.
+    pub fn as_slice(&self) -> &[Lattice] {
+        &self.stack[..self.count]
+    }
+
+    /// This stack in an atlas: the lattices below each other, from texel (0, 0) on. Returns the atlas's size, too.
+    pub fn in_atlas(self) -> (Self, [u32; 2]) {
+        let mut stack = self;
+        let mut size = [0, 0];
+        for lattice in &mut stack.stack[..self.count] {
+            lattice.atlas_texel = Some([0, size[1]]);
+            size = [size[0].max(lattice.points[0]), size[1] + lattice.points[1]];
+        }
+        (stack, size)
+    }
+
+    /// First lattice that covers a pixel.
+    pub fn at(&self, px: [u32; 2]) -> Option<&Lattice> {
+        self.as_slice().iter().find(|lattice| lattice.covers(px))
+    }
+
+    /// Checks that the coarsest lattice covers a view of `size_px`.
+    pub(crate) fn check(&self, view: usize, size_px: [u32; 2]) -> Result<(), FrameError> {
+        let coarsest = self.as_slice().last().map(Lattice::covered_px);
+        match coarsest {
+            Some([low, high]) if low == [0, 0] && high[0] >= size_px[0] && high[1] >= size_px[1] => Ok(()),
+            _ => Err(FrameError::Value {
+                what: "lattices",
+                view,
+                found: "a stack whose last lattice leaves pixels uncovered".into(),
+                expected: "a last, coarsest lattice that covers the whole view",
+            }),
+        }
+    }
+}
+
+impl Foveation {
+    /// Lattices of a sparse frame with this foveation: rectangles around the regions, and sample positions that visit
+    /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
+    /// counter.
+    ///
+    /// Regions outside the view are left out.
+    pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
+        let size = geometry.size_px();
+        let mut stack = vec![];
+        for (step, radius_deg) in [(1, self.fovea_radius_deg()), (self.rate_mid, self.mid_radius_deg())] {
+            let [low, high] = geometry.around_px(gaze_px, radius_deg);
+            if low[0] < high[0]
+                && low[1] < high[1]
+                && step < self.rate_far
+                && stack.iter().all(|l: &Lattice| l.step < step)
+            {
+                stack.push(Lattice::covering(step, low, high, offset_px(index, step)));
+            }
+        }
+        stack.push(Lattice::covering(self.rate_far, [0, 0], size, offset_px(index, self.rate_far)));
+        Lattices::new(&stack).expect("steps ascend, and each lattice has a sample")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pixel_is_sampled_once_in_a_turn() {
+        for step in [1, 2, 4, 8, 16] {
+            let turn = u64::from(step * step);
+            let mut seen = std::collections::HashSet::new();
+            for index in 0..turn {
+                let offset = offset_px(index, step);
+                assert!(offset[0] < step && offset[1] < step);
+                assert!(seen.insert(offset), "step {step}: {offset:?} twice");
+                assert_eq!(offset, offset_px(index + turn, step));
+            }
+        }
+        // Four frames are one sample in each quarter of the block.
+        let quarters: std::collections::HashSet<_> = (0..4).map(|i| offset_px(i, 8).map(|v| v / 4)).collect();
+        assert_eq!(quarters.len(), 4);
+    }
+
+    #[test]
+    fn lattices_cover_the_view_and_their_regions() {
+        let geometry = ViewGeometry::flat([480, 270], 70.0).expect("a valid view");
+        let foveation = Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() };
+        for gaze in [[240.0, 135.0], [3.0, 200.0], [479.0, 269.0], [-900.0, 5000.0]] {
+            for index in 0..16 {
+                let lattices = foveation.lattices(&geometry, gaze, index);
+                assert_eq!(lattices.check(0, [480, 270]), Ok(()));
+                for y in 0..270 {
+                    for x in 0..480 {
+                        let e_deg = geometry.eccentricity_deg([x as f32, y as f32], gaze);
+                        let step = lattices.at([x, y]).expect("the view is covered").step;
+                        let needed = if e_deg <= 2.49 {
+                            1
+                        } else if e_deg <= 7.49 {
+                            2
+                        } else {
+                            4
+                        };
+                        assert!(step <= needed, "{gaze:?}: ({x}, {y}) at {e_deg} degrees has step {step}");
+                    }
+                }
+            }
+        }
+    }
+}
