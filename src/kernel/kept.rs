@@ -1,0 +1,235 @@
+//! Storage of a sample that keeps its sub-pixel position, in two words, and interpolation of such samples.
+//!
+//! History that is resampled in every frame loses detail in every frame. Here a texel holds one sample as the renderer
+//! shaded it, and the place of that sample relative to the texel's centre. Reprojection changes the place, not the
+//! color; only what is shown is interpolated.
+//!
+//! | word | bits | |
+//! |---|---|---|
+//! | 0 | 0-26 | red, green, blue: 9 bits each, multiples of 2^(exponent - 24) |
+//! | 0 | 27-31 | exponent that the three share |
+//! | 1 | 0-5 | level of detail, as in [`surface`](super::surface) |
+//! | 1 | 6-19 | disparity: [`disparity_code`] without its last two bits |
+//! | 1 | 20-25 | x of the place, in 1/24 pixel, plus 32 |
+//! | 1 | 26-31 | y of the place |
+//!
+//! Packing an unpacked sample gives the same words.
+
+use super::pack::{disparity_code, disparity_value};
+use super::surface::MAX_LOD;
+use glam::{Vec2, Vec3};
+
+/// Largest stored color: 511/512 of 2^16.
+pub const MAX_COLOR: f32 = 65408.0;
+
+/// Code of the level of detail of an empty texel.
+const EMPTY: u32 = 63;
+/// Smallest exponent of a float that is the largest channel; a smaller one has fewer bits.
+const SMALLEST_EXPONENT: u32 = 111;
+/// Stored steps a level of detail.
+const LOD_STEPS: f32 = 7.0;
+/// Stored steps a pixel of a sample's place.
+const PLACE_STEPS: f32 = 24.0;
+
+/// Farthest place of a sample from its texel's centre along an axis, in pixels. Farther ones are resampled.
+pub const FARTHEST_PX: f32 = 1.2;
+/// Distance along each axis, in pixels, up to which a sample counts as lying exactly at a position: half a stored step.
+pub const EXACT_PX: f32 = 0.5 / PLACE_STEPS;
+
+/// Squared distance in pixels from which on a sample has no weight.
+const REACH_PX2: f32 = 3.0;
+/// Added to squared distances, so that a sample at the position itself has a finite weight.
+const SOFTEN_PX2: f32 = 0.03;
+/// Added to the variance of the samples' places, so that a plane through few samples stays flat.
+const STIFF_PX2: f32 = 0.01;
+/// Squared pixels that a level of detail is worth in the choice of the sample to keep.
+const LOD_PX2: f32 = 0.3;
+
+/// Stored sample of a surface point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept {
+    /// Linear color, at least 0.
+    pub color: Vec3,
+    /// Level of detail that the sample stands for: log2 of the block edge in pixels. Negative: the texel is empty.
+    pub lod: f32,
+    /// Disparity in the frame that stored it; negative: unknown.
+    pub disparity: f32,
+    /// Place of the sample relative to the texel's centre, in pixels.
+    pub place_px: Vec2,
+}
+
+impl Kept {
+    /// Empty texel.
+    pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0, place_px: Vec2::ZERO };
+}
+
+/// Multiple of the step that exponent code `exponent` (that of a float) stands for, nearest to `v`.
+#[inline]
+fn multiple(v: f32, exponent: u32) -> u32 {
+    // A power of two: the product is exact.
+    (v * f32::from_bits((262 - exponent) << 23) + 0.5) as u32
+}
+
+/// Packs a color: 9 bits a channel and an exponent that the three share. The color must not be NaN; negative channels
+/// become 0. The error of a channel is at most 2^-10 of the largest one.
+#[inline]
+pub fn pack_color(c: Vec3) -> u32 {
+    let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };
+    let (r, g, b) = (channel(c.x), channel(c.y), channel(c.z));
+    let largest = r.max(g).max(b);
+    let exponent = (largest.to_bits() >> 23).max(SMALLEST_EXPONENT);
+    // Rounding may carry into a tenth bit.
+    let exponent = exponent + (multiple(largest, exponent) >> 9);
+    multiple(r, exponent)
+        | multiple(g, exponent) << 9
+        | multiple(b, exponent) << 18
+        | (exponent - SMALLEST_EXPONENT) << 27
+}
+
+/// Color of a packed word; finite for any word.
+#[inline]
+pub fn unpack_color(word: u32) -> Vec3 {
+    let step = f32::from_bits(((word >> 27) + (SMALLEST_EXPONENT - 8)) << 23);
+    let channel = |bits: u32| (bits & 511) as f32 * step;
+    Vec3::new(channel(word), channel(word >> 9), channel(word >> 18))
+}
+
+/// Packs a sample. The color must not be NaN.
+#[inline]
+pub fn pack_kept(s: Kept) -> [u32; 2] {
+    let lod = if s.lod < 0.0 { EMPTY } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32 };
+    let disparity = disparity_code(s.disparity);
+    // The last code is that of an unknown disparity.
+    let disparity = if disparity == 0xffff { 0x3fff } else { ((disparity + 2) >> 2).min(0x3ffe) };
+    let place = |v: f32| ((v * PLACE_STEPS + 32.5).floor().clamp(0.0, 63.0)) as u32;
+    [pack_color(s.color), lod | disparity << 6 | place(s.place_px.x) << 20 | place(s.place_px.y) << 26]
+}
+
+/// Unpacks a sample. The result is finite for any words.
+#[inline]
+pub fn unpack_kept(words: [u32; 2]) -> Kept {
+    let lod = words[1] & 63;
+    if lod == EMPTY {
+        return Kept::EMPTY;
+    }
+    let disparity = (words[1] >> 6) & 0x3fff;
+    let place = |bits: u32| ((bits & 63) as f32 - 32.0) * (1.0 / PLACE_STEPS);
+    Kept {
+        color: unpack_color(words[0]),
+        lod: lod as f32 * (1.0 / LOD_STEPS),
+        disparity: if disparity == 0x3fff { -1.0 } else { disparity_value(disparity << 2) },
+        place_px: Vec2::new(place(words[1] >> 20), place(words[1] >> 26)),
+    }
+}
+
+/// Sums over the samples around a position, and the sample to keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// Weights.
+    pub weight: f32,
+    /// Colors times weights.
+    pub color: Vec3,
+    /// Levels of detail times weights.
+    pub lod: f32,
+    /// Places relative to the position, times weights.
+    pub place: Vec2,
+    /// Products of these places, xx, xy and yy, times weights.
+    pub square: Vec3,
+    /// Colors times x, times weights.
+    pub color_x: Vec3,
+    /// Colors times y, times weights.
+    pub color_y: Vec3,
+    /// The sample to keep, its place relative to the position.
+    pub nearest: Kept,
+    /// Cost of that choice.
+    pub cost: f32,
+}
+
+impl Around {
+    /// No sample yet.
+    pub const NOTHING: Self = Self {
+        weight: 0.0,
+        color: Vec3::ZERO,
+        lod: 0.0,
+        place: Vec2::ZERO,
+        square: Vec3::ZERO,
+        color_x: Vec3::ZERO,
+        color_y: Vec3::ZERO,
+        nearest: Kept::EMPTY,
+        cost: 1e30,
+    };
+}
+
+/// Weight of a sample at squared distance `px2` from the position that is interpolated.
+#[inline]
+pub fn kept_weight(px2: f32) -> f32 {
+    let inside = (1.0 - px2 * (1.0 / REACH_PX2)).max(0.0);
+    (inside * inside) / (px2 + SOFTEN_PX2)
+}
+
+/// Adds a stored sample whose texel lies `texel_px` from the position, if it is on the `same` surface.
+#[inline]
+pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool) -> Around {
+    if !same {
+        return a;
+    }
+    let place = texel_px + sample.place_px;
+    let px2 = place.x * place.x + place.y * place.y;
+    let w = kept_weight(px2);
+    let (wx, wy) = (w * place.x, w * place.y);
+    let cost = px2 + sample.lod * LOD_PX2;
+    let nearer = cost < a.cost;
+    Around {
+        weight: a.weight + w,
+        color: a.color + sample.color * w,
+        lod: a.lod + sample.lod * w,
+        place: a.place + Vec2::new(wx, wy),
+        square: a.square + Vec3::new(wx * place.x, wx * place.y, wy * place.y),
+        color_x: a.color_x + sample.color * wx,
+        color_y: a.color_y + sample.color * wy,
+        nearest: if nearer { Kept { place_px: place, ..sample } } else { a.nearest },
+        cost: if nearer { cost } else { a.cost },
+    }
+}
+
+/// History at a position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interpolated {
+    /// Color to show.
+    pub color: Vec3,
+    /// Level of detail.
+    pub lod: f32,
+    /// Sample to keep, its place relative to the position; empty if there is none.
+    pub nearest: Kept,
+}
+
+/// Color at the position: the sample that lies there, bit for bit; otherwise the value of a plane through the samples
+/// around it, by weighted least squares.
+#[inline]
+pub fn interpolate(a: Around) -> Interpolated {
+    let nearest = a.nearest;
+    let distance = nearest.place_px.x.abs().max(nearest.place_px.y.abs());
+    if nearest.lod < 0.0 || distance <= EXACT_PX {
+        let place_px = Vec2::ZERO;
+        return Interpolated { color: nearest.color, lod: nearest.lod, nearest: Kept { place_px, ..nearest } };
+    }
+    if a.weight < 1e-4 {
+        // All samples are far away.
+        return Interpolated { color: nearest.color, lod: nearest.lod, nearest };
+    }
+    let inverse = 1.0 / a.weight;
+    let mean = a.color * inverse;
+    let (x, y) = (a.place.x * inverse, a.place.y * inverse);
+    let xx = (a.square.x * inverse - x * x) + STIFF_PX2;
+    let xy = a.square.y * inverse - x * y;
+    let yy = (a.square.z * inverse - y * y) + STIFF_PX2;
+    // At least STIFF_PX2 squared, because variances are not negative.
+    let determinant = (xx * yy - xy * xy).max(0.5 * STIFF_PX2 * STIFF_PX2);
+    let across = a.color_x * inverse - mean * x;
+    let down = a.color_y * inverse - mean * y;
+    // The plane's value at the position is the mean, minus its slopes times the mean place.
+    let by_x = (yy * x - xy * y) / determinant;
+    let by_y = (xx * y - xy * x) / determinant;
+    let color = (mean - (across * by_x + down * by_y)).max(Vec3::ZERO);
+    Interpolated { color, lod: a.lod * inverse, nearest }
+}

@@ -1,0 +1,236 @@
+//! Reconstruction of sparse frames: what history predicts at each new sample, how light changed around it, and what a
+//! pixel between samples shows. `docs/method.md` derives the equations.
+//!
+//! Three steps. At each sample, history is compared with the sample **at the sample's own pixel at full rate**
+//! ([`Observation`]): no low-pass, no scale to match. Then each sample and its eight neighbours estimate the gain of a
+//! change of light, and how well history fits after it ([`relight`]). Then each pixel interpolates gain and fit, and
+//! blends its own history with the interpolated samples ([`reconstruct`]).
+
+use super::approx;
+use super::kept::Kept;
+use super::matched::{DARK, root_difference, smooth_step};
+use glam::{Vec3, Vec4};
+use std::f32::consts::LOG2_E;
+
+/// Expected difference of a sample and of history that has not moved, in units of [`root_difference`]: storage.
+const STILL_ERROR: f32 = 0.3;
+/// The same for history that has moved.
+const MOVED_ERROR: f32 = 0.6;
+/// Share of history's local contrast that is added where it moved, and where it is coarse: interpolation between
+/// samples, and places that are not exact.
+const CONTRAST_ERROR: f32 = 0.5;
+/// Added to the expected error where the gate compares single samples.
+const GATE_ERROR: f32 = 0.7;
+/// Standard errors of a mean difference at which relighting starts; it is complete at twice as many.
+const RELIGHT_ERRORS: f32 = 2.5;
+/// Expected errors within which neighbours agree with a sample's own gain.
+const AGREE_ERRORS: f32 = 4.0;
+/// Added to the expected error in that comparison.
+const AGREE_ERROR: f32 = 0.2;
+/// Mean difference, in expected errors, at which the fit starts to fall, and width over which it falls to 0.
+const GATE: [f32; 2] = [2.0, 4.0];
+/// Smallest and largest gain.
+const GAIN: [f32; 2] = [0.2, 5.0];
+/// Levels of detail that a doubling of light costs history that has moved, and history that has not.
+const WORN: [f32; 2] = [4.0, 1.0];
+/// Levels of detail by which history must be finer than the candidate to replace it fully.
+const FINER_WIDTH: f32 = 0.25;
+/// Levels of detail by which history may be coarser than the candidate and still be accumulated.
+const COARSER_WIDTH: f32 = 0.25;
+/// Share of the samples' range by which a gain may exceed their largest value.
+const OVERSHOOT: f32 = 0.25;
+/// Share of history from which on the kept sample is stored instead of the shown color.
+const KEEP_SHARE: f32 = 0.9;
+
+/// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
+/// sample's own pixel.
+#[inline]
+pub fn candidate_level(px: f32, coarsest: f32) -> f32 {
+    (approx::ln(1.0 + 2.0 * px) * LOG2_E).min(coarsest)
+}
+
+/// Comparison of a sample with history at its pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// The sample's color.
+    pub sampled: Vec3,
+    /// History's color there.
+    pub history: Vec3,
+    /// Expected difference of the two if nothing changed, in units of [`root_difference`]; negative: there is no
+    /// history, or no usable sample.
+    pub error: f32,
+    /// How much a difference says, in \[0, 1\]: less for coarse history, which differs from a point sample anyway.
+    pub sure: f32,
+}
+
+/// Expected difference of a sample and of history at level of detail `lod` with local contrast `contrast`.
+#[inline]
+pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
+    let coarse = lod.clamp(0.0, 1.0);
+    let by_motion = if moved { CONTRAST_ERROR } else { 0.0 };
+    (if moved { MOVED_ERROR } else { STILL_ERROR }) + contrast * (by_motion + CONTRAST_ERROR * coarse)
+}
+
+/// How much a difference from history at level of detail `lod` says, in \[0, 1\].
+#[inline]
+pub fn sureness(lod: f32) -> f32 {
+    1.0 - lod.clamp(0.0, 1.0)
+}
+
+/// Gain for one channel, limited.
+#[inline]
+fn ratio(observed: f32, predicted: f32) -> f32 {
+    ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1])
+}
+
+/// Per-channel ratios of two colors, limited.
+#[inline]
+pub fn ratios(observed: Vec3, predicted: Vec3) -> Vec3 {
+    Vec3::new(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z))
+}
+
+/// Weight of a neighbour's observation in a sample's estimate: smaller if it contradicts the sample's own gain, as at
+/// the edge of a shadow. `spatial`: weight by position.
+#[inline]
+pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
+    let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
+    let errors = difference.min(1e6) / (AGREE_ERRORS * ((own.error + other.error) + AGREE_ERROR));
+    (spatial * other.sure) / (1.0 + errors * errors)
+}
+
+/// Sums over a sample and its neighbours.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Light {
+    /// Sampled colors, times weights.
+    pub sampled: Vec3,
+    /// Colors of history, times weights.
+    pub history: Vec3,
+    /// Expected errors, times weights.
+    pub error: f32,
+    /// Weights.
+    pub weight: f32,
+    /// Squared weights.
+    pub squared: f32,
+    /// Weights by position alone.
+    pub spatial: f32,
+}
+
+/// Adds an observation of `weight`.
+#[inline]
+pub fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
+    Light {
+        sampled: l.sampled + o.sampled * weight,
+        history: l.history + o.history * weight,
+        error: l.error + o.error * weight,
+        weight: l.weight + weight,
+        squared: l.squared + weight * weight,
+        spatial: l.spatial + spatial,
+    }
+}
+
+/// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
+/// where the means differ by no more than chance explains.
+#[inline]
+pub fn relight(l: Light) -> Vec3 {
+    if l.weight < 1e-6 {
+        return Vec3::ONE;
+    }
+    let inverse = 1.0 / l.weight;
+    let (sampled, history) = (l.sampled * inverse, l.history * inverse);
+    // The standard error of a weighted mean.
+    let from = (RELIGHT_ERRORS * (l.error * inverse)) * (l.squared.sqrt() * inverse);
+    let changed = smooth_step(from, from, root_difference(sampled, history));
+    // A share of 1 gives the ratio bit for bit.
+    ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
+}
+
+/// Difference of a sample and of history after a gain, in expected errors.
+#[inline]
+pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
+    root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
+}
+
+/// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: how much that mean
+/// says, in \[0, 1\].
+#[inline]
+pub fn fit(errors: f32, sure: f32) -> f32 {
+    1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
+}
+
+/// Inputs of [`reconstruct`] for one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reconstruction {
+    /// Candidate: interpolated samples, or the sample at this pixel.
+    pub candidate: Vec3,
+    /// Its level of detail.
+    pub lod: f32,
+    /// Smallest and largest color of the samples around the pixel.
+    pub range: [Vec3; 2],
+    /// History at the pixel.
+    pub history: Vec3,
+    /// Its level of detail.
+    pub history_lod: f32,
+    /// Stored sample to keep, its place relative to the pixel.
+    pub nearest: Kept,
+    /// Whether history was read between samples.
+    pub moved: bool,
+    /// Gain of relighting, and fit in the fourth component.
+    pub light: Vec4,
+    /// Confidence in history, in \[0, 1\]: the frame's trust mask.
+    pub trust: f32,
+    /// Share of equally fine history in the output.
+    pub accumulate: f32,
+}
+
+/// Result of [`reconstruct`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reconstructed {
+    /// Color to show.
+    pub color: Vec3,
+    /// Sample to store; the disparity is that of the kept sample and must be replaced.
+    pub kept: Kept,
+    /// History's share in `color`.
+    pub share: f32,
+}
+
+/// Relit color; a gain does not lift it above the samples around it by more than their range allows.
+#[inline]
+fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
+    let highest = range[1] + (range[1] - range[0]) * OVERSHOOT;
+    (color * gain).min(color.max(highest))
+}
+
+/// Blends history into the candidate, and chooses what to store: the kept sample where history prevails, so that it is
+/// not resampled, otherwise the blend.
+#[inline]
+pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
+    let gain = r.light.truncate();
+    let acceptance = r.light.w * r.trust;
+    let worn = if gain == Vec3::ONE {
+        0.0
+    } else {
+        let mean = (gain.x + gain.y + gain.z) * (1.0 / 3.0);
+        (approx::ln(mean) * LOG2_E).abs() * (if r.moved { WORN[0] } else { WORN[1] })
+    };
+    let history_lod = r.history_lod + worn;
+    let finer = ((r.lod - history_lod) / FINER_WIDTH).clamp(0.0, 1.0);
+    let coarser = ((history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0);
+    let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * r.accumulate)) * acceptance;
+    let history = relit(r.history, gain, r.range);
+    let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
+    let lost = 1.0 - finer * acceptance;
+    let place = r.nearest.place_px;
+    let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
+    let kept_lod = r.nearest.lod + worn;
+    if share >= KEEP_SHARE && near && kept_lod < r.lod {
+        let kept = Kept {
+            color: relit(r.nearest.color, gain, r.range),
+            lod: kept_lod + (r.lod - kept_lod) * lost,
+            ..r.nearest
+        };
+        return Reconstructed { color, kept, share };
+    }
+    let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
+    let kept = Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
+    Reconstructed { color, kept, share }
+}
