@@ -42,6 +42,7 @@ pub static MODULES: &[Module] = &[
     module!("lib", "depth"),
     module!("lib", "doctor"),
     module!("lib", "foveate"),
+    module!("lib", "lattice"),
     module!("lib", "matched"),
     module!("lib", "noise"),
     module!("lib", "pack"),
