@@ -290,3 +290,45 @@ fn alpha_is_filled_as_color_is() {
         assert_eq!(*alpha, (i % 70) as f32 / 64.0, "pixel {i}");
     }
 }
+
+/// A stack of lattices of any steps, places and offsets that covers a view of `size`, in an atlas or not.
+fn any_lattices(draws: &mut Draws, size: [u32; 2]) -> Lattices {
+    let mut stack = vec![];
+    let count = draws.bits() % 4;
+    for level in 0..5 {
+        let step = 1 << level;
+        let offset = [0; 2].map(|_| draws.bits() % step);
+        if level == 4 || stack.len() as u32 == count {
+            stack.push(Lattice::covering(step, [0, 0], size, offset));
+            break;
+        }
+        if draws.bits() & 1 == 0 {
+            let low = size.map(|s| draws.bits() % s);
+            let high = [0, 1].map(|i| low[i] + 1 + draws.bits() % size[i]);
+            stack.push(Lattice::covering(step, low, high, offset));
+        }
+    }
+    Lattices::new(&stack).unwrap()
+}
+
+#[test]
+fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
+    use crate::any_frame::{SIZE, any_frame};
+    for method in METHODS {
+        let settings = settings(method);
+        let Some(mut rig) = Rig::new(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, settings) else { return };
+        let mut draws = Draws::new("any lattices");
+        for index in 0..90 {
+            rig.scattered = index % 5 == 4;
+            let wild = [0.0, 0.02, 0.3, 1.0][index as usize % 4];
+            let views = [0; 2].map(|_| {
+                let mut frame = any_frame(&mut draws, wild);
+                frame.facts.lattices = Some(any_lattices(&mut draws, SIZE));
+                let (depth, motion, trust) = (Some(frame.depth), Some(frame.motion), Some(frame.trust));
+                View { facts: frame.facts, color: frame.color, depth, motion, trust, lod: None, noise: None }
+            });
+            let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
+            assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
+        }
+    }
+}

@@ -96,8 +96,8 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Depth and motion of a frame of `size_px` that are known at the samples alone: each pixel has those of the nearest
-    /// one. Where a lattice has none, depth is NaN and motion 0.
+    /// Depth and motion of a frame of `size_px` that are known at the samples alone: each pixel has those of the
+    /// nearest one. Where a lattice has none, depth is NaN and motion 0.
     pub fn at_samples(
         depth: Option<&Image<f32>>,
         motion: Option<&Image<[f32; 2]>>,
