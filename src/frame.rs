@@ -2,6 +2,7 @@
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
+use crate::foveation::Filter;
 use crate::geometry::{ViewGeometry, camera_motion};
 use crate::lattice::Lattices;
 use crate::settings::Settings;
@@ -111,7 +112,9 @@ pub struct ViewFrame {
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
     /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): those that the renderer
-    /// drew, for the gaze that it used. `None`: every pixel of the color input is one.
+    /// drew, for the gaze that it used. The color input is of the context's size, and only its samples are read, or it
+    /// is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size; other inputs are of the
+    /// context's size. `None`: every pixel of the color input is a sample.
     pub lattices: Option<Lattices>,
 }
 
@@ -158,6 +161,11 @@ impl ViewFrame {
     /// Convention of depth values.
     pub(crate) fn depth_convention(&self, desc: &ContextDesc) -> DepthConvention {
         self.depth.unwrap_or(desc.depth)
+    }
+
+    /// Lattices whose samples lie in an atlas, if any.
+    pub(crate) fn atlas(&self) -> Option<&Lattices> {
+        self.lattices.as_ref().filter(|lattices| lattices.is_atlas())
     }
 
     /// Checks all fields against the context's description.
@@ -360,7 +368,26 @@ impl<'a, E: Executor> Frame<'a, E> {
             view.check(i, desc)?;
         }
         self.check_noise(&desc.settings)?;
+        self.check_lattices(&desc.settings)?;
         self.exposure.check()
+    }
+
+    /// Rejects views without lattices if the settings require them, and unexpected ones.
+    fn check_lattices(&self, settings: &Settings) -> Result<(), FrameError> {
+        let is_sparse = settings.foveation.filter == Filter::Sparse;
+        for (view, facts) in self.views.iter().enumerate() {
+            let (found, expected) = match (is_sparse, facts.lattices.is_some()) {
+                (true, false) => ("None", "where the samples are, because the filter of the foveation is Sparse"),
+                (false, true) => ("given", "None; or set Filter::Sparse in Settings::foveation"),
+                _ => continue,
+            };
+            return Err(FrameError::Value { what: "lattices", view, found: found.into(), expected });
+        }
+        if is_sparse && self.lod.is_some() {
+            let (found, expected) = ("given".into(), "None: the lattices say how coarse a sparse frame is");
+            return Err(FrameError::Value { what: "lod", view: 0, found, expected });
+        }
+        Ok(())
     }
 
     /// Rejects a missing noise input if the settings require one, and an unexpected one.

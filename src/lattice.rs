@@ -5,6 +5,9 @@ use crate::foveation::Foveation;
 use crate::geometry::ViewGeometry;
 use crate::kernel::lattice::offset_px;
 
+/// Largest position and number of samples along an axis: twice the largest side of a view.
+const FARTHEST_PX: u32 = 32768;
+
 /// Regular grid of samples, `first_px + step * (i, j)`, each of which is one pixel of the full-rate frame.
 ///
 /// It covers the blocks of `step` x `step` pixels, aligned to the frame's corner, in which its samples lie. A renderer
@@ -78,7 +81,6 @@ impl Lattices {
         if lattices.is_empty() || lattices.len() > Self::MAX {
             return refuse("lattices", lattices.len().to_string(), format!("1 to {}", Self::MAX));
         }
-        let largest = 2 * crate::frame::ContextDesc::MAX_SIDE;
         let mut last_step = 0;
         for lattice in lattices {
             if !lattice.step.is_power_of_two() || lattice.step > Foveation::MAX_RATE || lattice.step <= last_step {
@@ -86,13 +88,13 @@ impl Lattices {
                 return refuse("lattice step", lattice.step.to_string(), expected);
             }
             last_step = lattice.step;
-            if lattice.points.iter().any(|n| !(1..=largest).contains(n)) {
+            if lattice.points.iter().any(|n| !(1..=FARTHEST_PX).contains(n)) {
                 let [x, y] = lattice.points;
-                return refuse("lattice points", format!("{x} x {y}"), format!("1 to {largest} along each axis"));
+                return refuse("lattice points", format!("{x} x {y}"), format!("1 to {FARTHEST_PX} along each axis"));
             }
-            if lattice.first_px.iter().any(|&v| v > largest) {
+            if lattice.first_px.iter().any(|&v| v > FARTHEST_PX) {
                 let [x, y] = lattice.first_px;
-                return refuse("lattice first_px", format!("({x}, {y})"), format!("at most {largest}"));
+                return refuse("lattice first_px", format!("({x}, {y})"), format!("at most {FARTHEST_PX}"));
             }
             if lattice.atlas_texel.is_some() != lattices[0].atlas_texel.is_some() {
                 return refuse("lattice atlas_texel", "given for some lattices".into(), "all or none".into());
@@ -122,6 +124,33 @@ impl Lattices {
     /// First lattice that covers a pixel.
     pub fn at(&self, px: [u32; 2]) -> Option<&Lattice> {
         self.as_slice().iter().find(|lattice| lattice.covers(px))
+    }
+
+    /// Whether the samples lie in an atlas.
+    pub(crate) fn is_atlas(&self) -> bool {
+        self.stack[0].atlas_texel.is_some()
+    }
+
+    /// Checks that the lattices of an atlas lie in the color input, a texture of `size` in which the view begins at
+    /// `origin`.
+    pub(crate) fn check_atlas(&self, view: usize, origin: [u32; 2], size: [u32; 2]) -> Result<(), FrameError> {
+        for lattice in self.as_slice() {
+            let Some(texel) = lattice.atlas_texel else { continue };
+            let at = [0, 1].map(|i| u64::from(origin[i]) + u64::from(texel[i]));
+            if (0..2).any(|i| at[i] + u64::from(lattice.points[i]) > u64::from(size[i])) {
+                let ([w, h], [x, y]) = (lattice.points, at);
+                return Err(FrameError::Value {
+                    what: "lattices",
+                    view,
+                    found: format!(
+                        "{w}x{h} samples from texel ({x}, {y}) on in a color input of {}x{}",
+                        size[0], size[1]
+                    ),
+                    expected: "an atlas inside the color input",
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Checks that the coarsest lattice covers a view of `size_px`.
@@ -160,53 +189,5 @@ impl Foveation {
         }
         stack.push(Lattice::covering(self.rate_far, [0, 0], size, offset_px(index, self.rate_far)));
         Lattices::new(&stack).expect("steps ascend, and each lattice has a sample")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_pixel_is_sampled_once_in_a_turn() {
-        for step in [1, 2, 4, 8, 16] {
-            let turn = u64::from(step * step);
-            let mut seen = std::collections::HashSet::new();
-            for index in 0..turn {
-                let offset = offset_px(index, step);
-                assert!(offset[0] < step && offset[1] < step);
-                assert!(seen.insert(offset), "step {step}: {offset:?} twice");
-                assert_eq!(offset, offset_px(index + turn, step));
-            }
-        }
-        // Four frames are one sample in each quarter of the block.
-        let quarters: std::collections::HashSet<_> = (0..4).map(|i| offset_px(i, 8).map(|v| v / 4)).collect();
-        assert_eq!(quarters.len(), 4);
-    }
-
-    #[test]
-    fn lattices_cover_the_view_and_their_regions() {
-        let geometry = ViewGeometry::flat([480, 270], 70.0).expect("a valid view");
-        let foveation = Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() };
-        for gaze in [[240.0, 135.0], [3.0, 200.0], [479.0, 269.0], [-900.0, 5000.0]] {
-            for index in 0..16 {
-                let lattices = foveation.lattices(&geometry, gaze, index);
-                assert_eq!(lattices.check(0, [480, 270]), Ok(()));
-                for y in 0..270 {
-                    for x in 0..480 {
-                        let e_deg = geometry.eccentricity_deg([x as f32, y as f32], gaze);
-                        let step = lattices.at([x, y]).expect("the view is covered").step;
-                        let needed = if e_deg <= 2.49 {
-                            1
-                        } else if e_deg <= 7.49 {
-                            2
-                        } else {
-                            4
-                        };
-                        assert!(step <= needed, "{gaze:?}: ({x}, {y}) at {e_deg} degrees has step {step}");
-                    }
-                }
-            }
-        }
     }
 }

@@ -1,7 +1,10 @@
 //! Constants of a view for the passes of both executors.
 
 use crate::frame::{ContextDesc, ViewFrame};
+#[cfg(feature = "cpu")]
+use crate::kernel::lattice::{Between, between};
 use crate::kernel::rng::{self, Purpose};
+use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
 
 /// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
@@ -94,5 +97,74 @@ impl ViewUniforms {
             motion_offset: desc.motion.jitter_offset(jitter, held.previous_jitter_px),
             ..Self::default()
         }
+    }
+}
+
+/// A lattice of a view. Twin of `LatticeUniforms` in `shaders/pass/lattices.wgsl`; a test compares their layouts.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+pub struct LatticeUniforms {
+    /// First pixel of the covered rectangle.
+    pub low_px: [u32; 2],
+    /// Pixel after the last one of the covered rectangle, which may extend beyond the frame.
+    pub high_px: [u32; 2],
+    /// Pixel of the top-left sample.
+    pub first_px: [u32; 2],
+    /// Number of samples along x and y inside the frame; 0 if all lie beyond its edge.
+    pub points: [u32; 2],
+    /// Texel of the top-left sample in the view's color input.
+    pub texel: [u32; 2],
+    /// log2 of the distance of neighbouring samples in pixels.
+    pub level: u32,
+    /// Distance of neighbouring samples in texels: 1 in an atlas, otherwise as in pixels.
+    pub stride: u32,
+}
+
+/// Lattices of a view, finest first; the unused ones cover nothing.
+pub type ViewLattices = [LatticeUniforms; Lattices::MAX];
+
+impl LatticeUniforms {
+    /// A lattice of a view of `size_px`.
+    fn new(lattice: &Lattice, size_px: [u32; 2]) -> Self {
+        let Lattice { step, first_px, .. } = *lattice;
+        let [low_px, high_px] = lattice.covered_px();
+        let (texel, stride) = lattice.atlas_texel.map_or((first_px, step), |texel| (texel, 1));
+        let inside = |i: usize| size_px[i].saturating_sub(first_px[i]).div_ceil(step);
+        let points = [0, 1].map(|i| lattice.points[i].min(inside(i)));
+        Self { low_px, high_px, first_px, points, texel, level: step.ilog2(), stride }
+    }
+
+    /// All lattices of a view of `size_px`.
+    pub(crate) fn of_view(lattices: &Lattices, size_px: [u32; 2]) -> ViewLattices {
+        let mut all = ViewLattices::default();
+        for (to, lattice) in all.iter_mut().zip(lattices.as_slice()) {
+            *to = Self::new(lattice, size_px);
+        }
+        all
+    }
+
+    /// First of the `lattices` that covers a pixel.
+    #[cfg(feature = "cpu")]
+    #[inline(always)]
+    pub(crate) fn at(lattices: &ViewLattices, px: [u32; 2]) -> &Self {
+        let covers = |l: &&Self| (0..2).all(|i| px[i] >= l.low_px[i] && px[i] < l.high_px[i]);
+        let (coarsest, finer) = lattices.split_last().expect("there is a place for each lattice");
+        finer.iter().find(covers).unwrap_or(coarsest)
+    }
+
+    /// Samples around a pixel along x and y; `None` without samples in the frame.
+    #[cfg(feature = "cpu")]
+    #[inline(always)]
+    pub(crate) fn around(&self, px: [u32; 2]) -> Option<[Between; 2]> {
+        let any = self.points.iter().all(|&n| n > 0);
+        any.then(|| [0, 1].map(|i| between(px[i], self.first_px[i], self.level, self.points[i])))
+    }
+
+    /// Texel of a sample in the view's color input.
+    #[cfg(feature = "cpu")]
+    #[inline(always)]
+    pub(crate) fn texel_of(&self, point: [u32; 2]) -> [u32; 2] {
+        [0, 1].map(|i| self.texel[i] + self.stride * point[i])
     }
 }

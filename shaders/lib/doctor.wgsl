@@ -60,17 +60,17 @@ fn lattice_texel(point: u32, level: u32, len: u32) -> u32 {
     return min((point << level) + lattice_offset(level), max(len, 1u) - 1u);
 }
 
-// doctor::between
-fn between(a: f32, b: f32, t: f32) -> f32 {
+// doctor::interpolate
+fn interpolate(a: f32, b: f32, t: f32) -> f32 {
     return a + (b - a) * t;
 }
 
 // doctor::spline
 fn spline(values: vec4<f32>, t: f32) -> f32 {
-    let first = between(values.x, values.y, (t + 2.0) * (1.0f / 3.0f));
-    let second = between(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
-    let third = between(values.z, values.w, t * (1.0f / 3.0f));
-    return between(between(first, second, (t + 1.0) * 0.5), between(second, third, t * 0.5), t);
+    let first = interpolate(values.x, values.y, (t + 2.0) * (1.0f / 3.0f));
+    let second = interpolate(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
+    let third = interpolate(values.z, values.w, t * (1.0f / 3.0f));
+    return interpolate(interpolate(first, second, (t + 1.0) * 0.5), interpolate(second, third, t * 0.5), t);
 }
 
 // doctor::stored_motion

@@ -5,6 +5,7 @@
 
 mod doctor;
 mod doctor_pass;
+mod fill;
 mod history;
 mod inputs;
 mod mip_chain;
@@ -48,6 +49,15 @@ impl<'a> Frame<'a> {
     /// image a view.
     pub fn new(color: &'a [&'a Image<[f32; 3]>], views: &'a [ViewFrame], index: u64) -> Self {
         Self::of_color(color, views, index)
+    }
+
+    /// This frame with another color input. Not `..*self`, which would require the longer lifetime of it.
+    fn with_color<'b>(&self, color: &'b [&'b Image<[f32; 3]>]) -> Frame<'b>
+    where
+        'a: 'b,
+    {
+        let Self { depth, motion, trust, lod, noise, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, lod, noise, views, index, reset, exposure }
     }
 }
 
@@ -208,7 +218,10 @@ impl CpuAfterimage {
         check_inputs(&self.desc, frame)?;
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
-        let pass = Pass { desc: &self.desc, history: &mut self.history, frame, output, traces };
+        let filled = fill::filled(frame, self.desc.size_px);
+        let filled: Vec<_> = filled.iter().collect();
+        let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
+        let pass = Pass { desc: &self.desc, history: &mut self.history, frame: &whole, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
             Method::Taa => surface_pass::run(pass, taa_pass::pixel),
@@ -230,12 +243,24 @@ impl CpuAfterimage {
 /// Checks a frame without its outputs.
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
+    check_color(desc, frame)?;
     check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
     check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
+}
+
+/// Checks the color input, which may be an atlas of samples.
+fn check_color(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
+    let mut sizes: Vec<_> = frame.color.iter().map(|image| image.size()).collect();
+    for (view, (facts, size)) in frame.views.iter().zip(&mut sizes).enumerate() {
+        if let Some(atlas) = facts.atlas() {
+            atlas.check_atlas(view, [0, 0], *size)?;
+            *size = desc.size_px;
+        }
+    }
+    check_sizes(desc, "color", Some(sizes.into_iter()))
 }
 
 /// Checks that an input, if given, has one image of the context's size for each view.

@@ -18,6 +18,7 @@ pub(crate) use observation::tile_count;
 pub(crate) use observation::{Description, Observation, maps};
 
 use crate::error::SettingsError;
+use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, Exposure, Frame, Reset};
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
@@ -68,8 +69,12 @@ pub(crate) fn continues<E: Executor>(frame: &Frame<'_, E>) -> bool {
     frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 
-/// Rejects the index of a view that a context does not have.
+/// Rejects sparse frames, whose rules are not known yet, and the index of a view that a context does not have.
 pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
+    if desc.settings.foveation.filter == Filter::Sparse {
+        let expected = "another filter: the doctor does not know sparse frames yet".into();
+        return Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected });
+    }
     if view < desc.view_count as usize {
         return Ok(());
     }

@@ -17,6 +17,15 @@ impl<'a> Frame<'a> {
         Self::of_color(color.into(), views, index)
     }
 
+    /// This frame with another color input. Not `..*self`, which would require the longer lifetime of it.
+    pub(super) fn with_color<'b>(&self, color: Textures<'b>) -> Frame<'b>
+    where
+        'a: 'b,
+    {
+        let Self { depth, motion, trust, lod, noise, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, lod, noise, views, index, reset, exposure }
+    }
+
     /// Whether an input consists of regions.
     pub(super) fn has_regions(&self) -> bool {
         let optional = [self.depth, self.motion, self.trust, self.lod, self.noise];

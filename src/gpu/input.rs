@@ -3,7 +3,7 @@
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};
 use crate::error::FrameError;
-use crate::frame::ContextDesc;
+use crate::frame::{ContextDesc, ViewFrame};
 use crate::stats::COUNTERS_BYTES;
 use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
@@ -48,7 +48,8 @@ pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), 
     ];
     for (input, textures, channels) in inputs {
         let Some(textures) = textures else { continue };
-        check_textures(desc, input, textures, Afterimage::INPUT_USAGE)?;
+        let views = if input == "color" { frame.views } else { &[] };
+        check_textures(desc, input, textures, Afterimage::INPUT_USAGE, views)?;
         for texture in textures.iter() {
             check_readable(input, texture, channels)?;
         }
@@ -66,22 +67,35 @@ fn check_output(
     format: TextureFormat,
     expected: &'static str,
 ) -> Result<(), FrameError> {
-    check_textures(desc, name, textures, Afterimage::OUTPUT_USAGE)?;
+    check_textures(desc, name, textures, Afterimage::OUTPUT_USAGE, &[])?;
     match textures.iter().find(|t| t.format() != format) {
         Some(texture) => Err(refuse(name, texture, "not the right one".into(), expected)),
         None => Ok(()),
     }
 }
 
-/// Checks place, layers, samples and usage of an input's or output's textures.
+/// Checks place, layers, samples and usage of an input's or output's textures. `views`: descriptions of the views whose
+/// samples may lie in an atlas of any size.
 fn check_textures(
     desc: &ContextDesc,
     input: &'static str,
     textures: Textures<'_>,
     usage: TextureUsages,
+    views: &[ViewFrame],
 ) -> Result<(), FrameError> {
     let regions = match textures {
-        Textures::Layers(texture) => return check_texture(desc, input, texture, usage),
+        Textures::Layers(texture) => {
+            let size = [texture.width(), texture.height()];
+            for (view, facts) in views.iter().enumerate() {
+                facts.atlas().map_or(Ok(()), |atlas| atlas.check_atlas(view, [0, 0], size))?;
+            }
+            let is_atlas = !views.is_empty() && views.iter().all(|view| view.atlas().is_some());
+            return if is_atlas {
+                check_layers(desc, input, texture, usage)
+            } else {
+                check_texture(desc, input, texture, usage)
+            };
+        }
         Textures::Regions(regions) => regions,
     };
     let (found, expected) = (regions.len(), desc.view_count as usize);
@@ -93,7 +107,9 @@ fn check_textures(
         check_usage(input, texture, usage)?;
         let size = [texture.width(), texture.height()];
         let end = [0, 1].map(|i| u64::from(region.origin_px[i]) + u64::from(desc.size_px[i]));
-        if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
+        if let Some(atlas) = views.get(view).and_then(ViewFrame::atlas) {
+            atlas.check_atlas(view, region.origin_px, size)?;
+        } else if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
             let ([x, y], [width, height]) = (region.origin_px, desc.size_px);
             return Err(FrameError::Value {
                 what: input,
@@ -126,6 +142,16 @@ pub(crate) fn check_texture(
     if found != desc.size_px {
         return Err(FrameError::Size { input, view: 0, found, expected: desc.size_px });
     }
+    check_layers(desc, input, texture, usage)
+}
+
+/// Checks layers, samples and usage of a texture with one layer a view.
+fn check_layers(
+    desc: &ContextDesc,
+    input: &'static str,
+    texture: &Texture,
+    usage: TextureUsages,
+) -> Result<(), FrameError> {
     let layers = texture.depth_or_array_layers();
     if layers != desc.view_count {
         return Err(refuse(

@@ -11,6 +11,7 @@ mod buffer;
 #[doc(hidden)]
 pub mod compute;
 mod doctor;
+mod fill;
 mod frame;
 mod history;
 mod input;
@@ -45,6 +46,7 @@ use crate::settings::{Method, Settings};
 use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
 use crate::uniforms::Held;
+use fill::Fill;
 use history::History;
 use method_pass::{Job, MethodPass};
 use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
@@ -63,6 +65,8 @@ pub struct Afterimage {
     desc: ContextDesc,
     output_format: TextureFormat,
     passes: Passes,
+    /// For sparse frames of methods that read whole ones.
+    fill: Option<Fill>,
     history: History,
 }
 
@@ -145,7 +149,14 @@ impl Afterimage {
     ) -> Result<Self, CreateError> {
         validate(device, desc, output_format)?;
         let mut passes = Passes::new(device, &desc.settings, output_format, source);
-        Ok(Self { desc: *desc, output_format, history: passes.history(device, desc), passes })
+        let (history, fill) = (passes.history(device, desc), Fill::new(device, desc));
+        Ok(Self { desc: *desc, output_format, passes, fill, history })
+    }
+
+    /// Another shader for the pass that fills sparse frames, for tests that plant errors.
+    #[doc(hidden)]
+    pub fn set_fill_shader(&mut self, device: &Device, source: &str) {
+        self.fill = Some(Fill::with_shader(device, &self.desc, source.to_owned()));
     }
 
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
@@ -187,6 +198,9 @@ impl Afterimage {
         if !(same_method && same_history) {
             self.history = self.passes.history(device, &self.desc);
         }
+        if self.fill.is_some() != fill::is_needed(&self.desc) {
+            self.fill = Fill::new(device, &self.desc);
+        }
         Ok(())
     }
 
@@ -197,7 +211,7 @@ impl Afterimage {
     /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
-        self.desc.size_px = size_px;
+        self.set_size(device, size_px);
         self.history = self.passes.history(device, &self.desc);
         Ok(())
     }
@@ -219,7 +233,7 @@ impl Afterimage {
     ) -> Result<(), FrameError> {
         check_size(size_px)?;
         let resize = Resize::new(self.desc.size_px, size_px);
-        self.desc.size_px = size_px;
+        self.set_size(device, size_px);
         let mut history = self.passes.history(device, &self.desc);
         history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
         if self.history.is_filled() {
@@ -237,6 +251,13 @@ impl Afterimage {
         Ok(())
     }
 
+    fn set_size(&mut self, device: &Device, size_px: [u32; 2]) {
+        self.desc.size_px = size_px;
+        if let Some(fill) = &mut self.fill {
+            fill.resize(device, &self.desc);
+        }
+    }
+
     /// Discards history and held gaze positions: the next frame is processed like the first one.
     /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
@@ -252,6 +273,9 @@ impl Afterimage {
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
             self.passes.method.prewarm(device, &self.desc, variant);
+            if let Some(fill) = &self.fill {
+                fill.prewarm(device, variant.regions);
+            }
         }
         if let Some(mip_chain) = &self.passes.mip_chain {
             mip_chain.prewarm(device);
@@ -269,6 +293,7 @@ impl Afterimage {
             + mip_chain.as_ref().map_or(0, MipChainPass::pipeline_count)
             + candidates.as_ref().map_or(0, CandidatePass::pipeline_count)
             + resize.as_ref().map_or(0, ResizePass::pipeline_count)
+            + self.fill.as_ref().map_or(0, Fill::pipeline_count)
     }
 
     /// Size in bytes of the textures that the context holds between frames.
@@ -286,7 +311,7 @@ impl Afterimage {
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        history::memory_bytes(desc)
+        history::memory_bytes(desc) + fill::memory_bytes(desc)
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -373,7 +398,7 @@ impl Afterimage {
         frame: &Frame<'_>,
         target: &Target<'_>,
         view: Option<DebugView>,
-        uniforms: FrameUniforms,
+        mut uniforms: FrameUniforms,
     ) {
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
@@ -385,6 +410,16 @@ impl Afterimage {
         if let (Some(passes), Some(candidates)) = (&self.passes.candidates, self.history.candidates()) {
             passes.record(device, &mut pass, frame, candidates);
         }
+        let color = match &self.fill {
+            Some(fill) => {
+                fill.record(device, &mut pass, frame, uniforms);
+                // A layer is a whole view.
+                uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
+                fill.color()
+            }
+            None => frame.color,
+        };
+        let frame = &frame.with_color(color);
         let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history };
         self.passes.method.record(device, &mut pass, &job);
         if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {

@@ -4,7 +4,7 @@ use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
 use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
 use crate::uniforms::Held;
-pub use crate::uniforms::ViewUniforms;
+pub use crate::uniforms::{LatticeUniforms, ViewLattices, ViewUniforms};
 use bytemuck::{Pod, Zeroable};
 
 /// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
@@ -110,6 +110,29 @@ impl FrameUniforms {
                 debug_origin: origin(target.debug.map(|d| d.output), i),
                 ..ViewUniforms::new(desc, view, held, i, frame.index)
             };
+        }
+        uniforms
+    }
+}
+
+/// `SparseUniforms` in `shaders/pass/lattices.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct SparseUniforms {
+    /// Bits of a NaN, which shaders cannot write themselves.
+    pub missing: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 3],
+    /// Lattices of each view.
+    pub views: [ViewLattices; MAX_VIEWS],
+}
+
+impl SparseUniforms {
+    /// Uniforms of a sparse frame with views of `size_px`.
+    pub(super) fn new(frame: &Frame<'_>, size_px: [u32; 2]) -> Self {
+        let mut uniforms = Self { missing: f32::NAN.to_bits(), ..Self::default() };
+        for (to, view) in uniforms.views.iter_mut().zip(frame.views) {
+            *to = view.lattices.map_or_else(ViewLattices::default, |l| LatticeUniforms::of_view(&l, size_px));
         }
         uniforms
     }

@@ -91,7 +91,7 @@ pub fn lattice_texel(point: u32, level: u32, len: u32) -> u32 {
 
 /// Linear interpolation: `a` for `t` = 0, `b` for 1.
 #[inline]
-pub fn between(a: f32, b: f32, t: f32) -> f32 {
+pub fn interpolate(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
@@ -101,10 +101,10 @@ pub fn between(a: f32, b: f32, t: f32) -> f32 {
 #[inline]
 pub fn spline(values: [f32; 4], t: f32) -> f32 {
     let [a, b, c, d] = values;
-    let first = between(a, b, (t + 2.0) * (1.0 / 3.0));
-    let second = between(b, c, (t + 1.0) * (1.0 / 3.0));
-    let third = between(c, d, t * (1.0 / 3.0));
-    between(between(first, second, (t + 1.0) * 0.5), between(second, third, t * 0.5), t)
+    let first = interpolate(a, b, (t + 2.0) * (1.0 / 3.0));
+    let second = interpolate(b, c, (t + 1.0) * (1.0 / 3.0));
+    let third = interpolate(c, d, t * (1.0 / 3.0));
+    interpolate(interpolate(first, second, (t + 1.0) * 0.5), interpolate(second, third, t * 0.5), t)
 }
 
 /// Component of a stored motion vector, limited in length.

@@ -1,5 +1,10 @@
-//! Lattices of samples: the order in which a block's pixels are sampled, and the samples around a pixel. `docs/method.md`
-//! explains sparse frames.
+//! Lattices of samples: the order in which a block's pixels are sampled, and the samples around a pixel.
+//! `docs/method.md` explains sparse frames.
+
+use glam::Vec4;
+
+/// Smallest weight of a sample at a pixel that has one: the coarsest lattice has 256 steps along each axis.
+const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
 
 /// Position of the sample in a block of `step` x `step` pixels (a power of two) in frame `index`: each pixel once in
 /// `step * step` frames, in the order of Bayer's matrix, so that every prefix is spread evenly (Bayer 1973).
@@ -37,4 +42,34 @@ pub fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     let low = distance >> level;
     let fraction = (distance - (low << level)) as f32 * f32::from_bits((127 - level) << 23);
     Between { points: [low.clamp(0, last) as u32, (low + 1).clamp(0, last) as u32], fraction }
+}
+
+/// Weight along one axis of the first (`point` 0) or the second sample around a pixel.
+#[inline]
+pub fn point_weight(fraction: f32, point: u32) -> f32 {
+    if point == 0 { 1.0 - fraction } else { fraction }
+}
+
+/// Mean of samples, in the making. Weights are multiples of 1/65536, so that their sums are exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SampleMean {
+    /// Sum of weighted colors and alphas.
+    pub sum: Vec4,
+    /// Sum of the weights; 0 without usable samples.
+    pub weight: f32,
+}
+
+/// A mean with one sample more, if that is usable.
+#[inline]
+pub fn add_sample(mean: SampleMean, color: Vec4, usable: bool, weight: f32) -> SampleMean {
+    if !usable {
+        return mean;
+    }
+    SampleMean { sum: mean.sum + color * weight, weight: mean.weight + weight }
+}
+
+/// The mean color of the samples added; 0 without any.
+#[inline]
+pub fn sample_mean(mean: SampleMean) -> Vec4 {
+    mean.sum * (1.0 / mean.weight.max(LEAST_WEIGHT))
 }

@@ -11,6 +11,7 @@ mod wrs;
 pub(crate) use smr::smr_params;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
+use crate::foveation::Filter;
 use crate::settings::{Method, Settings};
 
 impl Method {
@@ -96,7 +97,9 @@ impl Settings {
     /// trust inputs. Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth
     /// (4), trust (1). Taps that neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
-        let (color, output) = (8, 8);
+        // Sparse frames are filled first: samples are read, filled colors are floats, written and read.
+        let is_filled = self.foveation.filter == Filter::Sparse && self.method != Method::Smr;
+        let (color, output) = (if is_filled { 8 + 16 + 16 } else { 8 }, 8);
         if self.method == Method::None {
             return color + output;
         }

@@ -283,7 +283,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     }
 
     // Toggle methods, debug views, filters, split and panel, and back.
-    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
+    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
         viewer.key(key);
     }
     for key in ["v", "v", "v", "v", "v", "Tab", "4"] {
@@ -328,15 +328,19 @@ fn playback_shows_what_run_writes_on_both_sides_of_the_divider() {
         let out = tool.unwrap();
         assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     };
-    let common = ["still.png", "--gaze", "synthetic:3", "--frames", "40", "--exposure", "-0.5"];
-    let view = ["view", "--internal-scale", "1", "--split", "none,smr", "--screenshot", "shown.png"];
-    run(&[&view[..], &common].concat());
-    run(&[&["run", "--method", "none,smr", "--backend", "gpu", "--no-flip", "--out", "run"], &common[..]].concat());
-    let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
-    let (shown, sides) = (pixels("shown.png"), ["none", "smr"].map(|m| pixels(&format!("run/{m}/000039.png"))));
-    let differ =
-        shown.enumerate_pixels().filter(|&(x, y, p)| p != sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y));
-    assert_eq!(differ.count(), 0);
+    let sparse = ["analytic:lateral", "--size", "320x180", "--foveation", "sparse", "--geometry", "samples"];
+    for (input, methods) in [(&["still.png"][..], ["none", "smr"]), (&sparse, ["wrs", "taa"])] {
+        let common = ["--gaze", "synthetic:3", "--frames", "40", "--exposure", "-0.5"];
+        let (common, both) = ([input, &common].concat(), methods.join(","));
+        let view = ["view", "--internal-scale", "1", "--split", &both, "--screenshot", "shown.png"];
+        run(&[&view[..], &common].concat());
+        run(&[&["run", "--method", &both, "--backend", "gpu", "--no-flip", "--out", "run"], &common[..]].concat());
+        let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
+        let (shown, sides) = (pixels("shown.png"), methods.map(|m| pixels(&format!("run/{m}/000039.png"))));
+        let differ =
+            shown.enumerate_pixels().filter(|&(x, y, p)| p != sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y));
+        assert_eq!(differ.count(), 0, "{both}");
+    }
 }
 
 #[test]

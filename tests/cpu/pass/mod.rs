@@ -8,6 +8,7 @@ mod nan;
 mod properties;
 mod reprojection;
 mod reservoirs;
+mod sparse;
 mod trust;
 mod views;
 

@@ -1,6 +1,8 @@
 //! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
-use afterimage::gpu::uniforms::{CandidateUniforms, FrameUniforms, MAX_VIEWS, ViewUniforms};
+use afterimage::gpu::uniforms::{
+    CandidateUniforms, FrameUniforms, LatticeUniforms, MAX_VIEWS, SparseUniforms, ViewLattices, ViewUniforms,
+};
 use afterimage::shader::SHADERS;
 use afterimage::simulator::gpu::uniforms::FoveationUniforms;
 use afterimage::wgpu::naga;
@@ -45,6 +47,18 @@ fn constants_of_the_candidates_have_one_layout() {
     let module = naga::front::wgsl::parse_str(&SHADERS.compose("candidate_pass").source).unwrap();
     let candidates = rust!(CandidateUniforms: size, color_origin, noise_origin, first_view);
     assert_eq!(wgsl(&module, "CandidateUniforms"), candidates);
+}
+
+#[test]
+fn constants_of_sparse_frames_have_one_layout() {
+    let composed = SHADERS.compose("lattices");
+    let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
+    let lattice = rust!(LatticeUniforms: low_px, high_px, first_px, points, texel, level, stride);
+    assert_eq!(wgsl(&module, "LatticeUniforms"), lattice);
+    assert_eq!(wgsl(&module, "SparseUniforms"), rust!(SparseUniforms: missing, views));
+    let count = ViewLattices::default().len();
+    assert!(composed.source.contains(&format!("array<array<LatticeUniforms, {count}>, {MAX_VIEWS}>")));
+    assert!(composed.source.contains(&format!("const LATTICES: u32 = {count}u;")));
 }
 
 #[test]

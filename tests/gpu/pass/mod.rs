@@ -10,5 +10,6 @@ mod properties;
 mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
 pub mod rig;
+mod sparse;
 mod surfaces;
 mod surfaces_hard;

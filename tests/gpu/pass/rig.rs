@@ -156,6 +156,13 @@ impl Rig {
         self.read_texture(&self.debug)
     }
 
+    /// Makes the color input an atlas of another size.
+    pub fn resize_color(&mut self, size_px: [u32; 2]) {
+        let atlas = ContextDesc { size_px, ..self.context };
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
+        self.textures.color = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, usage);
+    }
+
     /// Stores motion as halves on the device from now on.
     pub fn halve_motion(&mut self) {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;

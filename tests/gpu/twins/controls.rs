@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, doctor, foveation, matching, mathematics, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, state, surfaces};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -103,6 +103,16 @@ fn swapped_bilinear_fractions_are_caught() {
 fn a_wrong_border_is_caught() {
     caught(foveation::PROBES, "split", "0.0, f32(len - 1u)", "0.0, f32(len)");
     caught(foveation::PROBES, "block_center_px", "edge_px - 0.5, f32(len - 1u)", "edge_px - 0.5, f32(len)");
+}
+
+#[test]
+fn a_wrong_sample_is_caught() {
+    caught(lattice::PROBES, "between", "let low = distance >> level;", "let low = distance / (1 << level);");
+    caught(lattice::PROBES, "between", "(127u - level)", "(126u - level)");
+    caught(lattice::PROBES, "between", "i32(count) - 1", "i32(count)");
+    caught(lattice::PROBES, "point_weight", "point == 0u", "point == 1u");
+    caught(lattice::PROBES, "add_sample", "if !usable {", "if false {");
+    caught(lattice::PROBES, "sample_mean", "mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT))", "mean.sum");
 }
 
 #[test]

@@ -73,13 +73,13 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(3).cross(&[&(0..64).collect::<Vec<_>>(), &(0..=8).collect::<Vec<_>>(), &lengths()]),
     },
     Probe {
-        name: "between",
+        name: "interpolate",
         module: "doctor",
         words: [3, 1],
-        wgsl: "out_f(between(in_f(0u), in_f(1u), in_f(2u)));",
-        rust: |r, o| o.f(doctor::between(r.f(0), r.f(1), r.f(2))),
+        wgsl: "out_f(interpolate(in_f(0u), in_f(1u), in_f(2u)));",
+        rust: |r, o| o.f(doctor::interpolate(r.f(0), r.f(1), r.f(2))),
         rows: || {
-            Rows::new(3).random("between", |d, row| {
+            Rows::new(3).random("interpolate", |d, row| {
                 signals(d, row, 2);
                 row.push(range(d, 0.0, 1.0));
             })

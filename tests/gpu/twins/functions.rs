@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{decisions, doctor, foveation, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, state, surfaces};
 use afterimage_testing::holds;
 
 #[test]
@@ -43,6 +43,11 @@ fn doctor_is_bit_equal() {
 #[test]
 fn foveate_is_bit_equal_h69_h71() {
     check_module(foveation::PROBES, "foveate");
+}
+
+#[test]
+fn lattice_is_bit_equal() {
+    check_module(lattice::PROBES, "lattice");
 }
 
 #[test]

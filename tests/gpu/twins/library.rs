@@ -1,7 +1,7 @@
 //! The library under test: the drop-in's.
 
 use super::probe::Probe;
-use super::{decisions, doctor, foveation, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, state, surfaces};
 pub use afterimage::shader::SHADERS;
 
 /// Where `shaders/lib` and `src/kernel` are.
@@ -12,8 +12,9 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 pub const WGSL_ONLY: &[(&str, &str)] =
     &[("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
-/// (Rust file stem, function there) without a WGSL twin: it takes a closure; the pass has a loop in its place.
-pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope")];
+/// (Rust file stem, function there) without a WGSL twin: one takes a closure, in whose place the pass has a loop; the
+/// other places the samples of a frame before a device sees it.
+pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
 pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "pcg4d_mix", "saturating_add"];
@@ -24,6 +25,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         decisions::PROBES,
         doctor::PROBES,
         foveation::PROBES,
+        lattice::PROBES,
         matching::PROBES,
         noise::PROBES,
         mathematics::PROBES,

@@ -9,6 +9,7 @@ mod foveation;
 mod functions;
 mod hard_colors;
 mod hard_reservoirs;
+mod lattice;
 mod laws;
 mod library;
 mod matching;

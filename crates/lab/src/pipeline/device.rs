@@ -1,7 +1,7 @@
 //! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device.
 //! `run`, `view` and `bench` share this code.
 
-use super::needs_lod;
+use super::{Geometry, needs_lod};
 use crate::device::Headless;
 use crate::frame::{DeviceFrame, SourceFrame};
 use crate::shader::SHADERS;
@@ -101,7 +101,7 @@ impl DeviceInputs {
     /// Uploads a full-rate frame, in [`DeviceFormats::EXACT`].
     pub fn upload(&mut self, frame: &SourceFrame) {
         self.gpu.write_rgb(&self.full, 0, &frame.color);
-        self.upload_geometry(frame);
+        self.upload_others(frame);
     }
 
     /// Imports a full-rate frame that was rendered on this device. The values equal those of a readback followed by
@@ -139,7 +139,7 @@ impl DeviceInputs {
         lod: Option<&Image<f32>>,
         noise: Option<&Image<[f32; 2]>>,
     ) {
-        self.upload_geometry(frame);
+        self.upload_others(frame);
         self.gpu.write_rgb(&self.foveated, 0, color);
         if let Some(lod) = lod {
             self.gpu.write(&self.lod, 0, lod);
@@ -150,14 +150,25 @@ impl DeviceInputs {
         (self.given.lod, self.given.noise) = (lod.is_some(), noise.is_some());
     }
 
-    fn upload_geometry(&mut self, frame: &SourceFrame) {
-        for (image, texture) in [(&frame.depth, &self.depth), (&frame.trust, &self.trust)] {
-            if let Some(image) = image {
-                self.gpu.write(texture, 0, image);
-            }
+    /// Uploads depth and motion in place of those of the last frame, which has the same of them.
+    pub fn upload_geometry(&mut self, geometry: &Geometry) {
+        self.write_geometry(geometry.depth.as_ref(), geometry.motion.as_ref());
+    }
+
+    fn write_geometry(&self, depth: Option<&Image<f32>>, motion: Option<&Image<[f32; 2]>>) {
+        if let Some(depth) = depth {
+            self.gpu.write(&self.depth, 0, depth);
         }
-        if let Some(motion) = &frame.motion {
+        if let Some(motion) = motion {
             self.gpu.write(&self.motion, 0, motion);
+        }
+    }
+
+    /// Uploads what a frame has besides its color.
+    fn upload_others(&mut self, frame: &SourceFrame) {
+        self.write_geometry(frame.depth.as_ref(), frame.motion.as_ref());
+        if let Some(trust) = &frame.trust {
+            self.gpu.write(&self.trust, 0, trust);
         }
         self.given = Given {
             depth: frame.depth.is_some(),

@@ -5,9 +5,11 @@ pub mod ablation;
 #[cfg(feature = "full")]
 mod device;
 mod guide;
+mod sparse;
 
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
+pub use sparse::{Geometry, SampleOrder, SparseGeometry, levels, nearest_sample};
 
 use crate::clock::Stopwatch;
 use crate::device::Backend;
@@ -17,15 +19,13 @@ use crate::device::{Headless, PassClock};
 use crate::frame::DeviceFrame;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use crate::metric::{Tracked, Tracker};
-#[cfg(feature = "ablation")]
-use afterimage::SettingsError;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Reset, Settings,
-    ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Lattices, Method,
+    Reset, Settings, SettingsError, ViewFrame, ViewGeometry,
 };
 use guide::HistoryNoise;
 #[cfg(feature = "full")]
@@ -93,6 +93,8 @@ struct Candidate<'a> {
     /// Levels of detail as an input of the methods, if any.
     lod_given: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
+    /// Depth and motion in place of the full-rate frame's, if any.
+    geometry: Option<&'a Geometry>,
 }
 
 /// State of a run.
@@ -128,6 +130,8 @@ pub struct Pipeline {
     is_still: bool,
     debug: Vec<DebugView>,
     use_trust: bool,
+    sparse_geometry: SparseGeometry,
+    sample_order: SampleOrder,
     /// For guided sampling.
     history_noise: Option<HistoryNoise>,
     is_guided: bool,
@@ -150,8 +154,9 @@ impl Pipeline {
         backend: &Backend,
     ) -> Result<Self, CreateError> {
         foveation.validate()?;
-        let desc = ContextDesc::new(geometry.size_px());
-        let desc = ContextDesc { settings: Settings { foveation, ..desc.settings }, ..desc };
+        // Simulators read the foveation alone.
+        let settings = Settings { method: Method::None, foveation, ..Settings::default() };
+        let desc = ContextDesc { settings, ..ContextDesc::new(geometry.size_px()) };
         Ok(Self {
             runs: runs.iter().map(|kind| Run::new(kind, &desc, backend)).collect::<Result<_, _>>()?,
             #[cfg(feature = "full")]
@@ -172,6 +177,8 @@ impl Pipeline {
             is_still,
             debug: debug.to_vec(),
             use_trust: false,
+            sparse_geometry: SparseGeometry::default(),
+            sample_order: SampleOrder::default(),
             history_noise: None,
             is_guided: false,
             #[cfg(feature = "ablation")]
@@ -183,6 +190,12 @@ impl Pipeline {
     #[must_use]
     pub fn with_trust(self) -> Self {
         Self { use_trust: true, ..self }
+    }
+
+    /// Depth and motion of sparse frames, and the order in which their samples move.
+    #[must_use]
+    pub fn with_sparse(self, geometry: SparseGeometry, order: SampleOrder) -> Self {
+        Self { sparse_geometry: geometry, sample_order: order, ..self }
     }
 
     /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
@@ -248,12 +261,20 @@ impl Pipeline {
         let gaze_px = self.look(gaze);
         let watch = Stopwatch::start();
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
-        let lods = self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg);
-        let view = self.view(frame, gaze_px);
+        let lattices = self.lattices(gaze_px, index);
+        let lods = match &lattices {
+            Some(lattices) => levels(lattices, size),
+            None => self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg),
+        };
+        let view = ViewFrame { lattices, ..self.view(frame, gaze_px) };
+        let at_samples = lattices.filter(|_| self.sparse_geometry == SparseGeometry::Samples);
+        let at_samples = at_samples
+            .map(|lattices| Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, size));
         // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
         let pyramid = self.foveates_in_memory().then(|| match self.still.take() {
             Some(pyramid) => pyramid,
-            None => Pyramid::new(frame.color.clone(), self.foveation.max_level()),
+            // Of sparse frames, only samples are read.
+            None => Pyramid::new(frame.color.clone(), if lattices.is_some() { 0 } else { self.foveation.max_level() }),
         });
         let color = pyramid.as_ref().map(|pyramid| self.foveation.render(pyramid, &lods));
         #[cfg(feature = "ablation")]
@@ -262,9 +283,10 @@ impl Pipeline {
             color,
             lod_given: needs_lod(self.foveation.filter).then_some(&lods),
             noise: None,
+            geometry: at_samples.as_ref(),
         });
         #[cfg(feature = "full")]
-        self.foveate_on_device(frame, rendered, candidate.as_ref(), &view)?;
+        self.foveate_on_device(frame, rendered, candidate.as_ref(), at_samples.as_ref(), &view)?;
         let foveation_ms = watch.wall_ms();
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
         let outputs = self.run(index, frame, &view, candidate.as_ref(), pyramid.as_ref().map(|p| (p, &lods)))?;
@@ -289,7 +311,7 @@ impl Pipeline {
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lod);
         #[cfg(feature = "ablation")]
         let color = poisoned(color, self.poison, index as u32);
-        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise) };
+        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise), geometry: None };
         let view = self.view(frame, gaze_px);
         #[cfg(feature = "full")]
         if let Some(device) = &mut self.device {
@@ -325,6 +347,12 @@ impl Pipeline {
         }
     }
 
+    /// Lattices of frame `index`, if it is sparse.
+    fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
+        let is_sparse = self.foveation.filter == Filter::Sparse;
+        is_sparse.then(|| self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index))
+    }
+
     fn view(&self, frame: &SourceFrame, gaze_px: [f32; 2]) -> ViewFrame {
         let view = ViewFrame::new(self.geometry, Gaze::At { px: gaze_px });
         ViewFrame { previous_from_current: frame.previous_from_current, ..view }
@@ -349,21 +377,30 @@ impl Pipeline {
         frame: &SourceFrame,
         rendered: Option<&DeviceFrame>,
         candidate: Option<&Candidate<'_>>,
+        at_samples: Option<&Geometry>,
         view: &ViewFrame,
     ) -> Result<(), FrameError> {
         let Some(Device { gpu, inputs, has_still, .. }) = &mut self.device else { return Ok(()) };
         #[cfg(feature = "ablation")]
         if let Some(candidate) = candidate.filter(|_| self.poison > 0.0) {
             inputs.upload_foveated(frame, candidate.color, candidate.lod_given, None);
+            if let Some(geometry) = at_samples {
+                inputs.upload_geometry(geometry);
+            }
             return Ok(());
         }
         #[cfg(not(feature = "ablation"))]
         let _ = candidate;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        // Recorded commands would overwrite what is uploaded.
+        let rendered = rendered.filter(|_| at_samples.is_none());
         match rendered.filter(|rendered| Arc::ptr_eq(&rendered.device, gpu)) {
             Some(rendered) => inputs.import(&mut encoder, rendered),
             None if *has_still => {}
             None => inputs.upload(frame),
+        }
+        if let Some(geometry) = at_samples {
+            inputs.upload_geometry(geometry);
         }
         *has_still = self.is_still;
         inputs.foveate(&mut encoder, std::slice::from_ref(view), None)?;
@@ -449,6 +486,11 @@ impl Run {
             ..*desc
         };
         match kind {
+            RunKind::Oracle if desc.settings.foveation.filter == Filter::Sparse => {
+                let expected =
+                    "another one: the oracle's best level of detail is not defined for moving samples".into();
+                Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected })?
+            }
             RunKind::Oracle => Ok(Self::Oracle { best: None }),
             RunKind::PostProcess(settings) => match backend {
                 Backend::Cpu => Ok(Self::Cpu(Box::new(CpuAfterimage::new(&of(settings))?))),
@@ -506,7 +548,10 @@ fn on_cpu(
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
-    let (depth, motion) = (source.depth.as_ref(), source.motion.as_ref());
+    let (depth, motion) = match candidate.geometry {
+        Some(geometry) => (geometry.depth.as_ref(), geometry.motion.as_ref()),
+        None => (source.depth.as_ref(), source.motion.as_ref()),
+    };
     let frame = Frame {
         depth: depth.as_ref().map(from_ref),
         motion: motion.as_ref().map(from_ref),

@@ -13,6 +13,7 @@ mod images;
 mod controls;
 mod decisions;
 mod sequences;
+mod sparse;
 mod surfaces_controls;
 mod surfaces_lifecycle;
 mod surfaces_scenes;

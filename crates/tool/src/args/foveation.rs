@@ -1,12 +1,13 @@
 //! Options of the foveation simulator.
 
 use afterimage::{Filter, Foveation};
+use afterimage_lab::pipeline::SparseGeometry;
 use clap::{Args, ValueEnum};
 
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, or none
+    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, one moving sample a block, or none
     #[arg(long = "foveation", value_enum, default_value = "mip")]
     pub filter: FilterName,
     /// Diameter of the full-rate region, degrees
@@ -24,6 +25,9 @@ pub struct FoveationArgs {
     /// Block edge beyond the middle region, pixels, a power of two
     #[arg(long, default_value_t = 16, value_name = "N")]
     pub rate_far: u32,
+    /// With --foveation sparse: depth and motion of every pixel, or of the nearest sample
+    #[arg(long = "geometry", alias = "sparse-geometry", value_enum, default_value = "full")]
+    pub geometry: GeometryName,
 }
 
 impl FoveationArgs {
@@ -34,6 +38,7 @@ impl FoveationArgs {
                 FilterName::Mip => Filter::Mip,
                 FilterName::Gauss => Filter::Gauss,
                 FilterName::Block => Filter::Block,
+                FilterName::Sparse => Filter::Sparse,
                 FilterName::Off => Filter::Off,
             },
             fovea_deg: self.fovea,
@@ -54,6 +59,8 @@ pub enum FilterName {
     Gauss,
     /// One point sample per block
     Block,
+    /// One point sample per block that moves every frame, in regions without blends
+    Sparse,
     /// Full rate everywhere
     Off,
 }
@@ -65,7 +72,35 @@ impl FilterName {
             Self::Mip => "mip",
             Self::Gauss => "gauss",
             Self::Block => "block",
+            Self::Sparse => "sparse",
             Self::Off => "off",
+        }
+    }
+}
+
+/// Values of `--geometry`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GeometryName {
+    /// At every pixel, as from a visibility buffer or a prepass
+    Full,
+    /// At the samples alone, as from small views that are enlarged
+    Samples,
+}
+
+impl GeometryName {
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::Samples => "samples",
+        }
+    }
+
+    /// The lab's option of this name.
+    pub fn geometry(self) -> SparseGeometry {
+        match self {
+            Self::Full => SparseGeometry::Full,
+            Self::Samples => SparseGeometry::Samples,
         }
     }
 }

@@ -16,7 +16,7 @@ use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric;
 use afterimage_lab::metric::{Flip, Reference, References};
 use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
+use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, Step};
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
@@ -26,6 +26,8 @@ pub struct Clip {
     pub title: String,
     pub geometry: ViewGeometry,
     pub foveation: Foveation,
+    /// Depth and motion of sparse frames.
+    pub sparse_geometry: SparseGeometry,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
@@ -146,7 +148,8 @@ impl Clip {
         let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
-        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?;
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?
+            .with_sparse(self.sparse_geometry, SampleOrder::default());
         if self.trust {
             pipeline = pipeline.with_trust();
         }

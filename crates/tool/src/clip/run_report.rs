@@ -15,6 +15,8 @@ pub struct RunFacts<'a> {
     pub seed: u64,
     /// Simulator filter or sampling pattern that foveates the frames.
     pub simulator: &'static str,
+    /// Where sparse frames have depth and motion; `None` for other frames.
+    pub geometry: Option<&'static str>,
     pub gaze: &'a str,
     pub gaze_map: &'a str,
     pub start_s: f64,
@@ -46,6 +48,8 @@ struct RunReport<'a> {
 #[derive(Serialize)]
 struct FoveationReport {
     simulator: &'static str,
+    /// Where depth and motion are known, full or samples; null unless frames are sparse.
+    geometry: Option<&'static str>,
     fovea_deg: f32,
     mid_deg: f32,
     blend_deg: f32,
@@ -79,6 +83,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         backend: BackendReport::of(&clip.backend),
         foveation: FoveationReport {
             simulator: facts.simulator,
+            geometry: facts.geometry,
             fovea_deg: foveation.fovea_deg,
             mid_deg: foveation.mid_deg,
             blend_deg: foveation.blend_deg,

@@ -9,7 +9,7 @@ use crate::method_report::MethodReport;
 use crate::output::Output;
 use afterimage::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::pipeline::RunKind;
+use afterimage_lab::pipeline::{RunKind, SparseGeometry};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -44,6 +44,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         fps: FPS,
         seed: 0,
         simulator: "mip",
+        geometry: None,
         gaze: GAZE,
         gaze_map: track.map,
         start_s: 0.0,
@@ -53,6 +54,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation, facts.simulator),
         geometry,
         foveation,
+        sparse_geometry: SparseGeometry::Full,
         methods: vec![
             ("none", post_process(Method::None)),
             ("wrs", post_process(Method::Wrs)),

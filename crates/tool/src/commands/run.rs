@@ -13,6 +13,7 @@ use crate::clip::ClipReport;
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::failure::Failure;
 use crate::output::Output;
+use afterimage::Filter;
 use afterimage_lab::device::Backend;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
@@ -161,6 +162,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         fps: plan.fps,
         seed: args.seed,
         simulator: simulator(args),
+        geometry: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.geometry.name()),
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,

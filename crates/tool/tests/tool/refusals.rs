@@ -21,6 +21,10 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
     refuses(&run(still, &out, &["--fovea", "NaN"]), &["fovea"]);
     refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);
+    let sparse = ["--foveation", "sparse", "--method"];
+    refuses(&run(still, &out, &[&sparse[..], &["none,smr"]].concat()), &["smr on sparse frames is not there yet"]);
+    refuses(&run(still, &out, &[&sparse[..], &["oracle"]].concat()), &["oracle", "moving samples"]);
+    refuses(&run(still, &out, &["--geometry", "samples"]), &["--geometry samples", "--foveation sparse"]);
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps", "above 0"]);
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);

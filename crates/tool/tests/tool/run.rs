@@ -126,6 +126,37 @@ fn both_backends_write_the_same_bytes() {
 }
 
 #[test]
+fn both_backends_write_the_same_bytes_of_sparse_frames() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let methods = ["none", "taa", "wrs"];
+    for geometry in ["full", "samples"] {
+        for backend in ["cpu", "gpu"] {
+            let out = folder.text(&format!("{geometry}/{backend}"));
+            let more = ["--format", "exr", "--method", "none,taa,wrs", "--backend", backend, "--foveation", "sparse"];
+            succeeds(&run("analytic:occluder", &out, &[SMALL, &more, &["--geometry", geometry]].concat()));
+        }
+        let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{geometry}/{b}/report.json"))));
+        assert_eq!(cpu["foveation"]["simulator"], "sparse");
+        assert_eq!(cpu["foveation"]["geometry"], geometry);
+        if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+            return;
+        }
+        for method in methods {
+            for key in ["psnr_db", "flushed", "replaced", "nonfinite_in", "bytes_per_pixel"] {
+                assert_eq!(cpu["methods"][method][key], gpu["methods"][method][key], "{method}.{key}");
+            }
+            for i in 0..4 {
+                let path = |b: &str| folder.path(&format!("{geometry}/{b}/{method}/{i:06}.exr"));
+                assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     let folder = Folder::new();
     let out = folder.text("out");

@@ -1,13 +1,13 @@
 //! Plan of a run, checked before its first frame.
 
 use super::{RunArgs, simulator};
-use crate::args::MethodName;
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
+use crate::args::{GeometryName, MethodName};
 use crate::clip::{Clip, title};
 use crate::failure::Failure;
-use afterimage::{Foveation, Method};
+use afterimage::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::source::SourceInfo;
@@ -27,9 +27,12 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
     {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
+    let foveation = foveation(args)?;
+    if args.foveation.geometry != GeometryName::Full && foveation.filter != Filter::Sparse {
+        return refuse("--geometry samples: applies to sparse frames only; add --foveation sparse".into());
+    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
-    let foveation = foveation(args)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
     for &method in &args.method {
         if methods.iter().any(|m| m.0 == method.name()) {
@@ -45,6 +48,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             title: title(&info.name, info.size, track.px.len(), fps, &foveation, simulator(args)),
             geometry,
             foveation,
+            sparse_geometry: args.foveation.geometry.geometry(),
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,
@@ -75,10 +79,15 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
 /// Pipeline stage of a method with these options. The oracle needs a still input.
 pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
+    let foveation = foveation(args)?;
     let method = match method {
         MethodName::Post(method) => method,
         MethodName::Oracle if sampling.is_some() => {
             let text = "--method oracle: needs simulated foveation; leave out --sampling";
+            return Err(Failure::Input(text.into()));
+        }
+        MethodName::Oracle if foveation.filter == Filter::Sparse => {
+            let text = "--method oracle: is not defined for moving samples; use another --foveation, or leave it out";
             return Err(Failure::Input(text.into()));
         }
         MethodName::Oracle if is_still => return Ok(RunKind::Oracle),
@@ -89,7 +98,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             )));
         }
     };
-    let settings = args.wrs.settings(method, args.seed, sampling.is_some());
+    let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
     settings.validate()?;
     #[cfg(feature = "ablation")]
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {

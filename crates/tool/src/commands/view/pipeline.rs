@@ -5,10 +5,10 @@ use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::wgpu::Texture;
-use afterimage::{ContextDesc, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Filter, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
+use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, Geometry, SparseGeometry};
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -30,7 +30,10 @@ pub struct ViewPipeline {
     /// While the inputs are checked.
     examiner: Option<Examiner>,
     desc: ContextDesc,
+    sparse_geometry: SparseGeometry,
     // Properties of the uploaded frame.
+    /// Depth and motion, if sparse frames have them at their samples alone.
+    uploaded: Option<Geometry>,
     previous_from_current: Option<[[f32; 4]; 4]>,
     cut: bool,
     /// Frames since the last history reset.
@@ -47,6 +50,7 @@ impl ViewPipeline {
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
         state: &State,
+        sparse_geometry: SparseGeometry,
         settings: &dyn Fn(Shows) -> Settings,
     ) -> Result<Self, Failure> {
         let desc = desc(&geometry, settings(Shows::Post(Method::None)));
@@ -55,6 +59,8 @@ impl ViewPipeline {
             runs: vec![],
             examiner: None,
             desc,
+            sparse_geometry,
+            uploaded: None,
             previous_from_current: None,
             cut: false,
             index: 0,
@@ -112,6 +118,8 @@ impl ViewPipeline {
     /// Uploads a full-rate frame.
     pub fn upload(&mut self, frame: &SourceFrame) {
         self.inputs.upload(frame);
+        let at_samples = self.sparse_geometry == SparseGeometry::Samples;
+        self.uploaded = at_samples.then(|| Geometry { depth: frame.depth.clone(), motion: frame.motion.clone() });
         self.previous_from_current = frame.previous_from_current;
         self.cut = frame.cut;
     }
@@ -125,8 +133,19 @@ impl ViewPipeline {
         state: &State,
         times: &mut PassTimes,
     ) -> Result<(), Failure> {
+        let foveation = &self.desc.settings.foveation;
+        let is_sparse = foveation.filter == Filter::Sparse;
+        let lattices = is_sparse.then(|| foveation.lattices(&self.geometry, gaze_px, self.index));
+        if let Some(full) = &self.uploaded {
+            let at_samples = lattices.map(|lattices| {
+                let (depth, motion) = (full.depth.as_ref(), full.motion.as_ref());
+                Geometry::at_samples(depth, motion, &lattices, self.geometry.size_px())
+            });
+            self.inputs.upload_geometry(at_samples.as_ref().unwrap_or(full));
+        }
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
+            lattices,
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
         let gpu = &self.gpu;
@@ -136,7 +155,8 @@ impl ViewPipeline {
         let reset = if cut || self.index == 0 { Reset::All } else { Reset::None };
         let frame = self.inputs.frame(&views, self.index, reset, false);
         let frame = if again { self.inputs.again(frame) } else { frame };
-        if state.is_examined {
+        // The doctor does not know sparse frames.
+        if state.is_examined && !is_sparse {
             let examiner = match &mut self.examiner {
                 Some(examiner) => examiner,
                 none => none.insert(Examiner::new(gpu, &self.desc)?),

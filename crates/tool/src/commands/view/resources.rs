@@ -35,7 +35,9 @@ impl DeviceResources {
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
         Ok(Self {
-            pipeline: ViewPipeline::new(gpu, geometry, state, &|shows| setup.settings(state, shows))?,
+            pipeline: ViewPipeline::new(gpu, geometry, state, setup.args.foveation.geometry.geometry(), &|shows| {
+                setup.settings(state, shows)
+            })?,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),
             screen: Screen::new(gpu, surface.format()),

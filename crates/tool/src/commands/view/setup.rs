@@ -2,6 +2,7 @@
 
 use super::ViewArgs;
 use super::state::{Shows, State};
+use crate::args::FilterName;
 use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::failure::Failure;
@@ -33,7 +34,12 @@ impl Setup {
         let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
         let track = gaze.resolve(&geometry, fps, input::frames(args.frames, info))?.px;
         let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
-        let state = setup.state();
+        let mut state = setup.state();
+        for &side in state.shown_sides() {
+            setup.settings(&state, state.sides[side as usize]).validate()?;
+        }
+        // Keys lead to the other methods and filters.
+        state.filter = FilterName::Mip;
         for method in Method::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }

@@ -130,6 +130,16 @@ pub struct State {
 impl State {
     /// Applies an action.
     pub fn apply(&mut self, action: Action) -> Effect {
+        let effect = self.change(action);
+        // Until smr has a pass for sparse frames.
+        let shows_smr = self.shown_sides().iter().any(|&side| self.sides[side as usize] == Shows::Post(Method::Smr));
+        if self.filter == FilterName::Sparse && shows_smr {
+            self.filter = next(self.filter);
+        }
+        effect
+    }
+
+    fn change(&mut self, action: Action) -> Effect {
         match action {
             Action::Show(Side::Right, _) | Action::Next(Side::Right) if !self.is_split => {
                 self.is_split = true;
@@ -307,6 +317,9 @@ pub(super) mod tests {
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
         let filters: Vec<_> = (0..4).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
         assert_eq!(filters, ["gauss", "block", "off", "mip"]);
+        state.sides[0] = Shows::Post(Method::Taa);
+        let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
+        assert_eq!(filters, ["gauss", "block", "sparse", "off", "mip"]);
     }
 
     #[test]

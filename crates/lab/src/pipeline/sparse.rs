@@ -1,0 +1,116 @@
+//! Sparse frames: lattices of samples that move every frame, and what a renderer knows of the pixels between.
+
+use afterimage::kernel::lattice::{between, offset_px};
+use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
+
+/// Depth and motion of a sparse frame. Default: [`Full`](Self::Full).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SparseGeometry {
+    /// At every pixel: a visibility buffer, a prepass, or shading-rate hardware.
+    #[default]
+    Full,
+    /// At the samples alone: a pixel has those of the nearest sample of its lattice, as after enlarging small views.
+    Samples,
+}
+
+/// Order in which the pixels of a block are sampled. Default: [`Bayer`](Self::Bayer).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SampleOrder {
+    /// Bayer's matrix: the order of [`Foveation::lattices`].
+    #[default]
+    Bayer,
+    /// Row by row.
+    Scanline,
+    /// The (0,2)-sequence of Sobol: any power of two of successive frames has as many samples in all columns, rows and
+    /// boxes of a size.
+    Sobol,
+}
+
+impl SampleOrder {
+    /// All orders.
+    pub const ALL: [Self; 3] = [Self::Bayer, Self::Scanline, Self::Sobol];
+
+    /// Position of the sample in a block of `step` x `step` pixels (a power of two, at most 256) in frame `index`.
+    pub fn offset_px(self, index: u64, step: u32) -> [u32; 2] {
+        let turn = (index % u64::from(step * step)) as u32;
+        match self {
+            Self::Bayer => offset_px(index, step),
+            Self::Scanline => [turn % step, turn / step],
+            Self::Sobol => {
+                let mut direction = 1 << 31;
+                let mut second = 0;
+                for bit in 0..u32::BITS {
+                    second ^= if turn >> bit & 1 == 1 { direction } else { 0 };
+                    direction ^= direction >> 1;
+                }
+                // The highest log2(step) bits.
+                [turn.reverse_bits(), second].map(|v| ((u64::from(v) * u64::from(step)) >> 32) as u32)
+            }
+        }
+    }
+
+    /// [`Foveation::lattices`] with samples in this order.
+    ///
+    /// # Panics
+    /// Never: the stack differs from a valid one in the offsets alone.
+    pub fn lattices(self, foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
+        let stack = foveation.lattices(geometry, gaze_px, index);
+        let moved = |lattice: &Lattice| {
+            let ([low, _], offset) = (lattice.covered_px(), self.offset_px(index, lattice.step));
+            Lattice { first_px: [low[0] + offset[0], low[1] + offset[1]], ..*lattice }
+        };
+        let moved: Vec<_> = stack.as_slice().iter().map(moved).collect();
+        Lattices::new(&moved).expect("only the offsets are new")
+    }
+}
+
+/// Level of detail of every pixel: log2 of the step of its lattice.
+pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
+    Image::from_fn_parallel(size_px, |px| lattices.at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32))
+}
+
+/// The nearest sample of the lattice that a pixel belongs to; `None` if all its samples lie beyond the frame's edge.
+/// `size_px`: of the frame.
+pub fn nearest_sample(lattices: &Lattices, px: [u32; 2], size_px: [u32; 2]) -> Option<[u32; 2]> {
+    let lattice = lattices.at(px)?;
+    let mut nearest = [0; 2];
+    for i in 0..2 {
+        let first = lattice.first_px[i];
+        let inside = size_px[i].saturating_sub(first).div_ceil(lattice.step).min(lattice.points[i]);
+        if inside == 0 {
+            return None;
+        }
+        let samples = between(px[i], first, lattice.step.ilog2(), inside);
+        nearest[i] = first + lattice.step * samples.points[usize::from(samples.fraction >= 0.5)];
+    }
+    Some(nearest)
+}
+
+/// Depth and motion of a frame.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// As [`SourceFrame::depth`](crate::frame::SourceFrame::depth).
+    pub depth: Option<Image<f32>>,
+    /// As [`SourceFrame::motion`](crate::frame::SourceFrame::motion).
+    pub motion: Option<Image<[f32; 2]>>,
+}
+
+impl Geometry {
+    /// Depth and motion of a frame of `size_px` that are known at the samples alone: each pixel has those of the
+    /// nearest one. Where a lattice has none, depth is NaN and motion 0.
+    pub fn at_samples(
+        depth: Option<&Image<f32>>,
+        motion: Option<&Image<[f32; 2]>>,
+        lattices: &Lattices,
+        size_px: [u32; 2],
+    ) -> Self {
+        let nearest = |px| nearest_sample(lattices, px, size_px).map(|[x, y]: [u32; 2]| (x as usize, y as usize));
+        let depth_of = |image: &Image<f32>| {
+            Image::from_fn_parallel(size_px, |px| nearest(px).map_or(f32::NAN, |(x, y)| image.at(x, y)))
+        };
+        let motion_of = |image: &Image<[f32; 2]>| {
+            Image::from_fn_parallel(size_px, |px| nearest(px).map_or([0.0; 2], |(x, y)| image.at(x, y)))
+        };
+        Self { depth: depth.map(depth_of), motion: motion.map(motion_of) }
+    }
+}

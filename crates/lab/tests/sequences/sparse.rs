@@ -1,0 +1,170 @@
+//! Sparse frames in the pipeline: lattices that move, geometry at samples, and both executors alike.
+
+use afterimage::kernel::lattice::offset_px;
+use afterimage::{Filter, Foveation, Image, Method, Settings};
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::pipeline::{
+    Geometry, Pipeline, RunKind, SampleOrder, SparseGeometry, Step, levels, nearest_sample,
+};
+use afterimage_lab::source::{AnalyticSource, FrameSource};
+use std::collections::HashSet;
+
+const SIZE: [u32; 2] = [160, 90];
+const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+
+fn foveation() -> Foveation {
+    Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() }
+}
+
+fn kinds() -> Vec<RunKind> {
+    METHODS.map(|method| RunKind::PostProcess(Settings { method, ..Settings::paper() })).to_vec()
+}
+
+fn source(scene: &str) -> AnalyticSource {
+    AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()
+}
+
+fn gaze(index: u64) -> [f32; 2] {
+    [60.0 + 7.0 * index as f32, 45.0 - 3.0 * index as f32]
+}
+
+/// Frames of a scene through a pipeline.
+fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Backend) -> Vec<Step> {
+    let mut source = source(scene);
+    let pipeline = Pipeline::new(*source.view(), foveation(), &kinds(), source.info().still, &[], backend).unwrap();
+    let mut pipeline = pipeline.with_sparse(geometry, order);
+    (0..6).map(|i| pipeline.step(i, &source.frame(i).unwrap(), Some(gaze(i))).unwrap()).collect()
+}
+
+#[test]
+fn both_executors_agree_on_sparse_frames() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let gpu = Backend::Gpu(Headless::find(true).expect("there is an adapter"));
+    for scene in ["occluder", "still"] {
+        for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
+            let of = |backend| steps(scene, geometry, SampleOrder::Sobol, backend);
+            for (index, (cpu, gpu)) in of(&Backend::Cpu).iter().zip(&of(&gpu)).enumerate() {
+                for (method, (cpu, gpu)) in METHODS.iter().zip(cpu.outputs.iter().zip(&gpu.outputs)) {
+                    let at = format!("{scene}, {geometry:?}, {method:?}, frame {index}");
+                    assert_eq!(cpu.image, gpu.image, "{at}");
+                    assert_eq!(cpu.stats, gpu.stats, "{at}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn foveated_frames_have_the_samples_of_the_full_ones() {
+    let mut source = source("lateral");
+    let view = *source.view();
+    let steps = steps("lateral", SparseGeometry::Full, SampleOrder::Bayer, &Backend::Cpu);
+    let mut seen = HashSet::new();
+    for (index, step) in steps.iter().enumerate() {
+        let full = source.frame(index as u64).unwrap().color;
+        let lattices = foveation().lattices(&view, step.gaze_px, index as u64);
+        assert_eq!(step.lods, levels(&lattices, SIZE));
+        let mut samples = 0;
+        for y in 0..SIZE[1] {
+            for x in 0..SIZE[0] {
+                let lattice = lattices.at([x, y]).unwrap();
+                if lattice.samples([x, y]) {
+                    let at = (x as usize, y as usize);
+                    assert_eq!(step.outputs[0].image.at(at.0, at.1), full.at(at.0, at.1));
+                    samples += 1;
+                }
+            }
+        }
+        assert!(samples < SIZE[0] * SIZE[1] / 3, "{samples} samples");
+        seen.insert(lattices.as_slice().last().unwrap().offset_px());
+        println!("frame {index}: {samples} samples of {}", SIZE[0] * SIZE[1]);
+    }
+    assert_eq!(seen.len(), steps.len(), "samples move every frame");
+}
+
+#[test]
+fn geometry_at_samples_is_that_of_the_nearest_sample() {
+    let mut source = source("occluder");
+    let frame = source.frame(1).unwrap();
+    let lattices = foveation().lattices(source.view(), [70.0, 40.0], 5);
+    let geometry = Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, SIZE);
+    let (full, depth) = (frame.depth.unwrap(), geometry.depth.unwrap());
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let lattice = lattices.at([x, y]).unwrap();
+            let [sx, sy] = nearest_sample(&lattices, [x, y], SIZE).unwrap();
+            assert!(lattice.samples([sx, sy]), "({x}, {y})");
+            let reach = lattice.step;
+            assert!(x.abs_diff(sx) < reach && y.abs_diff(sy) < reach, "({x}, {y}) has ({sx}, {sy})");
+            if lattice.samples([x, y]) {
+                assert_eq!([sx, sy], [x, y]);
+            }
+            assert_eq!(depth.at(x as usize, y as usize), full.at(sx as usize, sy as usize));
+        }
+    }
+    // It matters: history is rejected at other pixels.
+    let of = |geometry| steps("occluder", geometry, SampleOrder::Bayer, &Backend::Cpu);
+    let rejected = |steps: Vec<Step>| steps.iter().map(|s| s.outputs[2].stats.rejected()).sum::<u64>();
+    assert_ne!(rejected(of(SparseGeometry::Full)), rejected(of(SparseGeometry::Samples)));
+}
+
+#[test]
+fn every_order_samples_each_pixel_of_a_block_once() {
+    for order in SampleOrder::ALL {
+        for step in [1, 2, 4, 8, 16, 256] {
+            let turn = u64::from(step * step);
+            let offsets: HashSet<_> = (0..turn).map(|index| order.offset_px(index, step)).collect();
+            assert_eq!(offsets.len() as u64, turn, "{order:?}, step {step}");
+            assert!(offsets.iter().flatten().all(|&v| v < step));
+            assert_eq!(order.offset_px(turn + 3, step), order.offset_px(3, step));
+        }
+    }
+    assert_eq!(SampleOrder::Bayer.offset_px(5, 8), offset_px(5, 8));
+    // As many samples in all columns, rows and quarters of a block after as many frames.
+    let of = |index| SampleOrder::Sobol.offset_px(index, 8);
+    for first in [0, 8, 16, 24] {
+        let columns: HashSet<_> = (first..first + 8).map(|i| of(i)[0]).collect();
+        let rows: HashSet<_> = (first..first + 8).map(|i| of(i)[1]).collect();
+        assert_eq!((columns.len(), rows.len()), (8, 8));
+    }
+    let quarters: HashSet<_> = (0..4).map(|i| of(i).map(|v| v / 4)).collect();
+    assert_eq!(quarters.len(), 4);
+}
+
+#[test]
+fn lattices_of_every_order_cover_the_view() {
+    let source = source("still");
+    for order in SampleOrder::ALL {
+        for index in 0..16 {
+            let plain = foveation().lattices(source.view(), [10.0, 80.0], index);
+            let moved = order.lattices(&foveation(), source.view(), [10.0, 80.0], index);
+            let same = |a: &[afterimage::Lattice], b: &[afterimage::Lattice]| {
+                a.iter().zip(b).all(|(a, b)| a.covered_px() == b.covered_px() && a.points == b.points)
+            };
+            assert!(same(plain.as_slice(), moved.as_slice()));
+            assert!(order != SampleOrder::Bayer || plain == moved);
+        }
+    }
+}
+
+#[test]
+fn the_oracle_is_refused() {
+    let source = source("still");
+    let new = |kind| Pipeline::new(*source.view(), foveation(), &[kind], true, &[], &Backend::Cpu).err();
+    let error = new(RunKind::Oracle).unwrap().to_string();
+    assert!(error.contains("the oracle's best level of detail is not defined for moving samples"), "{error}");
+    assert!(new(RunKind::PostProcess(Settings::paper())).is_none());
+}
+
+#[test]
+fn a_lattice_beyond_the_edge_has_no_geometry() {
+    let mut source = source("occluder");
+    let frame = source.frame(0).unwrap();
+    let far = afterimage::Lattice::covering(256, [0, 0], SIZE, [200, 0]);
+    let lattices = afterimage::Lattices::new(&[far]).unwrap();
+    let geometry = Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, SIZE);
+    assert!(geometry.depth.unwrap().pixels().iter().all(|z| z.is_nan()));
+    assert_eq!(geometry.motion, frame.motion.map(|_| Image::filled(SIZE, [0.0; 2])));
+}

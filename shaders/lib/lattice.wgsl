@@ -1,0 +1,41 @@
+// Twin of src/kernel/lattice.rs.
+
+const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
+
+struct Between {
+    points: vec2<u32>,
+    fraction: f32,
+}
+
+// lattice::between
+fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
+    // The shift of a signed number rounds down.
+    let distance = i32(px) - i32(first);
+    let low = distance >> level;
+    let fraction = f32(distance - (low << level)) * bitcast<f32>((127u - level) << 23u);
+    let points = clamp(vec2<i32>(low, low + 1), vec2<i32>(0), vec2<i32>(i32(count) - 1));
+    return Between(vec2<u32>(points), fraction);
+}
+
+// lattice::point_weight
+fn point_weight(fraction: f32, point: u32) -> f32 {
+    return select(fraction, 1.0 - fraction, point == 0u);
+}
+
+struct SampleMean {
+    sum: vec4<f32>,
+    weight: f32,
+}
+
+// lattice::add_sample
+fn add_sample(mean: SampleMean, sampled: vec4<f32>, usable: bool, sample_weight: f32) -> SampleMean {
+    if !usable {
+        return mean;
+    }
+    return SampleMean(mean.sum + sampled * sample_weight, mean.weight + sample_weight);
+}
+
+// lattice::sample_mean
+fn sample_mean(mean: SampleMean) -> vec4<f32> {
+    return mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT));
+}

@@ -1,0 +1,40 @@
+//! Every pixel of a sparse frame, for methods that read whole frames: samples unchanged, and between them linear
+//! interpolation without those that are not finite. Twin: `shaders/pass/fill_pass.wgsl`.
+
+use super::Frame;
+use crate::image::Image;
+use crate::kernel::lattice::{SampleMean, add_sample, point_weight, sample_mean};
+use crate::kernel::sanitize;
+use crate::uniforms::{LatticeUniforms, ViewLattices};
+use glam::Vec3;
+
+/// Filled colors of all views; empty unless the frame is sparse.
+pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2]) -> Vec<Image<[f32; 3]>> {
+    let views = frame.views.iter().zip(frame.color);
+    let filled = views.filter_map(|(view, color)| {
+        let lattices = LatticeUniforms::of_view(view.lattices.as_ref()?, size_px);
+        Some(Image::from_fn_parallel(size_px, |px| pixel(&lattices, color, px)))
+    });
+    filled.collect()
+}
+
+fn pixel(lattices: &ViewLattices, color: &Image<[f32; 3]>, px: [u32; 2]) -> [f32; 3] {
+    let lattice = LatticeUniforms::at(lattices, px);
+    let Some([x, y]) = lattice.around(px) else { return [f32::NAN; 3] };
+    let sample_at = |point: [u32; 2]| {
+        let [x, y] = lattice.texel_of(point);
+        color.at(x as usize, y as usize)
+    };
+    if x.fraction == 0.0 && y.fraction == 0.0 {
+        return sample_at([x.points[0], y.points[0]]);
+    }
+    let mut mean = SampleMean::default();
+    for tap in 0..4 {
+        let (right, below) = (tap & 1, tap >> 1);
+        let given = sample_at([x.points[right as usize], y.points[below as usize]]);
+        let (sampled, usable) = sanitize::color(Vec3::from(given));
+        let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
+        mean = add_sample(mean, sampled.extend(1.0), usable, share);
+    }
+    if mean.weight == 0.0 { [f32::NAN; 3] } else { sample_mean(mean).truncate().to_array() }
+}

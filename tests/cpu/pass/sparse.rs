@@ -1,0 +1,128 @@
+//! Sparse frames, filled for the methods that read whole ones.
+
+use super::*;
+use afterimage::{Filter, Foveation, Lattice, Lattices};
+
+const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+
+fn settings(method: Method) -> Settings {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() };
+    Settings { method, foveation, ..Settings::paper() }
+}
+
+/// First frame of a context with this color and these lattices.
+fn first(method: Method, color: &Color, lattices: Lattices) -> (Color, FrameStats) {
+    let mut post = context(settings(method));
+    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
+    facts.lattices = Some(lattices);
+    let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
+    let stats = post.process(&Images::of(&[OneView::new(facts, color)]).frame(0), &mut out).unwrap();
+    let [out] = out;
+    (out, stats)
+}
+
+fn stack(offset: [u32; 2]) -> Lattices {
+    let fine = Lattice::covering(2, [16, 8], [40, 30], offset.map(|v| v % 2));
+    Lattices::new(&[fine, Lattice::covering(8, [0, 0], SIZE, offset)]).unwrap()
+}
+
+#[test]
+fn samples_are_shown_unchanged_and_nothing_else_is_read() {
+    let full = noise(SIZE, "samples");
+    for method in METHODS {
+        for offset in [[0, 0], [3, 6], [7, 7]] {
+            let lattices = stack(offset);
+            let is_sample = |px: [u32; 2]| lattices.at(px).unwrap().samples(px);
+            let is_read = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
+            let holed =
+                Image::from_fn(
+                    SIZE,
+                    |px| {
+                        if is_read(px) { full.at(px[0] as usize, px[1] as usize) } else { [f32::NAN; 3] }
+                    },
+                );
+            let (out, stats) = first(method, &holed, lattices);
+            assert_eq!((stats.nonfinite, stats.pixels), (0, 64 * 48), "{method:?}");
+            assert_eq!(out, first(method, &full, lattices).0, "{method:?}");
+            for y in 0..SIZE[1] {
+                for x in (0..SIZE[0]).filter(|&x| is_sample([x, y])) {
+                    assert_eq!(out.at(x as usize, y as usize), full.at(x as usize, y as usize));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ramp_is_reproduced_between_samples_and_a_constant_everywhere() {
+    let ramp = Image::from_fn(SIZE, |[x, y]| [x as f32 / 64.0, y as f32 / 64.0, (x + y) as f32 / 128.0]);
+    let lattices = stack([0, 0]);
+    let (out, _) = first(Method::None, &ramp, lattices);
+    let error = |[x, y]: [usize; 2]| {
+        let (a, b) = (ramp.at(x, y), out.at(x, y));
+        (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
+    };
+    // Up to the last samples of the coarse lattice, and of the fine one.
+    let worst = (0..=40).flat_map(|y| (0..=56).map(move |x| [x, y])).filter(|&[x, y]| {
+        let is_fine = lattices.at([x as u32, y as u32]).unwrap().step == 2;
+        !is_fine || x <= 38 && y <= 28
+    });
+    assert!(worst.map(error).fold(0.0, f32::max) < 1e-6);
+    let (out, _) = first(Method::None, &Image::filled(SIZE, [0.25, 0.5, 0.75]), stack([5, 2]));
+    assert!(out.pixels().iter().all(|&c| c == [0.25, 0.5, 0.75]));
+}
+
+#[test]
+fn samples_that_are_not_finite_are_left_out() {
+    let far = Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [4, 4])]).unwrap();
+    let bad = Image::from_fn(SIZE, |px| if px == [20, 20] { [0.5, f32::INFINITY, 0.5] } else { [0.5; 3] });
+    let (out, stats) = first(Method::None, &bad, far);
+    // Its neighbours have three samples more; its own pixel has none.
+    assert_eq!(stats.nonfinite, 1);
+    let black = |c: &[f32; 3]| *c == [0.0; 3];
+    assert_eq!(out.pixels().iter().position(black), Some(20 * 64 + 20));
+    assert!(out.pixels().iter().filter(|c| !black(c)).all(|c| (c[0] - 0.5).abs() < 1e-6));
+    let (_, stats) = first(Method::None, &Image::filled(SIZE, [f32::NAN; 3]), far);
+    assert_eq!(stats.nonfinite, 64 * 48);
+}
+
+#[test]
+fn an_atlas_is_read_where_its_lattices_are() {
+    let full = noise(SIZE, "atlas");
+    let lattices = stack([3, 5]);
+    let (atlas, size) = lattices.in_atlas();
+    let mut packed = Image::filled(size, [f32::NAN; 3]);
+    for l in atlas.as_slice() {
+        let [left, top] = l.atlas_texel.unwrap();
+        for (i, j) in (0..l.points[1]).flat_map(|j| (0..l.points[0]).map(move |i| (i, j))) {
+            let [x, y] = [l.first_px[0] + l.step * i, l.first_px[1] + l.step * j];
+            if x < SIZE[0] && y < SIZE[1] {
+                packed.pixels_mut()[((top + j) * size[0] + left + i) as usize] = full.at(x as usize, y as usize);
+            }
+        }
+    }
+    for method in METHODS {
+        assert_eq!(first(method, &packed, atlas), first(method, &full, lattices), "{method:?}");
+    }
+}
+
+#[test]
+fn smr_and_the_doctor_refuse_sparse_frames() {
+    let desc = |method| ContextDesc { settings: settings(method), ..ContextDesc::new(SIZE) };
+    let error = CpuAfterimage::new(&desc(Method::Smr)).unwrap_err().to_string();
+    assert_eq!(error, "method is smr: expected none, taa or wrs: smr on sparse frames is not there yet");
+    let error = afterimage::cpu::Doctor::new(&desc(Method::Wrs), 0).unwrap_err().to_string();
+    assert!(error.contains("the doctor does not know sparse frames yet"), "{error}");
+}
+
+#[test]
+fn levels_of_detail_beside_lattices_are_refused() {
+    let mut post = context(settings(Method::Wrs));
+    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::Lost);
+    facts.lattices = Some(stack([0, 0]));
+    let (color, lod) = (noise(SIZE, "lod"), Image::filled(SIZE, 1.0));
+    let images = Images::of(&[OneView { lod: Some(&lod), ..OneView::new(facts, &color) }]);
+    let error = post.process(&images.frame(0), &mut [Image::filled(SIZE, [0.0; 3])]).unwrap_err().to_string();
+    assert_eq!(error, "lod of view 0 is given: expected None: the lattices say how coarse a sparse frame is");
+    assert!(!post.history().is_filled());
+}

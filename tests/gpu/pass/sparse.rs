@@ -1,0 +1,334 @@
+//! Sparse frames, filled for the methods that read whole ones.
+
+use super::rig::{Rig, View, make_texture, noise, noise_view};
+use afterimage::gpu::{Afterimage, Frame, Region, Textures};
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::{TextureFormat, TextureUsages};
+use afterimage::{
+    ContextDesc, Filter, Foveation, Image, Lattice, Lattices, Method, Reset, Sampler, Settings, ViewGeometry,
+};
+use afterimage_testing::Draws;
+
+const SIZE: [u32; 2] = [70, 41];
+const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+
+fn settings(method: Method) -> Settings {
+    let foveation = Foveation {
+        filter: Filter::Sparse,
+        fovea_deg: 12.0,
+        mid_deg: 30.0,
+        rate_mid: 2,
+        rate_far: 8,
+        ..Foveation::default()
+    };
+    Settings { method, foveation, ..Settings::paper() }
+}
+
+fn desc() -> ContextDesc {
+    ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }
+}
+
+/// Two views with lattices; some samples are not finite.
+fn sparse_views(index: u64, settings: &Settings) -> Vec<View> {
+    let view = |v: u32| {
+        let name = format!("sparse {index} {v}");
+        let mut view = noise_view(&name, &desc());
+        let mut draws = Draws::new(&name);
+        view.color = view.color.map(|c| if draws.uniform() < 0.1 { [f32::NAN, c[1], f32::INFINITY] } else { c });
+        let gaze_px = [draws.range(-20.0, 90.0), draws.range(-20.0, 60.0)];
+        view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, gaze_px, index + u64::from(v)));
+        view
+    };
+    (0..2).map(view).collect()
+}
+
+/// The same views with their samples in atlases of `size`, and NaN elsewhere.
+fn in_atlas(views: &[View], size: [u32; 2]) -> Vec<View> {
+    let moved = |view: &View| {
+        let lattices = view.facts.lattices.unwrap();
+        let (atlas, least) = lattices.in_atlas();
+        assert!(least[0] <= size[0] && least[1] <= size[1]);
+        let mut color = Image::filled(size, [f32::NAN; 3]);
+        for lattice in atlas.as_slice() {
+            let [left, top] = lattice.atlas_texel.unwrap();
+            for j in 0..lattice.points[1] {
+                for i in 0..lattice.points[0] {
+                    let [x, y] = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
+                    if x < SIZE[0] && y < SIZE[1] {
+                        let at = (top + j) as usize * size[0] as usize + (left + i) as usize;
+                        color.pixels_mut()[at] = view.color.at(x as usize, y as usize);
+                    }
+                }
+            }
+        }
+        let mut moved = view.clone();
+        (moved.color, moved.facts.lattices) = (color, Some(atlas));
+        moved
+    };
+    views.iter().map(moved).collect()
+}
+
+#[test]
+fn sparse_frames_are_bit_equal_on_both_executors() {
+    for method in METHODS {
+        let keyed = Settings { sampler: Sampler::AEs, ..settings(method) };
+        for settings in [settings(method)].into_iter().chain((method == Method::Wrs).then_some(keyed)) {
+            let Some(mut rig) = Rig::new(desc(), settings) else { return };
+            for index in 0..6 {
+                rig.scattered = index % 3 == 2;
+                let (made, _) = rig.both(index, Reset::None, &sparse_views(index, &settings));
+                assert!(made.stats.nonfinite > 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_atlas_gives_the_bits_of_full_images() {
+    for method in METHODS {
+        let settings = settings(method);
+        let (Some(mut full), Some(mut atlas)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else {
+            return;
+        };
+        let size = [80, 160];
+        atlas.resize_color(size);
+        for index in 0..4 {
+            let views = sparse_views(index, &settings);
+            let (expected, _) = full.both(index, Reset::None, &views);
+            atlas.scattered = index % 2 == 1;
+            let (made, _) = atlas.both(index, Reset::None, &in_atlas(&views, size));
+            assert_eq!(made, expected, "{method:?}, frame {index}");
+        }
+    }
+}
+
+#[test]
+fn what_lies_between_samples_is_not_read() {
+    for method in METHODS {
+        let settings = settings(method);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        let Some(mut other) = Rig::new(desc(), settings) else { return };
+        for index in 0..3 {
+            let views = sparse_views(index, &settings);
+            let mut changed = views.clone();
+            for view in &mut changed {
+                let lattices = view.facts.lattices.unwrap();
+                let width = SIZE[0] as usize;
+                for (i, c) in view.color.pixels_mut().iter_mut().enumerate() {
+                    let px = [(i % width) as u32, (i / width) as u32];
+                    if !lattices.as_slice().iter().any(|l| l.samples(px)) {
+                        *c = [f32::NAN, -3.0, 1e30];
+                    }
+                }
+            }
+            assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed));
+        }
+    }
+}
+
+#[test]
+fn lattices_without_a_sample_in_the_frame_have_no_candidates() {
+    let settings = settings(Method::None);
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+    // The last column of blocks of the finer lattice has its samples beyond the right edge.
+    let fine = Lattice::covering(4, [68, 0], [70, 41], [3, 0]);
+    let far = Lattice::covering(8, [0, 0], SIZE, [1, 2]);
+    let mut view = View::still(noise(SIZE, "beyond"), [20.0, 20.0]);
+    view.facts.lattices = Some(Lattices::new(&[fine, far]).unwrap());
+    let (made, _) = rig.both(0, Reset::None, &[view.clone()]);
+    assert_eq!(made.stats.nonfinite, 2 * 41);
+    assert!(made.shown.chunks(70).all(|row| row[68..] == [[0; 3]; 2] && row[..68].iter().all(|&c| c != [0; 3])));
+    // No sample at all.
+    view.facts.lattices = Some(Lattices::new(&[Lattice::covering(128, [0, 0], SIZE, [100, 0])]).unwrap());
+    let (made, _) = rig.both(1, Reset::None, &[view]);
+    assert_eq!(made.stats.nonfinite, 70 * 41);
+}
+
+#[test]
+fn a_wrong_fill_is_caught() {
+    let right = SHADERS.compose("fill_pass").source;
+    let planted = [
+        ("return sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);", "return vec4<f32>(0.5);"),
+        ("near.x.points[right], near.y.points[below]", "near.x.points[below], near.y.points[right]"),
+        ("point_weight(near.y.fraction, below)", "point_weight(near.y.fraction, right)"),
+        ("sampled.usable, share", "true, share"),
+        ("bitcast<f32>(sparse.missing)", "0.0"),
+        ("between(px.y, first.y", "between(px.y, first.x"),
+        ("+ point * sparse.views[view][lattice].stride", "+ point"),
+        ("i < LATTICES - 1u", "i < 1u"),
+        ("all(px < sparse.views[view][i].high_px)", "all(px <= sparse.views[view][i].high_px)"),
+        ("let view = frame.first_view + group.z;", "let view = group.z;"),
+        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.replace(text, instead);
+        assert_ne!(wrong, right, "{text}");
+        let settings = settings(Method::None);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        rig.gpu.set_fill_shader(&rig.device, &wrong);
+        let differs = (0..4).any(|index| {
+            rig.scattered = index > 1;
+            let views = sparse_views(index, &settings);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        });
+        assert!(differs, "{text} -> {instead}");
+    }
+}
+
+#[test]
+fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings(Method::Taa)) else { return };
+    let mut view = View::still(noise(SIZE, "refused"), [20.0, 20.0]);
+    let expected = "lattices of view 0 is None: expected where the samples are, because the filter of the foveation is \
+                    Sparse";
+    assert_eq!(rig.refusal(&view), expected);
+    let foveation = settings(Method::Taa).foveation;
+    let lattices = foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0);
+    // An atlas that the texture does not hold.
+    let far = Lattice { atlas_texel: Some([65, 3]), ..Lattice::covering(8, [0, 0], SIZE, [0, 0]) };
+    view.facts.lattices = Some(Lattices::new(&[far]).unwrap());
+    let expected = "lattices of view 0 is 9x6 samples from texel (65, 3) on in a color input of 70x41: expected an atlas \
+                    inside the color input";
+    assert_eq!(rig.refusal(&view), expected);
+    // A stack that leaves pixels uncovered.
+    view.facts.lattices = Some(Lattices::new(&[Lattice::covering(8, [0, 0], [60, 41], [0, 0])]).unwrap());
+    assert!(rig.refusal(&view).contains("leaves pixels uncovered"));
+    view.facts.lattices = Some(lattices);
+    let (made, _) = rig.both(0, Reset::None, &[view.clone()]);
+    assert_eq!(made.stats.pixels, 70 * 41, "refused frames changed nothing");
+    let Some(mut whole) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
+    let expected = "lattices of view 0 is given: expected None; or set Filter::Sparse in Settings::foveation";
+    assert_eq!(whole.refusal(&view), expected);
+}
+
+#[test]
+fn color_of_another_size_is_refused_unless_it_is_an_atlas() {
+    let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
+    let context = ContextDesc { settings: settings(Method::None), ..ContextDesc::new(SIZE) };
+    let mut post = Afterimage::new(&device, &context, TextureFormat::Rgba16Float).unwrap();
+    let texture = |size, usage| make_texture(&device, &ContextDesc::new(size), TextureFormat::Rgba16Float, usage);
+    let (color, output) = (texture([80, 160], Afterimage::INPUT_USAGE), texture(SIZE, Afterimage::OUTPUT_USAGE));
+    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+    let lattices = context.settings.foveation.lattices(&geometry, [20.0, 20.0], 0);
+    let mut view = View::still(noise(SIZE, "sizes"), [20.0, 20.0]).facts;
+    let mut try_color = |lattices, color: Textures<'_>| {
+        view.lattices = Some(lattices);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let result = post.record(&device, &mut encoder, &Frame::new(color, &[view], 0), &output);
+        result.map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert!(try_color(lattices, (&color).into()).unwrap_err().contains("80x160: expected 70x41"));
+    let atlas = lattices.in_atlas().0;
+    assert_eq!(try_color(atlas, (&color).into()), Ok(()));
+    assert_eq!(try_color(atlas, Textures::Regions(&[Region::new(&color, [1, 2])])), Ok(()));
+    let beyond = try_color(atlas, Textures::Regions(&[Region::new(&color, [70, 0])])).unwrap_err();
+    assert!(beyond.contains("from texel (70, 0) on in a color input of 80x160"), "{beyond}");
+}
+
+#[test]
+fn filled_color_follows_size_and_settings() {
+    let context = ContextDesc::new(SIZE);
+    let Some(mut rig) = Rig::new(context, settings(Method::Taa)) else { return };
+    let pixels = u64::from(SIZE[0] * SIZE[1]);
+    assert_eq!(rig.gpu.memory_bytes(), (16 + 16) * pixels);
+    let view = |size: [u32; 2], index: u64, is_sparse: bool| {
+        let mut view = View::still(noise(size, &format!("follows {index}")), [20.0, 20.0]);
+        let lattices = settings(Method::Taa).foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
+        view.facts.lattices = is_sparse.then_some(lattices);
+        [view]
+    };
+    rig.both(0, Reset::None, &view(SIZE, 0, true));
+    rig.resize([33, 50]);
+    rig.both(1, Reset::None, &view([33, 50], 1, true));
+    rig.resize_keeping_history([40, 20]);
+    rig.both(2, Reset::None, &view([40, 20], 2, true));
+    // Settings with and without sparse frames; history survives.
+    let whole = Settings { method: Method::Taa, ..Settings::paper() };
+    for (index, settings) in [(3, whole), (4, settings(Method::Taa)), (5, settings(Method::Wrs))] {
+        rig.cpu.set_settings(settings).unwrap();
+        rig.gpu.set_settings(&rig.device, settings).unwrap();
+        let is_sparse = settings.foveation.filter == Filter::Sparse;
+        rig.both(index, Reset::None, &view([40, 20], index, is_sparse));
+    }
+}
+
+#[test]
+fn prewarmed_pipelines_suffice_for_sparse_frames() {
+    let settings = settings(Method::None);
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+    let usual = afterimage::gpu::Variant { counters: true, ..Default::default() };
+    rig.gpu.prewarm(&rig.device, [usual]);
+    let count = rig.gpu.pipeline_count();
+    assert_eq!(count, 2);
+    let mut view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]);
+    view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0));
+    rig.on_gpu(0, Reset::None, &[view]);
+    assert_eq!(rig.gpu.pipeline_count(), count);
+}
+
+#[test]
+fn alpha_is_filled_as_color_is() {
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    let context = ContextDesc { settings: settings(Method::None), ..ContextDesc::new(SIZE) };
+    let format = TextureFormat::Rgba32Float;
+    let mut post = Afterimage::new(&device, &context, format).unwrap();
+    let color = make_texture(&device, &context, format, Afterimage::INPUT_USAGE | TextureUsages::COPY_DST);
+    let output = make_texture(&device, &context, format, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
+    // A ramp, which linear interpolation reproduces, with one alpha that is not finite.
+    let texel = |i: u32| if i == 0 { [0.5, 0.5, 0.5, f32::NAN] } else { [0.5, 0.5, 0.5, (i % 70) as f32 / 64.0] };
+    let texels: Vec<[f32; 4]> = (0..70 * 41).map(texel).collect();
+    afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&texels));
+    let mut view = View::still(noise(SIZE, "alpha"), [20.0, 20.0]).facts;
+    view.lattices = Some(Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [0, 0])]).unwrap());
+    let mut encoder = device.create_command_encoder(&Default::default());
+    post.record(&device, &mut encoder, &Frame::new(&color, &[view], 0), &output).unwrap();
+    queue.submit([encoder.finish()]);
+    let words = afterimage_testing::gpu::read_texture(&device, &queue, &output);
+    let alpha: Vec<f32> = words.chunks(4).map(|c| f32::from_bits(c[3])).collect();
+    assert_eq!(alpha[0], 1.0);
+    for (i, alpha) in alpha.iter().enumerate().skip(70 * 8).filter(|(i, _)| i % 70 <= 64) {
+        assert_eq!(*alpha, (i % 70) as f32 / 64.0, "pixel {i}");
+    }
+}
+
+/// A stack of lattices of any steps, places and offsets that covers a view of `size`, in an atlas or not.
+fn any_lattices(draws: &mut Draws, size: [u32; 2]) -> Lattices {
+    let mut stack = vec![];
+    let count = draws.bits() % 4;
+    for level in 0..5 {
+        let step = 1 << level;
+        let offset = [0; 2].map(|_| draws.bits() % step);
+        if level == 4 || stack.len() as u32 == count {
+            stack.push(Lattice::covering(step, [0, 0], size, offset));
+            break;
+        }
+        if draws.bits() & 1 == 0 {
+            let low = size.map(|s| draws.bits() % s);
+            let high = [0, 1].map(|i| low[i] + 1 + draws.bits() % size[i]);
+            stack.push(Lattice::covering(step, low, high, offset));
+        }
+    }
+    Lattices::new(&stack).unwrap()
+}
+
+#[test]
+fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
+    use crate::any_frame::{SIZE, any_frame};
+    for method in METHODS {
+        let settings = settings(method);
+        let Some(mut rig) = Rig::new(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, settings) else { return };
+        let mut draws = Draws::new("any lattices");
+        for index in 0..90 {
+            rig.scattered = index % 5 == 4;
+            let wild = [0.0, 0.02, 0.3, 1.0][index as usize % 4];
+            let views = [0; 2].map(|_| {
+                let mut frame = any_frame(&mut draws, wild);
+                frame.facts.lattices = Some(any_lattices(&mut draws, SIZE));
+                let (depth, motion, trust) = (Some(frame.depth), Some(frame.motion), Some(frame.trust));
+                View { facts: frame.facts, color: frame.color, depth, motion, trust, lod: None, noise: None }
+            });
+            let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
+            assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Lattices of sparse frames: the order of the samples, the regions they cover, and the samples around a pixel.
+
+use afterimage::kernel::lattice::*;
+use afterimage::{Foveation, Lattice, Lattices, ViewGeometry};
+use glam::Vec4;
+use std::collections::HashSet;
+
+#[test]
+fn every_pixel_is_sampled_once_in_a_turn() {
+    for step in [1, 2, 4, 8, 16] {
+        let turn = u64::from(step * step);
+        let mut seen = HashSet::new();
+        for index in 0..turn {
+            let offset = offset_px(index, step);
+            assert!(offset[0] < step && offset[1] < step);
+            assert!(seen.insert(offset), "step {step}: {offset:?} twice");
+            assert_eq!(offset, offset_px(index + turn, step));
+        }
+    }
+    // Four frames are one sample in each quarter of the block.
+    let quarters: HashSet<_> = (0..4).map(|i| offset_px(i, 8).map(|v| v / 4)).collect();
+    assert_eq!(quarters.len(), 4);
+}
+
+#[test]
+fn lattices_cover_the_view_and_their_regions() {
+    let geometry = ViewGeometry::flat([480, 270], 70.0).unwrap();
+    let foveation = Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    for gaze in [[240.0, 135.0], [3.0, 200.0], [479.0, 269.0], [-900.0, 5000.0]] {
+        for index in 0..16 {
+            let lattices = foveation.lattices(&geometry, gaze, index);
+            for y in 0..270 {
+                for x in 0..480 {
+                    let e_deg = geometry.eccentricity_deg([x as f32, y as f32], gaze);
+                    let step = lattices.at([x, y]).expect("the view is covered").step;
+                    let needed = match e_deg {
+                        ..=2.49 => 1,
+                        ..=7.49 => 2,
+                        _ => 4,
+                    };
+                    assert!(step <= needed, "{gaze:?}: ({x}, {y}) at {e_deg} degrees has step {step}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pixel_lies_between_its_samples() {
+    for level in 0..=8 {
+        let step = 1 << level;
+        for (first, count) in [(0, 1), (step - 1, 1), (3 * step, 2), (step / 2, 5), (7 * step + step / 3, 40)] {
+            let low = first - first % step;
+            for px in low..low + count * step {
+                let b = between(px, first, level, count);
+                assert!((0.0..1.0).contains(&b.fraction));
+                assert!(b.points[0] <= b.points[1] && b.points[1] < count);
+                let at = |point: u32| (first + step * point) as f32;
+                let is_inside = px >= first && px <= first + step * (count - 1);
+                assert_eq!(b.fraction == 0.0, is_inside && (px - first).is_multiple_of(step), "pixel {px}");
+                if b.points[0] < b.points[1] {
+                    assert_eq!(at(b.points[0]) + b.fraction * step as f32, px as f32);
+                } else if is_inside {
+                    assert_eq!(at(b.points[0]), px as f32);
+                } else {
+                    assert_eq!(b.points[0], if px < first { 0 } else { count - 1 });
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mean_leaves_out_what_is_not_usable() {
+    let one = |v: f32| Vec4::splat(v);
+    for level in 0..=8 {
+        let step = 1 << level;
+        for px in 0..step * step {
+            let [x, y] = [px % step, px / step].map(|v| v as f32 / step as f32);
+            let weight = |tap: u32| point_weight(x, tap & 1) * point_weight(y, tap >> 1);
+            let of = |usable: [bool; 4]| {
+                let taps = (0..4).zip(usable);
+                let mean =
+                    taps.fold(SampleMean::default(), |mean, (tap, ok)| add_sample(mean, one(2.0), ok, weight(tap)));
+                (mean.weight, sample_mean(mean))
+            };
+            assert_eq!(of([true; 4]), (1.0, one(2.0)), "weights are exact");
+            assert_eq!(of([false; 4]), (0.0, one(0.0)));
+            let (weight, mean) = of([false, true, true, false]);
+            assert!(weight == 0.0 || (mean.x - 2.0).abs() < 1e-6, "a mean of {mean} for a weight of {weight}");
+        }
+    }
+}
+
+#[test]
+fn stacks_that_cannot_be_are_refused() {
+    let of = |step| Lattice::covering(step, [0, 0], [64, 48], [0, 0]);
+    let refusal = |stack: &[Lattice]| Lattices::new(stack).unwrap_err().setting;
+    assert_eq!(refusal(&[]), "lattices");
+    assert_eq!(refusal(&[of(1), of(2), of(4), of(8), of(16)]), "lattices");
+    assert_eq!(refusal(&[Lattice { step: 3, ..of(4) }]), "lattice step");
+    assert_eq!(refusal(&[of(512)]), "lattice step");
+    assert_eq!(refusal(&[of(4), of(2)]), "lattice step");
+    assert_eq!(refusal(&[of(4), of(4)]), "lattice step");
+    assert_eq!(refusal(&[Lattice { points: [0, 4], ..of(4) }]), "lattice points");
+    assert_eq!(refusal(&[Lattice { points: [4, u32::MAX], ..of(4) }]), "lattice points");
+    assert_eq!(refusal(&[Lattice { first_px: [0, u32::MAX], ..of(4) }]), "lattice first_px");
+    assert_eq!(refusal(&[of(2), Lattice { atlas_texel: Some([0, 0]), ..of(4) }]), "lattice atlas_texel");
+    let (atlas, size) = Lattices::new(&[of(2), of(8)]).unwrap().in_atlas();
+    assert_eq!(size, [32, 24 + 6]);
+    assert_eq!(atlas.as_slice()[1].atlas_texel, Some([0, 24]));
+}
