@@ -1,7 +1,7 @@
 //! Settings of the post-process.
 
 use crate::error::{SettingsError, check};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::Foveation;
 
 /// Method: how history is stored and combined with the foveated frame. Default: [`Smr`](Self::Smr).
 ///
@@ -255,14 +255,6 @@ impl Settings {
     /// [`SettingsError`] for the first setting that is out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.foveation.validate()?;
-        // Until smr has a pass for them.
-        if self.method == Method::Smr && self.foveation.filter == Filter::Sparse {
-            return Err(SettingsError {
-                setting: "method",
-                found: "smr".into(),
-                expected: "none, taa or wrs: smr on sparse frames is not there yet".into(),
-            });
-        }
         check("smr.accumulate", self.smr.accumulate, 0.0..=0.98, "")?;
         check("smr.tolerance", self.smr.tolerance, 0.1..=10.0, "")?;
         if let Bias::Exponential { lambda } = self.bias {

@@ -144,13 +144,19 @@ impl LatticeUniforms {
         all
     }
 
-    /// First of the `lattices` that covers a pixel.
+    /// Index of the first of the `lattices` that covers a pixel.
     #[cfg(feature = "cpu")]
     #[inline(always)]
-    pub(crate) fn at(lattices: &ViewLattices, px: [u32; 2]) -> &Self {
-        let covers = |l: &&Self| (0..2).all(|i| px[i] >= l.low_px[i] && px[i] < l.high_px[i]);
-        let (coarsest, finer) = lattices.split_last().expect("there is a place for each lattice");
-        finer.iter().find(covers).unwrap_or(coarsest)
+    pub(crate) fn index_at(lattices: &ViewLattices, px: [u32; 2]) -> usize {
+        let covers = |l: &Self| (0..2).all(|i| px[i] >= l.low_px[i] && px[i] < l.high_px[i]);
+        lattices.iter().position(covers).unwrap_or(Lattices::MAX - 1)
+    }
+
+    /// Pixel of a sample.
+    #[cfg(feature = "cpu")]
+    #[inline(always)]
+    pub(crate) fn px_of(&self, point: [u32; 2]) -> [u32; 2] {
+        [0, 1].map(|i| self.first_px[i] + (point[i] << self.level))
     }
 
     /// Samples around a pixel along x and y; `None` without samples in the frame.

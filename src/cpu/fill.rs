@@ -19,7 +19,7 @@ pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2]) -> Vec<Image<[f32; 3]
 }
 
 fn pixel(lattices: &ViewLattices, color: &Image<[f32; 3]>, px: [u32; 2]) -> [f32; 3] {
-    let lattice = LatticeUniforms::at(lattices, px);
+    let lattice = &lattices[LatticeUniforms::index_at(lattices, px)];
     let Some([x, y]) = lattice.around(px) else { return [f32::NAN; 3] };
     let sample_at = |point: [u32; 2]| {
         let [x, y] = lattice.texel_of(point);

@@ -39,7 +39,7 @@ impl Plane {
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
             log_keys: vec![0.0; when(keyed)],
-            surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. }))],
+            surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept))],
             noise: vec![0; when(noisy)],
             mip_chains: mip_chains(size_px, view_count, layout),
         }
@@ -84,6 +84,9 @@ impl History {
     /// This history resampled to the size of `desc`, whose layout is the same.
     pub(super) fn resized(&self, resize: &Resize, desc: &ContextDesc) -> Self {
         let mut next = Self::new(desc);
+        if self.layout == HistoryLayout::Kept {
+            return next;
+        }
         next.held = self.held.iter().map(|held| resize.held(*held)).collect();
         next.filled = self.filled;
         let past = &self.previous;

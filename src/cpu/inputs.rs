@@ -5,13 +5,27 @@ use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
 use crate::kernel::depth;
 use crate::kernel::depth::DisparityMap;
+use crate::kernel::matched::moves_alike;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::{acuity, sanitize};
+use crate::kernel::{acuity, reproject, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
 use crate::uniforms::{Held, ViewUniforms};
 use glam::{Vec2, Vec3};
+
+/// Previous position of a pixel's surface.
+#[derive(Clone, Copy)]
+pub(super) struct Previous {
+    /// Position in pixels.
+    pub at: [f32; 2],
+    /// Nearest texel.
+    pub nearest_px: [u32; 2],
+    /// Disparity that the surface had.
+    pub expected: f32,
+    /// Confidence in history: above 0 and at most 1.
+    pub trust: f32,
+}
 
 /// Inputs and constants of one view of a frame.
 pub(super) struct Inputs<'a> {
@@ -57,9 +71,46 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Whether the frame has motion vectors.
-    pub fn has_motion(&self) -> bool {
-        self.motion.is_some()
+    /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history. `stored` gives level
+    /// of detail (negative: empty) and disparity of a stored texel.
+    #[inline(always)]
+    pub fn previous(
+        &self,
+        x: u32,
+        y: u32,
+        motion: [f32; 2],
+        disparity: f32,
+        stored: impl FnOnce([u32; 2]) -> [f32; 2],
+    ) -> Result<Previous, Verdict> {
+        if self.reset {
+            return Err(Verdict::Reset);
+        }
+        let nearest_px = reproject::nearest(x, y, motion, self.size)?;
+        let [lod, stored_disparity] = stored(nearest_px);
+        if lod < 0.0 {
+            return Err(Verdict::Empty);
+        }
+        let trust = self.trust(x, y).map_or(1.0, sanitize::trust);
+        if trust == 0.0 {
+            return Err(Verdict::Distrusted);
+        }
+        let expected = self.previous_disparity(self.ray(x, y), disparity);
+        if !self.same_surface(x, y, expected, stored_disparity) {
+            return Err(Verdict::Disoccluded);
+        }
+        Ok(Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], nearest_px, expected, trust })
+    }
+
+    /// Whether a neighbour in the 2x2 block moves as the pixel (x, y) does.
+    #[inline(always)]
+    pub fn is_coherent(&self, x: u32, y: u32, own: [f32; 2]) -> bool {
+        if self.motion.is_none() {
+            return true;
+        }
+        let [width, height] = self.size;
+        // At an odd border the pixel is its own neighbour.
+        let (across_x, across_y) = ((x ^ 1).min(width - 1), (y ^ 1).min(height - 1));
+        moves_alike(own, self.motion(across_x, y)) || moves_alike(own, self.motion(x, across_y))
     }
 
     /// Sanitized candidate, and whether it is usable.

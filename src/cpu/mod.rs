@@ -12,6 +12,7 @@ mod mip_chain;
 mod none_pass;
 mod resize;
 mod smr_pass;
+mod sparse_pass;
 mod surface_history;
 mod surface_pass;
 mod taa_pass;
@@ -218,13 +219,15 @@ impl CpuAfterimage {
         check_inputs(&self.desc, frame)?;
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
-        let filled = fill::filled(frame, self.desc.size_px);
+        let is_sparse_smr = self.history.layout() == HistoryLayout::Kept;
+        let filled = if is_sparse_smr { vec![] } else { fill::filled(frame, self.desc.size_px) };
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
         let pass = Pass { desc: &self.desc, history: &mut self.history, frame: &whole, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
             Method::Taa => surface_pass::run(pass, taa_pass::pixel),
+            Method::Smr if is_sparse_smr => sparse_pass::run(pass),
             Method::Smr => {
                 let smr = smr_pass::Smr::new(&self.desc.settings);
                 surface_pass::run(pass, |view, x, y, stats| smr.pixel(view, x, y, stats))

@@ -47,7 +47,7 @@ impl Smr {
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
         let lod = self.lod(view, x, y);
-        let coherent_motion = self.is_coherent(view, x, y, motion);
+        let coherent_motion = inputs.is_coherent(x, y, motion);
         let mut source = view.source(x, y, motion, disparity);
         if source.is_ok() && !coherent_motion {
             source = Err(Verdict::Disoccluded);
@@ -101,19 +101,6 @@ impl Smr {
             Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
             None => self.settings.foveation.lod(view.inputs.eccentricity_deg(view.inputs.ray(x, y))),
         }
-    }
-
-    /// Whether a neighbour in the 2x2 block moves as the pixel does.
-    #[inline(always)]
-    fn is_coherent(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, own: [f32; 2]) -> bool {
-        let inputs = &view.inputs;
-        if !inputs.has_motion() {
-            return true;
-        }
-        let [width, height] = inputs.size;
-        // At an odd border the pixel is its own neighbour.
-        let (across_x, across_y) = ((x ^ 1).min(width - 1), (y ^ 1).min(height - 1));
-        matched::moves_alike(own, inputs.motion(across_x, y)) || matched::moves_alike(own, inputs.motion(x, across_y))
     }
 
     /// Output color for a candidate without noise.

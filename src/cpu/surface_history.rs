@@ -2,16 +2,14 @@
 //! Twin: `shaders/pass/surface_history.wgsl`.
 
 use super::history::PastSurfaces;
-use super::inputs::Inputs;
+use super::inputs::{Inputs, Previous};
 use crate::kernel::depth;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
 use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
-use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample;
 use crate::kernel::resample::{Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
-use crate::kernel::sanitize;
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::wrs::expose;
 use glam::Vec3;
@@ -51,25 +49,14 @@ impl SurfaceHistory<'_> {
     /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history.
     #[inline(always)]
     pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
-        let inputs = &self.inputs;
-        if inputs.reset {
-            return Err(Verdict::Reset);
-        }
-        let [qx, qy] = reproject::nearest(x, y, motion, inputs.size)?;
-        let index = qy as usize * inputs.size[0] as usize + qx as usize;
-        let nearest = unpack_surface(self.past.words[index]);
-        if nearest.lod < 0.0 {
-            return Err(Verdict::Empty);
-        }
-        let trust = inputs.trust(x, y).map_or(1.0, sanitize::trust);
-        if trust == 0.0 {
-            return Err(Verdict::Distrusted);
-        }
-        let expected = inputs.previous_disparity(inputs.ray(x, y), disparity);
-        if !inputs.same_surface(x, y, expected, nearest.disparity) {
-            return Err(Verdict::Disoccluded);
-        }
-        let at = [x as f32 + motion[0], y as f32 + motion[1]];
+        let mut nearest = Surface::EMPTY;
+        let mut index = 0;
+        let previous = self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
+            index = qy as usize * self.inputs.size[0] as usize + qx as usize;
+            nearest = unpack_surface(self.past.words[index]);
+            [nearest.lod, nearest.disparity]
+        })?;
+        let Previous { at, expected, trust, .. } = previous;
         let whole = at.map(f32::floor);
         Ok(Source {
             texel: whole.map(|v| v as i32),

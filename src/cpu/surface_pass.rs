@@ -3,6 +3,7 @@
 use super::Pass;
 use super::inputs::Inputs;
 use super::surface_history::SurfaceHistory;
+use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
 use crate::stats::FrameStats;
@@ -20,6 +21,14 @@ pub(super) struct Pixel {
     pub trace: PixelTrace,
 }
 
+/// Images of a view that a pass writes: `noise` is empty without noisy candidates.
+pub(super) struct Targets<'a> {
+    pub surfaces: &'a mut [[u32; 2]],
+    pub noise: &'a mut [u32],
+    pub output: &'a mut Image<[f32; 3]>,
+    pub traces: Option<&'a mut Image<PixelTrace>>,
+}
+
 /// Results of a row of pixels.
 struct Row<'a> {
     surfaces: &'a mut [[u32; 2]],
@@ -35,7 +44,6 @@ pub(super) fn run(
 ) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
     let has_history = history.is_filled();
-    let width = desc.size_px[0] as usize;
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
         let held = history.hold(i, &frame.views[i]);
@@ -46,35 +54,47 @@ pub(super) fn run(
         });
         let (past, surfaces, noise) = history.split_surfaces(i);
         let view = SurfaceHistory { inputs, past };
-        let mut noise = noise.chunks_mut(width);
-        let mut trace_rows = traces.as_mut().map(|t| t[i].pixels_mut().chunks_mut(width));
-        let mut rows: Vec<_> = surfaces
-            .chunks_mut(width)
-            .zip(output[i].pixels_mut().chunks_mut(width))
-            .map(|(surfaces, out)| Row {
-                surfaces,
-                noise: noise.next(),
-                out,
-                trace: trace_rows.as_mut().and_then(Iterator::next),
-            })
-            .collect();
-        let row = |(y, row): (usize, &mut Row<'_>)| {
-            let mut stats = FrameStats::default();
-            for x in 0..width {
-                let pixel = process_pixel(&view, x as u32, y as u32, &mut stats);
-                row.out[x] = pixel.output.to_array();
-                row.surfaces[x] = pixel.surface;
-                if let Some(noise) = &mut row.noise {
-                    noise[x] = pixel.noise;
-                }
-                if let Some(trace) = &mut row.trace {
-                    trace[x] = pixel.trace;
-                }
-            }
-            stats
-        };
-        stats = stats.add(rows.par_iter_mut().enumerate().map(row).reduce(FrameStats::default, FrameStats::add));
+        let traces = traces.as_mut().map(|t| &mut t[i]);
+        let targets = Targets { surfaces, noise, output: &mut output[i], traces };
+        stats = stats.add(for_pixels(targets, |x, y, stats| process_pixel(&view, x, y, stats)));
         history.build_mip_chain(i);
     }
     stats
+}
+
+/// Runs `process_pixel` for every pixel of a view, rows in parallel.
+pub(super) fn for_pixels(
+    targets: Targets<'_>,
+    process_pixel: impl Fn(u32, u32, &mut FrameStats) -> Pixel + Sync,
+) -> FrameStats {
+    let width = targets.output.width();
+    let mut noise = targets.noise.chunks_mut(width);
+    let mut traces = targets.traces.map(|t| t.pixels_mut().chunks_mut(width));
+    let mut rows: Vec<_> = targets
+        .surfaces
+        .chunks_mut(width)
+        .zip(targets.output.pixels_mut().chunks_mut(width))
+        .map(|(surfaces, out)| Row {
+            surfaces,
+            noise: noise.next(),
+            out,
+            trace: traces.as_mut().and_then(Iterator::next),
+        })
+        .collect();
+    let row = |(y, row): (usize, &mut Row<'_>)| {
+        let mut stats = FrameStats::default();
+        for x in 0..width {
+            let pixel = process_pixel(x as u32, y as u32, &mut stats);
+            row.out[x] = pixel.output.to_array();
+            row.surfaces[x] = pixel.surface;
+            if let Some(noise) = &mut row.noise {
+                noise[x] = pixel.noise;
+            }
+            if let Some(trace) = &mut row.trace {
+                trace[x] = pixel.trace;
+            }
+        }
+        stats
+    };
+    rows.par_iter_mut().enumerate().map(row).reduce(FrameStats::default, FrameStats::add)
 }

@@ -166,7 +166,7 @@ impl MethodPass {
                 next_or(1),
                 next_or(2),
             ],
-            HistoryLayout::Surfaces { .. } => vec![
+            HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => vec![
                 &lod,
                 past_or(0, &self.absent.word),
                 past_or(1, &self.absent.float),
@@ -222,7 +222,9 @@ fn writing(device: &Device, source: &str, output: TextureFormat) -> String {
 /// Formats of the history textures that a pass writes.
 pub(super) fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
-        HistoryLayout::Surfaces { .. } => [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint],
+        HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => {
+            [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint]
+        }
         _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
     }
 }
@@ -247,7 +249,9 @@ fn binding_types(output: TextureFormat, history: HistoryLayout) -> Vec<BindingTy
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
         HistoryLayout::Reservoirs { .. } => vec![words, words, float, first, second, third],
-        HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
+        HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => {
+            vec![float, words, float, first, second, words, float, third]
+        }
     });
     types
 }

@@ -187,7 +187,7 @@ impl Afterimage {
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
-        settings.validate()?;
+        output::check_settings(&settings)?;
         let same_method = settings.method == self.passes.method.method();
         let same_history = settings.history_layout() == self.history.layout();
         self.desc.settings = settings;

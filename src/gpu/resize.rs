@@ -42,7 +42,7 @@ impl ResizePass {
     pub fn new(device: &Device, layout: HistoryLayout) -> Option<Self> {
         let [first, second, third] = written(layout).map(storage_texture);
         let (name, types, block_px, overrides) = match layout {
-            HistoryLayout::Nothing => return None,
+            HistoryLayout::Nothing | HistoryLayout::Kept => return None,
             HistoryLayout::Reservoirs { keys } => (
                 "resize_reservoirs_pass",
                 vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],

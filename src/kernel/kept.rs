@@ -71,7 +71,7 @@ fn multiple(v: f32, exponent: u32) -> u32 {
 }
 
 /// Packs a color: 9 bits a channel and an exponent that the three share. The color must not be NaN; negative channels
-/// become 0. The error of a channel is at most 2^-10 of the largest one.
+/// become 0. The error of a channel is at most 2^-9 of the largest one.
 #[inline]
 pub fn pack_color(c: Vec3) -> u32 {
     let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };

@@ -9,7 +9,7 @@
 use super::approx;
 use super::kept::Kept;
 use super::matched::{DARK, root_difference, smooth_step};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
 /// Expected difference of a sample and of history that has not moved, in units of [`root_difference`]: storage.
@@ -39,6 +39,8 @@ const FINER_WIDTH: f32 = 0.25;
 const COARSER_WIDTH: f32 = 0.25;
 /// Share of the samples' range by which a gain may exceed their largest value.
 const OVERSHOOT: f32 = 0.25;
+/// Share of equally fine history, as a part of `Smr::accumulate`: samples at their own pixels need less averaging.
+const ACCUMULATE: f32 = 1.0 / 3.0;
 /// Share of history from which on the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
 
@@ -96,6 +98,12 @@ pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = difference.min(1e6) / (AGREE_ERRORS * ((own.error + other.error) + AGREE_ERROR));
     (spatial * other.sure) / (1.0 + errors * errors)
+}
+
+/// Weight of the neighbour at an offset of -1, 0 or 1 samples along each axis: 4 for the sample itself, 1 for corners.
+#[inline]
+pub fn neighbour_weight(offset: [i32; 2]) -> f32 {
+    ((2 - offset[0].abs()) * (2 - offset[1].abs())) as f32
 }
 
 /// Sums over a sample and its neighbours.
@@ -174,11 +182,13 @@ pub struct Reconstruction {
     pub nearest: Kept,
     /// Whether history was read between samples.
     pub moved: bool,
-    /// Gain of relighting, and fit in the fourth component.
-    pub light: Vec4,
+    /// Gain of relighting.
+    pub gain: Vec3,
+    /// Degree to which history fits the samples around the pixel, in \[0, 1\].
+    pub fit: f32,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// Share of equally fine history in the output.
+    /// Share of equally fine history in the output of blurred frames; here it is a third of that.
     pub accumulate: f32,
 }
 
@@ -204,8 +214,8 @@ fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
 /// not resampled, otherwise the blend.
 #[inline]
 pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
-    let gain = r.light.truncate();
-    let acceptance = r.light.w * r.trust;
+    let gain = r.gain;
+    let acceptance = r.fit * r.trust;
     let worn = if gain == Vec3::ONE {
         0.0
     } else {
@@ -215,7 +225,7 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let history_lod = r.history_lod + worn;
     let finer = ((r.lod - history_lod) / FINER_WIDTH).clamp(0.0, 1.0);
     let coarser = ((history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0);
-    let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * r.accumulate)) * acceptance;
+    let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * (r.accumulate * ACCUMULATE))) * acceptance;
     let history = relit(r.history, gain, r.range);
     let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
     let lost = 1.0 - finer * acceptance;

@@ -78,6 +78,8 @@ pub(crate) enum HistoryLayout {
         /// Whether there are keys.
         keys: bool,
     },
+    /// Packed samples that keep their places ([`kept`](crate::kernel::kept)).
+    Kept,
     /// Packed surfaces ([`surface`](crate::kernel::surface)), and their mip chain.
     Surfaces {
         /// Number of mip levels above the full-rate one.

@@ -27,6 +27,9 @@ pub(super) static ENTRY: Entry = Entry {
 };
 
 fn history(settings: &Settings) -> HistoryLayout {
+    if settings.foveation.filter == Filter::Sparse {
+        return HistoryLayout::Kept;
+    }
     // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level
     // coarser.
     let shift = match settings.foveation.filter {

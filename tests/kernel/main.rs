@@ -5,6 +5,7 @@ mod conventions;
 mod depth;
 mod elementary;
 mod geometry;
+mod kept;
 mod lattice;
 mod reprojection;
 mod reservoir;

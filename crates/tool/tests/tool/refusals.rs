@@ -22,7 +22,6 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--fovea", "NaN"]), &["fovea"]);
     refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);
     let sparse = ["--foveation", "sparse", "--method"];
-    refuses(&run(still, &out, &[&sparse[..], &["none,smr"]].concat()), &["smr on sparse frames is not there yet"]);
     refuses(&run(still, &out, &[&sparse[..], &["oracle"]].concat()), &["oracle", "moving samples"]);
     refuses(&run(still, &out, &["--geometry", "samples"]), &["--geometry samples", "--foveation sparse"]);
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);

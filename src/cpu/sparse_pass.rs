@@ -1,0 +1,375 @@
+//! Reconstruction of sparse frames from history that keeps samples in their places (smr). `docs/method.md` has the
+//! equations. Twin: `shaders/pass/sparse_pass.wgsl` and the two passes before it.
+//!
+//! Three loops. For each sample of a lattice of step 2 and more: compare it with history at its pixel. For each such
+//! sample: estimate gain and fit from its own comparison and its eight neighbours'. For each pixel: interpolate these
+//! and the samples, read nine stored samples around its previous position, and blend.
+
+use super::Pass;
+use super::inputs::{Inputs, Previous};
+use super::surface_pass::{Pixel, Targets, for_pixels};
+use crate::kernel::approx;
+use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::depth::same_surface;
+use crate::kernel::kept::{
+    Around, EXACT_PX, Interpolated, Kept, add_kept, interpolate, pack_color, pack_kept, unpack_color, unpack_kept,
+};
+use crate::kernel::lattice::point_weight;
+use crate::kernel::matched::root_difference;
+use crate::kernel::pack::{half_bits, half_value};
+use crate::kernel::reproject::Verdict;
+use crate::kernel::resample::TAP_RELATIVE;
+use crate::kernel::sanitize;
+use crate::kernel::sparse::{
+    Light, Observation, Reconstruction, add_light, agreement, candidate_level, errors_left, expected_error, fit,
+    neighbour_weight, reconstruct, relight, sureness,
+};
+use crate::kernel::wrs::expose;
+use crate::settings::Settings;
+use crate::stats::FrameStats;
+use crate::uniforms::{LatticeUniforms, ViewLattices};
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Relative difference of disparity within which neighbouring samples share an estimate of light.
+const LIGHT_RELATIVE: f32 = 0.1;
+/// Relative difference of disparity within which a sample is interpolated for a pixel.
+const SAMPLE_RELATIVE: f32 = 0.05;
+/// Weight of a sample of another surface, which counts only where there is no better one.
+const OTHER_SURFACE: f32 = 1e-3;
+/// Least weight of one of the four samples around a pixel.
+const LEAST_SHARE: f32 = 1e-4;
+
+/// Packed results for the samples of a lattice, row by row.
+type Samples = Vec<[u32; 2]>;
+
+/// Inputs, history and lattices of one view of a frame.
+struct View<'a> {
+    inputs: Inputs<'a>,
+    words: &'a [[u32; 2]],
+    lattices: ViewLattices,
+    accumulate: f32,
+    relights: bool,
+}
+
+/// Runs the three loops for every view.
+pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
+    let Pass { desc, history, frame, output, mut traces } = pass;
+    let has_history = history.is_filled();
+    let mut stats = FrameStats::default();
+    for i in 0..frame.views.len() {
+        let held = history.hold(i, &frame.views[i]);
+        let inputs = Inputs::new(desc, frame, i, &held, has_history);
+        let (past, next, _) = history.split_surfaces(i);
+        let lattices = frame.views[i].lattices.as_ref().expect("the frame was checked to have lattices");
+        let Settings { smr, .. } = desc.settings;
+        let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
+        let view = View { inputs, words: past.words, lattices, accumulate: smr.accumulate, relights: smr.relight };
+        let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
+        let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
+        let traces = traces.as_mut().map(|t| &mut t[i]);
+        let targets = Targets { surfaces: next, noise: &mut [], output: &mut output[i], traces };
+        stats = stats.add(for_pixels(targets, |x, y, stats| view.pixel(x, y, &lights, stats)));
+    }
+    stats
+}
+
+/// Observation in two words: history's color, expected error and sureness as halves.
+fn pack_observation(o: Option<Observation>) -> [u32; 2] {
+    match o {
+        Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.sure) << 16],
+        None => [0, half_bits(-1.0)],
+    }
+}
+
+impl View<'_> {
+    /// Results of `f` for each sample of each lattice of step 2 and more.
+    fn for_samples(&self, f: impl Fn(usize, [u32; 2]) -> [u32; 2] + Sync) -> Vec<Samples> {
+        let of = |(index, lattice): (usize, &LatticeUniforms)| {
+            let [columns, rows] = if lattice.level == 0 { [0, 0] } else { lattice.points };
+            (0..columns * rows).into_par_iter().map(|i| f(index, [i % columns, i / columns])).collect()
+        };
+        self.lattices.iter().enumerate().map(of).collect()
+    }
+
+    /// Color of a sample, and whether it is usable.
+    #[inline(always)]
+    fn sampled(&self, lattice: &LatticeUniforms, point: [u32; 2]) -> (Vec3, bool) {
+        let [x, y] = lattice.texel_of(point);
+        sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+    }
+
+    #[inline(always)]
+    fn stored(&self, x: i32, y: i32) -> Kept {
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        unpack_kept(self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
+    }
+
+    /// Whether two disparities of this frame can belong to one surface.
+    #[inline(always)]
+    fn alike(&self, a: f32, b: f32, relative: f32) -> bool {
+        !self.inputs.tests_depth() || same_surface(a, b, relative, 0.0)
+    }
+
+    /// Previous position of a pixel's surface, or the verdict that rejects its history.
+    #[inline(always)]
+    fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<Previous, Verdict> {
+        let previous = self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
+            let stored = self.stored(qx as i32, qy as i32);
+            [stored.lod, stored.disparity]
+        })?;
+        if self.inputs.is_coherent(x, y, motion) { Ok(previous) } else { Err(Verdict::Disoccluded) }
+    }
+
+    /// History at a previous position, in this frame's exposure.
+    #[inline(always)]
+    fn interpolated(&self, previous: &Previous) -> Interpolated {
+        let [x, y] = previous.nearest_px.map(|v| v as i32);
+        let mut around = Around::NOTHING;
+        for tap in 0..9 {
+            let (tx, ty) = (x + tap % 3 - 1, y + tap / 3 - 1);
+            let sample = self.stored(tx, ty);
+            let same = sample.lod >= 0.0
+                && (!self.inputs.tests_depth() || same_surface(previous.expected, sample.disparity, TAP_RELATIVE, 0.0));
+            let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
+            around = add_kept(around, sample, texel_px, same);
+        }
+        let found = interpolate(around);
+        let exposed = |c: Vec3| expose(c, self.inputs.exposure);
+        let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
+        Interpolated { color: exposed(found.color), nearest, ..found }
+    }
+
+    /// Mean difference of a stored texel from its four neighbours, in this frame's exposure.
+    #[inline(always)]
+    fn contrast(&self, [x, y]: [u32; 2]) -> f32 {
+        let (x, y) = (x as i32, y as i32);
+        let color = |x: i32, y: i32| expose(self.stored(x, y).color, self.inputs.exposure);
+        let own = color(x, y);
+        let difference = |x: i32, y: i32| root_difference(color(x, y), own);
+        ((difference(x - 1, y) + difference(x + 1, y)) + (difference(x, y - 1) + difference(x, y + 1))) * 0.25
+    }
+
+    /// Comparison of a sample with history at its pixel; `None` if either is missing.
+    #[inline(always)]
+    fn observe(&self, lattice: usize, point: [u32; 2]) -> Option<Observation> {
+        let lattice = &self.lattices[lattice];
+        let (sampled, usable) = self.sampled(lattice, point);
+        let px = lattice.px_of(point);
+        let motion = self.inputs.motion(px[0], px[1]);
+        let previous = self.previous(px, motion, self.inputs.disparity(px[0], px[1])).ok().filter(|_| usable)?;
+        let history = self.interpolated(&previous);
+        if history.lod < 0.0 {
+            return None;
+        }
+        let moved = has_moved(motion, history.nearest.place_px);
+        let error = expected_error(history.lod, self.contrast(previous.nearest_px), moved);
+        Some(Observation { sampled, history: history.color, error, sure: sureness(history.lod) })
+    }
+
+    /// An observation again, from its packed words.
+    #[inline(always)]
+    fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
+        let own = &self.lattices[lattice];
+        let words = observed[lattice][(point[1] * own.points[0] + point[0]) as usize];
+        let error = half_value(words[1]);
+        (error >= 0.0).then(|| Observation {
+            sampled: self.sampled(own, point).0,
+            history: unpack_color(words[0]),
+            error,
+            sure: half_value(words[1] >> 16),
+        })
+    }
+
+    /// Gain and fit around a sample, packed: the gain, then fit and weight as halves.
+    #[inline(always)]
+    fn light(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> [u32; 2] {
+        let own = self.observation(lattice, point, observed);
+        let grid = &self.lattices[lattice];
+        let disparity_of = |point: [u32; 2]| {
+            let [x, y] = grid.px_of(point);
+            self.inputs.disparity(x, y)
+        };
+        let disparity = disparity_of(point);
+        let neighbours = || {
+            (0..9).filter_map(|tap| {
+                let offset = [tap % 3 - 1, tap / 3 - 1];
+                let at = [0, 1].map(|i| point[i].checked_add_signed(offset[i]).filter(|&v| v < grid.points[i]));
+                let [Some(x), Some(y)] = at else { return None };
+                let other = self.observation(lattice, [x, y], observed)?;
+                let alike = self.alike(disparity, disparity_of([x, y]), LIGHT_RELATIVE);
+                let spatial = neighbour_weight(offset);
+                alike.then(|| (other, own.map_or(spatial * other.sure, |own| agreement(own, other, spatial)), spatial))
+            })
+        };
+        let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
+        let valid = if own.is_some() { 1.0 } else { OTHER_SURFACE };
+        if light.weight < 1e-6 {
+            return [pack_color(Vec3::ONE), half_bits(1.0) | half_bits(valid) << 16];
+        }
+        let gain = if self.relights { relight(light) } else { Vec3::ONE };
+        let (mut relit, mut unlit) = (0.0, 0.0);
+        for (o, weight, _) in neighbours() {
+            relit += errors_left(o, gain) * weight;
+            unlit += errors_left(o, Vec3::ONE) * weight;
+        }
+        let (gain, left) = if relit <= unlit { (gain, relit) } else { (Vec3::ONE, unlit) };
+        let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
+        [pack_color(gain), half_bits(fit) | half_bits(valid) << 16]
+    }
+
+    /// Processes one pixel and counts it in `stats`.
+    #[inline(always)]
+    fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
+        let inputs = &self.inputs;
+        let disparity = inputs.disparity(x, y);
+        let motion = inputs.motion(x, y);
+        let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
+        let candidate = self.candidate(index, [x, y], disparity, lights);
+        let source = self.previous([x, y], motion, disparity);
+        let verdict = source.as_ref().err().copied().unwrap_or(Verdict::Valid);
+        inputs.count(x, y, candidate.usable, disparity, verdict, stats);
+
+        let mut output = candidate.color;
+        let mut kept = Kept {
+            color: candidate.color,
+            lod: if candidate.usable { candidate.lod } else { -1.0 },
+            disparity,
+            place_px: Vec2::ZERO,
+        };
+        let (mut share, mut fits) = (0.0, 1.0);
+        if let Ok(previous) = source
+            && !(candidate.usable && self.lattices[index].level == 0)
+        {
+            let history = self.interpolated(&previous);
+            if history.lod >= 0.0 && !candidate.usable {
+                (output, share) = (history.color, 1.0);
+                kept = Kept { disparity, ..history.nearest };
+            } else if history.lod >= 0.0 {
+                let result = reconstruct(&Reconstruction {
+                    candidate: candidate.color,
+                    lod: candidate.lod,
+                    range: candidate.range,
+                    history: history.color,
+                    history_lod: history.lod,
+                    nearest: history.nearest,
+                    moved: has_moved([0.0; 2], history.nearest.place_px),
+                    gain: candidate.gain,
+                    fit: candidate.fit,
+                    trust: previous.trust,
+                    accumulate: self.accumulate,
+                });
+                (output, share, fits) = (result.color, result.share, candidate.fit);
+                kept = Kept { disparity, ..result.kept };
+            }
+        }
+        output = output.min(Vec3::splat(sanitize::MAX_HALF));
+        stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
+        let trace = PixelTrace {
+            verdict,
+            weight: approx::exp2(-candidate.lod),
+            quality: approx::exp2(-kept.lod.max(0.0)),
+            age: 0,
+            survival: share,
+            gate: fits,
+            take: share == 0.0,
+            motion,
+        };
+        Pixel { output, surface: pack_kept(kept), noise: 0, trace }
+    }
+
+    /// Candidate of a pixel and what is known of its light, from the samples around it.
+    #[inline(always)]
+    fn candidate(&self, index: usize, px: [u32; 2], disparity: f32, lights: &[Samples]) -> Candidate {
+        let lattice = &self.lattices[index];
+        let Some([x, y]) = lattice.around(px) else { return Candidate::NONE };
+        let is_sample = x.fraction == 0.0 && y.fraction == 0.0;
+        if lattice.level == 0 {
+            let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
+            return Candidate { color, usable, lod: 0.0, ..Candidate::NONE };
+        }
+        let mut sums = Sums::default();
+        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
+        let mut nearest_px2 = f32::MAX;
+        let mut own = None;
+        for tap in 0..4 {
+            let (right, below) = (tap & 1, tap >> 1);
+            let point = [x.points[right as usize], y.points[below as usize]];
+            let (color, usable) = self.sampled(lattice, point);
+            if !usable {
+                continue;
+            }
+            let at = lattice.px_of(point);
+            let alike = self.alike(disparity, self.inputs.disparity(at[0], at[1]), SAMPLE_RELATIVE);
+            let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
+            let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
+            let [light, more] = lights[index][(point[1] * lattice.points[0] + point[0]) as usize];
+            sums.add(color, weight, unpack_color(light), half_value(more), half_value(more >> 16));
+            (low, high) = (low.min(color), high.max(color));
+            if alike {
+                let [dx, dy] = [0, 1].map(|i| px[i] as f32 - at[i] as f32);
+                nearest_px2 = nearest_px2.min(dx * dx + dy * dy);
+            }
+            if is_sample && tap == 0 {
+                own = Some(color);
+            }
+        }
+        if sums.weight == 0.0 {
+            return Candidate::NONE;
+        }
+        let coarsest = lattice.level as f32;
+        Candidate {
+            color: own.unwrap_or(sums.color * (1.0 / sums.weight)),
+            usable: true,
+            lod: if nearest_px2 == f32::MAX { coarsest + 1.0 } else { candidate_level(nearest_px2.sqrt(), coarsest) },
+            range: [low, high],
+            gain: sums.gain * (1.0 / sums.valid),
+            fit: sums.fit * (1.0 / sums.valid),
+        }
+    }
+}
+
+/// Whether history has moved since its samples were shaded, by more than their stored places resolve.
+#[inline(always)]
+fn has_moved(motion: [f32; 2], place_px: Vec2) -> bool {
+    let farthest = |x: f32, y: f32| x.abs().max(y.abs()) > EXACT_PX;
+    farthest(motion[0], motion[1]) || farthest(place_px.x, place_px.y)
+}
+
+/// Candidate of a pixel.
+struct Candidate {
+    color: Vec3,
+    usable: bool,
+    lod: f32,
+    /// Smallest and largest color of the samples around the pixel.
+    range: [Vec3; 2],
+    gain: Vec3,
+    fit: f32,
+}
+
+impl Candidate {
+    const NONE: Self =
+        Self { color: Vec3::ZERO, usable: false, lod: 0.0, range: [Vec3::ZERO; 2], gain: Vec3::ONE, fit: 1.0 };
+}
+
+/// Sums over the samples around a pixel.
+#[derive(Default)]
+struct Sums {
+    color: Vec3,
+    weight: f32,
+    gain: Vec3,
+    fit: f32,
+    valid: f32,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, color: Vec3, weight: f32, gain: Vec3, fit: f32, valid: f32) {
+        let known = weight * valid;
+        self.color += color * weight;
+        self.weight += weight;
+        self.gain += gain * known;
+        self.fit += fit * known;
+        self.valid += known;
+    }
+}
