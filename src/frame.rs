@@ -298,8 +298,9 @@ pub struct Frame<'a, E: Executor> {
     /// format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
-    /// computed from gaze and [`Settings::foveation`]. With this input, too, `foveation.rate_far` must be the coarsest
-    /// block edge: history is not matched at coarser levels.
+    /// computed from gaze and [`Settings::foveation`]. Sparse frames have the levels of their lattices instead, and no
+    /// such input. With this input, too, `foveation.rate_far` must be the coarsest block edge: history is not matched
+    /// at coarser levels.
     pub lod: Option<E::Scalars<'a>>,
     /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at
     /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,

@@ -61,13 +61,20 @@ impl Fill {
         Textures::Layers(&self.color)
     }
 
-    /// Records the pass for a sparse frame. `uniforms`: of this frame, before it is filled.
-    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, frame: &Frame<'_>, uniforms: FrameUniforms) {
+    /// Records the pass for a sparse frame. `uniforms`: of this frame, before it is filled. `regions`: as of its
+    /// [`Variant`](super::Variant), so that prewarmed pipelines suffice.
+    pub fn record(
+        &self,
+        device: &Device,
+        pass: &mut ComputePass<'_>,
+        frame: &Frame<'_>,
+        uniforms: FrameUniforms,
+        regions: bool,
+    ) {
         let lattices = SparseUniforms::new(frame, uniforms.size);
         let buffer = |bytes: &[u8]| filled(device, "afterimage uniforms", bytes, BufferUsages::UNIFORM);
         let lattices = buffer(bytemuck::bytes_of(&lattices));
         let target = array_view(&self.color);
-        let regions = frame.color.is_regions();
         for batch in batches(frame.views.len(), regions) {
             let uniforms = buffer(bytemuck::bytes_of(&FrameUniforms { first_view: batch.views.start, ..uniforms }));
             let color = frame.color.bind(&batch);

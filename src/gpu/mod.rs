@@ -412,7 +412,7 @@ impl Afterimage {
         }
         let color = match &self.fill {
             Some(fill) => {
-                fill.record(device, &mut pass, frame, uniforms);
+                fill.record(device, &mut pass, frame, uniforms, Variant::of(frame, target).regions);
                 // A layer is a whole view.
                 uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
                 fill.color()

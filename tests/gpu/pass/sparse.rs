@@ -257,13 +257,24 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
     let settings = settings(Method::None);
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     let usual = afterimage::gpu::Variant { counters: true, ..Default::default() };
-    rig.gpu.prewarm(&rig.device, [usual]);
+    let regions = afterimage::gpu::Variant { regions: true, ..Default::default() };
+    rig.gpu.prewarm(&rig.device, [usual, regions]);
     let count = rig.gpu.pipeline_count();
-    assert_eq!(count, 2);
+    assert_eq!(count, 4);
     let mut view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]);
     view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0));
-    rig.on_gpu(0, Reset::None, &[view]);
+    let made = rig.on_gpu(0, Reset::None, std::slice::from_ref(&view));
     assert_eq!(rig.gpu.pipeline_count(), count);
+    // A region for the output alone.
+    let target = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::OUTPUT_USAGE);
+    let color = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::INPUT_USAGE);
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    let facts = [view.facts];
+    let output = Textures::Regions(&[Region::new(&target, [0, 0])]);
+    rig.gpu.record(&rig.device, &mut encoder, &Frame::new(&color, &facts, 1), output).unwrap();
+    rig.queue.submit([encoder.finish()]);
+    assert_eq!(rig.gpu.pipeline_count(), count);
+    assert_eq!(made.stats.pixels, 70 * 41);
 }
 
 #[test]
