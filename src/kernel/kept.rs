@@ -65,7 +65,7 @@ impl Kept {
 
 /// Multiple of the step that exponent code `exponent` (that of a float) stands for, nearest to `v`.
 #[inline]
-fn multiple(v: f32, exponent: u32) -> u32 {
+pub fn multiple(v: f32, exponent: u32) -> u32 {
     // A power of two: the product is exact.
     (v * f32::from_bits((262 - exponent) << 23) + 0.5) as u32
 }
@@ -94,6 +94,18 @@ pub fn unpack_color(word: u32) -> Vec3 {
     Vec3::new(channel(word), channel(word >> 9), channel(word >> 18))
 }
 
+/// Code of a place along an axis, in pixels.
+#[inline]
+pub fn pack_place(px: f32) -> u32 {
+    (px * PLACE_STEPS + 32.5).floor().clamp(0.0, 63.0) as u32
+}
+
+/// Place along an axis of the code in the low six bits, in pixels.
+#[inline]
+pub fn unpack_place(bits: u32) -> f32 {
+    ((bits & 63) as f32 - 32.0) * (1.0 / PLACE_STEPS)
+}
+
 /// Packs a sample. The color must not be NaN.
 #[inline]
 pub fn pack_kept(s: Kept) -> [u32; 2] {
@@ -101,8 +113,7 @@ pub fn pack_kept(s: Kept) -> [u32; 2] {
     let disparity = disparity_code(s.disparity);
     // The last code is that of an unknown disparity.
     let disparity = if disparity == 0xffff { 0x3fff } else { ((disparity + 2) >> 2).min(0x3ffe) };
-    let place = |v: f32| ((v * PLACE_STEPS + 32.5).floor().clamp(0.0, 63.0)) as u32;
-    [pack_color(s.color), lod | disparity << 6 | place(s.place_px.x) << 20 | place(s.place_px.y) << 26]
+    [pack_color(s.color), lod | disparity << 6 | pack_place(s.place_px.x) << 20 | pack_place(s.place_px.y) << 26]
 }
 
 /// Unpacks a sample. The result is finite for any words.
@@ -113,12 +124,11 @@ pub fn unpack_kept(words: [u32; 2]) -> Kept {
         return Kept::EMPTY;
     }
     let disparity = (words[1] >> 6) & 0x3fff;
-    let place = |bits: u32| ((bits & 63) as f32 - 32.0) * (1.0 / PLACE_STEPS);
     Kept {
         color: unpack_color(words[0]),
         lod: lod as f32 * (1.0 / LOD_STEPS),
         disparity: if disparity == 0x3fff { -1.0 } else { disparity_value(disparity << 2) },
-        place_px: Vec2::new(place(words[1] >> 20), place(words[1] >> 26)),
+        place_px: Vec2::new(unpack_place(words[1] >> 20), unpack_place(words[1] >> 26)),
     }
 }
 
@@ -217,19 +227,18 @@ pub fn interpolate(a: Around) -> Interpolated {
         // All samples are far away.
         return Interpolated { color: nearest.color, lod: nearest.lod, nearest };
     }
-    let inverse = 1.0 / a.weight;
-    let mean = a.color * inverse;
-    let (x, y) = (a.place.x * inverse, a.place.y * inverse);
-    let xx = (a.square.x * inverse - x * x) + STIFF_PX2;
-    let xy = a.square.y * inverse - x * y;
-    let yy = (a.square.z * inverse - y * y) + STIFF_PX2;
-    // At least STIFF_PX2 squared, because variances are not negative.
-    let determinant = (xx * yy - xy * xy).max(0.5 * STIFF_PX2 * STIFF_PX2);
-    let across = a.color_x * inverse - mean * x;
-    let down = a.color_y * inverse - mean * y;
+    // Moments times the squared weight: without quotients, which shader compilers reorder.
+    let stiff = (a.weight * a.weight) * STIFF_PX2;
+    let xx = (a.square.x * a.weight - a.place.x * a.place.x) + stiff;
+    let xy = a.square.y * a.weight - a.place.x * a.place.y;
+    let yy = (a.square.z * a.weight - a.place.y * a.place.y) + stiff;
+    // At least `stiff` squared, because variances are not negative.
+    let determinant = (xx * yy - xy * xy).max((stiff * stiff) * 0.5);
+    let across = a.color_x * a.weight - a.color * a.place.x;
+    let down = a.color_y * a.weight - a.color * a.place.y;
     // The plane's value at the position is the mean, minus its slopes times the mean place.
-    let by_x = (yy * x - xy * y) / determinant;
-    let by_y = (xx * y - xy * x) / determinant;
-    let color = (mean - (across * by_x + down * by_y)).max(Vec3::ZERO);
+    let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
+    let inverse = 1.0 / a.weight;
+    let color = ((a.color - rise / determinant) * inverse).max(Vec3::ZERO);
     Interpolated { color, lod: a.lod * inverse, nearest }
 }

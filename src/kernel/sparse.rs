@@ -8,7 +8,7 @@
 
 use super::approx;
 use super::kept::Kept;
-use super::matched::{DARK, root_difference, smooth_step};
+use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
@@ -25,8 +25,8 @@ const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
 /// Expected errors within which neighbours agree with a sample's own gain.
 const AGREE_ERRORS: f32 = 4.0;
-/// Added to the expected error in that comparison.
-const AGREE_ERROR: f32 = 0.2;
+/// Added to these in that comparison, in units of [`root_difference`].
+const AGREE_ERROR: f32 = 0.8;
 /// Mean difference, in expected errors, at which the fit starts to fall, and width over which it falls to 0.
 const GATE: [f32; 2] = [2.0, 4.0];
 /// Smallest and largest gain.
@@ -35,8 +35,6 @@ const GAIN: [f32; 2] = [0.2, 5.0];
 const WORN: [f32; 2] = [4.0, 1.0];
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 const FINER_WIDTH: f32 = 0.25;
-/// Levels of detail by which history may be coarser than the candidate and still be accumulated.
-const COARSER_WIDTH: f32 = 0.25;
 /// Share of the samples' range by which a gain may exceed their largest value.
 const OVERSHOOT: f32 = 0.25;
 /// Share of equally fine history, as a part of `Smr::accumulate`: samples at their own pixels need less averaging.
@@ -81,7 +79,7 @@ pub fn sureness(lod: f32) -> f32 {
 
 /// Gain for one channel, limited.
 #[inline]
-fn ratio(observed: f32, predicted: f32) -> f32 {
+pub fn ratio(observed: f32, predicted: f32) -> f32 {
     ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1])
 }
 
@@ -96,7 +94,7 @@ pub fn ratios(observed: Vec3, predicted: Vec3) -> Vec3 {
 #[inline]
 pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
-    let errors = difference.min(1e6) / (AGREE_ERRORS * ((own.error + other.error) + AGREE_ERROR));
+    let errors = difference.min(1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
     (spatial * other.sure) / (1.0 + errors * errors)
 }
 
@@ -146,7 +144,7 @@ pub fn relight(l: Light) -> Vec3 {
     let inverse = 1.0 / l.weight;
     let (sampled, history) = (l.sampled * inverse, l.history * inverse);
     // The standard error of a weighted mean.
-    let from = (RELIGHT_ERRORS * (l.error * inverse)) * (l.squared.sqrt() * inverse);
+    let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
     let changed = smooth_step(from, from, root_difference(sampled, history));
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
@@ -205,7 +203,7 @@ pub struct Reconstructed {
 
 /// Relit color; a gain does not lift it above the samples around it by more than their range allows.
 #[inline]
-fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
+pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
     let highest = range[1] + (range[1] - range[0]) * OVERSHOOT;
     (color * gain).min(color.max(highest))
 }

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces};
 use afterimage_testing::holds;
 
 #[test]
@@ -43,6 +43,16 @@ fn doctor_is_bit_equal() {
 #[test]
 fn foveate_is_bit_equal_h69_h71() {
     check_module(foveation::PROBES, "foveate");
+}
+
+#[test]
+fn kept_is_bit_equal() {
+    check_module(sparse::PROBES, "kept");
+}
+
+#[test]
+fn sparse_is_bit_equal() {
+    check_module(sparse::PROBES, "sparse");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The library under test: the drop-in's.
 
 use super::probe::Probe;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces};
 pub use afterimage::shader::SHADERS;
 
 /// Where `shaders/lib` and `src/kernel` are.
@@ -10,14 +10,14 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 /// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a
 /// closure, and `mix`, which is a builtin of WGSL.
 pub const WGSL_ONLY: &[(&str, &str)] =
-    &[("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
+    &[("kept", "nothing_around"), ("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
 /// (Rust file stem, function there) without a WGSL twin: one takes a closure, in whose place the pass has a loop; the
 /// other places the samples of a frame before a device sees it.
 pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
-pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "pcg4d_mix", "saturating_add"];
+pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {
@@ -29,6 +29,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         matching::PROBES,
         noise::PROBES,
         mathematics::PROBES,
+        sparse::PROBES,
         state::PROBES,
         surfaces::PROBES,
     ];

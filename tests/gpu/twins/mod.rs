@@ -17,6 +17,7 @@ mod mathematics;
 mod modules;
 mod noise;
 mod probe;
+mod sparse;
 mod state;
 mod surfaces;
 mod values;

@@ -1,0 +1,166 @@
+//#use kept
+//#use matched
+// Twin of src/kernel/sparse.rs, which documents the functions.
+
+const STILL_ERROR: f32 = 0.3;
+const MOVED_ERROR: f32 = 0.6;
+const CONTRAST_ERROR: f32 = 0.5;
+const GATE_ERROR: f32 = 0.7;
+const RELIGHT_ERRORS: f32 = 2.5;
+const AGREE_ERRORS: f32 = 4.0;
+const AGREE_ERROR: f32 = 0.8;
+const FIT_ERRORS: vec2<f32> = vec2<f32>(2.0, 4.0);
+const SAMPLE_GAIN: vec2<f32> = vec2<f32>(0.2, 5.0);
+const WORN: vec2<f32> = vec2<f32>(4.0, 1.0);
+const FINER_WIDTH: f32 = 0.25;
+const OVERSHOOT: f32 = 0.25;
+const ACCUMULATE: f32 = 1.0f / 3.0f;
+const KEEP_SHARE: f32 = 0.9;
+
+// sparse::candidate_level
+fn candidate_level(px: f32, coarsest: f32) -> f32 {
+    return min(ln(1.0 + 2.0 * px) * LOG2_E, coarsest);
+}
+
+// A negative `error`: there is no history, or no usable sample.
+struct Observation {
+    sampled: vec3<f32>,
+    history: vec3<f32>,
+    error: f32,
+    sure: f32,
+}
+
+// sparse::expected_error
+fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
+    let coarse = clamp(lod, 0.0, 1.0);
+    let by_motion = select(0.0, CONTRAST_ERROR, moved);
+    return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
+}
+
+// sparse::sureness
+fn sureness(lod: f32) -> f32 {
+    return 1.0 - clamp(lod, 0.0, 1.0);
+}
+
+// sparse::ratio
+fn ratio(observed: f32, predicted: f32) -> f32 {
+    return clamp((observed + DARK) / (predicted + DARK), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
+}
+
+// sparse::ratios
+fn ratios(observed: vec3<f32>, predicted: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
+}
+
+// sparse::agreement
+fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
+    let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
+    let errors = min(difference, 1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
+    return (spatial * other.sure) / (1.0 + errors * errors);
+}
+
+// sparse::neighbour_weight
+fn neighbour_weight(offset: vec2<i32>) -> f32 {
+    return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
+}
+
+struct Light {
+    sampled: vec3<f32>,
+    history: vec3<f32>,
+    error: f32,
+    weight: f32,
+    squared: f32,
+    spatial: f32,
+}
+
+// sparse::add_light
+fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
+    return Light(
+        l.sampled + o.sampled * weight,
+        l.history + o.history * weight,
+        l.error + o.error * weight,
+        l.weight + weight,
+        l.squared + weight * weight,
+        l.spatial + spatial,
+    );
+}
+
+// sparse::relight
+fn relight(l: Light) -> vec3<f32> {
+    if l.weight < 1e-6 {
+        return vec3<f32>(1.0);
+    }
+    let inverse = 1.0 / l.weight;
+    let sampled = l.sampled * inverse;
+    let history = l.history * inverse;
+    // The standard error of a weighted mean.
+    let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
+    let changed = smooth_step(start, start, root_difference(sampled, history));
+    // A share of 1 gives the ratio bit for bit.
+    return ratios(sampled, history) * changed + (1.0 - changed);
+}
+
+// sparse::errors_left
+fn errors_left(o: Observation, gains: vec3<f32>) -> f32 {
+    return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
+}
+
+// sparse::fit
+fn fit(errors: f32, sure: f32) -> f32 {
+    return 1.0 - sure * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
+}
+
+struct Reconstruction {
+    candidate: vec3<f32>,
+    lod: f32,
+    lowest: vec3<f32>,
+    highest: vec3<f32>,
+    history: vec3<f32>,
+    history_lod: f32,
+    nearest: Kept,
+    moved: bool,
+    gains: vec3<f32>,
+    fit: f32,
+    trust: f32,
+    accumulate: f32,
+}
+
+struct Reconstructed {
+    color: vec3<f32>,
+    kept: Kept,
+    share: f32,
+}
+
+// sparse::relit
+fn relit(c: vec3<f32>, gains: vec3<f32>, lowest: vec3<f32>, highest: vec3<f32>) -> vec3<f32> {
+    return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
+}
+
+// sparse::reconstruct
+fn reconstruct(r: Reconstruction) -> Reconstructed {
+    let acceptance = r.fit * r.trust;
+    var worn = 0.0;
+    if any(r.gains != vec3<f32>(1.0)) {
+        let mean = (r.gains.x + r.gains.y + r.gains.z) * (1.0f / 3.0f);
+        worn = abs(ln(mean) * LOG2_E) * select(WORN.y, WORN.x, r.moved);
+    }
+    let history_lod = r.history_lod + worn;
+    let finer = clamp((r.lod - history_lod) / FINER_WIDTH, 0.0, 1.0);
+    let coarser = clamp((history_lod - r.lod) / COARSER_WIDTH, 0.0, 1.0);
+    let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * (r.accumulate * ACCUMULATE))) * acceptance;
+    let history = relit(r.history, r.gains, r.lowest, r.highest);
+    var shown = history;
+    if share != 1.0 {
+        shown = r.candidate + (history - r.candidate) * share;
+    }
+    let lost = 1.0 - finer * acceptance;
+    let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
+    let kept_lod = r.nearest.lod + worn;
+    if share >= KEEP_SHARE && near && kept_lod < r.lod {
+        let kept_color = relit(r.nearest.color, r.gains, r.lowest, r.highest);
+        let lod = kept_lod + (r.lod - kept_lod) * lost;
+        return Reconstructed(shown, Kept(kept_color, lod, r.nearest.disparity, r.nearest.place_px), share);
+    }
+    let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
+    return Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
+}
