@@ -1,5 +1,5 @@
-//! Reconstruction of sparse frames from history that keeps samples in their places (smr). `docs/method.md` has the
-//! equations. Twin: `shaders/pass/sparse_pass.wgsl` and the two passes before it.
+//! Reconstruction of sparse frames from history that keeps samples in their places (smr). Its mathematics is in
+//! `src/kernel/{kept,sparse}.rs`.
 //!
 //! Three loops. For each sample of a lattice of step 2 and more: compare it with history at its pixel. For each such
 //! sample: estimate gain and fit from its own comparison and its eight neighbours'. For each pixel: interpolate these

@@ -1,5 +1,5 @@
 //! Reconstruction of sparse frames: what history predicts at each new sample, how light changed around it, and what a
-//! pixel between samples shows. `docs/method.md` derives the equations.
+//! pixel between samples shows.
 //!
 //! Three steps. At each sample, history is compared with the sample **at the sample's own pixel at full rate**
 //! ([`Observation`]): no low-pass, no scale to match. Then each sample and its eight neighbours estimate the gain of a
