@@ -17,7 +17,8 @@ pub const WGSL_ONLY: &[(&str, &str)] =
 pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
-pub const PRIVATE: &[&str] = &["fifth_root", "half_is_infinite", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
+pub const PRIVATE: &[&str] =
+    &["fifth_root", "half_is_infinite", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {

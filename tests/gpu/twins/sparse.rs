@@ -44,7 +44,7 @@ fn push_kept(d: &mut Draws, row: &mut Vec<u32>) {
 fn push_observation(d: &mut Draws, row: &mut Vec<u32>) {
     let sampled = color(d);
     row.extend(sampled);
-    let near = d.bits() % 2 == 0;
+    let near = d.bits().is_multiple_of(2);
     for v in sampled {
         row.push(if near {
             (f32::from_bits(v) * f32::from_bits(range(d, 0.7, 1.4))).to_bits()
@@ -127,7 +127,7 @@ pub const PROBES: &[Probe] = &[
         rust: |r, o| kept::pack_kept(kept_of(r, 0)).into_iter().for_each(|w| o.u(w)),
         rows: || Rows::new(7).random("pack_kept", |d, row| {
             push_kept(d, row);
-            if d.bits() % 8 == 0 {
+            if d.bits().is_multiple_of(8) {
                 row[3] = (-1.0_f32).to_bits();
                 row[4] = (-1.0_f32).to_bits();
             }
@@ -360,9 +360,9 @@ pub const PROBES: &[Probe] = &[
             row.push(range(d, 0.0, 4.0));
             push_kept(d, row);
             row.push(d.bits() % 2);
-            let lit = d.bits() % 2 == 0;
+            let lit = d.bits().is_multiple_of(2);
             row.extend([0; 3].map(|_| if lit { 1.0_f32.to_bits() } else { range(d, 0.2, 5.0) }));
-            let sure = d.bits() % 2 == 0;
+            let sure = d.bits().is_multiple_of(2);
             row.extend([0; 2].map(|_| if sure { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) }));
             row.extend([range(d, 0.0, 0.98), 0]);
         }),
@@ -372,7 +372,7 @@ pub const PROBES: &[Probe] = &[
 /// Ten words of sums over neighbours, whose means are often close to each other.
 fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     let weight = range(d, 0.0, 16.0);
-    let (mean, near) = (color(d), d.bits() % 2 == 0);
+    let (mean, near) = (color(d), d.bits().is_multiple_of(2));
     let times = |v: u32, by: u32| (f32::from_bits(v) * f32::from_bits(by)).to_bits();
     row.extend(mean.map(|v| times(v, weight)));
     for v in mean {
