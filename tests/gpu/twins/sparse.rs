@@ -4,7 +4,7 @@ use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
 use afterimage::kernel::{kept, sparse};
 use afterimage_testing::Draws;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// Seven words of a kept sample.
 fn kept_of(r: &Row<'_>, at: usize) -> kept::Kept {
