@@ -1,6 +1,9 @@
 //! Constants of a view for the passes of both executors.
 
+#[cfg(feature = "gpu")]
+use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, ViewFrame};
+use crate::kernel::foveate::level_len;
 #[cfg(feature = "cpu")]
 use crate::kernel::lattice::{Between, between};
 use crate::kernel::rng::{self, Purpose};
@@ -119,6 +122,28 @@ pub struct LatticeUniforms {
     pub level: u32,
     /// Distance of neighbouring samples in texels: 1 in an atlas, otherwise as in pixels.
     pub stride: u32,
+    /// Texel of the top-left sample's results ([`result_texel`]).
+    pub results: [u32; 2],
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 2],
+}
+
+/// Texel at which the results for the samples of a lattice begin, in an image of [`results_size`]: that of step 2 above
+/// the coarser ones, which lie side by side. No lattice of a view of `size_px` has more samples than pixels divided by
+/// its step.
+fn result_texel(level: u32, size_px: [u32; 2]) -> [u32; 2] {
+    match level {
+        0 | 1 => [0, 0],
+        _ => [(2..level).map(|l| level_len(size_px[0], l)).sum(), level_len(size_px[1], 1)],
+    }
+}
+
+/// Size of an image with a texel for every sample of every lattice of step 2 and more.
+#[cfg(feature = "gpu")]
+pub(crate) fn results_size(size_px: [u32; 2]) -> [u32; 2] {
+    let coarsest = Foveation::MAX_RATE.ilog2();
+    let [right, below] = result_texel(coarsest + 1, size_px);
+    [right.max(level_len(size_px[0], 1)), below + level_len(size_px[1], 2)]
 }
 
 /// Lattices of a view, finest first; the unused ones cover nothing.
@@ -132,7 +157,9 @@ impl LatticeUniforms {
         let (texel, stride) = lattice.atlas_texel.map_or((first_px, step), |texel| (texel, 1));
         let inside = |i: usize| size_px[i].saturating_sub(first_px[i]).div_ceil(step);
         let points = [0, 1].map(|i| lattice.points[i].min(inside(i)));
-        Self { low_px, high_px, first_px, points, texel, level: step.ilog2(), stride }
+        let level = step.ilog2();
+        let results = result_texel(level, size_px);
+        Self { low_px, high_px, first_px, points, texel, level, stride, results, unused: [0; 2] }
     }
 
     /// All lattices of a view of `size_px`.

@@ -41,8 +41,8 @@ struct FrameUniforms {
     smr_accumulate_tolerance: f32,
     smr_tolerance: f32,
     first_view: u32,
+    lattice: u32,
     unused_0: u32,
-    unused_1: u32,
     views: array<ViewUniforms, 4>,
 }
 

@@ -12,6 +12,9 @@ struct LatticeUniforms {
     texel: vec2<u32>,
     level: u32,
     stride: u32,
+    results: vec2<u32>,
+    unused_0: u32,
+    unused_1: u32,
 }
 
 // src/gpu/uniforms.rs: SparseUniforms, which documents the fields

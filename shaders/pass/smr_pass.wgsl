@@ -40,17 +40,6 @@ fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
     );
 }
 
-// Whether a neighbour in the 2x2 block moves as the pixel does.
-fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
-    if HAS_MOTION == 0u {
-        return true;
-    }
-    // At an odd border the pixel is its own neighbour.
-    let across = min(px ^ vec2<u32>(1u), frame.size - 1u);
-    return moves_alike(own, motion_at(vec2<u32>(across.x, px.y), view))
-        || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
-}
-
 // Four texels of a level around a position, and the position's fractions between them.
 struct Texels {
     low: vec2<u32>,
@@ -90,7 +79,7 @@ fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32>
     let texel_x = block_sample(px.x >> level, level, frame.size.x);
     let texel_y = block_sample(px.y >> level, level, frame.size.y);
     let texel = vec2<f32>(f32(texel_x), f32(texel_y));
-    let at = source.at + (((texel + 0.5) * texel_px - 0.5) - vec2<f32>(px));
+    let at = source.previous.at + (((texel + 0.5) * texel_px - 0.5) - vec2<f32>(px));
     if finer > 0u {
         return past_level(at, finer, view);
     }
@@ -182,7 +171,7 @@ fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, need
 fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
-    let past = past_read(source.at, lod + shift, history.smooth_color, view);
+    let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
     let radius = 0.75 * exp2(lod);
     let matched = exposed(past.matched);
     let whole_level = exposed(past.level);
@@ -210,7 +199,7 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
         next_level,
         select(next_level, matched, blocks || gauss),
         select(predicted, next_level, gauss),
-        source.trust,
+        source.previous.trust,
         0.0,
         vec2<f32>(1.0),
     );
@@ -254,7 +243,7 @@ fn averaged_pixel(
         return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
     }
     let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
-    let past = past_read(source.at, lod + NOISY_LEVELS, history.smooth_color, view);
+    let past = past_read(source.previous.at, lod + NOISY_LEVELS, history.smooth_color, view);
     let matched = exposed(past.matched);
     let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
     let evidence = Evidence(
@@ -271,12 +260,12 @@ fn averaged_pixel(
         exposed(past.next_level),
         exposed(past.next_level),
         matched,
-        source.trust,
+        source.previous.trust,
         noise_difference(past_noise, noise_around, luma(matched)),
         confidence,
     );
     let result = decide(evidence, params);
-    let acceptance = result.fit * source.trust;
+    let acceptance = result.fit * source.previous.trust;
     return Averaged(result, noise_after(past_noise, noise_around, result.share, reuse.finer * acceptance));
 }
 
@@ -289,12 +278,12 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let motion = motion_at(px, view);
     let lod = candidate_lod(px, view, ray);
     let coherent_motion = is_coherent(px, view, motion);
-    var source = source_of(px, view, ray, motion, disparity_now);
-    if source.verdict == VERDICT_VALID && !coherent_motion {
-        source.verdict = VERDICT_DISOCCLUDED;
+    var source = source_of(px, view, motion, disparity_now);
+    if source.previous.verdict == VERDICT_VALID && !coherent_motion {
+        source.previous.verdict = VERDICT_DISOCCLUDED;
     }
-    let valid = source.verdict == VERDICT_VALID;
-    count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
+    let valid = source.previous.verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, source.previous.verdict);
 
     var result = Matched(candidate.color, select(-1.0, lod, candidate.usable), 0.0, 1.0);
     var noise = Noise(1.0, 0.0);
@@ -325,7 +314,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
         view,
         result.color,
         given.w,
-        PixelTrace(source.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
+        PixelTrace(source.previous.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
     // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
     // them.

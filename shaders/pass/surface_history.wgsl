@@ -1,4 +1,4 @@
-//#use inputs
+//#use previous
 //#use resample
 //#use wrs
 // Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
@@ -15,19 +15,10 @@
 
 // Previous position of a pixel's surface. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct Source {
-    verdict: u32,
+    previous: Previous,
     texel: vec2<i32>,
     fraction: vec2<f32>,
-    at: vec2<f32>,
     nearest: Surface,
-    nearest_at: vec2<u32>,
-    expected: f32,
-    trust: f32,
-}
-
-fn no_source(verdict: u32) -> Source {
-    let nothing = Surface(vec3<f32>(0.0), -1.0, -1.0);
-    return Source(verdict, vec2<i32>(0), vec2<f32>(0.0), vec2<f32>(0.0), nothing, vec2<u32>(0u), INVALID_DISPARITY, 0.0);
 }
 
 fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
@@ -35,32 +26,12 @@ fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
     return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
 }
 
-fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> Source {
-    if frame.reset != 0u {
-        return no_source(VERDICT_RESET);
-    }
-    let reprojected = nearest(px.x, px.y, motion, frame.size);
-    if reprojected.verdict != VERDICT_VALID {
-        return no_source(reprojected.verdict);
-    }
-    let stored = surface_at(vec2<i32>(reprojected.at), view);
-    if stored.lod < 0.0 {
-        return no_source(VERDICT_EMPTY);
-    }
-    var confidence = 1.0;
-    if HAS_TRUST != 0u {
-        confidence = trust(trust_at(px, view));
-        if confidence == 0.0 {
-            return no_source(VERDICT_DISTRUSTED);
-        }
-    }
-    let expected = expected_disparity(view, ray, disparity_now);
-    if !is_same_surface(px, view, disparity_now, expected, stored.disparity) {
-        return no_source(VERDICT_DISOCCLUDED);
-    }
-    let at = vec2<f32>(px) + motion;
-    let whole = floor(at);
-    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, reprojected.at, expected, confidence);
+fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Source {
+    let at = reprojected(px, motion);
+    let stored = surface_at(vec2<i32>(at.at), view);
+    let previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
+    let whole = floor(previous.at);
+    return Source(previous, vec2<i32>(whole), previous.at - whole, stored);
 }
 
 fn component(v: vec4<f32>, i: u32) -> f32 {
@@ -82,7 +53,7 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
         let s = surface_at(source.texel + vec2<i32>(at) - 1, view);
         var same = s.lod >= 0.0;
         if DEPTH_TEST != 0u {
-            same = same && same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0);
+            same = same && same_surface(source.previous.expected, s.disparity, TAP_RELATIVE, 0.0);
         }
         let sharp = component(sharp_x, at.x) * component(sharp_y, at.y);
         let smooth_w = component(smooth_x, at.x) * component(smooth_y, at.y);
@@ -99,5 +70,5 @@ fn exposed(stored: vec3<f32>) -> vec3<f32> {
 
 // Noise of the nearest texel, scaled to this frame's exposure.
 fn past_noise_of(source: Source, view: u32) -> Noise {
-    return expose_noise(unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x), frame.exposure);
+    return expose_noise(unpack_noise(textureLoad(past_noise, source.previous.nearest_at, view, 0).x), frame.exposure);
 }

@@ -29,9 +29,9 @@ fn pixel(px: vec2<u32>, view: u32) {
     let candidate = color(given.xyz);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
-    let source = source_of(px, view, ray_at(px, view), motion, disparity_now);
-    let valid = source.verdict == VERDICT_VALID;
-    count_pixel(px, view, candidate.usable, disparity_now, source.verdict);
+    let source = source_of(px, view, motion, disparity_now);
+    let valid = source.previous.verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, source.previous.verdict);
 
     var shown = candidate.color;
     var share = 0.0;
@@ -40,7 +40,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     if valid {
         let history = exposed(resampled.sharp);
         if candidate.usable {
-            let alpha = candidate_share(source.fraction, source.trust);
+            let alpha = candidate_share(source.fraction, source.previous.trust);
             shown = blend_clipped(candidate.color, history, around.sum, around.squares, alpha);
             share = 1.0 - alpha;
         } else {
@@ -50,7 +50,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     // The overshoot of Catmull-Rom may exceed the largest half.
     shown = min(shown, vec3<f32>(MAX_HALF));
-    write_output(px, view, shown, given.w, PixelTrace(source.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
+    write_output(px, view, shown, given.w, PixelTrace(source.previous.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
     if VIEW != 0u {
         return;
     }

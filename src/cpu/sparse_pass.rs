@@ -263,7 +263,8 @@ impl View<'_> {
                 kept = Kept { disparity, ..result.kept };
             }
         }
-        output = output.min(Vec3::splat(sanitize::MAX_HALF));
+        // Means of colors may exceed the largest half.
+        output = output.clamp(Vec3::splat(-sanitize::MAX_HALF), Vec3::splat(sanitize::MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
         let trace = PixelTrace {
             verdict,

@@ -1,18 +1,17 @@
 //! Every pixel of a sparse frame, for methods that read whole frames. CPU twin: `src/cpu/fill.rs`.
 
-use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use super::history::array_view;
 use super::textures::batches;
-use super::uniforms::{FrameUniforms, SparseUniforms};
-use super::{Frame, Textures};
+use super::uniforms::FrameUniforms;
+use super::{Frame, Textures, sparse};
 use crate::foveation::Filter;
 use crate::frame::ContextDesc;
 use crate::settings::Method;
 use crate::shader::SHADERS;
 use wgpu::{
-    BindingResource, BufferUsages, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages,
+    BindingResource, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat,
+    TextureUsages,
 };
 
 /// Format of filled colors: samples keep their bits in it.
@@ -71,12 +70,10 @@ impl Fill {
         uniforms: FrameUniforms,
         regions: bool,
     ) {
-        let lattices = SparseUniforms::new(frame, uniforms.size);
-        let buffer = |bytes: &[u8]| filled(device, "afterimage uniforms", bytes, BufferUsages::UNIFORM);
-        let lattices = buffer(bytemuck::bytes_of(&lattices));
+        let lattices = sparse::lattices(device, frame, uniforms.size);
         let target = array_view(&self.color);
         for batch in batches(frame.views.len(), regions) {
-            let uniforms = buffer(bytemuck::bytes_of(&FrameUniforms { first_view: batch.views.start, ..uniforms }));
+            let uniforms = uniforms.buffer(device, batch.views.start, 0);
             let color = frame.color.bind(&batch);
             let resources = [
                 uniforms.as_entire_binding(),

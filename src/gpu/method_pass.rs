@@ -4,7 +4,6 @@
 //! the order of the method's shader. Absent inputs are switched off by `override` constants and bound to placeholders,
 //! which a specialised shader does not read.
 
-use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
 use super::history::{History, array_view};
 use super::output::DEBUG_FORMAT;
@@ -13,8 +12,8 @@ use super::uniforms::FrameUniforms;
 use super::{Frame, Target, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::kernel::debug_view::DebugView;
-use crate::method::{HistoryLayout, Overrides};
-use crate::settings::{Method, Settings};
+use crate::method::{HistoryLayout, Overrides, PassShader};
+use crate::settings::Settings;
 use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
 use std::sync::OnceLock;
@@ -26,13 +25,16 @@ use wgpu::{
 /// Binding number of the debug view in `shaders/pass/output_and_view.wgsl`.
 const DEBUG_BINDING: u32 = 16;
 
+/// Binding number of `shaders/pass/lattices.wgsl`.
+const LATTICES_BINDING: u32 = 17;
+
 /// The pass, with placeholders for absent inputs.
 #[derive(Debug)]
 pub(super) struct MethodPass {
     shader: ComputeShader,
     /// The pass that also writes a debug view; made at its first use.
     with_view: OnceLock<ComputeShader>,
-    method: Method,
+    pass_shader: PassShader,
     history: HistoryLayout,
     output: TextureFormat,
     absent: Placeholders,
@@ -67,6 +69,8 @@ pub(super) struct Job<'a, 'f> {
     pub view: Option<DebugView>,
     pub uniforms: FrameUniforms,
     pub history: &'a History,
+    /// Lattices of a sparse frame that the pass itself reads, and the results for their samples.
+    pub samples: Option<(&'a Buffer, &'a TextureView)>,
 }
 
 impl MethodPass {
@@ -80,14 +84,14 @@ impl MethodPass {
             mapped_at_creation: false,
         });
         Self {
-            shader: ComputeShader::new(
+            shader: ComputeShader::with_bindings(
                 device,
                 "afterimage",
                 writing(device, source, output),
-                &binding_types(output, history),
+                &bindings(output, history),
             ),
             with_view: OnceLock::new(),
-            method: settings.method,
+            pass_shader: settings.pass_shader(),
             history,
             output,
             absent: Placeholders::new(device, history),
@@ -95,9 +99,9 @@ impl MethodPass {
         }
     }
 
-    /// Method of the pass.
-    pub fn method(&self) -> Method {
-        self.method
+    /// Shader of the pass.
+    pub fn pass_shader(&self) -> PassShader {
+        self.pass_shader
     }
 
     /// Compiles the pipeline of a variant.
@@ -115,9 +119,8 @@ impl MethodPass {
             return &self.shader;
         }
         self.with_view.get_or_init(|| {
-            let source = SHADERS.compose_replacing(self.method.entry().shader, ("output", "output_and_view")).source;
-            let types = binding_types(self.output, self.history);
-            let mut bindings: Vec<_> = (0..).zip(types).collect();
+            let source = SHADERS.compose_replacing(self.pass_shader.name, ("output", "output_and_view")).source;
+            let mut bindings = bindings(self.output, self.history);
             bindings.push((DEBUG_BINDING, storage_texture(DEBUG_FORMAT)));
             ComputeShader::with_bindings(device, "afterimage", writing(device, &source, self.output), &bindings)
         })
@@ -127,7 +130,7 @@ impl MethodPass {
     pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_, '_>) {
         let variant = Variant::of(job.frame, job.target);
         let shader = self.shader(device, variant);
-        let blocks = job.uniforms.size.map(|s| s.div_ceil(self.method.entry().block_px));
+        let blocks = job.uniforms.size.map(|s| s.div_ceil(self.pass_shader.block_px));
         let overrides = overrides(job.desc, variant, job.view);
         for batch in batches(job.frame.views.len(), variant.regions) {
             let group = self.group(device, shader, job, &batch);
@@ -135,11 +138,10 @@ impl MethodPass {
         }
     }
 
-    /// Bind group of a batch of views. Each has its own buffer of uniforms, so that one submission can contain several.
+    /// Bind group of a batch of views.
     fn group(&self, device: &Device, shader: &ComputeShader, job: &Job<'_, '_>, batch: &Batch) -> BindGroup {
         let Job { frame, target, history, .. } = job;
-        let uniforms = FrameUniforms { first_view: batch.views.start, ..job.uniforms };
-        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let uniforms = job.uniforms.buffer(device, batch.views.start, 0);
         let optional =
             |textures: Option<Textures<'_>>| textures.map_or_else(|| self.absent.float.clone(), |t| t.bind(batch));
         let inputs = [
@@ -166,7 +168,11 @@ impl MethodPass {
                 next_or(1),
                 next_or(2),
             ],
-            HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => vec![
+            HistoryLayout::Kept => {
+                let (_, lights) = job.samples.expect("sparse frames have samples");
+                vec![past_or(0, &self.absent.word), next_or(0), lights]
+            }
+            HistoryLayout::Surfaces { .. } => vec![
                 &lod,
                 past_or(0, &self.absent.word),
                 past_or(1, &self.absent.float),
@@ -185,7 +191,9 @@ impl MethodPass {
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
-            .chain(history_views.into_iter().chain(debug.as_ref()).map(BindingResource::TextureView));
+            .chain(history_views.into_iter().map(BindingResource::TextureView))
+            .chain(job.samples.map(|(lattices, _)| lattices.as_entire_binding()))
+            .chain(debug.as_ref().map(BindingResource::TextureView));
         shader.group(device, resources)
     }
 }
@@ -194,20 +202,28 @@ impl MethodPass {
 fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> Overrides {
     let flag = u32::from;
     let settings = &desc.settings;
-    let mut list = vec![
-        ("HAS_DEPTH", flag(variant.depth)),
-        ("HAS_MOTION", flag(variant.motion)),
-        ("HAS_TRUST", flag(variant.trust)),
-        ("DEPTH_TEST", flag(variant.depth && settings.depth_test.is_some())),
+    let mut list = input_overrides(desc, variant);
+    list.extend([
         ("NOISY", flag(settings.noisy)),
         ("COUNT", flag(variant.counters)),
-        ("REGIONS", flag(variant.regions)),
         ("VIEW", view.map_or(0, |v| v as u32)),
         ("KEEP_ALPHA", flag(desc.keep_alpha)),
-    ];
+    ]);
     list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
     list.extend((settings.method.entry().overrides)(settings, variant.lod));
     list
+}
+
+/// Which inputs the passes of a frame read.
+pub(super) fn input_overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
+    let flag = u32::from;
+    vec![
+        ("HAS_DEPTH", flag(variant.depth)),
+        ("HAS_MOTION", flag(variant.motion)),
+        ("HAS_TRUST", flag(variant.trust)),
+        ("DEPTH_TEST", flag(variant.depth && desc.settings.depth_test.is_some())),
+        ("REGIONS", flag(variant.regions)),
+    ]
 }
 
 /// Shader text for outputs of format `output`: in WGSL the texel format of a storage texture is part of its type.
@@ -242,16 +258,17 @@ fn stand_in(device: &Device, format: TextureFormat, usage: TextureUsages) -> Tex
     }))
 }
 
-fn binding_types(output: TextureFormat, history: HistoryLayout) -> Vec<BindingType> {
+/// Numbers and types of a pass's bindings.
+fn bindings(output: TextureFormat, history: HistoryLayout) -> Vec<(u32, BindingType)> {
     let (float, words) = (float_texture(), uint_texture());
     let [first, second, third] = written(history).map(storage_texture);
     let mut types = vec![uniform(), float, float, float, float, storage_texture(output), storage_buffer(false), float];
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
         HistoryLayout::Reservoirs { .. } => vec![words, words, float, first, second, third],
-        HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => {
-            vec![float, words, float, first, second, words, float, third]
-        }
+        HistoryLayout::Kept => vec![words, first, words],
+        HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });
-    types
+    let lattices = (history == HistoryLayout::Kept).then(|| (LATTICES_BINDING, uniform()));
+    (0..).zip(types).chain(lattices).collect()
 }

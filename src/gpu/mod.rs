@@ -21,6 +21,7 @@ mod output;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
 pub mod resize;
+mod sparse;
 mod textures;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
@@ -42,7 +43,7 @@ use crate::frame::{ContextDesc, Executor, check_size};
 use crate::kernel::debug_view::DebugView;
 use crate::method::HistoryLayout;
 use crate::resize::Resize;
-use crate::settings::{Method, Settings};
+use crate::settings::Settings;
 use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
 use crate::uniforms::Held;
@@ -51,6 +52,7 @@ use history::History;
 use method_pass::{Job, MethodPass};
 use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
 use resize::ResizePass;
+use sparse::SamplePasses;
 use uniforms::FrameUniforms;
 use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
@@ -67,6 +69,8 @@ pub struct Afterimage {
     passes: Passes,
     /// For sparse frames of methods that read whole ones.
     fill: Option<Fill>,
+    /// For sparse frames of smr, which reads the samples themselves.
+    samples: Option<SamplePasses>,
     history: History,
 }
 
@@ -90,7 +94,8 @@ impl Passes {
     fn new(device: &Device, settings: &Settings, output: TextureFormat, source: &str) -> Self {
         Self {
             method: MethodPass::new(device, settings, output, source),
-            mip_chain: (settings.method == Method::Smr).then(|| MipChainPass::new(device, MipChainKind::Surfaces)),
+            mip_chain: matches!(settings.history_layout(), HistoryLayout::Surfaces { levels: 1.., .. })
+                .then(|| MipChainPass::new(device, MipChainKind::Surfaces)),
             candidates: None,
             resize: None,
         }
@@ -135,8 +140,8 @@ impl Afterimage {
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
     /// is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
-        let shader = desc.settings.method.entry().shader;
-        Self::with_shader(device, desc, output_format, &SHADERS.compose(shader).source)
+        let source = SHADERS.compose(desc.settings.pass_shader().name).source;
+        Self::with_shader(device, desc, output_format, &source)
     }
 
     /// A context with another shader for the method's pass: for tests that plant errors, and for benchmarks.
@@ -149,14 +154,22 @@ impl Afterimage {
     ) -> Result<Self, CreateError> {
         validate(device, desc, output_format)?;
         let mut passes = Passes::new(device, &desc.settings, output_format, source);
-        let (history, fill) = (passes.history(device, desc), Fill::new(device, desc));
-        Ok(Self { desc: *desc, output_format, passes, fill, history })
+        let (fill, samples) = (Fill::new(device, desc), SamplePasses::new(device, desc));
+        let history = passes.history(device, desc);
+        Ok(Self { desc: *desc, output_format, passes, fill, samples, history })
     }
 
     /// Another shader for the pass that fills sparse frames, for tests that plant errors.
     #[doc(hidden)]
     pub fn set_fill_shader(&mut self, device: &Device, source: &str) {
         self.fill = Some(Fill::with_shader(device, &self.desc, source.to_owned()));
+    }
+
+    /// Other shaders for the passes over the samples of sparse frames, for tests that plant errors.
+    #[doc(hidden)]
+    pub fn set_sample_shaders(&mut self, device: &Device, observe: &str, light: &str) {
+        let sources = [observe, light].map(str::to_owned);
+        self.samples = Some(SamplePasses::with_shaders(device, &self.desc, sources));
     }
 
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
@@ -187,19 +200,22 @@ impl Afterimage {
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
-        output::check_settings(&settings)?;
-        let same_method = settings.method == self.passes.method.method();
+        settings.validate()?;
+        let same_shader = settings.pass_shader() == self.passes.method.pass_shader();
         let same_history = settings.history_layout() == self.history.layout();
         self.desc.settings = settings;
-        if !same_method {
-            let source = SHADERS.compose(settings.method.entry().shader).source;
+        if !same_shader {
+            let source = SHADERS.compose(settings.pass_shader().name).source;
             self.passes = Passes::new(device, &settings, self.output_format, &source);
         }
-        if !(same_method && same_history) {
+        if !(same_shader && same_history) {
             self.history = self.passes.history(device, &self.desc);
         }
         if self.fill.is_some() != fill::is_needed(&self.desc) {
             self.fill = Fill::new(device, &self.desc);
+        }
+        if self.samples.is_some() != sparse::is_needed(&self.desc) {
+            self.samples = SamplePasses::new(device, &self.desc);
         }
         Ok(())
     }
@@ -256,6 +272,9 @@ impl Afterimage {
         if let Some(fill) = &mut self.fill {
             fill.resize(device, &self.desc);
         }
+        if let Some(samples) = &mut self.samples {
+            samples.resize(device, &self.desc);
+        }
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
@@ -276,6 +295,9 @@ impl Afterimage {
             if let Some(fill) = &self.fill {
                 fill.prewarm(device, variant.regions);
             }
+            if let Some(samples) = &self.samples {
+                samples.prewarm(device, &self.desc, variant);
+            }
         }
         if let Some(mip_chain) = &self.passes.mip_chain {
             mip_chain.prewarm(device);
@@ -294,6 +316,7 @@ impl Afterimage {
             + candidates.as_ref().map_or(0, CandidatePass::pipeline_count)
             + resize.as_ref().map_or(0, ResizePass::pipeline_count)
             + self.fill.as_ref().map_or(0, Fill::pipeline_count)
+            + self.samples.as_ref().map_or(0, SamplePasses::pipeline_count)
     }
 
     /// Size in bytes of the textures that the context holds between frames.
@@ -311,10 +334,12 @@ impl Afterimage {
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        history::memory_bytes(desc) + fill::memory_bytes(desc)
+        history::memory_bytes(desc) + fill::memory_bytes(desc) + sparse::memory_bytes(desc)
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
+    ///
+    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
     /// and with A-ES the keys (`R32Float`). For taa and smr the packed surfaces ([`surface`](crate::kernel::surface),
@@ -420,7 +445,13 @@ impl Afterimage {
             None => frame.color,
         };
         let frame = &frame.with_color(color);
-        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history };
+        let lattices = self.samples.as_ref().map(|_| sparse::lattices(device, frame, uniforms.size));
+        let samples = self.samples.as_ref().zip(lattices.as_ref()).map(|(samples, lattices)| {
+            let frame_variant = (frame, Variant::of(frame, target));
+            samples.record(device, &mut pass, &self.desc, frame_variant, (uniforms, lattices), &self.history);
+            (lattices, samples.lights())
+        });
+        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history, samples };
         self.passes.method.record(device, &mut pass, &job);
         if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {
             mip_chain.record(device, &mut pass, &self.history.split().1.mip_levels);

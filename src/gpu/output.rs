@@ -2,9 +2,7 @@
 
 use super::MAX_VIEWS;
 use crate::error::{CreateError, SettingsError};
-use crate::foveation::Filter;
 use crate::frame::ContextDesc;
-use crate::settings::{Method, Settings};
 use wgpu::{Device, Features, Limits, TextureFormat, TextureUsages};
 
 /// Format of a debug view beside the output.
@@ -49,23 +47,9 @@ pub(crate) fn texel(device: &Device, format: TextureFormat) -> Result<&'static s
     }
 }
 
-/// Refuses settings that only the CPU executor supports so far.
-pub(crate) fn check_settings(settings: &Settings) -> Result<(), SettingsError> {
-    settings.validate()?;
-    if settings.method == Method::Smr && settings.foveation.filter == Filter::Sparse {
-        return Err(SettingsError {
-            setting: "method",
-            found: "smr".into(),
-            expected: "none, taa or wrs: smr on sparse frames runs on the CPU only, so far".into(),
-        });
-    }
-    Ok(())
-}
-
 /// Checks a description and an output format against a device.
 pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureFormat) -> Result<(), CreateError> {
     desc.validate()?;
-    check_settings(&desc.settings)?;
     texel(device, output)?;
     if desc.view_count as usize > MAX_VIEWS {
         return Err(CreateError::Settings(SettingsError {

@@ -1,11 +1,13 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
+use super::buffer::filled;
 use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
 use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
 use crate::uniforms::Held;
 pub use crate::uniforms::{LatticeUniforms, ViewLattices, ViewUniforms};
 use bytemuck::{Pod, Zeroable};
+use wgpu::{Buffer, BufferUsages, Device};
 
 /// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
 pub const MAX_VIEWS: usize = 4;
@@ -55,8 +57,10 @@ pub struct FrameUniforms {
     pub smr_tolerance: f32,
     /// First view of the dispatch.
     pub first_view: u32,
+    /// Lattice whose samples the dispatch processes.
+    pub lattice: u32,
     /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 2],
+    pub unused: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
 }
@@ -112,6 +116,13 @@ impl FrameUniforms {
             };
         }
         uniforms
+    }
+
+    /// These uniforms on the device, for a dispatch from view `first_view` on. Each dispatch has its own buffer, so that
+    /// one submission can contain several. `lattice`: whose samples it processes, if it does.
+    pub(super) fn buffer(self, device: &Device, first_view: u32, lattice: u32) -> Buffer {
+        let uniforms = Self { first_view, lattice, ..self };
+        filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM)
     }
 }
 

@@ -52,16 +52,22 @@ pub(crate) struct Entry {
     pub history: fn(&Settings) -> HistoryLayout,
     /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
-    /// Shader of its pass: a module of `shaders/pass/`.
     #[cfg(feature = "gpu")]
-    pub shader: &'static str,
-    /// Edge in pixels of the block that an invocation of the shader processes.
-    #[cfg(feature = "gpu")]
-    pub block_px: u32,
+    pub shader: fn(&Settings) -> PassShader,
     /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says
     /// whether the frame has a level-of-detail input.
     #[cfg(feature = "gpu")]
     pub overrides: fn(&Settings, bool) -> Overrides,
+}
+
+/// Shader of a method's pass.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PassShader {
+    /// Name of a module of `shaders/pass/`.
+    pub name: &'static str,
+    /// Edge in pixels of the block that an invocation processes.
+    pub block_px: u32,
 }
 
 /// Names and values of a shader's overrides.
@@ -90,6 +96,12 @@ pub(crate) enum HistoryLayout {
 }
 
 impl Settings {
+    /// Shader of the method's pass.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn pass_shader(&self) -> PassShader {
+        (self.method.entry().shader)(self)
+    }
+
     /// Layout of the method's history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
         (self.method.entry().history)(self)

@@ -1,5 +1,7 @@
 //! No method: the sanitized foveated frame.
 
+#[cfg(feature = "gpu")]
+use super::PassShader;
 use super::{Entry, HistoryLayout};
 
 pub(super) static ENTRY: Entry = Entry {
@@ -8,9 +10,7 @@ pub(super) static ENTRY: Entry = Entry {
     history: |_| HistoryLayout::Nothing,
     history_traffic_bytes: |_| 0,
     #[cfg(feature = "gpu")]
-    shader: "none_pass",
-    #[cfg(feature = "gpu")]
-    block_px: 1,
+    shader: |_| PassShader { name: "none_pass", block_px: 1 },
     #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

@@ -1,5 +1,7 @@
 //! Scale-matched reservoirs.
 
+#[cfg(feature = "gpu")]
+use super::PassShader;
 use super::{Entry, HistoryLayout};
 use crate::foveation::Filter;
 use crate::kernel::matched::SmrParams;
@@ -12,17 +14,19 @@ pub(super) static ENTRY: Entry = Entry {
     history,
     history_traffic_bytes,
     #[cfg(feature = "gpu")]
-    shader: "smr_pass",
-    // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
+    shader: |settings| match settings.foveation.filter {
+        Filter::Sparse => PassShader { name: "sparse_pass", block_px: 1 },
+        // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
+        _ => PassShader { name: "smr_pass", block_px: 2 },
+    },
     #[cfg(feature = "gpu")]
-    block_px: 2,
-    #[cfg(feature = "gpu")]
-    overrides: |settings, has_lod| {
-        vec![
+    overrides: |settings, has_lod| match settings.foveation.filter {
+        Filter::Sparse => vec![],
+        _ => vec![
             ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", filter(settings) as u32),
             ("RELIGHT_ON", u32::from(settings.smr.relight)),
-        ]
+        ],
     },
 };
 
@@ -41,6 +45,12 @@ fn history(settings: &Settings) -> HistoryLayout {
 }
 
 fn history_traffic_bytes(settings: &Settings) -> u32 {
+    if settings.foveation.filter == Filter::Sparse {
+        // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
+        // most have samples of this frame: for each, history is read (8), the observation is written and read (16), and
+        // so is the light (16).
+        return 2 * 8 + (8 + 16 + 16_u32).div_ceil(3);
+    }
     // Surfaces: 8 bytes read, 8 written. Their mip chain has a third of the texels, 8 bytes each: read by the pass,
     // written, and read again to fill its coarser levels.
     let surfaces = 2 * 8 + 8;

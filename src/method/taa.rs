@@ -1,5 +1,7 @@
 //! Temporal antialiasing of the foveated frame.
 
+#[cfg(feature = "gpu")]
+use super::PassShader;
 use super::{Entry, HistoryLayout};
 
 pub(super) static ENTRY: Entry = Entry {
@@ -8,9 +10,7 @@ pub(super) static ENTRY: Entry = Entry {
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
     #[cfg(feature = "gpu")]
-    shader: "taa_pass",
-    #[cfg(feature = "gpu")]
-    block_px: 1,
+    shader: |_| PassShader { name: "taa_pass", block_px: 1 },
     #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

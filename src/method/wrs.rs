@@ -1,5 +1,7 @@
 //! Weighted reservoirs.
 
+#[cfg(feature = "gpu")]
+use super::PassShader;
 use super::{Entry, HistoryLayout};
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
@@ -16,9 +18,7 @@ pub(super) static ENTRY: Entry = Entry {
         2 * reservoir + noise
     },
     #[cfg(feature = "gpu")]
-    shader: "wrs_pass",
-    #[cfg(feature = "gpu")]
-    block_px: 1,
+    shader: |_| PassShader { name: "wrs_pass", block_px: 1 },
     #[cfg(feature = "gpu")]
     overrides: |settings, _| {
         let params = wrs_params(settings);

@@ -8,8 +8,8 @@ use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Gaze, Image, Reset, Settings,
-    ViewFrame, ViewGeometry,
+    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Gaze, Image, Method, Reset,
+    Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_testing::Draws;
 
@@ -92,7 +92,10 @@ pub struct Made {
 impl Rig {
     /// `None`, after a message, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
-        let pass = format!("{}_pass", settings.method.name());
+        let pass = match (settings.method, settings.foveation.filter) {
+            (Method::Smr, Filter::Sparse) => "sparse_pass".to_owned(),
+            (method, _) => format!("{}_pass", method.name()),
+        };
         Self::with_shader(context, settings, &SHADERS.compose(&pass).source)
     }
 

@@ -10,7 +10,7 @@ use afterimage::{
 use afterimage_testing::Draws;
 
 const SIZE: [u32; 2] = [70, 41];
-const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Smr];
 
 fn settings(method: Method) -> Settings {
     let foveation = Foveation {

@@ -82,7 +82,7 @@ const SHARED: &[(&str, &str)] = &[
     ("confidence = trust(trust_at(px, view));", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
     ("if !is_same_surface(", "if false && !is_same_surface("),
-    ("same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
+    ("same_surface(source.previous.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
     // Wrong counters.
     ("count_if(!usable, COUNT_NONFINITE);", ""),
 ];
@@ -140,7 +140,7 @@ fn every_planted_error_in_smr_is_caught() {
             // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted
             // by coverage.
             ("select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0)", "result.lod"),
-            ("if source.verdict == VERDICT_VALID && !coherent_motion {", "if false {"),
+            ("if source.previous.verdict == VERDICT_VALID && !coherent_motion {", "if false {"),
             ("select(-1.0, lod, candidate.usable)", "lod"),
             ("v.xyz * (1.0 / max(v.w, 1e-3))", "v.xyz"),
             // Relighting threshold, stored level of detail, counter of replaced pixels.
@@ -183,8 +183,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
         &[
             // Noise and candidates of the other view.
             (
-                "textureLoad(past_noise, source.nearest_at, view, 0)",
-                "textureLoad(past_noise, source.nearest_at, 1u - view, 0)",
+                "textureLoad(past_noise, source.previous.nearest_at, view, 0)",
+                "textureLoad(past_noise, source.previous.nearest_at, 1u - view, 0)",
             ),
             (
                 "textureLoad(candidate_mips, four.low, view, level - 1u)",
@@ -193,8 +193,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
             // Stored noise not scaled to the exposure; two sigmas instead of three.
             (
-                "return expose_noise(unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x), frame.exposure);",
-                "return unpack_noise(textureLoad(past_noise, source.nearest_at, view, 0).x);",
+                "return expose_noise(unpack_noise(textureLoad(past_noise, source.previous.nearest_at, view, 0).x), frame.exposure);",
+                "return unpack_noise(textureLoad(past_noise, source.previous.nearest_at, view, 0).x);",
             ),
             ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
             // Weights of the mean, and confidence in a finer or a coarser history.

@@ -130,16 +130,6 @@ pub struct State {
 impl State {
     /// Applies an action.
     pub fn apply(&mut self, action: Action) -> Effect {
-        let effect = self.change(action);
-        // Until smr has a pass for sparse frames.
-        let shows_smr = self.shown_sides().iter().any(|&side| self.sides[side as usize] == Shows::Post(Method::Smr));
-        if self.filter == FilterName::Sparse && shows_smr {
-            self.filter = next(self.filter);
-        }
-        effect
-    }
-
-    fn change(&mut self, action: Action) -> Effect {
         match action {
             Action::Show(Side::Right, _) | Action::Next(Side::Right) if !self.is_split => {
                 self.is_split = true;

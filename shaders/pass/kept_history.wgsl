@@ -1,0 +1,49 @@
+//#use previous
+//#use resample
+//#use sparse
+//#use wrs
+// Stored samples around the previous position of a pixel's surface, for smr on sparse frames. CPU twin:
+// src/cpu/sparse_pass.rs.
+
+@group(0) @binding(8) var past_kept: texture_2d_array<u32>;
+
+fn kept_at(texel: vec2<i32>, view: u32) -> Kept {
+    let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    return unpack_kept(textureLoad(past_kept, at, view, 0).xy);
+}
+
+// Previous position of a pixel's surface.
+fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Previous {
+    let at = reprojected(px, motion);
+    let stored = kept_at(vec2<i32>(at.at), view);
+    var previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
+    if previous.verdict == VERDICT_VALID && !is_coherent(px, view, motion) {
+        previous.verdict = VERDICT_DISOCCLUDED;
+    }
+    return previous;
+}
+
+// History at a previous position, in this frame's exposure. Where `needed` is false the loop has zero iterations:
+// software Vulkan runs the body of an `if` for all pixels.
+fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
+    var around = nothing_around();
+    let taps = select(0u, 9u, needed);
+    for (var tap = 0u; tap < taps; tap++) {
+        let texel = vec2<i32>(previous.nearest_at) + vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
+        let stored = kept_at(texel, view);
+        var same = stored.lod >= 0.0;
+        if DEPTH_TEST != 0u {
+            same = same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0);
+        }
+        around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same);
+    }
+    var found = interpolate(around);
+    found.color = expose(found.color, frame.exposure);
+    found.nearest.color = expose(found.nearest.color, frame.exposure);
+    return found;
+}
+
+// Whether history has moved since its samples were shaded, by more than their stored places resolve.
+fn has_moved(motion: vec2<f32>, place_px: vec2<f32>) -> bool {
+    return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
+}

@@ -1,0 +1,65 @@
+//#use inputs
+//#use matched
+// Previous position of a pixel's surface; shared by the methods that store surfaces. CPU twin: src/cpu/inputs.rs.
+
+// All fields but the verdict are valid only if that is VERDICT_VALID.
+struct Previous {
+    verdict: u32,
+    at: vec2<f32>,
+    nearest_at: vec2<u32>,
+    expected: f32,
+    trust: f32,
+}
+
+// Texel of history that is nearest to a surface's previous position.
+fn reprojected(px: vec2<u32>, motion: vec2<f32>) -> Reprojection {
+    if frame.reset != 0u {
+        return Reprojection(VERDICT_RESET, vec2<u32>(0u));
+    }
+    return nearest(px.x, px.y, motion, frame.size);
+}
+
+fn no_previous(verdict: u32) -> Previous {
+    return Previous(verdict, vec2<f32>(0.0), vec2<u32>(0u), INVALID_DISPARITY, 0.0);
+}
+
+// Previous position of a pixel's surface. `stored_lod` (negative: empty) and `stored_disparity`: of the texel `at`.
+fn previous_of(
+    px: vec2<u32>,
+    view: u32,
+    motion: vec2<f32>,
+    disparity_now: f32,
+    at: Reprojection,
+    stored_lod: f32,
+    stored_disparity: f32,
+) -> Previous {
+    if at.verdict != VERDICT_VALID {
+        return no_previous(at.verdict);
+    }
+    if stored_lod < 0.0 {
+        return no_previous(VERDICT_EMPTY);
+    }
+    var confidence = 1.0;
+    if HAS_TRUST != 0u {
+        confidence = trust(trust_at(px, view));
+        if confidence == 0.0 {
+            return no_previous(VERDICT_DISTRUSTED);
+        }
+    }
+    let expected = expected_disparity(view, ray_at(px, view), disparity_now);
+    if !is_same_surface(px, view, disparity_now, expected, stored_disparity) {
+        return no_previous(VERDICT_DISOCCLUDED);
+    }
+    return Previous(VERDICT_VALID, vec2<f32>(px) + motion, at.at, expected, confidence);
+}
+
+// Whether a neighbour in the 2x2 block moves as the pixel does.
+fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
+    if HAS_MOTION == 0u {
+        return true;
+    }
+    // At an odd border the pixel is its own neighbour.
+    let across = min(px ^ vec2<u32>(1u), frame.size - 1u);
+    return moves_alike(own, motion_at(vec2<u32>(across.x, px.y), view))
+        || moves_alike(own, motion_at(vec2<u32>(px.x, across.y), view));
+}

@@ -1,0 +1,98 @@
+//#use sparse_samples
+// Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass.rs. One
+// invocation a sample of lattice `frame.lattice`; z is the view.
+//
+// 27 reads and 1 write a sample: color, depth and observation of itself and its eight neighbours; 8 bytes written.
+
+override RELIGHT_ON: u32 = 1u;
+
+@group(0) @binding(8) var observed: texture_2d_array<u32>;
+@group(0) @binding(18) var lights_out: texture_storage_2d_array<rg32uint, write>;
+
+struct Neighbour {
+    observation: Observation,
+    weight: f32,
+    spatial: f32,
+}
+
+fn observation_at(point: vec2<u32>, lattice: u32, view: u32) -> Observation {
+    let words = textureLoad(observed, result_texel(point, lattice, view), view, 0).xy;
+    let sampled = color(sample_at(point, lattice, view).xyz).color;
+    return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
+}
+
+fn disparity_of(point: vec2<u32>, lattice: u32, view: u32) -> f32 {
+    return disparity_at(px_of(point, lattice, view), view);
+}
+
+// Neighbour `tap` of 3x3, of weight 0 if it says nothing about the sample's light.
+fn neighbour(
+    tap: u32,
+    point: vec2<u32>,
+    lattice: u32,
+    view: u32,
+    own: Observation,
+    own_disparity: f32,
+) -> Neighbour {
+    let offset = vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
+    let at = vec2<i32>(point) + offset;
+    let points = points_of(lattice, view);
+    let inside = all(at >= vec2<i32>(0)) && all(at < vec2<i32>(points));
+    let other_point = vec2<u32>(clamp(at, vec2<i32>(0), vec2<i32>(points) - 1));
+    let other = observation_at(other_point, lattice, view);
+    let same = alike(own_disparity, disparity_of(other_point, lattice, view), LIGHT_RELATIVE);
+    if !(inside && same && other.error >= 0.0) {
+        return Neighbour(other, 0.0, 0.0);
+    }
+    let spatial = neighbour_weight(offset);
+    if own.error >= 0.0 {
+        return Neighbour(other, agreement(own, other, spatial), spatial);
+    }
+    return Neighbour(other, spatial * other.sure, spatial);
+}
+
+fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
+    let own = observation_at(point, lattice, view);
+    let own_disparity = disparity_of(point, lattice, view);
+    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
+    // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let taps = select(0u, 9u, frame.reset == 0u);
+    for (var tap = 0u; tap < taps; tap++) {
+        let near = neighbour(tap, point, lattice, view, own, own_disparity);
+        if near.spatial > 0.0 {
+            sum = add_light(sum, near.observation, near.weight, near.spatial);
+        }
+    }
+    let valid = half_bits(select(OTHER_SURFACE, 1.0, own.error >= 0.0)) << 16u;
+    if sum.weight < 1e-6 {
+        return vec2<u32>(pack_color(vec3<f32>(1.0)), half_bits(1.0) | valid);
+    }
+    var gains = vec3<f32>(1.0);
+    if RELIGHT_ON != 0u {
+        gains = relight(sum);
+    }
+    var relit_errors = 0.0;
+    var unlit_errors = 0.0;
+    for (var tap = 0u; tap < taps; tap++) {
+        let near = neighbour(tap, point, lattice, view, own, own_disparity);
+        if near.spatial > 0.0 {
+            relit_errors += errors_left(near.observation, gains) * near.weight;
+            unlit_errors += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
+        }
+    }
+    if relit_errors > unlit_errors {
+        gains = vec3<f32>(1.0);
+        relit_errors = unlit_errors;
+    }
+    let left = fit(relit_errors / sum.weight, min(sum.weight / sum.spatial, 1.0));
+    return vec2<u32>(pack_color(gains), half_bits(left) | valid);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let view = frame.first_view + group.z;
+    if all(id.xy < points_of(frame.lattice, view)) {
+        let words = light(id.xy, frame.lattice, view);
+        textureStore(lights_out, result_texel(id.xy, frame.lattice, view), view, vec4<u32>(words, 0u, 0u));
+    }
+}

@@ -1,0 +1,162 @@
+//#use kept_history
+//#use output
+//#use sparse_samples
+// Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
+// src/cpu/sparse_pass.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
+
+@group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(10) var lights: texture_2d_array<u32>;
+
+// Squared distance in pixels of a sample that there is not.
+const NO_PX2: f32 = 1e30;
+
+// Candidate of a pixel, and what is known of its light.
+struct Candidate {
+    color: vec3<f32>,
+    usable: bool,
+    lod: f32,
+    lowest: vec3<f32>,
+    highest: vec3<f32>,
+    gains: vec3<f32>,
+    fit: f32,
+    alpha: f32,
+}
+
+fn no_candidate() -> Candidate {
+    let zero = vec3<f32>(0.0);
+    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0);
+}
+
+// Candidate from the samples around a pixel.
+fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> Candidate {
+    let near = around(px, lattice, view);
+    let is_sample = near.x.fraction == 0.0 && near.y.fraction == 0.0;
+    let first = sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);
+    let own = color(first.xyz);
+    let level = sparse.views[view][lattice].level;
+    var sum = vec4<f32>(0.0);
+    var weights = 0.0;
+    var gain_sum = vec3<f32>(0.0);
+    var fit_sum = 0.0;
+    var valid_sum = 0.0;
+    var lowest = vec3<f32>(MAX_HALF);
+    var highest = vec3<f32>(0.0);
+    var nearest_px2 = NO_PX2;
+    let taps = select(0u, 4u, near.any && level > 0u);
+    for (var tap = 0u; tap < taps; tap++) {
+        let right = tap & 1u;
+        let below = tap >> 1u;
+        let point = vec2<u32>(near.x.points[right], near.y.points[below]);
+        let given = sample_at(point, lattice, view);
+        let sampled = color(given.xyz);
+        let at = px_of(point, lattice, view);
+        let same = alike(disparity_now, disparity_at(at, view), SAMPLE_RELATIVE);
+        let words = textureLoad(lights, result_texel(point, lattice, view), view, 0).xy;
+        if sampled.usable {
+            let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
+            let weight = max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same);
+            let known = weight * half_value(words.y >> 16u);
+            sum += vec4<f32>(sampled.color, select(1.0, given.w, is_finite(given.w))) * weight;
+            weights += weight;
+            gain_sum += unpack_color(words.x) * known;
+            fit_sum += half_value(words.y) * known;
+            valid_sum += known;
+            lowest = min(lowest, sampled.color);
+            highest = max(highest, sampled.color);
+            let d = vec2<f32>(px) - vec2<f32>(at);
+            nearest_px2 = select(nearest_px2, min(nearest_px2, d.x * d.x + d.y * d.y), same);
+        }
+    }
+    if level == 0u && near.any {
+        let none = no_candidate();
+        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, first.w);
+    }
+    if weights == 0.0 {
+        return no_candidate();
+    }
+    let coarsest = f32(level);
+    let lod = select(candidate_level(sqrt(nearest_px2), coarsest), coarsest + 1.0, nearest_px2 == NO_PX2);
+    let mean = sum * (1.0 / weights);
+    let is_own = is_sample && own.usable;
+    let known = 1.0 / valid_sum;
+    return Candidate(
+        select(mean.xyz, own.color, is_own),
+        true,
+        lod,
+        lowest,
+        highest,
+        gain_sum * known,
+        fit_sum * known,
+        select(mean.w, first.w, is_own),
+    );
+}
+
+fn pixel(px: vec2<u32>, view: u32) {
+    let disparity_now = disparity_at(px, view);
+    let motion = motion_at(px, view);
+    let lattice = lattice_at(px, view);
+    let candidate = candidate_at(px, lattice, view, disparity_now);
+    let previous = kept_source(px, view, motion, disparity_now);
+    let valid = previous.verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, previous.verdict);
+
+    var shown = candidate.color;
+    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), disparity_now, vec2<f32>(0.0));
+    var share = 0.0;
+    var fits = 1.0;
+    let full_rate = candidate.usable && sparse.views[view][lattice].level == 0u;
+    let history = kept_history(previous, view, valid && !full_rate);
+    if history.lod >= 0.0 {
+        if candidate.usable {
+            let result = reconstruct(Reconstruction(
+                candidate.color,
+                candidate.lod,
+                candidate.lowest,
+                candidate.highest,
+                history.color,
+                history.lod,
+                history.nearest,
+                has_moved(vec2<f32>(0.0), history.nearest.place_px),
+                candidate.gains,
+                candidate.fit,
+                previous.trust,
+                frame.smr_accumulate,
+            ));
+            shown = result.color;
+            share = result.share;
+            fits = candidate.fit;
+            next = result.kept;
+        } else {
+            shown = history.color;
+            share = 1.0;
+            next = history.nearest;
+        }
+        next.disparity = disparity_now;
+    }
+    // Means of colors may exceed the largest half.
+    shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+    count_if(valid && share == 0.0, COUNT_REPLACED);
+    let sharpness = exp2(-max(next.lod, 0.0));
+    write_output(
+        px,
+        view,
+        shown,
+        candidate.alpha,
+        PixelTrace(previous.verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
+    );
+    if VIEW == 0u {
+        textureStore(next_kept, px, view, vec4<u32>(pack_kept(next), 0u, 0u));
+    }
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, frame.first_view + group.z);
+    }
+    add_counts(invocation);
+}

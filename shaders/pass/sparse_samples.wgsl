@@ -1,0 +1,32 @@
+//#use lattices
+//#use sparse
+// Samples of a sparse frame, and where the results for them lie. CPU twin: src/cpu/sparse_pass.rs.
+
+// Relative difference of disparity within which neighbouring samples share an estimate of light.
+const LIGHT_RELATIVE: f32 = 0.1;
+// Relative difference of disparity within which a sample is interpolated for a pixel.
+const SAMPLE_RELATIVE: f32 = 0.05;
+// Weight of a sample of another surface, which counts only where there is no better one.
+const OTHER_SURFACE: f32 = 1e-3;
+// Least weight of one of the four samples around a pixel.
+const LEAST_SHARE: f32 = 1e-4;
+
+// Pixel of a sample.
+fn px_of(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
+    let level = sparse.views[view][lattice].level;
+    return sparse.views[view][lattice].first_px + vec2<u32>(point.x << level, point.y << level);
+}
+
+// Texel of the results for a sample.
+fn result_texel(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
+    return sparse.views[view][lattice].results + point;
+}
+
+fn points_of(lattice: u32, view: u32) -> vec2<u32> {
+    return sparse.views[view][lattice].points;
+}
+
+// Whether two disparities of this frame can belong to one surface.
+fn alike(a: f32, b: f32, relative: f32) -> bool {
+    return DEPTH_TEST == 0u || same_surface(a, b, relative, 0.0);
+}

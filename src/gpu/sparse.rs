@@ -1,0 +1,172 @@
+//! Comparison of the samples of a sparse frame with history, before the pass of smr that reconstructs its pixels. CPU
+//! twin: `src/cpu/sparse_pass.rs`.
+
+use super::buffer::filled;
+use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
+use super::history::{History, array_view};
+use super::method_pass::{Placeholders, input_overrides};
+use super::textures::{Batch, batches};
+use super::uniforms::{FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices};
+use super::{Frame, Textures, Variant};
+use crate::frame::ContextDesc;
+use crate::lattice::Lattices;
+use crate::method::{HistoryLayout, Overrides};
+use crate::shader::SHADERS;
+use crate::uniforms::results_size;
+use wgpu::{
+    BindingResource, Buffer, BufferUsages, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension,
+    TextureFormat, TextureUsages, TextureView,
+};
+
+/// Format of the results for samples.
+const FORMAT: TextureFormat = TextureFormat::Rg32Uint;
+
+/// Passes over the samples, and their results.
+#[derive(Debug)]
+pub(super) struct SamplePasses {
+    observe: ComputeShader,
+    light: ComputeShader,
+    observed: TextureView,
+    lights: TextureView,
+    absent: Placeholders,
+}
+
+/// Lattices of a sparse frame, as the shaders read them.
+pub(super) fn lattices(device: &Device, frame: &Frame<'_>, size_px: [u32; 2]) -> Buffer {
+    let uniforms = SparseUniforms::new(frame, size_px);
+    filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM)
+}
+
+impl SamplePasses {
+    /// The passes for contexts of `desc`; `None` if they are not for sparse frames that smr reconstructs.
+    pub fn new(device: &Device, desc: &ContextDesc) -> Option<Self> {
+        let sources = ["sparse_observe_pass", "sparse_light_pass"].map(|name| SHADERS.compose(name).source);
+        is_needed(desc).then(|| Self::with_shaders(device, desc, sources))
+    }
+
+    /// The passes of the WGSL texts `observe` and `light`.
+    pub fn with_shaders(device: &Device, desc: &ContextDesc, [observe, light]: [String; 2]) -> Self {
+        // Numbers in `inputs`, `lattices` and the passes.
+        let color_to_trust = (1..5).map(|number| (number, float_texture()));
+        let own = [(8, uint_texture()), (17, uniform()), (18, storage_texture(FORMAT))];
+        let bindings: Vec<_> = std::iter::once((0, uniform())).chain(color_to_trust).chain(own).collect();
+        let [observed, lights] = [(); 2].map(|()| array_view(&results(device, desc)));
+        Self {
+            observe: ComputeShader::with_bindings(device, "afterimage observe", observe, &bindings),
+            light: ComputeShader::with_bindings(device, "afterimage light", light, &bindings),
+            observed,
+            lights,
+            absent: Placeholders::new(device, HistoryLayout::Kept),
+        }
+    }
+
+    /// Follows a change of the context's size.
+    pub fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+        [self.observed, self.lights] = [(); 2].map(|()| array_view(&results(device, desc)));
+    }
+
+    /// Compiles the pipelines of a variant.
+    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
+        let [observe, light] = overrides(desc, variant);
+        self.observe.pipeline(device, &observe);
+        self.light.pipeline(device, &light);
+    }
+
+    /// Number of compiled pipelines.
+    pub fn pipeline_count(&self) -> usize {
+        self.observe.pipeline_count() + self.light.pipeline_count()
+    }
+
+    /// Gain and fit for each sample.
+    pub fn lights(&self) -> &TextureView {
+        &self.lights
+    }
+
+    /// Records the passes for a sparse frame. `lattices`: its uniforms.
+    pub fn record(
+        &self,
+        device: &Device,
+        pass: &mut ComputePass<'_>,
+        desc: &ContextDesc,
+        (frame, variant): (&Frame<'_>, Variant),
+        (uniforms, lattices): (FrameUniforms, &Buffer),
+        history: &History,
+    ) {
+        let overrides = overrides(desc, variant);
+        let past = &history.split().0.views[0];
+        for batch in batches(frame.views.len(), variant.regions) {
+            let optional = |textures: Option<Textures<'_>>| {
+                textures.map_or_else(|| self.absent.float.clone(), |textures| textures.bind(&batch))
+            };
+            let inputs =
+                [frame.color.bind(&batch), optional(frame.depth), optional(frame.motion), optional(frame.trust)];
+            let first_view = batch.views.start;
+            let samples: Vec<_> = samples(frame, &batch, uniforms.size)
+                .map(|(lattice, points)| (uniforms.buffer(device, first_view, lattice), points))
+                .collect();
+            let shaders = [&self.observe, &self.light];
+            let images = [[past, &self.observed], [&self.observed, &self.lights]];
+            for ((shader, overrides), [read, written]) in shaders.into_iter().zip(&overrides).zip(images) {
+                for (uniforms, points) in &samples {
+                    let resources = std::iter::once(uniforms.as_entire_binding())
+                        .chain(inputs.iter().map(BindingResource::TextureView))
+                        .chain([
+                            BindingResource::TextureView(read),
+                            lattices.as_entire_binding(),
+                            BindingResource::TextureView(written),
+                        ]);
+                    let group = shader.group(device, resources);
+                    shader.dispatch(device, pass, overrides, &group, *points, batch.views.len() as u32);
+                }
+            }
+        }
+    }
+}
+
+/// Lattices of a batch of views whose samples are compared, and the largest number of their samples along x and y.
+fn samples(frame: &Frame<'_>, batch: &Batch, size_px: [u32; 2]) -> impl Iterator<Item = (u32, [u32; 2])> {
+    let mut most = [[0; 2]; Lattices::MAX];
+    for view in &frame.views[batch.views.start as usize..batch.views.end as usize] {
+        let lattices =
+            view.lattices.as_ref().map_or_else(ViewLattices::default, |l| LatticeUniforms::of_view(l, size_px));
+        for (most, lattice) in most.iter_mut().zip(lattices).filter(|(_, lattice)| lattice.level > 0) {
+            *most = [0, 1].map(|i| most[i].max(lattice.points[i]));
+        }
+    }
+    (0..).zip(most).filter(|(_, points)| points.iter().all(|&n| n > 0))
+}
+
+/// Override values of the two passes.
+fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
+    let observe = input_overrides(desc, variant);
+    let relight = [("RELIGHT_ON", u32::from(desc.settings.smr.relight))];
+    let light = observe.iter().copied().chain(relight).collect();
+    [observe, light]
+}
+
+/// Image for the results for the samples of all views.
+fn results(device: &Device, desc: &ContextDesc) -> Texture {
+    let [width, height] = results_size(desc.size_px);
+    device.create_texture(&TextureDescriptor {
+        label: Some("afterimage samples"),
+        size: Extent3d { width, height, depth_or_array_layers: desc.view_count },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format: FORMAT,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    })
+}
+
+/// Whether contexts of `desc` reconstruct sparse frames.
+pub(super) fn is_needed(desc: &ContextDesc) -> bool {
+    desc.settings.history_layout() == HistoryLayout::Kept
+}
+
+/// Bytes of the results for samples, if the context has them.
+pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
+    let texels = results_size(desc.size_px).map(u64::from).iter().product::<u64>() * u64::from(desc.view_count);
+    let bytes = 2 * u64::from(FORMAT.block_copy_size(None).unwrap_or(0));
+    if is_needed(desc) { bytes * texels } else { 0 }
+}
