@@ -71,7 +71,7 @@ const SHARED: &[(&str, &str)] = &[
     // Motion with the opposite sign: of the nearest texel, and of the resampling position.
     ("f32(x) + motion.x", "f32(x) - motion.x"),
     ("f32(y) + motion.y", "f32(y) - motion.y"),
-    ("let at = vec2<f32>(px) + motion;", "let at = vec2<f32>(px) - motion;"),
+    ("vec2<f32>(px) + motion", "vec2<f32>(px) - motion"),
     // Surfaces of the other view.
     ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
     ("textureStore(next_surfaces, px, view,", "textureStore(next_surfaces, px, 1u - view,"),

@@ -9,7 +9,7 @@ use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
-use afterimage::{ContextDesc, CreateError, Filter, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, CreateError, Filter, Foveation, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
@@ -64,7 +64,16 @@ struct PassSpec {
 enum PassKind {
     Copy,
     Post(Method),
+    /// A method on sparse frames.
+    Sparse(Method),
     Foveate(Filter),
+}
+
+/// Settings of a method for sparse frames: steps 2 and 4, with more samples than any others.
+fn sparse_settings(method: Method) -> Settings {
+    let paper = Settings::paper();
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..paper.foveation };
+    Settings { method, foveation, ..paper }
 }
 
 impl PassSpec {
@@ -73,12 +82,30 @@ impl PassSpec {
         let bytes_per_pixel = settings.traffic_bytes_per_pixel([true, true, false]);
         Self { name: method.name(), bytes_per_pixel, kind: PassKind::Post(method) }
     }
+
+    fn sparse(name: &'static str, method: Method) -> Self {
+        let bytes_per_pixel = sparse_settings(method).traffic_bytes_per_pixel([true, true, false]);
+        Self { name, bytes_per_pixel, kind: PassKind::Sparse(method) }
+    }
+}
+
+impl PassSpec {
+    /// The views of frame `index`, with lattices if it is sparse.
+    fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
+        views.map(|mut view| {
+            if let (PassKind::Sparse(method), Gaze::At { px }) = (self.kind, view.gaze) {
+                view.lattices = Some(sparse_settings(method).foveation.lattices(&view.geometry, px, index));
+            }
+            view
+        })
+    }
 }
 
 /// The passes, in the order in which each frame times them. The others are compared with the first.
 fn all_passes() -> Vec<PassSpec> {
     let mut passes = vec![PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy }];
     passes.extend(Method::ALL.map(PassSpec::of_method));
+    passes.push(PassSpec::sparse("smr-sparse", Method::Smr));
     passes.extend([
         PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
         PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
@@ -103,6 +130,10 @@ impl CreatedPass {
             }
             PassKind::Post(method) => {
                 desc.settings.method = method;
+                Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
+            }
+            PassKind::Sparse(method) => {
+                desc.settings = sparse_settings(method);
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Foveate(filter) => {
@@ -138,7 +169,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for spec in &passes {
         let watch = Stopwatch::start();
         let mut pass = CreatedPass::new(&gpu, size, spec.kind)?;
-        time(&gpu, &clock, &inputs, &mut pass, &first, 0)?;
+        time(&gpu, &clock, &inputs, &mut pass, &spec.views(&first, 0), 0)?;
         if !matches!(spec.kind, PassKind::Foveate(_)) {
             cold_start_ms += watch.wall_ms();
         }
@@ -148,8 +179,8 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for index in 1..WARM_UP + frames {
         let views = views(size, index)?;
         foveate(&gpu, &mut inputs, &views)?;
-        for (pass, times) in created.iter_mut().zip(&mut times) {
-            let ms = time(&gpu, &clock, &inputs, pass, &views, index)?;
+        for ((pass, spec), times) in created.iter_mut().zip(&passes).zip(&mut times) {
+            let ms = time(&gpu, &clock, &inputs, pass, &spec.views(&views, index), index)?;
             if index >= WARM_UP {
                 times.push(ms);
             }
@@ -198,14 +229,14 @@ fn summarise(
 fn print(report: &Report) {
     say!("{} ({}, {})", report.adapter, report.driver, report.backend);
     say!("{}x{}, {} frames; times are {}", report.size[0], report.size[1], report.frames, report.clock);
-    say!("pass      median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
+    say!("pass          median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
     for pass in &report.passes {
         let (Some(q), Some(per_mpx), Some(share)) = (pass.ms, pass.ms_per_megapixel, pass.share_of_copy_bandwidth)
         else {
             continue;
         };
         say!(
-            "{:6} {:>9.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
+            "{:10} {:>9.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
             pass.name,
             q.median,
             q.p25,
