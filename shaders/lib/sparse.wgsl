@@ -110,6 +110,29 @@ fn fit(errors: f32, sure: f32) -> f32 {
     return 1.0 - sure * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
+struct Lit {
+    gains: vec3<f32>,
+    fit: f32,
+    is_own: bool,
+    disparity: f32,
+}
+
+// sparse::pack_lit
+fn pack_lit(l: Lit) -> vec2<u32> {
+    let fit_bits = u32(l.fit * 256.0 + 0.5);
+    return vec2<u32>(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | (disparity_code(l.disparity) << 16u));
+}
+
+// sparse::unpack_lit
+fn unpack_lit(words: vec2<u32>) -> Lit {
+    return Lit(
+        unpack_color(words.x),
+        f32(words.y & 511u) * (1.0f / 256.0),
+        (words.y & 512u) != 0u,
+        disparity_value(words.y >> 16u),
+    );
+}
+
 struct Reconstruction {
     candidate: vec3<f32>,
     lod: f32,

@@ -27,9 +27,10 @@ fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) 
 // software Vulkan runs the body of an `if` for all pixels.
 fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
     var around = nothing_around();
-    let taps = select(0u, 9u, needed);
+    let first = vec2<i32>(floor(previous.at));
+    let taps = select(0u, 4u, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let texel = vec2<i32>(previous.nearest_at) + vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
+        let texel = first + vec2<i32>(vec2<u32>(tap & 1u, tap >> 1u));
         let stored = kept_at(texel, view);
         var same = stored.lod >= 0.0;
         if DEPTH_TEST != 0u {

@@ -63,29 +63,29 @@ fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
         }
     }
-    let valid = half_bits(select(OTHER_SURFACE, 1.0, own.error >= 0.0)) << 16u;
+    let is_own = own.error >= 0.0;
     if sum.weight < 1e-6 {
-        return vec2<u32>(pack_color(vec3<f32>(1.0)), half_bits(1.0) | valid);
+        return pack_lit(Lit(vec3<f32>(1.0), 1.0, is_own, own_disparity));
     }
     var gains = vec3<f32>(1.0);
     if RELIGHT_ON != 0u {
         gains = relight(sum);
     }
-    var relit_errors = 0.0;
-    var unlit_errors = 0.0;
+    var with_gain = 0.0;
+    var without = 0.0;
     for (var tap = 0u; tap < taps; tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
-            relit_errors += errors_left(near.observation, gains) * near.weight;
-            unlit_errors += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
+            with_gain += errors_left(near.observation, gains) * near.weight;
+            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
         }
     }
-    if relit_errors > unlit_errors {
+    if with_gain > without {
         gains = vec3<f32>(1.0);
-        relit_errors = unlit_errors;
+        with_gain = without;
     }
-    let left = fit(relit_errors / sum.weight, min(sum.weight / sum.spatial, 1.0));
-    return vec2<u32>(pack_color(gains), half_bits(left) | valid);
+    let left = fit(with_gain / sum.weight, min(sum.weight / sum.spatial, 1.0));
+    return pack_lit(Lit(gains, left, is_own, own_disparity));
 }
 
 @compute @workgroup_size(64, 1)

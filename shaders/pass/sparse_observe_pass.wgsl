@@ -3,7 +3,7 @@
 // Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
 // src/cpu/sparse_pass.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
 //
-// 21 reads and 1 write a sample: color, depth, motion of itself and two neighbours, trust, 10 stored samples and 5 more
+// 16 reads and 1 write a sample: color, depth, motion of itself and two neighbours, trust, 5 stored samples and 5 more
 // for their contrast; 8 bytes written.
 
 @group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;

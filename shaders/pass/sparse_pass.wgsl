@@ -50,16 +50,16 @@ fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> C
         let given = sample_at(point, lattice, view);
         let sampled = color(given.xyz);
         let at = px_of(point, lattice, view);
-        let same = alike(disparity_now, disparity_at(at, view), SAMPLE_RELATIVE);
-        let words = textureLoad(lights, result_texel(point, lattice, view), view, 0).xy;
+        let lit = unpack_lit(textureLoad(lights, result_texel(point, lattice, view), view, 0).xy);
+        let same = alike(disparity_now, lit.disparity, SAMPLE_RELATIVE);
         if sampled.usable {
             let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
             let weight = max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same);
-            let known = weight * half_value(words.y >> 16u);
+            let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
             sum += vec4<f32>(sampled.color, select(1.0, given.w, is_finite(given.w))) * weight;
             weights += weight;
-            gain_sum += unpack_color(words.x) * known;
-            fit_sum += half_value(words.y) * known;
+            gain_sum += lit.gains * known;
+            fit_sum += lit.fit * known;
             valid_sum += known;
             lowest = min(lowest, sampled.color);
             highest = max(highest, sampled.color);

@@ -3,7 +3,7 @@
 //!
 //! Three loops. For each sample of a lattice of step 2 and more: compare it with history at its pixel. For each such
 //! sample: estimate gain and fit from its own comparison and its eight neighbours'. For each pixel: interpolate these
-//! and the samples, read nine stored samples around its previous position, and blend.
+//! and the samples, read the four stored samples around its previous position, and blend.
 
 use super::Pass;
 use super::inputs::{Inputs, Previous};
@@ -21,8 +21,8 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::TAP_RELATIVE;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    Light, Observation, Reconstruction, add_light, agreement, candidate_level, errors_left, expected_error, fit,
-    neighbour_weight, reconstruct, relight, sureness,
+    Light, Lit, Observation, Reconstruction, add_light, agreement, candidate_level, errors_left, expected_error, fit,
+    neighbour_weight, pack_lit, reconstruct, relight, sureness, unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::settings::Settings;
@@ -37,6 +37,8 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 /// Weight of a sample of another surface, which counts only where there is no better one.
 const OTHER_SURFACE: f32 = 1e-3;
+/// Weight of gain and fit that only a sample's neighbours know.
+const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;
 
@@ -124,10 +126,10 @@ impl View<'_> {
     /// History at a previous position, in this frame's exposure.
     #[inline(always)]
     fn interpolated(&self, previous: &Previous) -> Interpolated {
-        let [x, y] = previous.nearest_px.map(|v| v as i32);
+        let [x, y] = previous.at.map(|v| v.floor() as i32);
         let mut around = Around::NOTHING;
-        for tap in 0..9 {
-            let (tx, ty) = (x + tap % 3 - 1, y + tap / 3 - 1);
+        for tap in 0..4 {
+            let (tx, ty) = (x + (tap & 1), y + (tap >> 1));
             let sample = self.stored(tx, ty);
             let same = sample.lod >= 0.0
                 && (!self.inputs.tests_depth() || same_surface(previous.expected, sample.disparity, TAP_RELATIVE, 0.0));
@@ -181,7 +183,7 @@ impl View<'_> {
         })
     }
 
-    /// Gain and fit around a sample, packed: the gain, then fit and weight as halves.
+    /// Gain and fit around a sample, packed ([`pack_lit`]).
     #[inline(always)]
     fn light(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> [u32; 2] {
         let own = self.observation(lattice, point, observed);
@@ -203,19 +205,19 @@ impl View<'_> {
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
-        let valid = if own.is_some() { 1.0 } else { OTHER_SURFACE };
+        let unlit = Lit { gain: Vec3::ONE, fit: 1.0, is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
-            return [pack_color(Vec3::ONE), half_bits(1.0) | half_bits(valid) << 16];
+            return pack_lit(unlit);
         }
         let gain = if self.relights { relight(light) } else { Vec3::ONE };
-        let (mut relit, mut unlit) = (0.0, 0.0);
+        let (mut with_gain, mut without) = (0.0, 0.0);
         for (o, weight, _) in neighbours() {
-            relit += errors_left(o, gain) * weight;
-            unlit += errors_left(o, Vec3::ONE) * weight;
+            with_gain += errors_left(o, gain) * weight;
+            without += errors_left(o, Vec3::ONE) * weight;
         }
-        let (gain, left) = if relit <= unlit { (gain, relit) } else { (Vec3::ONE, unlit) };
+        let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
         let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
-        [pack_color(gain), half_bits(fit) | half_bits(valid) << 16]
+        pack_lit(Lit { gain, fit, ..unlit })
     }
 
     /// Processes one pixel and counts it in `stats`.
@@ -301,11 +303,11 @@ impl View<'_> {
                 continue;
             }
             let at = lattice.px_of(point);
-            let alike = self.alike(disparity, self.inputs.disparity(at[0], at[1]), SAMPLE_RELATIVE);
+            let lit = unpack_lit(lights[index][(point[1] * lattice.points[0] + point[0]) as usize]);
+            let alike = self.alike(disparity, lit.disparity, SAMPLE_RELATIVE);
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
             let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
-            let [light, more] = lights[index][(point[1] * lattice.points[0] + point[0]) as usize];
-            sums.add(color, weight, unpack_color(light), half_value(more), half_value(more >> 16));
+            sums.add(color, weight, lit);
             (low, high) = (low.min(color), high.max(color));
             if alike {
                 let [dx, dy] = [0, 1].map(|i| px[i] as f32 - at[i] as f32);
@@ -365,12 +367,12 @@ struct Sums {
 
 impl Sums {
     #[inline(always)]
-    fn add(&mut self, color: Vec3, weight: f32, gain: Vec3, fit: f32, valid: f32) {
-        let known = weight * valid;
+    fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
+        let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
         self.color += color * weight;
         self.weight += weight;
-        self.gain += gain * known;
-        self.fit += fit * known;
+        self.gain += lit.gain * known;
+        self.fit += lit.fit * known;
         self.valid += known;
     }
 }

@@ -7,8 +7,9 @@
 //! blends its own history with the interpolated samples ([`reconstruct`]).
 
 use super::approx;
-use super::kept::Kept;
+use super::kept::{Kept, pack_color, unpack_color};
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
+use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
@@ -161,6 +162,36 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
 #[inline]
 pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
+}
+
+/// What a sample says of the light on its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lit {
+    /// Factor on history's color.
+    pub gain: Vec3,
+    /// How well history fits after it: 0 to 1.
+    pub fit: f32,
+    /// Whether the sample was compared with history itself; otherwise its neighbours were.
+    pub is_own: bool,
+    /// Disparity of the sample.
+    pub disparity: f32,
+}
+
+/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, disparity ([`disparity_code`]) in
+/// bits 16 to 31. A fit of 1 is exact.
+pub fn pack_lit(l: Lit) -> [u32; 2] {
+    let fit = (l.fit * 256.0 + 0.5) as u32;
+    [pack_color(l.gain), fit | u32::from(l.is_own) << 9 | disparity_code(l.disparity) << 16]
+}
+
+/// Inverse of [`pack_lit`].
+pub fn unpack_lit(words: [u32; 2]) -> Lit {
+    Lit {
+        gain: unpack_color(words[0]),
+        fit: (words[1] & 511) as f32 * (1.0 / 256.0),
+        is_own: words[1] >> 9 & 1 != 0,
+        disparity: disparity_value(words[1] >> 16),
+    }
 }
 
 /// Inputs of [`reconstruct`] for one pixel.
