@@ -93,6 +93,8 @@ struct AroundKept {
     square: vec3<f32>,
     color_x: vec3<f32>,
     color_y: vec3<f32>,
+    lowest: vec3<f32>,
+    highest: vec3<f32>,
     nearest: Kept,
     cost: f32,
 }
@@ -100,7 +102,7 @@ struct AroundKept {
 fn nothing_around() -> AroundKept {
     let zero = vec3<f32>(0.0);
     let empty = Kept(zero, -1.0, -1.0, vec2<f32>(0.0));
-    return AroundKept(0.0, zero, 0.0, vec2<f32>(0.0), zero, zero, zero, empty, 1e30);
+    return AroundKept(0.0, zero, 0.0, vec2<f32>(0.0), zero, zero, zero, vec3<f32>(MAX_COLOR), zero, empty, 1e30);
 }
 
 // kept::kept_weight
@@ -132,6 +134,8 @@ fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool) -> Ar
         a.square + vec3<f32>(wx * place.x, wx * place.y, wy * place.y),
         a.color_x + sampled.color * wx,
         a.color_y + sampled.color * wy,
+        min(a.lowest, sampled.color),
+        max(a.highest, sampled.color),
         nearest,
         select(a.cost, cost, cost < a.cost),
     );
@@ -140,6 +144,8 @@ fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool) -> Ar
 struct Interpolated {
     color: vec3<f32>,
     lod: f32,
+    lowest: vec3<f32>,
+    highest: vec3<f32>,
     nearest: Kept,
 }
 
@@ -149,11 +155,11 @@ fn interpolate(a: AroundKept) -> Interpolated {
     let distance = max(abs(nearest.place_px.x), abs(nearest.place_px.y));
     if nearest.lod < 0.0 || distance <= EXACT_PX {
         nearest.place_px = vec2<f32>(0.0);
-        return Interpolated(nearest.color, nearest.lod, nearest);
+        return Interpolated(nearest.color, nearest.lod, a.lowest, a.highest, nearest);
     }
     if a.weight < 1e-4 {
         // All samples are far away.
-        return Interpolated(nearest.color, nearest.lod, nearest);
+        return Interpolated(nearest.color, nearest.lod, a.lowest, a.highest, nearest);
     }
     // Moments times the squared weight: without quotients, which shader compilers reorder.
     let stiff = (a.weight * a.weight) * STIFF_PX2;
@@ -168,5 +174,5 @@ fn interpolate(a: AroundKept) -> Interpolated {
     let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
     let inverse = 1.0 / a.weight;
     let color = max((a.color - rise / determinant) * inverse, vec3<f32>(0.0));
-    return Interpolated(color, a.lod * inverse, nearest);
+    return Interpolated(color, a.lod * inverse, a.lowest, a.highest, nearest);
 }

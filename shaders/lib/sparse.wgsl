@@ -4,7 +4,7 @@
 
 const STILL_ERROR: f32 = 0.3;
 const MOVED_ERROR: f32 = 0.6;
-const CONTRAST_ERROR: f32 = 0.5;
+const CONTRAST_ERROR: f32 = 0.375;
 const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
 const AGREE_ERRORS: f32 = 4.0;

@@ -8,7 +8,7 @@
 
 fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     let lattice = lattice_at(px, view);
-    let near = around(px, lattice, view);
+    let near = around(px, lattice);
     if near.any && near.x.fraction == 0.0 && near.y.fraction == 0.0 {
         return sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);
     }

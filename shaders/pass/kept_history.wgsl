@@ -16,11 +16,7 @@ fn kept_at(texel: vec2<i32>, view: u32) -> Kept {
 fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Previous {
     let at = reprojected(px, motion);
     let stored = kept_at(vec2<i32>(at.at), view);
-    var previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
-    if previous.verdict == VERDICT_VALID && !is_coherent(px, view, motion) {
-        previous.verdict = VERDICT_DISOCCLUDED;
-    }
-    return previous;
+    return previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
 }
 
 // History at a previous position, in this frame's exposure. Where `needed` is false the loop has zero iterations:
@@ -40,6 +36,8 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
     }
     var found = interpolate(around);
     found.color = expose(found.color, frame.exposure);
+    found.lowest = expose(found.lowest, frame.exposure);
+    found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
     return found;
 }

@@ -30,14 +30,14 @@ struct SparseUniforms {
 
 const LATTICES: u32 = 4u;
 
-// Number of the first lattice that covers a pixel.
-fn lattice_at(px: vec2<u32>, view: u32) -> u32 {
-    for (var i = 0u; i < LATTICES - 1u; i++) {
-        if all(px >= sparse.views[view][i].low_px) && all(px < sparse.views[view][i].high_px) {
-            return i;
-        }
+// The first lattice that covers a pixel.
+fn lattice_at(px: vec2<u32>, view: u32) -> LatticeUniforms {
+    var index = 0u;
+    while index < LATTICES - 1u
+        && !(all(px >= sparse.views[view][index].low_px) && all(px < sparse.views[view][index].high_px)) {
+        index++;
     }
-    return LATTICES - 1u;
+    return sparse.views[view][index];
 }
 
 // Samples around a pixel along both axes. Without samples in the frame (`any` is false) the others are not valid.
@@ -47,19 +47,16 @@ struct Around {
     any: bool,
 }
 
-fn around(px: vec2<u32>, lattice: u32, view: u32) -> Around {
-    let first = sparse.views[view][lattice].first_px;
-    let level = sparse.views[view][lattice].level;
-    let points = sparse.views[view][lattice].points;
+fn around(px: vec2<u32>, lattice: LatticeUniforms) -> Around {
     return Around(
-        between(px.x, first.x, level, points.x),
-        between(px.y, first.y, level, points.y),
-        all(points > vec2<u32>(0u)),
+        between(px.x, lattice.first_px.x, lattice.level, lattice.points.x),
+        between(px.y, lattice.first_px.y, lattice.level, lattice.points.y),
+        all(lattice.points > vec2<u32>(0u)),
     );
 }
 
 // Color and alpha of sample `point`, as the renderer wrote them.
-fn sample_at(point: vec2<u32>, lattice: u32, view: u32) -> vec4<f32> {
-    let texel = sparse.views[view][lattice].texel + point * sparse.views[view][lattice].stride;
+fn sample_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
+    let texel = lattice.texel + point * lattice.stride;
     return textureLoad(color_in, texel_of(texel, frame.views[view].color_origin), layer_of(view), 0);
 }

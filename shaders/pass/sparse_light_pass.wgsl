@@ -15,28 +15,28 @@ struct Neighbour {
     spatial: f32,
 }
 
-fn observation_at(point: vec2<u32>, lattice: u32, view: u32) -> Observation {
-    let words = textureLoad(observed, result_texel(point, lattice, view), view, 0).xy;
+fn observation_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> Observation {
+    let words = textureLoad(observed, lattice.results + point, view, 0).xy;
     let sampled = color(sample_at(point, lattice, view).xyz).color;
     return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
 }
 
-fn disparity_of(point: vec2<u32>, lattice: u32, view: u32) -> f32 {
-    return disparity_at(px_of(point, lattice, view), view);
+fn disparity_of(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> f32 {
+    return disparity_at(px_of(point, lattice), view);
 }
 
 // Neighbour `tap` of 3x3, of weight 0 if it says nothing about the sample's light.
 fn neighbour(
     tap: u32,
     point: vec2<u32>,
-    lattice: u32,
+    lattice: LatticeUniforms,
     view: u32,
     own: Observation,
     own_disparity: f32,
 ) -> Neighbour {
     let offset = vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
     let at = vec2<i32>(point) + offset;
-    let points = points_of(lattice, view);
+    let points = lattice.points;
     let inside = all(at >= vec2<i32>(0)) && all(at < vec2<i32>(points));
     let other_point = vec2<u32>(clamp(at, vec2<i32>(0), vec2<i32>(points) - 1));
     let other = observation_at(other_point, lattice, view);
@@ -51,9 +51,10 @@ fn neighbour(
     return Neighbour(other, spatial * other.sure, spatial);
 }
 
-fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
+fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
+    var without = 0.0;
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, frame.reset == 0u);
@@ -61,6 +62,7 @@ fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
+            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
         }
     }
     let is_own = own.error >= 0.0;
@@ -71,16 +73,15 @@ fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
     if RELIGHT_ON != 0u {
         gains = relight(sum);
     }
+    let is_relit = any(gains != vec3<f32>(1.0));
     var with_gain = 0.0;
-    var without = 0.0;
-    for (var tap = 0u; tap < taps; tap++) {
+    for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
             with_gain += errors_left(near.observation, gains) * near.weight;
-            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
         }
     }
-    if with_gain > without {
+    if !is_relit || with_gain > without {
         gains = vec3<f32>(1.0);
         with_gain = without;
     }
@@ -91,8 +92,9 @@ fn light(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let view = frame.first_view + group.z;
-    if all(id.xy < points_of(frame.lattice, view)) {
-        let words = light(id.xy, frame.lattice, view);
-        textureStore(lights_out, result_texel(id.xy, frame.lattice, view), view, vec4<u32>(words, 0u, 0u));
+    let lattice = sparse.views[view][frame.lattice];
+    if all(id.xy < lattice.points) {
+        let words = light(id.xy, lattice, view);
+        textureStore(lights_out, lattice.results + id.xy, view, vec4<u32>(words, 0u, 0u));
     }
 }

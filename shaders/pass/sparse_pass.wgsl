@@ -28,12 +28,10 @@ fn no_candidate() -> Candidate {
 }
 
 // Candidate from the samples around a pixel.
-fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> Candidate {
-    let near = around(px, lattice, view);
+fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_now: f32) -> Candidate {
+    let near = around(px, lattice);
     let is_sample = near.x.fraction == 0.0 && near.y.fraction == 0.0;
-    let first = sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);
-    let own = color(first.xyz);
-    let level = sparse.views[view][lattice].level;
+    let level = lattice.level;
     var sum = vec4<f32>(0.0);
     var weights = 0.0;
     var gain_sum = vec3<f32>(0.0);
@@ -42,16 +40,22 @@ fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> C
     var lowest = vec3<f32>(MAX_HALF);
     var highest = vec3<f32>(0.0);
     var nearest_px2 = NO_PX2;
-    let taps = select(0u, 4u, near.any && level > 0u);
+    var own = Sanitized(vec3<f32>(0.0), false);
+    var own_alpha = 1.0;
+    let taps = select(0u, select(4u, 1u, level == 0u), near.any);
     for (var tap = 0u; tap < taps; tap++) {
         let right = tap & 1u;
         let below = tap >> 1u;
         let point = vec2<u32>(near.x.points[right], near.y.points[below]);
         let given = sample_at(point, lattice, view);
         let sampled = color(given.xyz);
-        let at = px_of(point, lattice, view);
-        let lit = unpack_lit(textureLoad(lights, result_texel(point, lattice, view), view, 0).xy);
+        let at = px_of(point, lattice);
+        let lit = unpack_lit(textureLoad(lights, lattice.results + point, view, 0).xy);
         let same = alike(disparity_now, lit.disparity, SAMPLE_RELATIVE);
+        if tap == 0u {
+            own = sampled;
+            own_alpha = given.w;
+        }
         if sampled.usable {
             let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
             let weight = max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same);
@@ -67,9 +71,9 @@ fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> C
             nearest_px2 = select(nearest_px2, min(nearest_px2, d.x * d.x + d.y * d.y), same);
         }
     }
-    if level == 0u && near.any {
+    if level == 0u {
         let none = no_candidate();
-        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, first.w);
+        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, own_alpha);
     }
     if weights == 0.0 {
         return no_candidate();
@@ -87,7 +91,7 @@ fn candidate_at(px: vec2<u32>, lattice: u32, view: u32, disparity_now: f32) -> C
         highest,
         gain_sum * known,
         fit_sum * known,
-        select(mean.w, first.w, is_own),
+        select(mean.w, own_alpha, is_own),
     );
 }
 
@@ -104,7 +108,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), disparity_now, vec2<f32>(0.0));
     var share = 0.0;
     var fits = 1.0;
-    let full_rate = candidate.usable && sparse.views[view][lattice].level == 0u;
+    let full_rate = candidate.usable && lattice.level == 0u;
     let history = kept_history(previous, view, valid && !full_rate);
     if history.lod >= 0.0 {
         if candidate.usable {

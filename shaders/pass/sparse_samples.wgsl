@@ -14,18 +14,8 @@ const BY_NEIGHBOURS: f32 = 1e-3;
 const LEAST_SHARE: f32 = 1e-4;
 
 // Pixel of a sample.
-fn px_of(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
-    let level = sparse.views[view][lattice].level;
-    return sparse.views[view][lattice].first_px + vec2<u32>(point.x << level, point.y << level);
-}
-
-// Texel of the results for a sample.
-fn result_texel(point: vec2<u32>, lattice: u32, view: u32) -> vec2<u32> {
-    return sparse.views[view][lattice].results + point;
-}
-
-fn points_of(lattice: u32, view: u32) -> vec2<u32> {
-    return sparse.views[view][lattice].points;
+fn px_of(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
+    return lattice.first_px + vec2<u32>(point.x << lattice.level, point.y << lattice.level);
 }
 
 // Whether two disparities of this frame can belong to one surface.

@@ -19,8 +19,6 @@ use glam::{Vec2, Vec3};
 pub(super) struct Previous {
     /// Position in pixels.
     pub at: [f32; 2],
-    /// Nearest texel.
-    pub nearest_px: [u32; 2],
     /// Disparity that the surface had.
     pub expected: f32,
     /// Confidence in history: above 0 and at most 1.
@@ -98,7 +96,7 @@ impl<'a> Inputs<'a> {
         if !self.same_surface(x, y, expected, stored_disparity) {
             return Err(Verdict::Disoccluded);
         }
-        Ok(Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], nearest_px, expected, trust })
+        Ok(Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust })
     }
 
     /// Whether a neighbour in the 2x2 block moves as the pixel (x, y) does.

@@ -116,11 +116,10 @@ impl View<'_> {
     /// Previous position of a pixel's surface, or the verdict that rejects its history.
     #[inline(always)]
     fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<Previous, Verdict> {
-        let previous = self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
+        self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
             let stored = self.stored(qx as i32, qy as i32);
             [stored.lod, stored.disparity]
-        })?;
-        if self.inputs.is_coherent(x, y, motion) { Ok(previous) } else { Err(Verdict::Disoccluded) }
+        })
     }
 
     /// History at a previous position, in this frame's exposure.
@@ -139,17 +138,7 @@ impl View<'_> {
         let found = interpolate(around);
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
-        Interpolated { color: exposed(found.color), nearest, ..found }
-    }
-
-    /// Mean difference of a stored texel from its four neighbours, in this frame's exposure.
-    #[inline(always)]
-    fn contrast(&self, [x, y]: [u32; 2]) -> f32 {
-        let (x, y) = (x as i32, y as i32);
-        let color = |x: i32, y: i32| expose(self.stored(x, y).color, self.inputs.exposure);
-        let own = color(x, y);
-        let difference = |x: i32, y: i32| root_difference(color(x, y), own);
-        ((difference(x - 1, y) + difference(x + 1, y)) + (difference(x, y - 1) + difference(x, y + 1))) * 0.25
+        Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found }
     }
 
     /// Comparison of a sample with history at its pixel; `None` if either is missing.
@@ -165,7 +154,8 @@ impl View<'_> {
             return None;
         }
         let moved = has_moved(motion, history.nearest.place_px);
-        let error = expected_error(history.lod, self.contrast(previous.nearest_px), moved);
+        let [low, high] = history.range;
+        let error = expected_error(history.lod, root_difference(low, high), moved);
         Some(Observation { sampled, history: history.color, error, sure: sureness(history.lod) })
     }
 
@@ -209,12 +199,10 @@ impl View<'_> {
         if light.weight < 1e-6 {
             return pack_lit(unlit);
         }
+        let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
+        let without = errors(Vec3::ONE);
         let gain = if self.relights { relight(light) } else { Vec3::ONE };
-        let (mut with_gain, mut without) = (0.0, 0.0);
-        for (o, weight, _) in neighbours() {
-            with_gain += errors_left(o, gain) * weight;
-            without += errors_left(o, Vec3::ONE) * weight;
-        }
+        let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
         let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
         pack_lit(Lit { gain, fit, ..unlit })

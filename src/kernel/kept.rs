@@ -149,6 +149,8 @@ pub struct Around {
     pub color_x: Vec3,
     /// Colors times y, times weights.
     pub color_y: Vec3,
+    /// Smallest and largest color.
+    pub range: [Vec3; 2],
     /// The sample to keep, its place relative to the position.
     pub nearest: Kept,
     /// Cost of that choice.
@@ -165,6 +167,7 @@ impl Around {
         square: Vec3::ZERO,
         color_x: Vec3::ZERO,
         color_y: Vec3::ZERO,
+        range: [Vec3::splat(MAX_COLOR), Vec3::ZERO],
         nearest: Kept::EMPTY,
         cost: 1e30,
     };
@@ -197,6 +200,7 @@ pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool) -> Around {
         square: a.square + Vec3::new(wx * place.x, wx * place.y, wy * place.y),
         color_x: a.color_x + sample.color * wx,
         color_y: a.color_y + sample.color * wy,
+        range: [a.range[0].min(sample.color), a.range[1].max(sample.color)],
         nearest: if nearer { Kept { place_px: place, ..sample } } else { a.nearest },
         cost: if nearer { cost } else { a.cost },
     }
@@ -209,6 +213,8 @@ pub struct Interpolated {
     pub color: Vec3,
     /// Level of detail.
     pub lod: f32,
+    /// Smallest and largest color of the samples around the position.
+    pub range: [Vec3; 2],
     /// Sample to keep, its place relative to the position; empty if there is none.
     pub nearest: Kept,
 }
@@ -217,15 +223,15 @@ pub struct Interpolated {
 /// around it, by weighted least squares.
 #[inline]
 pub fn interpolate(a: Around) -> Interpolated {
-    let nearest = a.nearest;
+    let Around { nearest, range, .. } = a;
     let distance = nearest.place_px.x.abs().max(nearest.place_px.y.abs());
     if nearest.lod < 0.0 || distance <= EXACT_PX {
         let place_px = Vec2::ZERO;
-        return Interpolated { color: nearest.color, lod: nearest.lod, nearest: Kept { place_px, ..nearest } };
+        return Interpolated { color: nearest.color, lod: nearest.lod, range, nearest: Kept { place_px, ..nearest } };
     }
     if a.weight < 1e-4 {
         // All samples are far away.
-        return Interpolated { color: nearest.color, lod: nearest.lod, nearest };
+        return Interpolated { color: nearest.color, lod: nearest.lod, range, nearest };
     }
     // Moments times the squared weight: without quotients, which shader compilers reorder.
     let stiff = (a.weight * a.weight) * STIFF_PX2;
@@ -240,5 +246,5 @@ pub fn interpolate(a: Around) -> Interpolated {
     let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
     let inverse = 1.0 / a.weight;
     let color = ((a.color - rise / determinant) * inverse).max(Vec3::ZERO);
-    Interpolated { color, lod: a.lod * inverse, nearest }
+    Interpolated { color, lod: a.lod * inverse, range, nearest }
 }

@@ -17,9 +17,9 @@ use std::f32::consts::LOG2_E;
 const STILL_ERROR: f32 = 0.3;
 /// The same for history that has moved.
 const MOVED_ERROR: f32 = 0.6;
-/// Share of history's local contrast that is added where it moved, and where it is coarse: interpolation between
-/// samples, and places that are not exact.
-const CONTRAST_ERROR: f32 = 0.5;
+/// Share of history's local contrast, the difference of the smallest and the largest color around, that is added where
+/// history moved, and where it is coarse: interpolation between samples, and places that are not exact.
+const CONTRAST_ERROR: f32 = 0.375;
 /// Added to the expected error where the gate compares single samples.
 const GATE_ERROR: f32 = 0.7;
 /// Standard errors of a mean difference at which relighting starts; it is complete at twice as many.

@@ -5,7 +5,7 @@ use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, Filter, Foveation, Image, Lattice, Lattices, Method, Reset, Sampler, Settings, ViewGeometry,
+    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, Reset, Sampler, Settings, ViewGeometry,
 };
 use afterimage_testing::Draws;
 
@@ -153,10 +153,10 @@ fn a_wrong_fill_is_caught() {
         ("point_weight(near.y.fraction, below)", "point_weight(near.y.fraction, right)"),
         ("sampled.usable, share", "true, share"),
         ("bitcast<f32>(sparse.missing)", "0.0"),
-        ("between(px.y, first.y", "between(px.y, first.x"),
-        ("+ point * sparse.views[view][lattice].stride", "+ point"),
-        ("i < LATTICES - 1u", "i < 1u"),
-        ("all(px < sparse.views[view][i].high_px)", "all(px <= sparse.views[view][i].high_px)"),
+        ("between(px.y, lattice.first_px.y", "between(px.y, lattice.first_px.x"),
+        ("+ point * lattice.stride", "+ point"),
+        ("index < LATTICES - 1u", "index < 1u"),
+        ("all(px < sparse.views[view][index].high_px)", "all(px <= sparse.views[view][index].high_px)"),
         ("let view = frame.first_view + group.z;", "let view = group.z;"),
         ("frame.views[view].color_origin", "frame.views[0].color_origin"),
     ];
@@ -172,6 +172,90 @@ fn a_wrong_fill_is_caught() {
             rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
         });
         assert!(differs, "{text} -> {instead}");
+    }
+}
+
+/// A view of a texture that glides across two depths under a light that changes; some samples are not finite.
+fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
+    let t = index as f32;
+    let mut draws = Draws::new(&format!("gliding {index} {v}"));
+    let mut view = noise_view("gliding", &desc());
+    let shift = |y: u32| if y < SIZE[1] / 2 { 1.3 } else { 0.4 };
+    let light = [1.0, 1.0, 0.5, 1.5][index as usize % 4];
+    view.color = Image::from_fn(SIZE, |[x, y]| {
+        let (u, w) = (x as f32 + shift(y) * t, y as f32 + 7.0 * v as f32);
+        let wave = |a: f32, b: f32| (0.5 + 0.4 * (a * u + b * w).sin()) * light;
+        if draws.uniform() < 0.02 { [f32::NAN; 3] } else { [wave(1.1, 0.4), wave(0.3, 1.3), wave(0.9, 0.9)] }
+    });
+    view.depth = Some(Image::from_fn(SIZE, |[_, y]| if y < SIZE[1] / 2 { 2.0 } else { 6.5 }));
+    // Vectors that contradict their depth in a corner.
+    view.motion = Some(Image::from_fn(SIZE, |[x, y]| if x < 12 { [0.0, 25.0] } else { [shift(y), 0.0] }));
+    view.trust = Some(Image::from_fn(SIZE, |[x, _]| if x % 9 == 0 { draws.uniform() } else { 1.0 }));
+    let gaze_px = [20.0 + 4.0 * t, 15.0];
+    view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, gaze_px, index + u64::from(v)));
+    view
+}
+
+#[test]
+fn a_wrong_reconstruction_is_caught() {
+    let settings = settings(Method::Smr);
+    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    let differs = |sources: &[String; 3]| {
+        let mut rig = Rig::with_shader(desc(), settings, &sources[2])?;
+        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        Some((0..8).any(|index| {
+            rig.scattered = index % 4 == 3;
+            rig.exposure = if index % 3 == 2 { Exposure::Ratio(1.25) } else { Exposure::Same };
+            let views = [0, 1].map(|v| gliding_view(index, v, &settings));
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        }))
+    };
+    let Some(false) = differs(&right) else {
+        assert!(differs(&right).is_none(), "without an error");
+        return;
+    };
+    let planted = [
+        // History: of the other view, of another texel, of another surface, and in another exposure.
+        ("textureLoad(past_kept, at, view, 0)", "textureLoad(past_kept, at, 1u - view, 0)"),
+        ("vec2<u32>(tap & 1u, tap >> 1u)", "vec2<u32>(tap >> 1u, tap >> 1u)"),
+        ("same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0)", "same"),
+        ("found.color = expose(found.color, frame.exposure);", ""),
+        ("found.highest = expose(found.highest, frame.exposure);", ""),
+        ("found.nearest.color = expose(found.nearest.color, frame.exposure);", ""),
+        ("confidence = trust(trust_at(px, view));", ""),
+        // Samples: comparison of unusable ones, of another place, results of another lattice or view.
+        ("&& color(sample_at(point, lattice, view).xyz).usable", ""),
+        ("point.y << lattice.level", "point.x << lattice.level"),
+        (
+            "vec2<u32>(pack_color(history.color), half_bits(error)",
+            "vec2<u32>(pack_color(history.color), half_bits(-error)",
+        ),
+        ("textureStore(observed_out, lattice.results + id.xy, view", "textureStore(observed_out, id.xy, view"),
+        (
+            "textureStore(lights_out, lattice.results + id.xy, view",
+            "textureStore(lights_out, lattice.results + id.xy, 1u - view",
+        ),
+        ("sparse.views[view][frame.lattice]", "sparse.views[0u][frame.lattice]"),
+        // Light: neighbours beyond the edge, of other surfaces, and without observation; gains that fit worse.
+        ("if !(inside && same && other.error >= 0.0) {", "if !(same && other.error >= 0.0) {"),
+        ("if !(inside && same && other.error >= 0.0) {", "if !(inside && other.error >= 0.0) {"),
+        ("if !(inside && same && other.error >= 0.0) {", "if !(inside && same) {"),
+        ("if !is_relit || with_gain > without {", "if false {"),
+        ("without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;", ""),
+        // Pixels: other weights, alpha aside; what is stored.
+        ("max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same)", "max(share, LEAST_SHARE)"),
+        ("weight * select(BY_NEIGHBOURS, 1.0, lit.is_own)", "weight"),
+        ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
+        ("candidate.usable && lattice.level == 0u", "false"),
+        ("next.disparity = disparity_now;", ""),
+        ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
+        ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.clone().map(|source| source.replace(text, instead));
+        assert_ne!(wrong, right, "{text}");
+        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
     }
 }
 

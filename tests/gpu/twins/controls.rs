@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, sparse, state, surfaces};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -198,4 +198,27 @@ fn a_wrong_turn_or_draw_of_a_path_is_caught() {
         "vec4<u32>(pixel, sample, dimension, key)",
         "vec4<u32>(sample, pixel, dimension, key)",
     );
+}
+
+#[test]
+fn planted_errors_in_the_reconstruction_are_caught() {
+    caught(sparse::PROBES, "pack_color", "rough + (multiple(largest, rough) >> 9u)", "rough");
+    caught(sparse::PROBES, "unpack_color", "(SMALLEST_EXPONENT - 8u)", "(SMALLEST_EXPONENT - 9u)");
+    caught(sparse::PROBES, "pack_kept", "min((code + 2u) >> 2u, 0x3ffeu)", "min(code >> 2u, 0x3ffeu)");
+    caught(sparse::PROBES, "unpack_kept", "unpack_place(words.y >> 26u)", "unpack_place(words.y >> 20u)");
+    caught(sparse::PROBES, "kept_weight", "const SOFTEN_PX2: f32 = 0.03;", "const SOFTEN_PX2: f32 = 0.0301;");
+    caught(sparse::PROBES, "add_kept", "wx * place.y, wy", "wx * place.x, wy");
+    caught(sparse::PROBES, "add_kept", "if cost < a.cost {", "if cost > a.cost {");
+    caught(sparse::PROBES, "interpolate", "a.square.y * a.weight - a.place.x", "a.square.y * a.weight - a.place.y");
+    caught(sparse::PROBES, "interpolate", "distance <= EXACT_PX", "distance < 0.0");
+    caught(sparse::PROBES, "candidate_level", "1.0 + 2.0 * px", "1.0 + 2.01 * px");
+    caught(sparse::PROBES, "expected_error", "by_motion + CONTRAST_ERROR * coarse", "by_motion + CONTRAST_ERROR");
+    caught(sparse::PROBES, "agreement", "own.error + other.error", "own.error + own.error");
+    caught(sparse::PROBES, "relight", "sqrt(l.squared)", "sqrt(l.weight)");
+    caught(sparse::PROBES, "fit", "1.0 - sure * smooth_step", "1.0 - smooth_step");
+    caught(sparse::PROBES, "pack_lit", "l.fit * 256.0 + 0.5", "l.fit * 256.0");
+    caught(sparse::PROBES, "unpack_lit", "(words.y & 512u) != 0u", "(words.y & 1024u) != 0u");
+    caught(sparse::PROBES, "reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE");
+    caught(sparse::PROBES, "reconstruct", "select(WORN.y, WORN.x, r.moved)", "WORN.x");
+    caught(sparse::PROBES, "relit", "highest + (highest - lowest)", "highest + highest");
 }

@@ -153,12 +153,12 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "add_kept",
         module: "kept",
-        words: [28, 24],
+        words: [28, 30],
         wgsl: "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
             a = add_kept(a, Kept(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
                 vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true); }
             out_f(a.weight); out_v(a.color); out_f(a.lod); out_f(a.place.x); out_f(a.place.y); out_v(a.square);
-            out_v(a.color_x); out_v(a.color_y); out_v(a.nearest.color); out_f(a.nearest.lod); out_f(a.nearest.disparity);
+            out_v(a.color_x); out_v(a.color_y); out_v(a.lowest); out_v(a.highest); out_v(a.nearest.color); out_f(a.nearest.lod); out_f(a.nearest.disparity);
             out_f(a.nearest.place_px.x); out_f(a.nearest.place_px.y); out_f(a.cost);",
         rust: |r, o| {
             let a = around_of(r);
@@ -170,6 +170,7 @@ pub const PROBES: &[Probe] = &[
             o.v(a.square);
             o.v(a.color_x);
             o.v(a.color_y);
+            a.range.map(|c| o.v(c));
             put_kept(o, a.nearest);
             o.f(a.cost);
         },
@@ -178,16 +179,18 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "interpolate",
         module: "kept",
-        words: [28, 11],
+        words: [28, 17],
         wgsl: "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
             a = add_kept(a, Kept(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
                 vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true); }
-            let k = interpolate(a); out_v(k.color); out_f(k.lod); out_v(k.nearest.color); out_f(k.nearest.lod);
+            let k = interpolate(a); out_v(k.color); out_f(k.lod); out_v(k.lowest); out_v(k.highest);
+            out_v(k.nearest.color); out_f(k.nearest.lod);
             out_f(k.nearest.disparity); out_f(k.nearest.place_px.x); out_f(k.nearest.place_px.y);",
         rust: |r, o| {
             let k = kept::interpolate(around_of(r));
             o.v(k.color);
             o.f(k.lod);
+            k.range.map(|c| o.v(c));
             put_kept(o, k.nearest);
         },
         rows: || around_rows("interpolate"),
@@ -309,6 +312,35 @@ pub const PROBES: &[Probe] = &[
         wgsl: "out_f(fit(in_f(0u), in_f(1u)));",
         rust: |r, o| o.f(sparse::fit(r.f(0), r.f(1))),
         rows: || Rows::new(2).random("fit", |d, row| row.extend([range(d, 0.0, 10.0), range(d, 0.0, 1.0)])),
+    },
+    Probe {
+        name: "pack_lit",
+        module: "sparse",
+        words: [6, 2],
+        wgsl: "let w = pack_lit(Lit(in_v(0u), in_f(3u), in_u(4u) != 0u, in_f(5u))); out_u(w.x); out_u(w.y);",
+        rust: |r, o| {
+            let lit = sparse::Lit { gain: r.v(0), fit: r.f(3), is_own: r.u(4) != 0, disparity: r.f(5) };
+            sparse::pack_lit(lit).map(|w| o.u(w));
+        },
+        rows: || Rows::new(6).random("pack_lit", |d, row| {
+            row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
+            row.extend([range(d, 0.0, 1.0), d.bits() % 2, scaled(d, -20, 20)]);
+        }),
+    },
+    Probe {
+        name: "unpack_lit",
+        module: "sparse",
+        words: [2, 6],
+        wgsl: "let l = unpack_lit(vec2<u32>(in_u(0u), in_u(1u))); out_v(l.gains); out_f(l.fit); out_u(u32(l.is_own));
+            out_f(l.disparity);",
+        rust: |r, o| {
+            let lit = sparse::unpack_lit([r.u(0), r.u(1)]);
+            o.v(lit.gain);
+            o.f(lit.fit);
+            o.u(u32::from(lit.is_own));
+            o.f(lit.disparity);
+        },
+        rows: || Rows::new(2).random("unpack_lit", |d, row| row.extend([bits(d), bits(d)])),
     },
     Probe {
         name: "relit",
