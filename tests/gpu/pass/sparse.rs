@@ -185,9 +185,9 @@ fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
     view.color = Image::from_fn(SIZE, |[x, y]| {
         let (u, w) = (x as f32 + shift(y) * t, y as f32 + 7.0 * v as f32);
         let wave = |a: f32, b: f32| (0.5 + 0.4 * (a * u + b * w).sin()) * light;
-        if draws.uniform() < 0.02 { [f32::NAN; 3] } else { [wave(1.1, 0.4), wave(0.3, 1.3), wave(0.9, 0.9)] }
+        if draws.uniform() < 0.1 { [f32::NAN; 3] } else { [wave(1.1, 0.4), wave(0.3, 1.3), wave(0.9, 0.9)] }
     });
-    view.depth = Some(Image::from_fn(SIZE, |[_, y]| if y < SIZE[1] / 2 { 2.0 } else { 6.5 }));
+    view.depth = Some(Image::from_fn(SIZE, |[_, y]| if y < SIZE[1] / 2 { 2.0 + 0.01 * t } else { 6.5 }));
     // Vectors that contradict their depth in a corner.
     view.motion = Some(Image::from_fn(SIZE, |[x, y]| if x < 12 { [0.0, 25.0] } else { [shift(y), 0.0] }));
     view.trust = Some(Image::from_fn(SIZE, |[x, _]| if x % 9 == 0 { draws.uniform() } else { 1.0 }));
@@ -206,7 +206,7 @@ fn a_wrong_reconstruction_is_caught() {
         rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
         Some((0..8).any(|index| {
             rig.scattered = index % 4 == 3;
-            rig.exposure = if index % 3 == 2 { Exposure::Ratio(1.25) } else { Exposure::Same };
+            rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
             let views = [0, 1].map(|v| gliding_view(index, v, &settings));
             rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
         }))

@@ -170,7 +170,7 @@ pub const PROBES: &[Probe] = &[
             o.v(a.square);
             o.v(a.color_x);
             o.v(a.color_y);
-            a.range.map(|c| o.v(c));
+            a.range.into_iter().for_each(|c| o.v(c));
             put_kept(o, a.nearest);
             o.f(a.cost);
         },
@@ -190,7 +190,7 @@ pub const PROBES: &[Probe] = &[
             let k = kept::interpolate(around_of(r));
             o.v(k.color);
             o.f(k.lod);
-            k.range.map(|c| o.v(c));
+            k.range.into_iter().for_each(|c| o.v(c));
             put_kept(o, k.nearest);
         },
         rows: || around_rows("interpolate"),
@@ -320,7 +320,7 @@ pub const PROBES: &[Probe] = &[
         wgsl: "let w = pack_lit(Lit(in_v(0u), in_f(3u), in_u(4u) != 0u, in_f(5u))); out_u(w.x); out_u(w.y);",
         rust: |r, o| {
             let lit = sparse::Lit { gain: r.v(0), fit: r.f(3), is_own: r.u(4) != 0, disparity: r.f(5) };
-            sparse::pack_lit(lit).map(|w| o.u(w));
+            sparse::pack_lit(lit).into_iter().for_each(|w| o.u(w));
         },
         rows: || Rows::new(6).random("pack_lit", |d, row| {
             row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
