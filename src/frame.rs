@@ -384,6 +384,12 @@ impl<'a, E: Executor> Frame<'a, E> {
             };
             return Err(FrameError::Value { what: "lattices", view, found: found.into(), expected });
         }
+        let at_samples = |view: &ViewFrame| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples());
+        if let Some(view) = (1..self.views.len()).find(|&i| at_samples(&self.views[i]) != at_samples(&self.views[0])) {
+            let found = "given with depth and motion at samples for some views".into();
+            let expected = "depth and motion at samples for all views, or at every pixel for all";
+            return Err(FrameError::Value { what: "lattices", view, found, expected });
+        }
         if is_sparse && self.lod.is_some() {
             let (found, expected) = ("given".into(), "None: the lattices say how coarse a sparse frame is");
             return Err(FrameError::Value { what: "lod", view: 0, found, expected });

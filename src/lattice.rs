@@ -65,6 +65,7 @@ impl Lattice {
 pub struct Lattices {
     stack: [Lattice; Self::MAX],
     count: usize,
+    has_geometry_at_samples: bool,
 }
 
 impl Lattices {
@@ -102,7 +103,7 @@ impl Lattices {
         }
         let mut stack = [Lattice::default(); Self::MAX];
         stack[..lattices.len()].copy_from_slice(lattices);
-        Ok(Self { stack, count: lattices.len() })
+        Ok(Self { stack, count: lattices.len(), has_geometry_at_samples: false })
     }
 
     /// The lattices, finest first.
@@ -121,6 +122,18 @@ impl Lattices {
         (stack, size)
     }
 
+    /// This stack for frames whose depth and motion vectors, too, are given at the samples only, as a renderer that
+    /// draws each lattice as a small view has them: at the texels of their colors, in images laid out as the color
+    /// input is. What lies between is interpolated, for 12 bytes a pixel of memory. Trust masks stay at full size.
+    pub fn with_geometry_at_samples(self) -> Self {
+        Self { has_geometry_at_samples: true, ..self }
+    }
+
+    /// Whether depth and motion vectors are given at the samples only.
+    pub(crate) fn has_geometry_at_samples(&self) -> bool {
+        self.has_geometry_at_samples
+    }
+
     /// First lattice that covers a pixel.
     pub fn at(&self, px: [u32; 2]) -> Option<&Lattice> {
         self.as_slice().iter().find(|lattice| lattice.covers(px))
@@ -131,9 +144,14 @@ impl Lattices {
         self.stack[0].atlas_texel.is_some()
     }
 
-    /// Checks that the lattices of an atlas lie in the color input, a texture of `size` in which the view begins at
-    /// `origin`.
-    pub(crate) fn check_atlas(&self, view: usize, origin: [u32; 2], size: [u32; 2]) -> Result<(), FrameError> {
+    /// Checks that the lattices of an atlas lie in `input`, a texture of `size` in which the view begins at `origin`.
+    pub(crate) fn check_atlas(
+        &self,
+        input: &'static str,
+        view: usize,
+        origin: [u32; 2],
+        size: [u32; 2],
+    ) -> Result<(), FrameError> {
         for lattice in self.as_slice() {
             let Some(texel) = lattice.atlas_texel else { continue };
             let at = [0, 1].map(|i| u64::from(origin[i]) + u64::from(texel[i]));
@@ -143,10 +161,10 @@ impl Lattices {
                     what: "lattices",
                     view,
                     found: format!(
-                        "{w}x{h} samples from texel ({x}, {y}) on in a color input of {}x{}",
+                        "{w}x{h} samples from texel ({x}, {y}) on in a {input} input of {}x{}",
                         size[0], size[1]
                     ),
-                    expected: "an atlas inside the color input",
+                    expected: "an atlas inside the input",
                 });
             }
         }

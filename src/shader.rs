@@ -60,6 +60,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "candidate_pass"),
     module!("pass", "doctor_light_pass"),
     module!("pass", "doctor_pass"),
+    module!("pass", "fill_geometry_pass"),
     module!("pass", "fill_pass"),
     module!("pass", "mip_chain_pass"),
     module!("pass", "inputs"),

@@ -96,7 +96,7 @@ impl ViewUniforms {
             key: rng::stream_key(settings.seed, index as u32, purpose, frame),
             disparity_a: disparity.a,
             disparity_b: disparity.b,
-            disparity_flags: u32::from(disparity.invert) | u32::from(disparity.clamp) << 1,
+            disparity_flags: disparity.flags(),
             motion_offset: desc.motion.jitter_offset(jitter, held.previous_jitter_px),
             ..Self::default()
         }

@@ -1,3 +1,5 @@
+//#use depth
+//#use sanitize
 // Twin of src/kernel/lattice.rs.
 
 const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
@@ -38,4 +40,34 @@ fn add_sample(mean: SampleMean, sampled: vec4<f32>, usable: bool, sample_weight:
 // lattice::sample_mean
 fn sample_mean(mean: SampleMean) -> vec4<f32> {
     return mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT));
+}
+
+const GEOMETRY_RELATIVE: f32 = 0.35;
+
+struct GeometryMean {
+    disparity: f32,
+    motion: vec2<f32>,
+    weight: f32,
+}
+
+// lattice::add_geometry
+fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2<f32>, sample_weight: f32) -> GeometryMean {
+    let usable = is_finite(motion.x) && is_finite(motion.y);
+    if sample_weight == 0.0 || !usable || !same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0) {
+        return mean;
+    }
+    return GeometryMean(
+        mean.disparity + disparity * sample_weight,
+        mean.motion + motion * sample_weight,
+        mean.weight + sample_weight,
+    );
+}
+
+// lattice::filled_geometry
+fn filled_geometry(mean: GeometryMean, own: f32, own_motion: vec2<f32>) -> vec3<f32> {
+    if mean.weight == 0.0 {
+        return vec3<f32>(distance_of(own), own_motion);
+    }
+    let inverse = 1.0 / mean.weight;
+    return vec3<f32>(distance_of(mean.disparity * inverse), mean.motion * inverse);
 }

@@ -129,6 +129,17 @@ impl History {
         held
     }
 
+    /// What [`hold`](Self::hold) would hold.
+    pub(super) fn held_after(&self, index: usize, view: &ViewFrame) -> Held {
+        self.held[index].with(view)
+    }
+
+    /// Previous packed samples of `view`; empty except for smr on sparse frames, and without history.
+    pub(super) fn kept(&self, view: usize) -> &[[u32; 2]] {
+        let is_kept = self.layout == HistoryLayout::Kept && self.filled;
+        if is_kept { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
+    }
+
     /// Previous reservoirs of `view`, and the current ones and their log keys to write.
     pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, &mut [[u32; 3]], &mut [f32]) {
         let range = view * self.view_len..(view + 1) * self.view_len;

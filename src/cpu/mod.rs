@@ -6,6 +6,7 @@
 mod doctor;
 mod doctor_pass;
 mod fill;
+mod fill_geometry;
 mod history;
 mod inputs;
 mod mip_chain;
@@ -23,9 +24,11 @@ pub use doctor::Doctor;
 #[doc(hidden)]
 pub use history::History;
 
+use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
 use crate::image::Image;
+use crate::lattice::Lattices;
 use crate::method::HistoryLayout;
 use crate::resize::Resize;
 use crate::settings::{Method, Settings};
@@ -223,7 +226,24 @@ impl CpuAfterimage {
         let filled = if is_sparse_smr { vec![] } else { fill::filled(frame, self.desc.size_px) };
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
-        let pass = Pass { desc: &self.desc, history: &mut self.history, frame: &whole, output, traces };
+        let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
+        let depths: Vec<_> = geometry.iter().flatten().map(|g| &g.depth).collect();
+        let motions: Vec<_> = geometry.iter().flatten().map(|g| &g.motion).collect();
+        // Filled depth and motion are in internal conventions.
+        let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
+        let (desc, whole) = match &geometry {
+            None => (self.desc, whole),
+            Some(_) => (
+                ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..self.desc },
+                Frame {
+                    depth: whole.depth.is_some().then_some(&depths[..]),
+                    motion: whole.motion.is_some().then_some(&motions[..]),
+                    views: &views,
+                    ..whole
+                },
+            ),
+        };
+        let pass = Pass { desc: &desc, history: &mut self.history, frame: &whole, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
             Method::Taa => surface_pass::run(pass, taa_pass::pixel),
@@ -246,24 +266,32 @@ impl CpuAfterimage {
 /// Checks a frame without its outputs.
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_color(desc, frame)?;
-    check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
-    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
+    check_samples(desc, "color", Some(frame.color.iter().map(|i| i.size())), frame.views, ViewFrame::atlas)?;
+    let geometry = |view| ViewFrame::atlas(view).filter(|atlas| atlas.has_geometry_at_samples());
+    check_samples(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())), frame.views, geometry)?;
+    check_samples(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())), frame.views, geometry)?;
     check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
 }
 
-/// Checks the color input, which may be an atlas of samples.
-fn check_color(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    let mut sizes: Vec<_> = frame.color.iter().map(|image| image.size()).collect();
-    for (view, (facts, size)) in frame.views.iter().zip(&mut sizes).enumerate() {
-        if let Some(atlas) = facts.atlas() {
-            atlas.check_atlas(view, [0, 0], *size)?;
+/// Checks the sizes of an input that may be an atlas of samples: `atlas` of a view.
+fn check_samples<'a>(
+    desc: &ContextDesc,
+    input: &'static str,
+    sizes: Option<impl Iterator<Item = [u32; 2]>>,
+    views: &'a [ViewFrame],
+    atlas: impl Fn(&'a ViewFrame) -> Option<&'a Lattices>,
+) -> Result<(), FrameError> {
+    let Some(sizes) = sizes else { return Ok(()) };
+    let mut sizes: Vec<_> = sizes.collect();
+    for (view, (facts, size)) in views.iter().zip(&mut sizes).enumerate() {
+        if let Some(atlas) = atlas(facts) {
+            atlas.check_atlas(input, view, [0, 0], *size)?;
             *size = desc.size_px;
         }
     }
-    check_sizes(desc, "color", Some(sizes.into_iter()))
+    check_sizes(desc, input, Some(sizes.into_iter()))
 }
 
 /// Checks that an input, if given, has one image of the context's size for each view.

@@ -26,6 +26,11 @@ impl<'a> Frame<'a> {
         Frame { color, depth, motion, trust, lod, noise, views, index, reset, exposure }
     }
 
+    /// Whether depth and motion are given at samples only.
+    pub(super) fn has_geometry_at_samples(&self) -> bool {
+        self.views.iter().any(|view| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples()))
+    }
+
     /// Whether an input consists of regions.
     pub(super) fn has_regions(&self) -> bool {
         let optional = [self.depth, self.motion, self.trust, self.lod, self.noise];
@@ -124,6 +129,9 @@ pub struct Variant {
     pub counters: bool,
     /// Whether an input or output consists of [`Regions`](Textures::Regions).
     pub regions: bool,
+    /// Whether depth and motion are given at samples only
+    /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
+    pub geometry_at_samples: bool,
     /// View of the [`DebugTarget`], if any.
     pub debug: Option<DebugView>,
 }
@@ -146,6 +154,7 @@ impl Variant {
             lod: frame.lod.is_some(),
             counters: target.counters.is_some(),
             regions: frame.has_regions() || target.has_regions(),
+            geometry_at_samples: frame.has_geometry_at_samples(),
             debug: target.debug.map(|d| d.view),
         }
     }

@@ -48,7 +48,12 @@ pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), 
     ];
     for (input, textures, channels) in inputs {
         let Some(textures) = textures else { continue };
-        let views = if input == "color" { frame.views } else { &[] };
+        let of_samples = match input {
+            "color" => true,
+            "depth" | "motion" => frame.has_geometry_at_samples(),
+            _ => false,
+        };
+        let views = if of_samples { frame.views } else { &[] };
         check_textures(desc, input, textures, Afterimage::INPUT_USAGE, views)?;
         for texture in textures.iter() {
             check_readable(input, texture, channels)?;
@@ -87,7 +92,7 @@ fn check_textures(
         Textures::Layers(texture) => {
             let size = [texture.width(), texture.height()];
             for (view, facts) in views.iter().enumerate() {
-                facts.atlas().map_or(Ok(()), |atlas| atlas.check_atlas(view, [0, 0], size))?;
+                facts.atlas().map_or(Ok(()), |atlas| atlas.check_atlas(input, view, [0, 0], size))?;
             }
             let is_atlas = !views.is_empty() && views.iter().all(|view| view.atlas().is_some());
             return if is_atlas {
@@ -108,7 +113,7 @@ fn check_textures(
         let size = [texture.width(), texture.height()];
         let end = [0, 1].map(|i| u64::from(region.origin_px[i]) + u64::from(desc.size_px[i]));
         if let Some(atlas) = views.get(view).and_then(ViewFrame::atlas) {
-            atlas.check_atlas(view, region.origin_px, size)?;
+            atlas.check_atlas(input, view, region.origin_px, size)?;
         } else if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
             let ([x, y], [width, height]) = (region.origin_px, desc.size_px);
             return Err(FrameError::Value {

@@ -12,6 +12,7 @@ mod buffer;
 pub mod compute;
 mod doctor;
 mod fill;
+mod fill_geometry;
 mod frame;
 mod history;
 mod input;
@@ -48,11 +49,13 @@ use crate::shader::SHADERS;
 use crate::stats::COUNTERS_BYTES;
 use crate::uniforms::Held;
 use fill::Fill;
+use fill_geometry::GeometryFill;
 use history::History;
 use method_pass::{Job, MethodPass};
 use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
 use resize::ResizePass;
 use sparse::SamplePasses;
+use std::sync::OnceLock;
 use uniforms::FrameUniforms;
 use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
@@ -71,6 +74,8 @@ pub struct Afterimage {
     fill: Option<Fill>,
     /// For sparse frames of smr, which reads the samples themselves.
     samples: Option<SamplePasses>,
+    /// For sparse frames with depth and motion at their samples only; made at the first one.
+    geometry: OnceLock<GeometryFill>,
     history: History,
 }
 
@@ -156,13 +161,19 @@ impl Afterimage {
         let mut passes = Passes::new(device, &desc.settings, output_format, source);
         let (fill, samples) = (Fill::new(device, desc), SamplePasses::new(device, desc));
         let history = passes.history(device, desc);
-        Ok(Self { desc: *desc, output_format, passes, fill, samples, history })
+        Ok(Self { desc: *desc, output_format, passes, fill, samples, geometry: OnceLock::new(), history })
     }
 
     /// Another shader for the pass that fills sparse frames, for tests that plant errors.
     #[doc(hidden)]
     pub fn set_fill_shader(&mut self, device: &Device, source: &str) {
         self.fill = Some(Fill::with_shader(device, &self.desc, source.to_owned()));
+    }
+
+    /// Another shader for the pass that fills geometry, for tests that plant errors.
+    #[doc(hidden)]
+    pub fn set_geometry_shader(&mut self, device: &Device, source: &str) {
+        self.geometry = GeometryFill::with_shader(device, &self.desc, source.to_owned()).into();
     }
 
     /// Other shaders for the passes over the samples of sparse frames, for tests that plant errors.
@@ -275,6 +286,9 @@ impl Afterimage {
         if let Some(samples) = &mut self.samples {
             samples.resize(device, &self.desc);
         }
+        if let Some(geometry) = self.geometry.get_mut() {
+            geometry.resize(device, &self.desc);
+        }
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
@@ -298,6 +312,9 @@ impl Afterimage {
             if let Some(samples) = &self.samples {
                 samples.prewarm(device, &self.desc, variant);
             }
+            if variant.geometry_at_samples {
+                self.geometry(device).prewarm(device, &self.desc, variant);
+            }
         }
         if let Some(mip_chain) = &self.passes.mip_chain {
             mip_chain.prewarm(device);
@@ -317,14 +334,16 @@ impl Afterimage {
             + resize.as_ref().map_or(0, ResizePass::pipeline_count)
             + self.fill.as_ref().map_or(0, Fill::pipeline_count)
             + self.samples.as_ref().map_or(0, SamplePasses::pipeline_count)
+            + self.geometry.get().map_or(0, GeometryFill::pipeline_count)
     }
 
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
-        Self::memory_bytes_of(&self.desc)
+        Self::memory_bytes_of(&self.desc) + self.geometry.get().map_or(0, GeometryFill::memory_bytes)
     }
 
-    /// Size in bytes of the textures that a context of this description would hold between frames.
+    /// Size in bytes of the textures that a context of this description would hold between frames; 12 bytes a pixel
+    /// more after a frame with [geometry at samples](crate::Lattices::with_geometry_at_samples).
     ///
     /// ```
     /// use afterimage::ContextDesc;
@@ -435,20 +454,26 @@ impl Afterimage {
         if let (Some(passes), Some(candidates)) = (&self.passes.candidates, self.history.candidates()) {
             passes.record(device, &mut pass, frame, candidates);
         }
+        let variant = Variant::of(frame, target);
         let color = match &self.fill {
             Some(fill) => {
-                fill.record(device, &mut pass, frame, uniforms, Variant::of(frame, target).regions);
+                fill.record(device, &mut pass, frame, uniforms, variant.regions);
                 // A layer is a whole view.
                 uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
                 fill.color()
             }
             None => frame.color,
         };
-        let frame = &frame.with_color(color);
+        let mut frame = frame.with_color(color);
+        if variant.geometry_at_samples {
+            let geometry = self.geometry(device);
+            geometry.record(device, &mut pass, &self.desc, (&frame, variant), uniforms, &self.history);
+            (frame, uniforms) = geometry.filled(&frame, uniforms);
+        }
+        let frame = &frame;
         let lattices = self.samples.as_ref().map(|_| sparse::lattices(device, frame, uniforms.size));
         let samples = self.samples.as_ref().zip(lattices.as_ref()).map(|(samples, lattices)| {
-            let frame_variant = (frame, Variant::of(frame, target));
-            samples.record(device, &mut pass, &self.desc, frame_variant, (uniforms, lattices), &self.history);
+            samples.record(device, &mut pass, &self.desc, (frame, variant), (uniforms, lattices), &self.history);
             (lattices, samples.lights())
         });
         let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history, samples };
@@ -456,6 +481,10 @@ impl Afterimage {
         if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {
             mip_chain.record(device, &mut pass, &self.history.split().1.mip_levels);
         }
+    }
+
+    fn geometry(&self, device: &Device) -> &GeometryFill {
+        self.geometry.get_or_init(|| GeometryFill::new(device, &self.desc))
     }
 
     fn prepare(&self, frame: &Frame<'_>, target: &Target<'_>) -> Prepared {

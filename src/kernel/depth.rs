@@ -15,6 +15,13 @@ pub struct DisparityMap {
     pub clamp: bool,
 }
 
+impl DisparityMap {
+    /// `flags` of the WGSL struct.
+    pub fn flags(self) -> u32 {
+        u32::from(self.invert) | u32::from(self.clamp) << 1
+    }
+}
+
 /// Disparity of a pixel without usable depth: fails every depth test.
 pub const INVALID_DISPARITY: f32 = -1.0;
 
@@ -39,6 +46,16 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     } else {
         1.0 / v
     }
+}
+
+/// Distance of a disparity, of which [`disparity`] makes the same again: negative for [`INVALID_DISPARITY`].
+#[inline]
+pub fn distance_of(disparity: f32) -> f32 {
+    if disparity < 0.0 {
+        return -1.0;
+    }
+    // Devices may differ on 1/0.
+    1.0 / disparity.max(1e-31)
 }
 
 /// Disparity that the surface of a pixel had in the previous frame's view, from `z_previous = z * stretch + shift`;

@@ -1,7 +1,9 @@
 //! Lattices of samples: the order in which a block's pixels are sampled, and the samples around a pixel.
 //! `docs/method.md` explains sparse frames.
 
-use glam::Vec4;
+use super::depth::{distance_of, same_surface};
+use super::sanitize::is_finite;
+use glam::{Vec2, Vec3, Vec4};
 
 /// Smallest weight of a sample at a pixel that has one: the coarsest lattice has 256 steps along each axis.
 const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
@@ -72,4 +74,43 @@ pub fn add_sample(mean: SampleMean, color: Vec4, usable: bool, weight: f32) -> S
 #[inline]
 pub fn sample_mean(mean: SampleMean) -> Vec4 {
     mean.sum * (1.0 / mean.weight.max(LEAST_WEIGHT))
+}
+
+/// Relative difference of disparity within which neighbouring samples belong to one surface: large, because the
+/// disparity of a floor changes much from sample to sample.
+const GEOMETRY_RELATIVE: f32 = 0.35;
+
+/// Mean of depth and motion at the samples of a surface, in the making.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GeometryMean {
+    /// Sum of weighted disparities.
+    pub disparity: f32,
+    /// Sum of weighted motion vectors.
+    pub motion: Vec2,
+    /// Sum of the weights; 0 without samples.
+    pub weight: f32,
+}
+
+/// A mean with one sample more, if it belongs to the surface of disparity `own`.
+#[inline]
+pub fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: Vec2, weight: f32) -> GeometryMean {
+    let usable = is_finite(motion.x) && is_finite(motion.y);
+    if weight == 0.0 || !usable || !same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0) {
+        return mean;
+    }
+    GeometryMean {
+        disparity: mean.disparity + disparity * weight,
+        motion: mean.motion + motion * weight,
+        weight: mean.weight + weight,
+    }
+}
+
+/// Distance and motion vector of a pixel: the mean, or those of its `own` sample where there is none.
+#[inline]
+pub fn filled_geometry(mean: GeometryMean, own: f32, own_motion: Vec2) -> Vec3 {
+    if mean.weight == 0.0 {
+        return Vec3::new(distance_of(own), own_motion.x, own_motion.y);
+    }
+    let inverse = 1.0 / mean.weight;
+    Vec3::new(distance_of(mean.disparity * inverse), mean.motion.x * inverse, mean.motion.y * inverse)
 }

@@ -272,7 +272,7 @@ fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
     let far = Lattice { atlas_texel: Some([65, 3]), ..Lattice::covering(8, [0, 0], SIZE, [0, 0]) };
     view.facts.lattices = Some(Lattices::new(&[far]).unwrap());
     let expected = "lattices of view 0 is 9x6 samples from texel (65, 3) on in a color input of 70x41: expected an atlas \
-                    inside the color input";
+                    inside the input";
     assert_eq!(rig.refusal(&view), expected);
     // A stack that leaves pixels uncovered.
     view.facts.lattices = Some(Lattices::new(&[Lattice::covering(8, [0, 0], [60, 41], [0, 0])]).unwrap());
@@ -425,5 +425,91 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
             let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
             assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
         }
+    }
+}
+
+/// The gliding views of a frame with depth and motion at the samples only.
+fn at_samples(index: u64, settings: &Settings) -> Vec<View> {
+    let view = |v: u32| {
+        let mut view = gliding_view(index, v, settings);
+        view.facts.lattices = view.facts.lattices.map(Lattices::with_geometry_at_samples);
+        if index % 4 == 1 {
+            // What the renderer failed to write.
+            view.depth = view.depth.map(|depth| {
+                let mut draws = Draws::new("holes");
+                depth.map(|z| {
+                    if draws.uniform() < 0.1 { [f32::NAN, 0.0, f32::INFINITY][draws.bits() as usize % 3] } else { z }
+                })
+            });
+        }
+        view
+    };
+    (0..2).map(view).collect()
+}
+
+#[test]
+fn geometry_at_samples_is_filled_bit_equal() {
+    for method in METHODS {
+        let settings = settings(method);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        for index in 0..8 {
+            rig.scattered = index % 4 == 3;
+            let mut views = at_samples(index, &settings);
+            if index == 5 {
+                views.iter_mut().for_each(|view| view.motion = None);
+            }
+            if index == 6 {
+                views.iter_mut().for_each(|view| view.depth = None);
+            }
+            rig.both(index, Reset::None, &views);
+        }
+        assert_eq!(rig.gpu.memory_bytes() - Afterimage::memory_bytes_of(rig.gpu.desc()), 12 * 2 * 70 * 41);
+    }
+}
+
+#[test]
+fn geometry_between_samples_is_not_read() {
+    let settings = settings(Method::Smr);
+    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
+    for index in 0..4 {
+        let views = at_samples(index, &settings);
+        let mut changed = views.clone();
+        for view in &mut changed {
+            let lattices = view.facts.lattices.unwrap();
+            let sampled = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
+            let (depth, motion) = (view.depth.take().unwrap(), view.motion.take().unwrap());
+            let at = |[x, y]: [u32; 2]| (x as usize, y as usize);
+            let depth = Image::from_fn(SIZE, |px| if sampled(px) { depth.at(at(px).0, at(px).1) } else { 0.1 });
+            let motion =
+                Image::from_fn(SIZE, |px| if sampled(px) { motion.at(at(px).0, at(px).1) } else { [f32::NAN; 2] });
+            (view.depth, view.motion) = (Some(depth), Some(motion));
+        }
+        assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed));
+    }
+}
+
+#[test]
+fn a_wrong_fill_of_geometry_is_caught() {
+    let right = SHADERS.compose("fill_geometry_pass").source;
+    let planted = [
+        ("near.x.points[right], near.y.points[below]", "near.x.points[below], near.y.points[right]"),
+        ("* lattice.stride;", ";"),
+        ("s.share > 0.0 && is_confirmed(px, view, s)", "false"),
+        ("if rank > best {", "if rank >= best {"),
+        ("same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0)", "same_surface(own, disparity, 0.9, 0.0)"),
+        ("textureStore(depth_out, px, view", "textureStore(depth_out, px, 1u - view"),
+        ("vec4<f32>(filled.yz, 0.0, 0.0)", "vec4<f32>(filled.zy, 0.0, 0.0)"),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.replace(text, instead);
+        assert_ne!(wrong, right, "{text}");
+        let settings = settings(Method::Smr);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        rig.gpu.set_geometry_shader(&rig.device, &wrong);
+        let differs = (0..6).any(|index| {
+            let views = at_samples(index, &settings);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        });
+        assert!(differs, "{text} -> {instead}");
     }
 }

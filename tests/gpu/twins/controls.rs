@@ -112,6 +112,8 @@ fn a_wrong_sample_is_caught() {
     caught(lattice::PROBES, "between", "i32(count) - 1", "i32(count)");
     caught(lattice::PROBES, "point_weight", "point == 0u", "point == 1u");
     caught(lattice::PROBES, "add_sample", "if !usable {", "if false {");
+    caught(lattice::PROBES, "add_geometry", "GEOMETRY_RELATIVE: f32 = 0.35", "GEOMETRY_RELATIVE: f32 = 0.36");
+    caught(lattice::PROBES, "filled_geometry", "mean.weight == 0.0", "mean.weight <= 0.25");
     caught(lattice::PROBES, "sample_mean", "mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT))", "mean.sum");
 }
 

@@ -3,7 +3,7 @@
 use super::probe::{Probe, Rows};
 use super::values::*;
 use afterimage::kernel::lattice;
-use glam::Vec4;
+use glam::{Vec2, Vec4};
 
 pub const PROBES: &[Probe] = &[
     Probe {
@@ -75,6 +75,46 @@ pub const PROBES: &[Probe] = &[
             Rows::new(5).random("sample_mean", |d, row| {
                 row.extend((0..4).map(|_| signed(d, -16, 16)));
                 row.push(((d.bits() % 65537) as f32 / 65536.0).to_bits());
+            })
+        },
+    },
+    Probe {
+        name: "add_geometry",
+        module: "lattice",
+        words: [9, 4],
+        wgsl:
+            "let g = add_geometry(GeometryMean(in_f(0u), vec2<f32>(in_f(1u), in_f(2u)), in_f(3u)), in_f(4u), in_f(5u),
+            vec2<f32>(in_f(6u), in_f(7u)), in_f(8u)); out_f(g.disparity); out_f(g.motion.x); out_f(g.motion.y);
+            out_f(g.weight);",
+        rust: |r, o| {
+            let mean = lattice::GeometryMean { disparity: r.f(0), motion: Vec2::new(r.f(1), r.f(2)), weight: r.f(3) };
+            let g = lattice::add_geometry(mean, r.f(4), r.f(5), Vec2::new(r.f(6), r.f(7)), r.f(8));
+            [g.disparity, g.motion.x, g.motion.y, g.weight].into_iter().for_each(|v| o.f(v));
+        },
+        rows: || {
+            Rows::new(9).random("add_geometry", |d, row| {
+                row.extend([range(d, 0.0, 4.0), signed(d, -8, 8), signed(d, -8, 8), range(d, 0.0, 1.0)]);
+                row.extend([range(d, 0.1, 2.0), range(d, 0.1, 2.0), signed(d, -8, 8)]);
+                row.push(if d.bits().is_multiple_of(8) { f32::NAN.to_bits() } else { signed(d, -8, 8) });
+                row.push(((d.bits() % 5) as f32 / 4.0).to_bits());
+            })
+        },
+    },
+    Probe {
+        name: "filled_geometry",
+        module: "lattice",
+        words: [7, 3],
+        wgsl: "out_v(filled_geometry(GeometryMean(in_f(0u), vec2<f32>(in_f(1u), in_f(2u)), in_f(3u)), in_f(4u),
+            vec2<f32>(in_f(5u), in_f(6u))));",
+        rust: |r, o| {
+            let mean = lattice::GeometryMean { disparity: r.f(0), motion: Vec2::new(r.f(1), r.f(2)), weight: r.f(3) };
+            o.v(lattice::filled_geometry(mean, r.f(4), Vec2::new(r.f(5), r.f(6))));
+        },
+        rows: || {
+            Rows::new(7).random("filled_geometry", |d, row| {
+                row.extend([range(d, 0.0, 4.0), signed(d, -8, 8), signed(d, -8, 8)]);
+                row.push(((d.bits() % 5) as f32 / 4.0).to_bits());
+                row.extend([range(d, -0.1, 2.0), signed(d, -8, 8), signed(d, -8, 8)]);
             })
         },
     },

@@ -217,6 +217,18 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "distance_of",
+        module: "depth",
+        words: [1, 1],
+        wgsl: "out_f(distance_of(in_f(0u)));",
+        rust: |r, o| o.f(depth::distance_of(r.f(0))),
+        rows: || {
+            Rows::new(1).cross(&[&floats(&[-1.0, 0.0, 1e-31, 1e-20, 1.0])]).random("distance_of", |d, row| {
+                row.push(scaled(d, -60, 60));
+            })
+        },
+    },
+    Probe {
         name: "previous_disparity",
         module: "depth",
         words: [3, 1],

@@ -1,7 +1,7 @@
 //! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device.
 //! `run`, `view` and `bench` share this code.
 
-use super::{Geometry, needs_lod};
+use super::needs_lod;
 use crate::device::Headless;
 use crate::frame::{DeviceFrame, SourceFrame};
 use crate::shader::SHADERS;
@@ -150,23 +150,14 @@ impl DeviceInputs {
         (self.given.lod, self.given.noise) = (lod.is_some(), noise.is_some());
     }
 
-    /// Uploads depth and motion in place of those of the last frame, which has the same of them.
-    pub fn upload_geometry(&mut self, geometry: &Geometry) {
-        self.write_geometry(geometry.depth.as_ref(), geometry.motion.as_ref());
-    }
-
-    fn write_geometry(&self, depth: Option<&Image<f32>>, motion: Option<&Image<[f32; 2]>>) {
-        if let Some(depth) = depth {
-            self.gpu.write(&self.depth, 0, depth);
-        }
-        if let Some(motion) = motion {
-            self.gpu.write(&self.motion, 0, motion);
-        }
-    }
-
     /// Uploads what a frame has besides its color.
     fn upload_others(&mut self, frame: &SourceFrame) {
-        self.write_geometry(frame.depth.as_ref(), frame.motion.as_ref());
+        if let Some(depth) = &frame.depth {
+            self.gpu.write(&self.depth, 0, depth);
+        }
+        if let Some(motion) = &frame.motion {
+            self.gpu.write(&self.motion, 0, motion);
+        }
         if let Some(trust) = &frame.trust {
             self.gpu.write(&self.trust, 0, trust);
         }

@@ -9,7 +9,7 @@ mod sparse;
 
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
-pub use sparse::{Geometry, SampleOrder, SparseGeometry, levels, nearest_sample};
+pub use sparse::{SampleOrder, SparseGeometry, levels};
 
 use crate::clock::Stopwatch;
 use crate::device::Backend;
@@ -93,8 +93,6 @@ struct Candidate<'a> {
     /// Levels of detail as an input of the methods, if any.
     lod_given: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
-    /// Depth and motion in place of the full-rate frame's, if any.
-    geometry: Option<&'a Geometry>,
 }
 
 /// State of a run.
@@ -267,9 +265,6 @@ impl Pipeline {
             None => self.foveation.lod_map(&self.geometry, gaze_px, &ecc_deg),
         };
         let view = ViewFrame { lattices, ..self.view(frame, gaze_px) };
-        let at_samples = lattices.filter(|_| self.sparse_geometry == SparseGeometry::Samples);
-        let at_samples = at_samples
-            .map(|lattices| Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, size));
         // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
         let pyramid = self.foveates_in_memory().then(|| match self.still.take() {
             Some(pyramid) => pyramid,
@@ -283,10 +278,9 @@ impl Pipeline {
             color,
             lod_given: needs_lod(self.foveation.filter).then_some(&lods),
             noise: None,
-            geometry: at_samples.as_ref(),
         });
         #[cfg(feature = "full")]
-        self.foveate_on_device(frame, rendered, candidate.as_ref(), at_samples.as_ref(), &view)?;
+        self.foveate_on_device(frame, rendered, candidate.as_ref(), &view)?;
         let foveation_ms = watch.wall_ms();
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
         let outputs = self.run(index, frame, &view, candidate.as_ref(), pyramid.as_ref().map(|p| (p, &lods)))?;
@@ -311,7 +305,7 @@ impl Pipeline {
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lod);
         #[cfg(feature = "ablation")]
         let color = poisoned(color, self.poison, index as u32);
-        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise), geometry: None };
+        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise) };
         let view = self.view(frame, gaze_px);
         #[cfg(feature = "full")]
         if let Some(device) = &mut self.device {
@@ -350,7 +344,10 @@ impl Pipeline {
     /// Lattices of frame `index`, if it is sparse.
     fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
         let is_sparse = self.foveation.filter == Filter::Sparse;
-        is_sparse.then(|| self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index))
+        is_sparse.then(|| {
+            let lattices = self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index);
+            self.sparse_geometry.of(lattices)
+        })
     }
 
     fn view(&self, frame: &SourceFrame, gaze_px: [f32; 2]) -> ViewFrame {
@@ -377,30 +374,21 @@ impl Pipeline {
         frame: &SourceFrame,
         rendered: Option<&DeviceFrame>,
         candidate: Option<&Candidate<'_>>,
-        at_samples: Option<&Geometry>,
         view: &ViewFrame,
     ) -> Result<(), FrameError> {
         let Some(Device { gpu, inputs, has_still, .. }) = &mut self.device else { return Ok(()) };
         #[cfg(feature = "ablation")]
         if let Some(candidate) = candidate.filter(|_| self.poison > 0.0) {
             inputs.upload_foveated(frame, candidate.color, candidate.lod_given, None);
-            if let Some(geometry) = at_samples {
-                inputs.upload_geometry(geometry);
-            }
             return Ok(());
         }
         #[cfg(not(feature = "ablation"))]
         let _ = candidate;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        // Recorded commands would overwrite what is uploaded.
-        let rendered = rendered.filter(|_| at_samples.is_none());
         match rendered.filter(|rendered| Arc::ptr_eq(&rendered.device, gpu)) {
             Some(rendered) => inputs.import(&mut encoder, rendered),
             None if *has_still => {}
             None => inputs.upload(frame),
-        }
-        if let Some(geometry) = at_samples {
-            inputs.upload_geometry(geometry);
         }
         *has_still = self.is_still;
         inputs.foveate(&mut encoder, std::slice::from_ref(view), None)?;
@@ -548,10 +536,7 @@ fn on_cpu(
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
-    let (depth, motion) = match candidate.geometry {
-        Some(geometry) => (geometry.depth.as_ref(), geometry.motion.as_ref()),
-        None => (source.depth.as_ref(), source.motion.as_ref()),
-    };
+    let (depth, motion) = (source.depth.as_ref(), source.motion.as_ref());
     let frame = Frame {
         depth: depth.as_ref().map(from_ref),
         motion: motion.as_ref().map(from_ref),

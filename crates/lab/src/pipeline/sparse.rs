@@ -1,6 +1,6 @@
-//! Sparse frames: lattices of samples that move every frame, and what a renderer knows of the pixels between.
+//! Sparse frames: lattices of samples that move every frame.
 
-use afterimage::kernel::lattice::{between, offset_px};
+use afterimage::kernel::lattice::offset_px;
 use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
 
 /// Depth and motion of a sparse frame. Default: [`Full`](Self::Full).
@@ -9,8 +9,18 @@ pub enum SparseGeometry {
     /// At every pixel: a visibility buffer, a prepass, or shading-rate hardware.
     #[default]
     Full,
-    /// At the samples alone: a pixel has those of the nearest sample of its lattice, as after enlarging small views.
+    /// At the samples alone ([`Lattices::with_geometry_at_samples`]): small views.
     Samples,
+}
+
+impl SparseGeometry {
+    /// Lattices of a frame with such geometry.
+    pub fn of(self, lattices: Lattices) -> Lattices {
+        match self {
+            Self::Full => lattices,
+            Self::Samples => lattices.with_geometry_at_samples(),
+        }
+    }
 }
 
 /// Order in which the pixels of a block are sampled. Default: [`Bayer`](Self::Bayer).
@@ -67,50 +77,4 @@ impl SampleOrder {
 /// Level of detail of every pixel: log2 of the step of its lattice.
 pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
     Image::from_fn_parallel(size_px, |px| lattices.at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32))
-}
-
-/// The nearest sample of the lattice that a pixel belongs to; `None` if all its samples lie beyond the frame's edge.
-/// `size_px`: of the frame.
-pub fn nearest_sample(lattices: &Lattices, px: [u32; 2], size_px: [u32; 2]) -> Option<[u32; 2]> {
-    let lattice = lattices.at(px)?;
-    let mut nearest = [0; 2];
-    for i in 0..2 {
-        let first = lattice.first_px[i];
-        let inside = size_px[i].saturating_sub(first).div_ceil(lattice.step).min(lattice.points[i]);
-        if inside == 0 {
-            return None;
-        }
-        let samples = between(px[i], first, lattice.step.ilog2(), inside);
-        nearest[i] = first + lattice.step * samples.points[usize::from(samples.fraction >= 0.5)];
-    }
-    Some(nearest)
-}
-
-/// Depth and motion of a frame.
-#[derive(Clone, Debug)]
-pub struct Geometry {
-    /// As [`SourceFrame::depth`](crate::frame::SourceFrame::depth).
-    pub depth: Option<Image<f32>>,
-    /// As [`SourceFrame::motion`](crate::frame::SourceFrame::motion).
-    pub motion: Option<Image<[f32; 2]>>,
-}
-
-impl Geometry {
-    /// Depth and motion of a frame of `size_px` that are known at the samples alone: each pixel has those of the
-    /// nearest one. Where a lattice has none, depth is NaN and motion 0.
-    pub fn at_samples(
-        depth: Option<&Image<f32>>,
-        motion: Option<&Image<[f32; 2]>>,
-        lattices: &Lattices,
-        size_px: [u32; 2],
-    ) -> Self {
-        let nearest = |px| nearest_sample(lattices, px, size_px).map(|[x, y]: [u32; 2]| (x as usize, y as usize));
-        let depth_of = |image: &Image<f32>| {
-            Image::from_fn_parallel(size_px, |px| nearest(px).map_or(f32::NAN, |(x, y)| image.at(x, y)))
-        };
-        let motion_of = |image: &Image<[f32; 2]>| {
-            Image::from_fn_parallel(size_px, |px| nearest(px).map_or([0.0; 2], |(x, y)| image.at(x, y)))
-        };
-        Self { depth: depth.map(depth_of), motion: motion.map(motion_of) }
-    }
 }

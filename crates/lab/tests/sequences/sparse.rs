@@ -1,11 +1,9 @@
 //! Sparse frames in the pipeline: lattices that move, geometry at samples, and both executors alike.
 
 use afterimage::kernel::lattice::offset_px;
-use afterimage::{Filter, Foveation, Image, Method, Settings};
+use afterimage::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::{
-    Geometry, Pipeline, RunKind, SampleOrder, SparseGeometry, Step, levels, nearest_sample,
-};
+use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, Step, levels};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;
 
@@ -85,26 +83,7 @@ fn foveated_frames_have_the_samples_of_the_full_ones() {
 }
 
 #[test]
-fn geometry_at_samples_is_that_of_the_nearest_sample() {
-    let mut source = source("occluder");
-    let frame = source.frame(1).unwrap();
-    let lattices = foveation().lattices(source.view(), [70.0, 40.0], 5);
-    let geometry = Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, SIZE);
-    let (full, depth) = (frame.depth.unwrap(), geometry.depth.unwrap());
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let lattice = lattices.at([x, y]).unwrap();
-            let [sx, sy] = nearest_sample(&lattices, [x, y], SIZE).unwrap();
-            assert!(lattice.samples([sx, sy]), "({x}, {y})");
-            let reach = lattice.step;
-            assert!(x.abs_diff(sx) < reach && y.abs_diff(sy) < reach, "({x}, {y}) has ({sx}, {sy})");
-            if lattice.samples([x, y]) {
-                assert_eq!([sx, sy], [x, y]);
-            }
-            assert_eq!(depth.at(x as usize, y as usize), full.at(sx as usize, sy as usize));
-        }
-    }
-    // It matters: history is rejected at other pixels.
+fn geometry_at_samples_matters() {
     let of = |geometry| steps("occluder", geometry, SampleOrder::Bayer, &Backend::Cpu);
     let rejected = |steps: Vec<Step>| steps.iter().map(|s| s.outputs[2].stats.rejected()).sum::<u64>();
     assert_ne!(rejected(of(SparseGeometry::Full)), rejected(of(SparseGeometry::Samples)));
@@ -156,15 +135,4 @@ fn the_oracle_is_refused() {
     let error = new(RunKind::Oracle).unwrap().to_string();
     assert!(error.contains("the oracle's best level of detail is not defined for moving samples"), "{error}");
     assert!(new(RunKind::PostProcess(Settings::paper())).is_none());
-}
-
-#[test]
-fn a_lattice_beyond_the_edge_has_no_geometry() {
-    let mut source = source("occluder");
-    let frame = source.frame(0).unwrap();
-    let far = afterimage::Lattice::covering(256, [0, 0], SIZE, [200, 0]);
-    let lattices = afterimage::Lattices::new(&[far]).unwrap();
-    let geometry = Geometry::at_samples(frame.depth.as_ref(), frame.motion.as_ref(), &lattices, SIZE);
-    assert!(geometry.depth.unwrap().pixels().iter().all(|z| z.is_nan()));
-    assert_eq!(geometry.motion, frame.motion.map(|_| Image::filled(SIZE, [0.0; 2])));
 }

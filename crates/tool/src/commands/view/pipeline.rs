@@ -8,7 +8,7 @@ use afterimage::wgpu::Texture;
 use afterimage::{ContextDesc, Filter, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, Geometry, SparseGeometry};
+use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, SparseGeometry};
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -33,7 +33,6 @@ pub struct ViewPipeline {
     sparse_geometry: SparseGeometry,
     // Properties of the uploaded frame.
     /// Depth and motion, if sparse frames have them at their samples alone.
-    uploaded: Option<Geometry>,
     previous_from_current: Option<[[f32; 4]; 4]>,
     cut: bool,
     /// Frames since the last history reset.
@@ -60,7 +59,6 @@ impl ViewPipeline {
             examiner: None,
             desc,
             sparse_geometry,
-            uploaded: None,
             previous_from_current: None,
             cut: false,
             index: 0,
@@ -118,8 +116,6 @@ impl ViewPipeline {
     /// Uploads a full-rate frame.
     pub fn upload(&mut self, frame: &SourceFrame) {
         self.inputs.upload(frame);
-        let at_samples = self.sparse_geometry == SparseGeometry::Samples;
-        self.uploaded = at_samples.then(|| Geometry { depth: frame.depth.clone(), motion: frame.motion.clone() });
         self.previous_from_current = frame.previous_from_current;
         self.cut = frame.cut;
     }
@@ -135,14 +131,8 @@ impl ViewPipeline {
     ) -> Result<(), Failure> {
         let foveation = &self.desc.settings.foveation;
         let is_sparse = foveation.filter == Filter::Sparse;
-        let lattices = is_sparse.then(|| foveation.lattices(&self.geometry, gaze_px, self.index));
-        if let Some(full) = &self.uploaded {
-            let at_samples = lattices.map(|lattices| {
-                let (depth, motion) = (full.depth.as_ref(), full.motion.as_ref());
-                Geometry::at_samples(depth, motion, &lattices, self.geometry.size_px())
-            });
-            self.inputs.upload_geometry(at_samples.as_ref().unwrap_or(full));
-        }
+        let lattices =
+            is_sparse.then(|| self.sparse_geometry.of(foveation.lattices(&self.geometry, gaze_px, self.index)));
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
             lattices,

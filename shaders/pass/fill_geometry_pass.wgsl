@@ -1,0 +1,71 @@
+//#use kept_history
+//#use lattices
+// Depth and motion of every pixel of a sparse frame that has them at its samples only. CPU twin:
+// src/cpu/fill_geometry.rs, which explains the choice of the surface. One invocation a pixel; z is the view.
+//
+// Up to 20 reads and 2 writes a pixel: depth and motion of the samples twice, a stored sample for each; 12 bytes a pixel
+// written.
+
+// Whether history can confirm a sample's surface.
+override HAS_KEPT: u32 = 0u;
+
+@group(0) @binding(18) var depth_out: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(19) var motion_out: texture_storage_2d_array<rg32float, write>;
+
+struct GeometrySample {
+    disparity: f32,
+    motion: vec2<f32>,
+    share: f32,
+}
+
+fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> GeometrySample {
+    let right = tap & 1u;
+    let below = tap >> 1u;
+    let texel = lattice.texel + vec2<u32>(near.x.points[right], near.y.points[below]) * lattice.stride;
+    let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
+    return GeometrySample(disparity_at(texel, view), motion_at(texel, view), share);
+}
+
+// Whether the surface of a sample, seen at a pixel, was there in the previous frame.
+fn is_confirmed(px: vec2<u32>, view: u32, s: GeometrySample) -> bool {
+    if HAS_KEPT == 0u || DEPTH_TEST == 0u {
+        return false;
+    }
+    let at = reprojected(px, s.motion);
+    let stored = kept_at(vec2<i32>(at.at), view);
+    let expected = expected_disparity(view, ray_at(px, view), s.disparity);
+    return at.verdict == VERDICT_VALID
+        && stored.lod >= 0.0
+        && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0);
+}
+
+fn pixel(px: vec2<u32>, view: u32) {
+    let lattice = lattice_at(px, view);
+    let near = around(px, lattice);
+    var own = GeometrySample(INVALID_DISPARITY, vec2<f32>(0.0), 0.0);
+    var best = -1.0;
+    let taps = select(0u, 4u, near.any);
+    for (var tap = 0u; tap < taps; tap++) {
+        let s = geometry_at(tap, near, lattice, view);
+        let rank = s.share + select(0.0, 1.0, s.share > 0.0 && is_confirmed(px, view, s));
+        if rank > best {
+            best = rank;
+            own = s;
+        }
+    }
+    var mean = GeometryMean(0.0, vec2<f32>(0.0), 0.0);
+    for (var tap = 0u; tap < taps; tap++) {
+        let s = geometry_at(tap, near, lattice, view);
+        mean = add_geometry(mean, own.disparity, s.disparity, s.motion, s.share);
+    }
+    let filled = filled_geometry(mean, own.disparity, own.motion);
+    textureStore(depth_out, px, view, vec4<f32>(filled.x, 0.0, 0.0, 0.0));
+    textureStore(motion_out, px, view, vec4<f32>(filled.yz, 0.0, 0.0));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, frame.first_view + group.z);
+    }
+}
