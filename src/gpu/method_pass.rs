@@ -9,7 +9,7 @@ use super::compute::{ComputeShader, float_texture, storage_buffer, storage_textu
 use super::history::{History, array_view};
 use super::output::DEBUG_FORMAT;
 use super::textures::{Batch, batches};
-use super::uniforms::FrameUniforms;
+use super::uniforms::{FrameUniforms, SparseUniforms};
 use super::{Frame, Target, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::kernel::debug_view::DebugView;
@@ -25,6 +25,8 @@ use wgpu::{
 
 /// Binding number of the debug view in `shaders/pass/output_and_view.wgsl`.
 const DEBUG_BINDING: u32 = 16;
+/// Binding number of the lattices in `shaders/pass/lattices.wgsl`.
+const LATTICES_BINDING: u32 = 17;
 
 /// The pass, with placeholders for absent inputs.
 #[derive(Debug)]
@@ -80,11 +82,11 @@ impl MethodPass {
             mapped_at_creation: false,
         });
         Self {
-            shader: ComputeShader::new(
+            shader: ComputeShader::with_bindings(
                 device,
                 "afterimage",
                 writing(device, source, output),
-                &binding_types(output, history),
+                &bindings(settings.method, output, history),
             ),
             with_view: OnceLock::new(),
             method: settings.method,
@@ -116,8 +118,7 @@ impl MethodPass {
         }
         self.with_view.get_or_init(|| {
             let source = SHADERS.compose_replacing(self.method.entry().shader, ("output", "output_and_view")).source;
-            let types = binding_types(self.output, self.history);
-            let mut bindings: Vec<_> = (0..).zip(types).collect();
+            let mut bindings = bindings(self.method, self.output, self.history);
             bindings.push((DEBUG_BINDING, storage_texture(DEBUG_FORMAT)));
             ComputeShader::with_bindings(device, "afterimage", writing(device, &source, self.output), &bindings)
         })
@@ -182,10 +183,16 @@ impl MethodPass {
             offset: 0,
             size: std::num::NonZeroU64::new(COUNTERS_BYTES),
         });
+        let lattices = reads_samples(self.method).then(|| {
+            let lattices = SparseUniforms::new(frame, job.uniforms.size);
+            filled(device, "afterimage uniforms", bytemuck::bytes_of(&lattices), BufferUsages::UNIFORM)
+        });
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
-            .chain(history_views.into_iter().chain(debug.as_ref()).map(BindingResource::TextureView));
+            .chain(history_views.into_iter().map(BindingResource::TextureView))
+            .chain(lattices.as_ref().map(|l| l.as_entire_binding()))
+            .chain(debug.as_ref().map(BindingResource::TextureView));
         shader.group(device, resources)
     }
 }
@@ -240,6 +247,16 @@ fn stand_in(device: &Device, format: TextureFormat, usage: TextureUsages) -> Tex
         usage,
         view_formats: &[],
     }))
+}
+
+/// Whether the pass of a method reads the samples of lattices itself.
+fn reads_samples(method: Method) -> bool {
+    method == Method::Taau
+}
+
+fn bindings(method: Method, output: TextureFormat, history: HistoryLayout) -> Vec<(u32, BindingType)> {
+    let lattices = reads_samples(method).then(|| (LATTICES_BINDING, uniform()));
+    (0..).zip(binding_types(output, history)).chain(lattices).collect()
 }
 
 fn binding_types(output: TextureFormat, history: HistoryLayout) -> Vec<BindingType> {

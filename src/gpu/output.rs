@@ -56,7 +56,7 @@ pub(crate) fn check_settings(settings: &Settings) -> Result<(), SettingsError> {
         return Err(SettingsError {
             setting: "method",
             found: "smr".into(),
-            expected: "none, taa or wrs: smr on sparse frames runs on the CPU only, so far".into(),
+            expected: "none, taa, wrs or taau: smr on sparse frames runs on the CPU only, so far".into(),
         });
     }
     Ok(())

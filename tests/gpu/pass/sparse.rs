@@ -1,4 +1,4 @@
-//! Sparse frames, filled for the methods that read whole ones.
+//! Sparse frames: filled for the methods that read whole ones, and read as they are by taau.
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
@@ -10,7 +10,7 @@ use afterimage::{
 use afterimage_testing::Draws;
 
 const SIZE: [u32; 2] = [70, 41];
-const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Taau];
 
 fn settings(method: Method) -> Settings {
     let foveation = Foveation {

@@ -301,7 +301,7 @@ pub(super) mod tests {
     #[test]
     fn clicks_go_through_all_values_and_round() {
         let mut state = state();
-        let shown: Vec<_> = (0..5).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
+        let shown: Vec<_> = (0..6).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
         assert_eq!(
             shown,
             [
@@ -309,7 +309,8 @@ pub(super) mod tests {
                 Shows::Post(Method::None),
                 Shows::Post(Method::Taa),
                 Shows::Post(Method::Wrs),
-                Shows::Post(Method::Smr)
+                Shows::Post(Method::Smr),
+                Shows::Post(Method::Taau)
             ]
         );
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
