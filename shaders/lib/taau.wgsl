@@ -7,7 +7,7 @@ const TAIL_UNTIL: f32 = 0.5;
 const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
 const LIMIT: vec2<f32> = vec2<f32>(2.0, 1.0);
 const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;
-const LEAST_CLIP: f32 = 0.3;
+const LEAST_CLIP: f32 = 0.1;
 const CLIP_COST: f32 = 10.0;
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
@@ -107,7 +107,7 @@ fn accumulate(
     let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
     let distance = max(max(abs(clip.x), abs(clip.y)), abs(clip.z));
-    let kept = 1.0 - min(distance * CLIP_COST, 1.0) * strength;
+    let kept = 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0) * strength;
     let clipped = roots_of_ycocg(past + clip * strength);
     let share = max(a.weights.y / (confidence * kept + a.weights.y), 1.0 - trusted);
     let shown = clipped + (roots(upsampled(a, centre)) - clipped) * share;

@@ -23,9 +23,9 @@ const LIMIT: [f32; 2] = [2.0, 1.0];
 /// Half width of the clipping box in standard deviations of nine samples. More keeps thin detail, less follows changes.
 const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;
 /// Share of the clip where no sample is near. Samples at a distance say little of a pixel's own detail.
-const LEAST_CLIP: f32 = 0.3;
-/// Share of its confidence that history loses for a clip by all of the range from black to white. Above 1: a tenth
-/// takes it all.
+const LEAST_CLIP: f32 = 0.1;
+/// Share of its confidence that history loses for a clip by the range from black to white, or by the history's own
+/// brightness where that is more: a tenth of it costs all.
 const CLIP_COST: f32 = 10.0;
 /// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it falls
 /// where history is enlarged.
@@ -147,7 +147,7 @@ pub fn accumulate(a: SamplesAround, centre: Vec3, history: Vec3, confidence: f32
     let strength = a.weights.x.min(1.0) * (1.0 - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
     let distance = clip.x.abs().max(clip.y.abs()).max(clip.z.abs());
-    let kept = 1.0 - (distance * CLIP_COST).min(1.0) * strength;
+    let kept = 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) * strength;
     let clipped = roots_of_ycocg(past + clip * strength);
     let share = (a.weights.y / (confidence * kept + a.weights.y)).max(1.0 - trust);
     let shown = clipped + (roots(upsampled(a, centre)) - clipped) * share;

@@ -176,6 +176,34 @@ fn a_wrong_fill_is_caught() {
 }
 
 #[test]
+fn a_wrong_upsampling_is_caught() {
+    let right = SHADERS.compose("taau_pass").source;
+    let planted = [
+        ("- frame.views[view].jitter_px", ""),
+        ("point_offset_px(px.y, first.y, level, point.y)", "point_offset_px(px.y, first.y, level, point.x)"),
+        ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
+        ("clamp(point, vec2<i32>(0), last)", "clamp(point, vec2<i32>(0), last - 1)"),
+        ("tail(confidence * source.trust)", "tail(confidence)"),
+        ("sampled.usable {", "true {"),
+        ("let lattice = lattice_at(px, view);", "let lattice = LATTICES - 1u;"),
+        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.replace(text, instead);
+        assert_ne!(wrong, right, "{text}");
+        let settings = settings(Method::Taau);
+        let Some(mut rig) = Rig::with_shader(desc(), settings, &wrong) else { return };
+        let differs = (0..4).any(|index| {
+            rig.scattered = index > 1;
+            let mut views = sparse_views(index, &settings);
+            views.iter_mut().for_each(|view| view.facts.jitter_px = [0.25, -0.375]);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        });
+        assert!(differs, "{text} -> {instead}");
+    }
+}
+
+#[test]
 fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings(Method::Taa)) else { return };
     let mut view = View::still(noise(SIZE, "refused"), [20.0, 20.0]);
