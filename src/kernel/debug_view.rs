@@ -26,8 +26,8 @@ pub enum DebugView {
     /// empty, red disoccluded, cyan distrusted.
     Rejection = 4,
     /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well
-    /// history explains the candidate; for taau the share of its confidence that history kept when it was clipped. White
-    /// for the other methods.
+    /// history explains the candidate; for taau the share of its confidence that history kept when clipped. White for
+    /// the other methods.
     Gate = 5,
     /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels;
     /// grey is no motion, green NaN or infinite.

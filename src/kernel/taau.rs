@@ -1,14 +1,14 @@
 //! One pixel of temporal upsampling, the baseline on sparse frames: samples of this frame are weighted by their true
 //! distance from the pixel, history by the weight that it has accumulated, after a clip to the distribution of the
 //! samples around. The structure is that of FidelityFX Super Resolution 2 (AMD 2022, `ffx_fsr2_upsample.h`,
-//! `ffx_fsr2_accumulate.h`) and of Unreal's TAAU (Karis 2014), without locks, reactive masks and dilated motion vectors.
+//! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
 
 use super::matched::roots;
 use super::taa::{clip_to_box, roots_of_ycocg, to_ycocg};
 use glam::{Vec2, Vec3};
 
-/// Weight of interpolation between samples where history knows nothing, relative to a sample at the pixel. More flickers
-/// less until a pixel's first sample arrives, and blurs it afterwards.
+/// Weight of interpolation between samples where history knows nothing, relative to a sample at the pixel. More
+/// flickers less until a pixel's first sample arrives, and blurs it afterwards.
 const TAIL: f32 = 0.02;
 /// The least share of that weight, where history is confident: with it a pixel leaves outdated history between its
 /// samples, too.
@@ -27,8 +27,8 @@ const LEAST_CLIP: f32 = 0.1;
 /// Share of its confidence that history loses for a clip by the range from black to white, or by the history's own
 /// brightness where that is more: a tenth of it costs all.
 const CLIP_COST: f32 = 10.0;
-/// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it falls
-/// where history is enlarged.
+/// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it
+/// falls where history is enlarged.
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 /// Weight of a sample at a squared distance, in units of the kernel's reach: the main lobe of Lanczos 2, as FSR2

@@ -183,7 +183,7 @@ fn a_wrong_upsampling_is_caught() {
         ("point_offset_px(px.y, first.y, level, point.y)", "point_offset_px(px.y, first.y, level, point.x)"),
         ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
         ("clamp(point, vec2<i32>(0), last)", "clamp(point, vec2<i32>(0), last - 1)"),
-        ("tail(confidence * source.trust)", "tail(confidence)"),
+        ("tail(confidence * source.trust)", "tail(0.0)"),
         ("sampled.usable {", "true {"),
         ("let lattice = lattice_at(px, view);", "let lattice = LATTICES - 1u;"),
         ("frame.views[view].color_origin", "frame.views[0].color_origin"),

@@ -1,4 +1,5 @@
-//! Negative controls of the taa, taau and smr sequence tests: each error planted in a pass must make the executors differ.
+//! Negative controls of the sequence tests of taa, taau and smr: each error planted in a pass must make the executors
+//! differ.
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
