@@ -305,12 +305,12 @@ pub(super) mod tests {
         assert_eq!(
             shown,
             [
+                Shows::Post(Method::Taau),
                 Shows::Reference,
                 Shows::Post(Method::None),
                 Shows::Post(Method::Taa),
                 Shows::Post(Method::Wrs),
-                Shows::Post(Method::Smr),
-                Shows::Post(Method::Taau)
+                Shows::Post(Method::Smr)
             ]
         );
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
