@@ -27,6 +27,9 @@ pub enum Method {
     /// Weighted reservoirs (Cantory et al., MIG 2025): a random sample of each surface point, weighted by retinal
     /// acuity.
     Wrs,
+    /// Temporal upsampling, which ignores gaze but knows where a sparse frame has its samples: a baseline for
+    /// comparison.
+    Taau,
 }
 
 /// Sampler of [`Method::Wrs`]: rule by which a reservoir chooses between its sample and the candidate. Both give the

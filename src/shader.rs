@@ -56,6 +56,7 @@ pub static MODULES: &[Module] = &[
     module!("lib", "sparse"),
     module!("lib", "surface"),
     module!("lib", "taa"),
+    module!("lib", "taau"),
     module!("lib", "wrs"),
     module!("pass", "candidate_pass"),
     module!("pass", "doctor_light_pass"),
@@ -81,6 +82,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "sparse_samples"),
     module!("pass", "surface_history"),
     module!("pass", "taa_pass"),
+    module!("pass", "taau_pass"),
     module!("pass", "view_uniforms"),
     module!("pass", "wrs_pass"),
 ];

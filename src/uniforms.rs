@@ -49,8 +49,8 @@ pub struct ViewUniforms {
     pub output_origin: u32,
     /// The same for the debug view.
     pub debug_origin: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 2],
+    /// Jitter of this frame.
+    pub jitter_px: [f32; 2],
 }
 
 /// What a context holds of a view's descriptions from frame to frame.
@@ -98,6 +98,7 @@ impl ViewUniforms {
             disparity_b: disparity.b,
             disparity_flags: disparity.flags(),
             motion_offset: desc.motion.jitter_offset(jitter, held.previous_jitter_px),
+            jitter_px: jitter,
             ..Self::default()
         }
     }
@@ -169,6 +170,15 @@ impl LatticeUniforms {
             *to = Self::new(lattice, size_px);
         }
         all
+    }
+
+    /// Lattices of a view of `size_px`; without any, one of full rate.
+    pub(crate) fn of_view_or_full(lattices: Option<&Lattices>, size_px: [u32; 2]) -> ViewLattices {
+        let full = Lattice::covering(1, [0, 0], size_px, [0, 0]);
+        lattices.map_or_else(
+            || [Self::new(&full, size_px), Self::default(), Self::default(), Self::default()],
+            |lattices| Self::of_view(lattices, size_px),
+        )
     }
 
     /// Index of the first of the `lattices` that covers a pixel.

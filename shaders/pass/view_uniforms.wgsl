@@ -19,6 +19,5 @@ struct ViewUniforms {
     noise_origin: u32,
     output_origin: u32,
     debug_origin: u32,
-    unused_0: u32,
-    unused_1: u32,
+    jitter_px: vec2<f32>,
 }

@@ -11,7 +11,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::{acuity, reproject, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use crate::uniforms::{Held, ViewUniforms};
+use crate::uniforms::{Held, LatticeUniforms, ViewLattices, ViewUniforms};
 use glam::{Vec2, Vec3};
 
 /// Previous position of a pixel's surface.
@@ -34,6 +34,8 @@ pub(super) struct Inputs<'a> {
     trust: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
     pub size: [u32; 2],
+    /// Lattices of the samples: those of a sparse frame, otherwise one of full rate.
+    pub lattices: ViewLattices,
     pub uniforms: ViewUniforms,
     gaze_ray: Vec3,
     /// Factor on stored colors.
@@ -59,6 +61,7 @@ impl<'a> Inputs<'a> {
             trust: frame.trust.map(|t| t[index]),
             noise: frame.noise.map(|n| n[index]),
             size: desc.size_px,
+            lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
             gaze_ray: Vec3::new(x, y, z),
             exposure: frame.exposure.factor(),

@@ -17,6 +17,7 @@ mod sparse_pass;
 mod surface_history;
 mod surface_pass;
 mod taa_pass;
+mod taau_pass;
 mod wrs_pass;
 
 pub use crate::kernel::debug_view::PixelTrace;
@@ -149,8 +150,8 @@ impl CpuAfterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa and smr are
-    /// filtered, and their levels of detail follow the scale.
+    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
+    /// smr are filtered, and their levels of detail follow the scale.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).
@@ -223,7 +224,8 @@ impl CpuAfterimage {
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let is_sparse_smr = self.history.layout() == HistoryLayout::Kept;
-        let filled = if is_sparse_smr { vec![] } else { fill::filled(frame, self.desc.size_px) };
+        let fills = self.desc.settings.fills_sparse_frames();
+        let filled = if fills { fill::filled(frame, self.desc.size_px) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
@@ -253,6 +255,7 @@ impl CpuAfterimage {
                 surface_pass::run(pass, |view, x, y, stats| smr.pixel(view, x, y, stats))
             }
             Method::Wrs => wrs_pass::run(pass),
+            Method::Taau => surface_pass::run(pass, taau_pass::pixel),
         };
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();

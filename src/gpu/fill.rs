@@ -5,9 +5,7 @@ use super::history::array_view;
 use super::textures::batches;
 use super::uniforms::FrameUniforms;
 use super::{Frame, Textures, sparse};
-use crate::foveation::Filter;
 use crate::frame::ContextDesc;
-use crate::settings::Method;
 use crate::shader::SHADERS;
 use wgpu::{
     BindingResource, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat,
@@ -88,9 +86,9 @@ impl Fill {
     }
 }
 
-/// Whether the frames of a context are filled: sparse ones, except for smr, which reads the samples themselves.
+/// Whether the frames of a context are filled.
 pub(super) fn is_needed(desc: &ContextDesc) -> bool {
-    desc.settings.foveation.filter == Filter::Sparse && desc.settings.method != Method::Smr
+    desc.settings.fills_sparse_frames()
 }
 
 /// Bytes of the filled color, if the context has one.

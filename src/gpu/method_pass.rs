@@ -24,8 +24,7 @@ use wgpu::{
 
 /// Binding number of the debug view in `shaders/pass/output_and_view.wgsl`.
 const DEBUG_BINDING: u32 = 16;
-
-/// Binding number of `shaders/pass/lattices.wgsl`.
+/// Binding number of the lattices in `shaders/pass/lattices.wgsl`.
 const LATTICES_BINDING: u32 = 17;
 
 /// The pass, with placeholders for absent inputs.
@@ -69,8 +68,10 @@ pub(super) struct Job<'a, 'f> {
     pub view: Option<DebugView>,
     pub uniforms: FrameUniforms,
     pub history: &'a History,
-    /// Lattices of a sparse frame that the pass itself reads, and the results for their samples.
-    pub samples: Option<(&'a Buffer, &'a TextureView)>,
+    /// Lattices, if the pass reads samples.
+    pub lattices: Option<&'a Buffer>,
+    /// Gain and fit for each sample, for smr.
+    pub lights: Option<&'a TextureView>,
 }
 
 impl MethodPass {
@@ -88,7 +89,7 @@ impl MethodPass {
                 device,
                 "afterimage",
                 writing(device, source, output),
-                &bindings(output, history),
+                &bindings(settings.pass_shader(), output, history),
             ),
             with_view: OnceLock::new(),
             pass_shader: settings.pass_shader(),
@@ -120,7 +121,7 @@ impl MethodPass {
         }
         self.with_view.get_or_init(|| {
             let source = SHADERS.compose_replacing(self.pass_shader.name, ("output", "output_and_view")).source;
-            let mut bindings = bindings(self.output, self.history);
+            let mut bindings = bindings(self.pass_shader, self.output, self.history);
             bindings.push((DEBUG_BINDING, storage_texture(DEBUG_FORMAT)));
             ComputeShader::with_bindings(device, "afterimage", writing(device, &source, self.output), &bindings)
         })
@@ -169,8 +170,7 @@ impl MethodPass {
                 next_or(2),
             ],
             HistoryLayout::Kept => {
-                let (_, lights) = job.samples.expect("sparse frames have samples");
-                vec![past_or(0, &self.absent.word), next_or(0), lights]
+                vec![past_or(0, &self.absent.word), next_or(0), job.lights.unwrap_or(&self.absent.word)]
             }
             HistoryLayout::Surfaces { .. } => vec![
                 &lod,
@@ -192,7 +192,7 @@ impl MethodPass {
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
             .chain(history_views.into_iter().map(BindingResource::TextureView))
-            .chain(job.samples.map(|(lattices, _)| lattices.as_entire_binding()))
+            .chain(job.lattices.map(Buffer::as_entire_binding))
             .chain(debug.as_ref().map(BindingResource::TextureView));
         shader.group(device, resources)
     }
@@ -259,7 +259,7 @@ fn stand_in(device: &Device, format: TextureFormat, usage: TextureUsages) -> Tex
 }
 
 /// Numbers and types of a pass's bindings.
-fn bindings(output: TextureFormat, history: HistoryLayout) -> Vec<(u32, BindingType)> {
+fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> Vec<(u32, BindingType)> {
     let (float, words) = (float_texture(), uint_texture());
     let [first, second, third] = written(history).map(storage_texture);
     let mut types = vec![uniform(), float, float, float, float, storage_texture(output), storage_buffer(false), float];
@@ -269,6 +269,6 @@ fn bindings(output: TextureFormat, history: HistoryLayout) -> Vec<(u32, BindingT
         HistoryLayout::Kept => vec![words, first, words],
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });
-    let lattices = (history == HistoryLayout::Kept).then(|| (LATTICES_BINDING, uniform()));
+    let lattices = pass.reads_samples.then(|| (LATTICES_BINDING, uniform()));
     (0..).zip(types).chain(lattices).collect()
 }

@@ -244,8 +244,8 @@ impl Afterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa and smr are
-    /// filtered, and their levels of detail follow the scale.
+    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
+    /// smr are filtered, and their levels of detail follow the scale.
     ///
     /// Records a pass into `encoder`, whose pipeline is compiled at the first call. Records nothing if there is no
     /// history yet.
@@ -471,12 +471,14 @@ impl Afterimage {
             (frame, uniforms) = geometry.filled(&frame, uniforms);
         }
         let frame = &frame;
-        let lattices = self.samples.as_ref().map(|_| sparse::lattices(device, frame, uniforms.size));
-        let samples = self.samples.as_ref().zip(lattices.as_ref()).map(|(samples, lattices)| {
+        let reads_samples = self.passes.method.pass_shader().reads_samples;
+        let lattices = reads_samples.then(|| sparse::lattices(device, frame, uniforms.size));
+        let lattices = lattices.as_ref();
+        let lights = self.samples.as_ref().zip(lattices).map(|(samples, lattices)| {
             samples.record(device, &mut pass, &self.desc, (frame, variant), (uniforms, lattices), &self.history);
-            (lattices, samples.lights())
+            samples.lights()
         });
-        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history, samples };
+        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history, lattices, lights };
         self.passes.method.record(device, &mut pass, &job);
         if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {
             mip_chain.record(device, &mut pass, &self.history.split().1.mip_levels);

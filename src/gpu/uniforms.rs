@@ -139,11 +139,11 @@ pub struct SparseUniforms {
 }
 
 impl SparseUniforms {
-    /// Uniforms of a sparse frame with views of `size_px`.
+    /// Uniforms of a frame with views of `size_px`; without lattices every pixel is a sample.
     pub(super) fn new(frame: &Frame<'_>, size_px: [u32; 2]) -> Self {
         let mut uniforms = Self { missing: f32::NAN.to_bits(), ..Self::default() };
         for (to, view) in uniforms.views.iter_mut().zip(frame.views) {
-            *to = view.lattices.map_or_else(ViewLattices::default, |l| LatticeUniforms::of_view(&l, size_px));
+            *to = LatticeUniforms::of_view_or_full(view.lattices.as_ref(), size_px);
         }
         uniforms
     }

@@ -13,19 +13,21 @@ use glam::Vec3;
 #[non_exhaustive]
 pub enum DebugView {
     /// Quality of the stored sample: black 0, white 1. For wrs the weight sum divided by 16; for smr the sharpness,
-    /// which is 1 at full rate and halves with each level of detail. Black for the other methods.
+    /// which is 1 at full rate and halves with each level of detail; for taau the confidence, 1 from two samples at the
+    /// pixel on. Black for the other methods.
     Quality = 1,
     /// Frames since the shown sample was shaded: black 0, white 255 or more, on a square-root scale. wrs only; black
     /// for the other methods.
     Age = 2,
-    /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr and
-    /// taa its share in the output color.
+    /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr, taa
+    /// and taau its share in the output color.
     Survival = 3,
     /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow
     /// empty, red disoccluded, cyan distrusted.
     Rejection = 4,
     /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well
-    /// history explains the candidate. White for the other methods.
+    /// history explains the candidate; for taau the share of its confidence that history kept when clipped. White for
+    /// the other methods.
     Gate = 5,
     /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels;
     /// grey is no motion, green NaN or infinite.

@@ -26,4 +26,5 @@ pub mod sanitize;
 pub mod sparse;
 pub mod surface;
 pub mod taa;
+pub mod taau;
 pub mod wrs;

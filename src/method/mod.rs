@@ -6,6 +6,7 @@
 mod none;
 mod smr;
 mod taa;
+mod taau;
 mod wrs;
 
 pub(crate) use smr::smr_params;
@@ -16,7 +17,7 @@ use crate::settings::{Method, Settings};
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 4] = [Self::None, Self::Taa, Self::Wrs, Self::Smr];
+    pub const ALL: [Self; 5] = [Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
 
     /// Short name in lower case, such as `smr`.
     pub fn name(self) -> &'static str {
@@ -39,6 +40,7 @@ impl Method {
             Self::Taa => &taa::ENTRY,
             Self::Smr => &smr::ENTRY,
             Self::Wrs => &wrs::ENTRY,
+            Self::Taau => &taau::ENTRY,
         }
     }
 }
@@ -68,6 +70,8 @@ pub(crate) struct PassShader {
     pub name: &'static str,
     /// Edge in pixels of the block that an invocation processes.
     pub block_px: u32,
+    /// Whether it reads the samples of lattices, for which `shaders/pass/lattices.wgsl` is bound.
+    pub reads_samples: bool,
 }
 
 /// Names and values of a shader's overrides.
@@ -107,13 +111,17 @@ impl Settings {
         (self.method.entry().history)(self)
     }
 
+    /// Whether sparse frames are filled between their samples first, for a method that reads whole frames.
+    pub(crate) fn fills_sparse_frames(&self) -> bool {
+        self.foveation.filter == Filter::Sparse && !matches!(self.method, Method::Smr | Method::Taau)
+    }
+
     /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and
     /// trust inputs. Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth
     /// (4), trust (1). Taps that neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
-        // Sparse frames are filled first: samples are read, filled colors are floats, written and read.
-        let is_filled = self.foveation.filter == Filter::Sparse && self.method != Method::Smr;
-        let (color, output) = (if is_filled { 8 + 16 + 16 } else { 8 }, 8);
+        // Samples are read, filled colors are floats, written and read.
+        let (color, output) = (if self.fills_sparse_frames() { 8 + 16 + 16 } else { 8 }, 8);
         if self.method == Method::None {
             return color + output;
         }

@@ -15,9 +15,9 @@ pub(super) static ENTRY: Entry = Entry {
     history_traffic_bytes,
     #[cfg(feature = "gpu")]
     shader: |settings| match settings.foveation.filter {
-        Filter::Sparse => PassShader { name: "sparse_pass", block_px: 1 },
+        Filter::Sparse => PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
         // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
-        _ => PassShader { name: "smr_pass", block_px: 2 },
+        _ => PassShader { name: "smr_pass", block_px: 2, reads_samples: false },
     },
     #[cfg(feature = "gpu")]
     overrides: |settings, has_lod| match settings.foveation.filter {

@@ -10,7 +10,7 @@ pub(super) static ENTRY: Entry = Entry {
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
     #[cfg(feature = "gpu")]
-    shader: |_| PassShader { name: "taa_pass", block_px: 1 },
+    shader: |_| PassShader { name: "taa_pass", block_px: 1, reads_samples: false },
     #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

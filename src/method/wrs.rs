@@ -18,7 +18,7 @@ pub(super) static ENTRY: Entry = Entry {
         2 * reservoir + noise
     },
     #[cfg(feature = "gpu")]
-    shader: |_| PassShader { name: "wrs_pass", block_px: 1 },
+    shader: |_| PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
     #[cfg(feature = "gpu")]
     overrides: |settings, _| {
         let params = wrs_params(settings);

@@ -26,6 +26,7 @@ pub fn all_settings() -> Vec<Settings> {
         of(Method::Wrs),
         Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..of(Method::Wrs) },
         of(Method::Taa),
+        of(Method::Taau),
         of(Method::Smr),
         Settings { foveation: blocks, ..of(Method::Smr) },
         Settings { noisy: true, ..of(Method::Smr) },

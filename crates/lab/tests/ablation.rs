@@ -48,7 +48,7 @@ fn leaving_a_part_out_changes_what_is_shown() {
         return;
     }
     let backend = Backend::Gpu(Headless::find(true).expect("there is an adapter"));
-    for method in [Method::Taa, Method::Wrs, Method::Smr] {
+    for method in [Method::Taa, Method::Wrs, Method::Smr, Method::Taau] {
         let settings = Settings { method, ..Settings::default() };
         let whole = shown(&backend, RunKind::PostProcess(settings));
         let broken = |frames: &[Image<[f32; 3]>]| {

@@ -10,6 +10,7 @@ mod reprojection;
 mod reservoirs;
 mod sparse;
 mod trust;
+mod upsampling;
 mod views;
 
 use crate::images::{Images, OneView};

@@ -3,7 +3,7 @@
 use super::*;
 use afterimage::{Filter, Foveation, Lattice, Lattices};
 
-const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Smr];
+const METHODS: [Method; 5] = [Method::None, Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
 
 fn settings(method: Method) -> Settings {
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() };

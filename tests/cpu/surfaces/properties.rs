@@ -95,6 +95,8 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
                 let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
                 let expected = match method {
                     Method::Taa => 0.0,
+                    // Its confidence: that of one sample.
+                    Method::Taau => 4.0,
                     _ if nowhere => MAX_LOD,
                     _ => stored_lod(lod),
                 };

@@ -10,7 +10,7 @@ pub use afterimage::{
 pub use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [52, 41];
-pub const METHODS: [Method; 2] = [Method::Smr, Method::Taa];
+pub const METHODS: [Method; 3] = [Method::Smr, Method::Taa, Method::Taau];
 pub type Color = Image<[f32; 3]>;
 
 /// Four pixels a block at the most: levels 0 to 4 of the mip chain, so that positions 16 pixels apart are alike.

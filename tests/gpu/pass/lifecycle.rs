@@ -161,7 +161,7 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
 #[test]
 fn h77_a_lost_device_is_left_behind_for_a_new_one() {
     use std::sync::{Arc, OnceLock};
-    for method in [Method::Wrs, Method::Taa, Method::Smr] {
+    for method in [Method::Wrs, Method::Taa, Method::Smr, Method::Taau] {
         let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() });
         let Some(mut lost) = fresh() else { return };
         let reason = Arc::new(OnceLock::new());

@@ -1,4 +1,4 @@
-//! Sparse frames, filled for the methods that read whole ones.
+//! Sparse frames: filled for the methods that read whole ones, and read as they are by taau.
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
@@ -10,7 +10,7 @@ use afterimage::{
 use afterimage_testing::Draws;
 
 const SIZE: [u32; 2] = [70, 41];
-const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Smr];
+const METHODS: [Method; 5] = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
 
 fn settings(method: Method) -> Settings {
     let foveation = Foveation {
@@ -256,6 +256,34 @@ fn a_wrong_reconstruction_is_caught() {
         let wrong = right.clone().map(|source| source.replace(text, instead));
         assert_ne!(wrong, right, "{text}");
         assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+    }
+}
+
+#[test]
+fn a_wrong_upsampling_is_caught() {
+    let right = SHADERS.compose("taau_pass").source;
+    let planted = [
+        ("- frame.views[view].jitter_px", ""),
+        ("point_offset_px(px.y, first.y, level, point.y)", "point_offset_px(px.y, first.y, level, point.x)"),
+        ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
+        ("clamp(point, vec2<i32>(0), last)", "clamp(point, vec2<i32>(0), last - 1)"),
+        ("tail(confidence * source.previous.trust)", "tail(0.0)"),
+        ("sampled.usable {", "true {"),
+        ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
+        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.replace(text, instead);
+        assert_ne!(wrong, right, "{text}");
+        let settings = settings(Method::Taau);
+        let Some(mut rig) = Rig::with_shader(desc(), settings, &wrong) else { return };
+        let differs = (0..4).any(|index| {
+            rig.scattered = index > 1;
+            let mut views = sparse_views(index, &settings);
+            views.iter_mut().for_each(|view| view.facts.jitter_px = [0.25, -0.375]);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        });
+        assert!(differs, "{text} -> {instead}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, sparse, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, sparse, state, surfaces, upsampling};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -189,6 +189,26 @@ fn a_wrong_antialiasing_is_caught() {
         "(roots(candidate) - clipped) * alpha",
         "(roots(candidate) - clipped) * (1.01 * alpha)",
     );
+}
+
+#[test]
+fn a_wrong_upsampling_is_caught() {
+    let caught = |name, right, wrong| caught(upsampling::PROBES, name, right, wrong);
+    caught("lobe", "max(1.0 - squared, 0.0)", "(1.0 - squared)");
+    caught("nearest_point", "((1i << level) >> 1u)", "(1i << level)");
+    caught("point_offset_px", "(i32(px) - i32(first))", "(i32(first) - i32(px))");
+    caught("tail", "(1.0f - LEAST_TAIL)", "1.0f");
+    caught("sample_weights", "(127u - level)", "(128u - level)");
+    caught("add_around", "(sampled - centre) * weights.y", "(sampled - centre) * weights.x");
+    caught("upsampled", "1.0 / a.weights.y", "1.0 / a.weights.x");
+    caught("confidence_of", "NO_CONFIDENCE_LOD - lod", "7.0 - lod");
+    caught("lod_of", "4.0 * sqrt(confidence)", "4.0 * confidence");
+    caught("confidence_limit", "(LIMIT.y - LIMIT.x) * max(x, y)", "(LIMIT.y - LIMIT.x) * x");
+    caught("accumulate", "a.squares * a.count", "a.squares * 9.0");
+    caught("accumulate", "const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;", "const UPSAMPLED_BOX_SIGMAS: f32 = 1.52;");
+    caught("accumulate", "past + clip * strength", "past + clip");
+    caught("accumulate", "const CLIP_COST: f32 = 10.0;", "const CLIP_COST: f32 = 10.1;");
+    caught("accumulate", ", 1.0 - trusted)", ", 0.0)");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
 use afterimage_testing::holds;
 
 #[test]
@@ -113,4 +113,9 @@ fn resize_is_bit_equal() {
 #[test]
 fn taa_is_bit_equal() {
     check_module(surfaces::PROBES, "taa");
+}
+
+#[test]
+fn taau_is_bit_equal() {
+    check_module(upsampling::PROBES, "taau");
 }

@@ -1,7 +1,7 @@
 //! The library under test: the drop-in's.
 
 use super::probe::Probe;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
 pub use afterimage::shader::SHADERS;
 
 /// Where `shaders/lib` and `src/kernel` are.
@@ -33,6 +33,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         sparse::PROBES,
         state::PROBES,
         surfaces::PROBES,
+        upsampling::PROBES,
     ];
     lists.into_iter().flatten()
 }

@@ -20,4 +20,5 @@ mod probe;
 mod sparse;
 mod state;
 mod surfaces;
+mod upsampling;
 mod values;

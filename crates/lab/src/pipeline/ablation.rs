@@ -18,8 +18,8 @@ pub struct Part {
     replaced: &'static [(&'static str, &'static str)],
 }
 
-const HISTORIES: &[Method] = &[Method::Taa, Method::Wrs, Method::Smr];
-const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr];
+const HISTORIES: &[Method] = &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
+const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr, Method::Taau];
 
 /// All parts.
 pub const PARTS: &[Part] = &[
@@ -69,7 +69,7 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "fine-history",
-        instead: "history stores 6 mantissa bits of colors, as 11-bit floats do, instead of 9 (taa, smr) or 10 (wrs)",
+        instead: "history stores 6 mantissa bits of colors, as 11-bit floats do, instead of 9 (taa, taau, smr) or 10 (wrs)",
         methods: HISTORIES,
         replaced: &[
             ("return min((h + ((h >> 1u) & 1u)) >> 1u, 0x3dffu);", "return min(((h + 8u) & 0xfff0u) >> 1u, 0x3dffu);"),

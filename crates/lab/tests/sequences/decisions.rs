@@ -29,6 +29,7 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
         Settings { sampler: Sampler::AEs, gate: None, ..base },
         Settings { method: Method::None, ..base },
         Settings { method: Method::Taa, ..base },
+        Settings { method: Method::Taau, ..base },
         Settings { method: Method::Smr, ..base },
     ] {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };

@@ -103,7 +103,7 @@ fn taa_and_smr_agree_bit_for_bit() {
     let base =
         Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::paper() };
     for scene in ["still", "lateral", "occluder", "light-step"] {
-        for method in [Method::Taa, Method::Smr] {
+        for method in [Method::Taa, Method::Smr, Method::Taau] {
             println!("{method:?}");
             agree(scene, Settings { method, ..base }, |v| v);
         }

@@ -8,7 +8,7 @@ use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;
 
 const SIZE: [u32; 2] = [160, 90];
-const METHODS: [Method; 3] = [Method::None, Method::Taa, Method::Wrs];
+const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Taau];
 
 fn foveation() -> Foveation {
     Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() }

@@ -1,4 +1,5 @@
-//! Negative controls of the taa and smr sequence tests: each error planted in a pass must make the executors differ.
+//! Negative controls of the sequence tests of taa, taau and smr: each error planted in a pass must make the executors
+//! differ.
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
@@ -109,6 +110,26 @@ fn every_planted_error_in_taa_is_caught() {
     ]
     .concat();
     all_caught("taa_pass", settings(Method::Taa, Filter::Mip), false, &errors);
+}
+
+#[test]
+fn every_planted_error_in_taau_is_caught() {
+    let errors = [
+        SHARED,
+        &[
+            // Confidence ignored or not limited, samples and history swapped, non-finite candidates stored as valid.
+            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction))", "1.0"),
+            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction))", "confidence_of(resampled.lod)"),
+            (
+                "clipped + (roots(upsampled(a, centre)) - clipped) * share",
+                "roots(upsampled(a, centre)) + (clipped - roots(upsampled(a, centre))) * share",
+            ),
+            ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
+            ("select(-1.0, lod_of(result.confidence), sampled || valid)", "lod_of(result.confidence)"),
+        ],
+    ]
+    .concat();
+    all_caught("taau_pass", settings(Method::Taau, Filter::Mip), false, &errors);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::rig::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated};
-use super::surfaces_variants::{both_methods, settings};
+use super::surfaces_variants::{all_methods, settings};
 use afterimage::gpu::Afterimage;
 use afterimage::wgpu::{self, TextureFormat};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Reset, Settings, ViewFrame};
@@ -12,7 +12,7 @@ use afterimage_testing::holds;
 
 #[test]
 fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {
-    for base in both_methods() {
+    for base in all_methods() {
         for view_count in [2, 4] {
             let desc = ContextDesc { view_count, ..ContextDesc::new(SIZE) };
             let Some(mut rig) = Rig::new(desc, base) else { return };
@@ -39,7 +39,7 @@ fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {
 
 #[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
-    for base in both_methods() {
+    for base in all_methods() {
         for filter in [Filter::Mip, Filter::Block] {
             let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
             for size in [SIZE, [65, 33], [3, 2]] {
@@ -71,7 +71,7 @@ fn h79_poisoned_fresh_history_is_never_visible() {
 
 #[test]
 fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    for base in both_methods() {
+    for base in all_methods() {
         let fresh = || Rig::new(ContextDesc::new(SIZE), base);
         let run = |rig: &mut Rig, range: std::ops::Range<u64>| {
             let desc = rig.context;
@@ -126,7 +126,7 @@ fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
 
 #[test]
 fn two_frames_in_one_submission_see_their_own_constants() {
-    for base in both_methods() {
+    for base in all_methods() {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
         let mut source = AnalyticSource::new("still", SIZE, 70.0, 60.0).unwrap();
         let mut view = foveated(&mut source, 0, &base.foveation);
@@ -141,7 +141,7 @@ fn two_frames_in_one_submission_see_their_own_constants() {
 
 #[test]
 fn counting_changes_nothing() {
-    for base in both_methods() {
+    for base in all_methods() {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
         let Some(mut other) = Rig::new(ContextDesc::new(SIZE), base) else { return };
         let mut source = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
@@ -159,6 +159,7 @@ fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
     for (method, view_count, filter, size) in [
         (Method::Taa, 1, Filter::Mip, SIZE),
+        (Method::Taau, 1, Filter::Mip, SIZE),
         (Method::Smr, 1, Filter::Mip, SIZE),
         (Method::Smr, 2, Filter::Block, SIZE),
         (Method::Smr, 1, Filter::Mip, [1, 1]),
@@ -169,7 +170,7 @@ fn memory_bytes_is_what_is_made() {
         let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
         // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never
         // rounds.
-        let levels = if method == Method::Taa { 0 } else { 5 + u64::from(filter == Filter::Block) };
+        let levels = if method != Method::Smr { 0 } else { 5 + u64::from(filter == Filter::Block) };
         let padded = |len: u32| u64::from(len.div_ceil(2)).next_multiple_of(1 << (levels.max(1) - 1));
         let chain: u64 = (0..levels).map(|l| (padded(size[0]) >> l) * (padded(size[1]) >> l)).sum();
         let expected = 2 * 8 * u64::from(view_count) * (u64::from(size[0] * size[1]) + chain);

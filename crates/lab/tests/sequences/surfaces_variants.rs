@@ -16,8 +16,8 @@ pub fn settings(method: Method) -> Settings {
     Settings { method, foveation, ..Settings::paper() }
 }
 
-pub fn both_methods() -> [Settings; 2] {
-    [Method::Taa, Method::Smr].map(settings)
+pub fn all_methods() -> [Settings; 3] {
+    [Method::Taa, Method::Smr, Method::Taau].map(settings)
 }
 
 /// Runs a damaged scene through both, which must agree in every bit of what they show, keep and count.
@@ -54,7 +54,7 @@ fn agree_or_pass(scene: &str, desc: ContextDesc, settings: Settings, change: imp
 
 #[test]
 fn absent_inputs_are_switched_off() {
-    for base in both_methods() {
+    for base in all_methods() {
         let desc = ContextDesc::new(SIZE);
         agree("lateral", desc, base, |_, v, _| View { depth: None, ..v });
         agree("still", desc, base, |_, v, _| View { motion: None, ..v });
@@ -74,7 +74,7 @@ fn exposure(index: u64) -> Exposure {
 
 #[test]
 fn trust_and_exposure_agree_bit_for_bit() {
-    for base in both_methods() {
+    for base in all_methods() {
         let desc = ContextDesc::new(SIZE);
         // The mask has NaN, infinity, numbers below 0 and above 1.
         let masked = |index, v| View { trust: Some(trust(index)), ..v };
@@ -250,14 +250,14 @@ fn other_conventions_agree_bit_for_bit() {
     let motion = MotionConvention::UNREAL;
     let depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
     let desc = ContextDesc { motion, depth, ..ContextDesc::new(SIZE) };
-    for base in both_methods() {
+    for base in all_methods() {
         agree("occluder", desc, base, |_, v, _| in_conventions(v, &desc));
     }
 }
 
 #[test]
 fn odd_sizes_agree_bit_for_bit() {
-    for base in both_methods() {
+    for base in all_methods() {
         for filter in [Filter::Mip, Filter::Block] {
             let settings = Settings { foveation: Foveation { filter, fovea_deg: 0.0, ..base.foveation }, ..base };
             agree("lateral", ContextDesc::new([65, 33]), settings, |_, v, _| v);

@@ -76,8 +76,8 @@ pub enum Compare {
 /// Subjects of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum What {
-    /// The post-process (none, wrs, taa, smr), the foveation simulators (mip, gauss, block), and a copy pass that moves
-    /// as many bytes as wrs
+    /// The post-process (none, taa, wrs, smr, taau), the foveation simulators (mip, gauss, block), and a copy pass that
+    /// moves as many bytes as wrs
     Post,
     /// The path tracer: rays per second, depth 3, multiple importance sampling
     Trace,

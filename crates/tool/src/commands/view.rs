@@ -39,7 +39,7 @@ use winit::event_loop::EventLoop;
 /// Show the methods live in a window; the mouse is the gaze
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Keys: 1 to 5 choose the method (none, taa, wrs, smr, reference), with Shift that of the right side; Tab splits the picture; drag the \
+    after_help = "Keys: 1 to 6 choose the method (none, taa, wrs, smr, taau, reference), with Shift that of the right side; Tab splits the picture; drag the \
     divider with the left button. F foveation filter, - and = fovea diameter, V debug views, P scanpath or mouse, G gaze mark, Space freezes, C steers \
     the camera of a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 saves the picture, Shift F12 the window, \
     H hides the panel, Ctrl Shift L destroys the device (to test recovery), Esc quits.\n\n\

@@ -119,10 +119,10 @@ fn of<'a>(rows: &'a [Candidate<'a>], method: &str) -> impl Iterator<Item = &'a C
     rows.iter().filter(move |c| c.row.point.method == method)
 }
 
-/// Names of methods without duplicates: none, taa, wrs, smr, oracle, then unknown ones.
+/// Names of methods without duplicates: none, taa, taau, wrs, smr, oracle, then unknown ones.
 pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let rank =
-        |m: &str| ["none", "taa", "wrs", "smr", "oracle"].iter().position(|&known| known == m).unwrap_or(usize::MAX);
+    const KNOWN: [&str; 6] = ["none", "taa", "taau", "wrs", "smr", "oracle"];
+    let rank = |m: &str| KNOWN.iter().position(|&known| known == m).unwrap_or(usize::MAX);
     let mut methods: Vec<String> = methods.map(str::to_owned).collect();
     methods.sort_by(|a, b| rank(a).cmp(&rank(b)).then(a.cmp(b)));
     methods.dedup();

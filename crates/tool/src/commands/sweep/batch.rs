@@ -25,10 +25,10 @@ const OF_METHODS: &[(&str, &[Method])] = &[
     ("smr-accumulate", &[Method::Smr]),
     ("smr-tolerance", &[Method::Smr]),
     ("no-relight", &[Method::Smr]),
-    ("depth-relative", &[Method::Taa, Method::Wrs, Method::Smr]),
-    ("depth-slope", &[Method::Taa, Method::Wrs, Method::Smr]),
-    ("no-flush", &[Method::Taa, Method::Wrs, Method::Smr]),
-    ("without", &[Method::Taa, Method::Wrs, Method::Smr]),
+    ("depth-relative", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
+    ("depth-slope", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
+    ("no-flush", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
+    ("without", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
 ];
 
 /// Whether an option affects a method; `without` affects the methods that have the part.

@@ -291,10 +291,11 @@ pub(super) mod tests {
     #[test]
     fn clicks_go_through_all_values_and_round() {
         let mut state = state();
-        let shown: Vec<_> = (0..5).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
+        let shown: Vec<_> = (0..6).map(|_| (state.apply(Action::Next(Side::Left)), state.sides[0]).1).collect();
         assert_eq!(
             shown,
             [
+                Shows::Post(Method::Taau),
                 Shows::Reference,
                 Shows::Post(Method::None),
                 Shows::Post(Method::Taa),

@@ -269,7 +269,7 @@ fn px(v: f64) -> f64 {
 
 /// CSS class of a method; `other` for unknown ones.
 fn name(method: &str) -> &'static str {
-    ["none", "taa", "wrs", "smr", "oracle"].into_iter().find(|m| *m == method).unwrap_or("other")
+    ["none", "taa", "taau", "wrs", "smr", "oracle"].into_iter().find(|m| *m == method).unwrap_or("other")
 }
 
 /// Replaces characters that XML forbids.

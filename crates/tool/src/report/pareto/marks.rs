@@ -9,9 +9,10 @@ pub struct Mark {
 }
 
 /// Outlines are SVG paths relative to a point, about 12 pixels wide.
-const MARKS: [(&str, Mark); 5] = [
+const MARKS: [(&str, Mark); 6] = [
     ("none", Mark { color: "#7a7a7a", outline: "m-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0z" }),
     ("taa", Mark { color: "#e69f00", outline: "m-5.5 -5.5h11v11h-11z" }),
+    ("taau", Mark { color: "#56b4e9", outline: "m-6.5 -5.5l6.5 3.5l6.5 -3.5v11l-6.5 -3.5l-6.5 3.5z" }),
     ("wrs", Mark { color: "#0072b2", outline: "m-6.5 5.5h13l-6.5 -12z" }),
     ("smr", Mark { color: "#009e73", outline: "m-7 0l7 -7l7 7l-7 7z" }),
     ("oracle", Mark { color: "#cc79a7", outline: "m-6 -2h4v-4h4v4h4v4h-4v4h-4v-4h-4z" }),

@@ -1,0 +1,115 @@
+//#use taa
+// Twin of src/kernel/taau.rs, which explains the constants.
+
+const TAIL: f32 = 0.02;
+const LEAST_TAIL: f32 = 0.02;
+const TAIL_UNTIL: f32 = 0.5;
+const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
+const LIMIT: vec2<f32> = vec2<f32>(2.0, 1.0);
+const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;
+const LEAST_CLIP: f32 = 0.1;
+const CLIP_COST: f32 = 10.0;
+const NO_CONFIDENCE_LOD: f32 = 8.0;
+
+// taau::lobe
+fn lobe(squared: f32) -> f32 {
+    let b = 1.0 - 0.25 * squared;
+    return (max(1.0 - squared, 0.0) * b) * (b * b);
+}
+
+// taau::nearest_point
+fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
+    // The shift of a signed number rounds down.
+    return (i32(px) - i32(first) + ((1i << level) >> 1u)) >> level;
+}
+
+// taau::point_offset_px
+fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
+    return f32((point << level) - (i32(px) - i32(first)));
+}
+
+// taau::tail
+fn tail(confidence: f32) -> f32 {
+    let unknown = clamp(1.0 - confidence * (1.0f / TAIL_UNTIL), 0.0, 1.0);
+    return (unknown * (1.0f - LEAST_TAIL) + LEAST_TAIL) * TAIL;
+}
+
+// taau::sample_weights
+fn sample_weights(offset_px: vec2<f32>, level: u32, interpolation: f32) -> vec2<f32> {
+    let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
+    let inverse_step = bitcast<f32>((127u - level) << 23u);
+    let own = lobe(px2);
+    return vec2<f32>(own, own + lobe(px2 * (inverse_step * inverse_step)) * interpolation);
+}
+
+struct SamplesAround {
+    difference: vec3<f32>,
+    weights: vec2<f32>,
+    sum: vec3<f32>,
+    squares: vec3<f32>,
+    count: f32,
+}
+
+// taau::add_around
+fn add_around(a: SamplesAround, centre: vec3<f32>, sampled: vec3<f32>, weights: vec2<f32>) -> SamplesAround {
+    let v = to_ycocg(sampled);
+    return SamplesAround(
+        a.difference + (sampled - centre) * weights.y,
+        a.weights + weights,
+        a.sum + v,
+        a.squares + v * v,
+        a.count + 1.0,
+    );
+}
+
+// taau::upsampled
+fn upsampled(a: SamplesAround, centre: vec3<f32>) -> vec3<f32> {
+    return centre + a.difference * (1.0 / a.weights.y);
+}
+
+// taau::confidence_of
+fn confidence_of(lod: f32) -> f32 {
+    let root = max(NO_CONFIDENCE_LOD - lod, 0.0) * 0.25;
+    return root * root;
+}
+
+// taau::lod_of
+fn lod_of(confidence: f32) -> f32 {
+    return max(NO_CONFIDENCE_LOD - 4.0 * sqrt(confidence), 0.0);
+}
+
+// taau::confidence_limit
+fn confidence_limit(fraction: vec2<f32>) -> f32 {
+    let x = 4.0 * (fraction.x * (1.0 - fraction.x));
+    let y = 4.0 * (fraction.y * (1.0 - fraction.y));
+    return LIMIT.x + (LIMIT.y - LIMIT.x) * max(x, y);
+}
+
+struct Accumulated {
+    color: vec3<f32>,
+    confidence: f32,
+    share: f32,
+    kept: f32,
+}
+
+// taau::accumulate
+fn accumulate(
+    a: SamplesAround,
+    centre: vec3<f32>,
+    history: vec3<f32>,
+    confidence: f32,
+    trusted: f32,
+) -> Accumulated {
+    let inverse = 1.0 / a.count;
+    let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
+    let past = to_ycocg(history);
+    let inside = clip_to_box(past, a.sum * inverse, roots(variance) * UPSAMPLED_BOX_SIGMAS);
+    let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
+    let clip = inside - past;
+    let distance = max(max(abs(clip.x), abs(clip.y)), abs(clip.z));
+    let kept = 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0) * strength;
+    let clipped = roots_of_ycocg(past + clip * strength);
+    let share = max(a.weights.y / (confidence * kept + a.weights.y), 1.0 - trusted);
+    let shown = clipped + (roots(upsampled(a, centre)) - clipped) * share;
+    return Accumulated(shown * shown, a.weights.y / share, share, kept);
+}

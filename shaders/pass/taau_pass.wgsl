@@ -1,0 +1,97 @@
+//#use lattices
+//#use output
+//#use surface_history
+//#use taau
+// Temporal upsampling. CPU twin: src/cpu/taau_pass.rs, which lists the reads and writes. One invocation a pixel; z is
+// the view.
+
+struct Samples {
+    around: SamplesAround,
+    // Color and alpha of the nearest sample, as the renderer wrote them.
+    given: vec4<f32>,
+    // The same color, sanitized.
+    nearest: Sanitized,
+}
+
+fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
+    let last = vec2<i32>(lattice.points) - 1;
+    return sample_at(vec2<u32>(clamp(point, vec2<i32>(0), last)), lattice, view);
+}
+
+// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it. The
+// loop has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+fn samples(px: vec2<u32>, view: u32, interpolation: f32) -> Samples {
+    let lattice = lattice_at(px, view);
+    let first = lattice.first_px;
+    let level = lattice.level;
+    let middle = vec2<i32>(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
+    var around = SamplesAround(vec3<f32>(0.0), vec2<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let any = all(lattice.points > vec2<u32>(0u));
+    var given = vec4<f32>(bitcast<f32>(sparse.missing));
+    if any {
+        given = sample_near(middle, lattice, view);
+    }
+    let nearest = color(given.xyz);
+    let taps = select(0, 9, any);
+    for (var tap = 0; tap < taps; tap++) {
+        let point = middle + vec2<i32>(tap % 3, tap / 3) - 1;
+        let sampled = color(sample_near(point, lattice, view).xyz);
+        if sampled.usable {
+            // A sample shows what is at its pixel minus the jitter.
+            let x = point_offset_px(px.x, first.x, level, point.x);
+            let y = point_offset_px(px.y, first.y, level, point.y);
+            let offset = vec2<f32>(x, y) - frame.views[view].jitter_px;
+            around = add_around(around, nearest.color, sampled.color, sample_weights(offset, level, interpolation));
+        }
+    }
+    return Samples(around, given, nearest);
+}
+
+fn pixel(px: vec2<u32>, view: u32) {
+    let disparity_now = disparity_at(px, view);
+    let motion = motion_at(px, view);
+    let source = source_of(px, view, motion, disparity_now);
+    let valid = source.previous.verdict == VERDICT_VALID;
+
+    let resampled = resample(source, view, valid);
+    var history = vec3<f32>(0.0);
+    var confidence = 0.0;
+    if valid {
+        history = exposed(resampled.sharp);
+        confidence = min(confidence_of(resampled.lod), confidence_limit(source.fraction));
+    }
+    let near = samples(px, view, tail(confidence * source.previous.trust));
+    count_pixel(px, view, near.nearest.usable, disparity_now, source.previous.verdict);
+
+    let sampled = near.around.weights.y >= LEAST_SAMPLE_WEIGHT;
+    var result = Accumulated(history, confidence, 0.0, 1.0);
+    if sampled && valid {
+        result = accumulate(near.around, near.nearest.color, history, confidence, source.previous.trust);
+    } else if sampled {
+        result = Accumulated(upsampled(near.around, near.nearest.color), near.around.weights.y, 1.0, 1.0);
+    }
+    // The overshoot of Catmull-Rom may exceed the largest half.
+    let shown = min(result.color, vec3<f32>(MAX_HALF));
+    let quality = min(0.5 * result.confidence, 1.0);
+    let survival = select(0.0, 1.0 - result.share, valid);
+    let traced = PixelTrace(source.previous.verdict, result.share, quality, 0u, survival, result.kept, !valid, motion);
+    write_output(px, view, shown, near.given.w, traced);
+    if VIEW != 0u {
+        return;
+    }
+    let lod = select(-1.0, lod_of(result.confidence), sampled || valid);
+    let words = pack_surface(Surface(shown, lod, disparity_now));
+    textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, frame.first_view + group.z);
+    }
+    add_counts(invocation);
+}

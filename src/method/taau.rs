@@ -1,0 +1,16 @@
+//! Temporal upsampling.
+
+#[cfg(feature = "gpu")]
+use super::PassShader;
+use super::{Entry, HistoryLayout};
+
+pub(super) static ENTRY: Entry = Entry {
+    name: "taau",
+    summary: "temporal upsampling of sparse frames",
+    history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
+    history_traffic_bytes: |_| 2 * 8,
+    #[cfg(feature = "gpu")]
+    shader: |_| PassShader { name: "taau_pass", block_px: 1, reads_samples: true },
+    #[cfg(feature = "gpu")]
+    overrides: |_, _| vec![],
+};
