@@ -72,6 +72,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "output"),
     module!("pass", "output_and_view"),
     module!("pass", "previous"),
+    module!("pass", "resize_kept_pass"),
     module!("pass", "resize_reservoirs_pass"),
     module!("pass", "resize_surfaces_pass"),
     module!("pass", "resize_uniforms"),

@@ -85,6 +85,17 @@ fn unpack_kept(words: vec2<u32>) -> Kept {
     );
 }
 
+// kept::moved_kept
+fn moved_kept(s: Kept, texel_px: vec2<f32>, scale: vec2<f32>, lod_shift: f32) -> Kept {
+    if s.lod < 0.0 {
+        return s;
+    }
+    let place = (texel_px + s.place_px) * scale;
+    let near = max(abs(place.x), abs(place.y)) <= FARTHEST_PX;
+    let lod = max(s.lod + lod_shift, 0.0);
+    return Kept(s.color, select(max(lod, 1.0), lod, near), s.disparity, place);
+}
+
 struct AroundKept {
     weight: f32,
     color: vec3<f32>,

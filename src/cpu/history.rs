@@ -84,9 +84,6 @@ impl History {
     /// This history resampled to the size of `desc`, whose layout is the same.
     pub(super) fn resized(&self, resize: &Resize, desc: &ContextDesc) -> Self {
         let mut next = Self::new(desc);
-        if self.layout == HistoryLayout::Kept {
-            return next;
-        }
         next.held = self.held.iter().map(|held| resize.held(*held)).collect();
         next.filled = self.filled;
         let past = &self.previous;
@@ -94,7 +91,9 @@ impl History {
         next.previous.reservoirs = past.reservoirs.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
-        next.previous.surfaces = past.surfaces.chunks(len).flat_map(|v| resize.surfaces(v)).collect();
+        let is_kept = self.layout == HistoryLayout::Kept;
+        let surfaces = |v| if is_kept { resize.kept(v) } else { resize.surfaces(v) };
+        next.previous.surfaces = past.surfaces.chunks(len).flat_map(surfaces).collect();
         for (mip_chain, words) in next.previous.mip_chains.iter_mut().zip(next.previous.surfaces.chunks(next.view_len))
         {
             mip_chain.build(words);

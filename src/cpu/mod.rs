@@ -151,7 +151,8 @@ impl CpuAfterimage {
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
     /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
-    /// smr are filtered, and their levels of detail follow the scale.
+    /// smr are filtered, kept samples of sparse frames are taken from the nearest pixel with their places, and levels of
+    /// detail follow the scale.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).

@@ -1,12 +1,13 @@
-//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs}_pass.wgsl`.
+//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,kept}_pass.wgsl`.
 
 use crate::kernel::depth::same_surface;
+use crate::kernel::kept::{moved_kept, pack_kept, unpack_kept};
 use crate::kernel::resample::{Gathered, TAP_RELATIVE, TAPS, catmull_rom, gather, linear_weights, resolve, tap_at};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
 use crate::resize::Resize;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 impl Resize {
@@ -46,6 +47,17 @@ impl Resize {
                 lod: resized_lod(resampled.lod, self.lod_shift),
                 disparity: nearest.disparity,
             })
+        })
+    }
+
+    /// Packed kept samples of one view of the new size, from those of the old size.
+    pub(super) fn kept(&self, words: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let scale = Vec2::new(1.0 / self.ratio[0], 1.0 / self.ratio[1]);
+        self.map(|x, y| {
+            let position = self.old_position_of(x, y);
+            let at = self.nearest_to(position);
+            let texel_px = Vec2::new(at[0] as f32 - position[0], at[1] as f32 - position[1]);
+            pack_kept(moved_kept(unpack_kept(words[self.index(at)]), texel_px, scale, self.lod_shift))
         })
     }
 

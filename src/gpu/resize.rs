@@ -42,7 +42,8 @@ impl ResizePass {
     pub fn new(device: &Device, layout: HistoryLayout) -> Option<Self> {
         let [first, second, third] = written(layout).map(storage_texture);
         let (name, types, block_px, overrides) = match layout {
-            HistoryLayout::Nothing | HistoryLayout::Kept => return None,
+            HistoryLayout::Nothing => return None,
+            HistoryLayout::Kept => ("resize_kept_pass", vec![uniform(), uint_texture(), first], 1, vec![]),
             HistoryLayout::Reservoirs { keys } => (
                 "resize_reservoirs_pass",
                 vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],
@@ -92,6 +93,7 @@ impl ResizePass {
         let next_or = |i: usize| next.get(i).unwrap_or(&self.absent.out[i]);
         let read = match self.layout {
             HistoryLayout::Surfaces { .. } => vec![&past[0], past.get(2).unwrap_or(&self.absent.word)],
+            HistoryLayout::Kept => vec![&past[0]],
             _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&self.absent.float)],
         };
         let views = read.into_iter().chain([next_or(0), next_or(1), next_or(2)]).map(BindingResource::TextureView);

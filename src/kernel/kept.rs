@@ -132,6 +132,19 @@ pub fn unpack_kept(words: [u32; 2]) -> Kept {
     }
 }
 
+/// A stored sample in an image of another size. `texel_px`: its texel's place relative to the new texel, in old pixels;
+/// `scale`: new size over old size; `lod_shift`: log2 of it. Places that are too far to be stored make it coarse.
+#[inline]
+pub fn moved_kept(s: Kept, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> Kept {
+    if s.lod < 0.0 {
+        return s;
+    }
+    let place_px = (texel_px + s.place_px) * scale;
+    let near = place_px.x.abs().max(place_px.y.abs()) <= FARTHEST_PX;
+    let lod = (s.lod + lod_shift).max(0.0);
+    Kept { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
+}
+
 /// Sums over the samples around a position, and the sample to keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {

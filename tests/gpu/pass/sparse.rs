@@ -456,6 +456,47 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
     }
 }
 
+#[test]
+fn kept_history_follows_a_change_of_size() {
+    let settings = settings(Method::Smr);
+    let Some(mut rig) = Rig::new(ContextDesc::new([64, 40]), settings) else { return };
+    let view = |size: [u32; 2], index: u64| {
+        let wave = |v: u32, n: u32| 0.5 + 0.4 * ((v as f32 + 0.5) / n as f32 * 40.0).sin();
+        let color = Image::from_fn(size, |[x, y]| [wave(x, size[0]), wave(y, size[1]), 0.3]);
+        let mut view = View::still(color, [size[0] as f32 * 0.5, size[1] as f32 * 0.5]);
+        let lattices = settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
+        view.facts.lattices = Some(lattices);
+        view
+    };
+    for index in 0..64 {
+        rig.both(index, Reset::None, &[view([64, 40], index)]);
+    }
+    for (index, size) in [(64, [64, 40]), (65, [80, 50]), (66, [64, 40]), (67, [33, 21])] {
+        rig.resize_keeping_history(size);
+        let now = view(size, index);
+        let (made, _) = rig.both(index, Reset::None, std::slice::from_ref(&now));
+        let error =
+            |c: &[u32; 3], full: &[f32; 3]| (0..3).map(|i| (f32::from_bits(c[i]) - full[i]).powi(2)).sum::<f32>();
+        let sum: f32 = made.shown.iter().zip(now.color.pixels()).map(|(c, full)| error(c, full)).sum();
+        let rms = (sum / (3 * made.shown.len()) as f32).sqrt();
+        println!("{size:?}: {rms:.4}");
+        // Without history, what lies between samples of every eighth pixel is off by 0.2.
+        assert!(rms < 0.1, "{size:?}: {rms}");
+    }
+}
+
+#[test]
+fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel() {
+    for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
+        let settings = settings(Method::Smr);
+        let desc = ContextDesc { settings, view_count, ..ContextDesc::new(size) };
+        let pixels = u64::from(size[0] * size[1] * view_count);
+        let bytes = Afterimage::memory_bytes_of(&desc) as f64 / pixels as f64;
+        println!("{size:?}: {bytes:.2} bytes a pixel and view");
+        assert!((22.0..24.0).contains(&bytes), "{bytes}");
+    }
+}
+
 /// The gliding views of a frame with depth and motion at the samples only.
 fn at_samples(index: u64, settings: &Settings) -> Vec<View> {
     let view = |v: u32| {

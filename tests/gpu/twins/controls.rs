@@ -228,6 +228,7 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "unpack_color", "(SMALLEST_EXPONENT - 8u)", "(SMALLEST_EXPONENT - 9u)");
     caught(sparse::PROBES, "pack_kept", "min((code + 2u) >> 2u, 0x3ffeu)", "min(code >> 2u, 0x3ffeu)");
     caught(sparse::PROBES, "unpack_kept", "unpack_place(words.y >> 26u)", "unpack_place(words.y >> 20u)");
+    caught(sparse::PROBES, "moved_kept", "select(max(lod, 1.0), lod, near)", "lod");
     caught(sparse::PROBES, "kept_weight", "const SOFTEN_PX2: f32 = 0.03;", "const SOFTEN_PX2: f32 = 0.0301;");
     caught(sparse::PROBES, "add_kept", "wx * place.y, wy", "wx * place.x, wy");
     caught(sparse::PROBES, "add_kept", "if cost < a.cost {", "if cost > a.cost {");

@@ -143,6 +143,23 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(2).random("unpack_kept", |d, row| row.extend([bits(d), bits(d)])),
     },
     Probe {
+        name: "moved_kept",
+        module: "kept",
+        words: [12, 7],
+        wgsl: "let k = moved_kept(Kept(in_v(0u), in_f(3u), in_f(4u), vec2<f32>(in_f(5u), in_f(6u))),
+            vec2<f32>(in_f(7u), in_f(8u)), vec2<f32>(in_f(9u), in_f(10u)), in_f(11u)); out_v(k.color); out_f(k.lod);
+            out_f(k.disparity); out_f(k.place_px.x); out_f(k.place_px.y);",
+        rust: |r, o| {
+            let (texel_px, scale) = (Vec2::new(r.f(7), r.f(8)), Vec2::new(r.f(9), r.f(10)));
+            put_kept(o, kept::moved_kept(kept_of(r, 0), texel_px, scale, r.f(11)));
+        },
+        rows: || Rows::new(12).random("moved_kept", |d, row| {
+            push_kept(d, row);
+            row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), range(d, 0.5, 2.0), range(d, 0.5, 2.0)]);
+            row.push(range(d, -1.0, 1.0));
+        }),
+    },
+    Probe {
         name: "kept_weight",
         module: "kept",
         words: [1, 1],

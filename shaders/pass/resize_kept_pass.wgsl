@@ -1,0 +1,19 @@
+//#use kept
+//#use resize_uniforms
+// Kept samples of history moved to another size: the nearest one, in its place. CPU twin: src/cpu/resize.rs. One
+// invocation a pixel; z is the view.
+
+@group(0) @binding(1) var past_kept: texture_2d_array<u32>;
+@group(0) @binding(2) var next_kept: texture_storage_2d_array<rg32uint, write>;
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    if any(id.xy >= resize.size) {
+        return;
+    }
+    let position = old_position_of(id.xy);
+    let at = nearest_to(position);
+    let stored = unpack_kept(textureLoad(past_kept, at, group.z, 0).xy);
+    let moved = moved_kept(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
+    textureStore(next_kept, id.xy, group.z, vec4<u32>(pack_kept(moved), 0u, 0u));
+}
