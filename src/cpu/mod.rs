@@ -151,7 +151,7 @@ impl CpuAfterimage {
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
     /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
-    /// smr are filtered, kept samples of sparse frames are taken from the nearest pixel with their places, and levels of
+    /// smr are filtered, kept samples of sparse frames are taken from the nearest pixel with their places; levels of
     /// detail follow the scale.
     ///
     /// # Errors
