@@ -30,9 +30,13 @@ fn no_source(verdict: u32) -> Source {
     return Source(verdict, vec2<i32>(0), vec2<f32>(0.0), vec2<f32>(0.0), nothing, vec2<u32>(0u), INVALID_DISPARITY, 0.0);
 }
 
-fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+fn words_at(texel: vec2<i32>, view: u32) -> vec2<u32> {
     let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
+    return textureLoad(past_surfaces, at, view, 0).xy;
+}
+
+fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+    return unpack_surface(words_at(texel, view));
 }
 
 fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> Source {
@@ -43,7 +47,8 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
     if reprojected.verdict != VERDICT_VALID {
         return no_source(reprojected.verdict);
     }
-    let stored = surface_at(vec2<i32>(reprojected.at), view);
+    let words = words_at(vec2<i32>(reprojected.at), view);
+    let stored = unpack_surface(words);
     if stored.lod < 0.0 {
         return no_source(VERDICT_EMPTY);
     }
@@ -55,12 +60,28 @@ fn source_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispar
         }
     }
     let expected = expected_disparity(view, ray, disparity_now);
-    if !is_same_surface(px, view, disparity_now, expected, stored.disparity) {
-        return no_source(VERDICT_DISOCCLUDED);
-    }
     let at = vec2<f32>(px) + motion;
     let whole = floor(at);
-    return Source(VERDICT_VALID, vec2<i32>(whole), at - whole, at, stored, reprojected.at, expected, confidence);
+    let texel = vec2<i32>(whole);
+    let fraction = at - whole;
+    let is_same = is_same_surface(px, view, disparity_now, expected, stored.disparity);
+    // At a silhouette the nearest texel may show the other surface. Then the one with the second largest weight stands
+    // in for it. Read without a branch, which costs more on software Vulkan.
+    let corner = second_corner(fraction);
+    let beside = texel + vec2<i32>(vec2<u32>(corner & 1u, corner >> 1u));
+    let other_at = clamp(beside, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    let other_words = words_at(other_at, view);
+    let other = unpack_surface(other_words);
+    let stands_in = !is_same
+        && corner_weight(corner, fraction) > STAND_IN_WEIGHT
+        && other.lod >= 0.0
+        && same_surface(expected, other.disparity, frame.depth_relative, 0.0);
+    if !is_same && !stands_in {
+        return no_source(VERDICT_DISOCCLUDED);
+    }
+    let nearest_one = unpack_surface(select(words, other_words, stands_in));
+    let nearest_at = select(reprojected.at, vec2<u32>(other_at), stands_in);
+    return Source(VERDICT_VALID, texel, fraction, at, nearest_one, nearest_at, expected, confidence);
 }
 
 fn component(v: vec4<f32>, i: u32) -> f32 {
