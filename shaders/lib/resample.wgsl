@@ -2,11 +2,26 @@
 // Twin of src/kernel/resample.rs.
 
 const TAP_RELATIVE: f32 = 0.1;
+const STAND_IN_WEIGHT: f32 = 0.1;
 const TAPS: u32 = 12u;
 
 // resample::tap_at
 fn tap_at(tap: u32) -> vec2<u32> {
     return vec2<u32>(((tap + 2u) & 3u) + select(0u, 1u, tap >= 10u) - select(0u, 1u, tap < 2u), (tap + 2u) >> 2u);
+}
+
+// resample::second_corner
+fn second_corner(fraction: vec2<f32>) -> u32 {
+    let nearest = select(0u, 1u, fraction.x >= 0.5) + 2u * select(0u, 1u, fraction.y >= 0.5);
+    let along_x = abs(fraction.x - 0.5) <= abs(fraction.y - 0.5);
+    return nearest ^ select(2u, 1u, along_x);
+}
+
+// resample::corner_weight
+fn corner_weight(corner: u32, fraction: vec2<f32>) -> f32 {
+    let x = select(1.0 - fraction.x, fraction.x, (corner & 1u) == 1u);
+    let y = select(1.0 - fraction.y, fraction.y, corner >= 2u);
+    return x * y;
 }
 
 // resample::catmull_rom

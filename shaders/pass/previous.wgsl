@@ -2,7 +2,7 @@
 //#use matched
 // Previous position of a pixel's surface; shared by the methods that store surfaces. CPU twin: src/cpu/inputs.rs.
 
-// All fields but the verdict are valid only if that is VERDICT_VALID.
+// All fields but the verdict are valid only if that is VERDICT_VALID or VERDICT_DISOCCLUDED.
 struct Previous {
     verdict: u32,
     at: vec2<f32>,
@@ -47,10 +47,9 @@ fn previous_of(
         }
     }
     let expected = expected_disparity(view, ray_at(px, view), disparity_now);
-    if !is_same_surface(px, view, disparity_now, expected, stored_disparity) {
-        return no_previous(VERDICT_DISOCCLUDED);
-    }
-    return Previous(VERDICT_VALID, vec2<f32>(px) + motion, at.at, expected, confidence);
+    let is_same = is_same_surface(px, view, disparity_now, expected, stored_disparity);
+    let verdict = select(VERDICT_DISOCCLUDED, VERDICT_VALID, is_same);
+    return Previous(verdict, vec2<f32>(px) + motion, at.at, expected, confidence);
 }
 
 // Whether a neighbour in the 2x2 block moves as the pixel does.

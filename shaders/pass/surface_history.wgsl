@@ -13,7 +13,7 @@
 @group(0) @binding(14) var candidate_mips: texture_2d_array<f32>;
 @group(0) @binding(15) var next_noise: texture_storage_2d_array<r32uint, write>;
 
-// Previous position of a pixel's surface. All fields but the verdict are valid only if that is VERDICT_VALID.
+// All fields but the verdict are valid only if that is VERDICT_VALID.
 struct Source {
     previous: Previous,
     texel: vec2<i32>,
@@ -21,17 +21,39 @@ struct Source {
     nearest: Surface,
 }
 
-fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+fn words_at(texel: vec2<i32>, view: u32) -> vec2<u32> {
     let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
+    return textureLoad(past_surfaces, at, view, 0).xy;
 }
 
+fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+    return unpack_surface(words_at(texel, view));
+}
+
+// Previous position of a pixel's surface. At a silhouette the nearest texel may show another surface. Then the one with
+// the second largest weight stands in for it. It is read without a branch, which costs more on software Vulkan.
 fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Source {
     let at = reprojected(px, motion);
-    let stored = surface_at(vec2<i32>(at.at), view);
-    let previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
+    let words = words_at(vec2<i32>(at.at), view);
+    let stored = unpack_surface(words);
+    var previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
     let whole = floor(previous.at);
-    return Source(previous, vec2<i32>(whole), previous.at - whole, stored);
+    let texel = vec2<i32>(whole);
+    let fraction = previous.at - whole;
+    let corner = second_corner(fraction);
+    let beside = texel + vec2<i32>(vec2<u32>(corner & 1u, corner >> 1u));
+    let other_at = clamp(beside, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    let other_words = words_at(other_at, view);
+    let other = unpack_surface(other_words);
+    let stands_in = previous.verdict == VERDICT_DISOCCLUDED
+        && corner_weight(corner, fraction) > STAND_IN_WEIGHT
+        && other.lod >= 0.0
+        && same_surface(previous.expected, other.disparity, frame.depth_relative, 0.0);
+    if stands_in {
+        previous.verdict = VERDICT_VALID;
+        previous.nearest_at = vec2<u32>(other_at);
+    }
+    return Source(previous, texel, fraction, unpack_surface(select(words, other_words, stands_in)));
 }
 
 fn component(v: vec4<f32>, i: u32) -> f32 {

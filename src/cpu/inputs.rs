@@ -83,6 +83,21 @@ impl<'a> Inputs<'a> {
         disparity: f32,
         stored: impl FnOnce([u32; 2]) -> [f32; 2],
     ) -> Result<Previous, Verdict> {
+        let (previous, is_same) = self.reprojected(x, y, motion, disparity, stored)?;
+        if is_same { Ok(previous) } else { Err(Verdict::Disoccluded) }
+    }
+
+    /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface; or
+    /// the verdict that rejects its history whatever its neighbours store.
+    #[inline(always)]
+    pub fn reprojected(
+        &self,
+        x: u32,
+        y: u32,
+        motion: [f32; 2],
+        disparity: f32,
+        stored: impl FnOnce([u32; 2]) -> [f32; 2],
+    ) -> Result<(Previous, bool), Verdict> {
         if self.reset {
             return Err(Verdict::Reset);
         }
@@ -96,10 +111,8 @@ impl<'a> Inputs<'a> {
             return Err(Verdict::Distrusted);
         }
         let expected = self.previous_disparity(self.ray(x, y), disparity);
-        if !self.same_surface(x, y, expected, stored_disparity) {
-            return Err(Verdict::Disoccluded);
-        }
-        Ok(Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust })
+        let is_same = self.same_surface(x, y, expected, stored_disparity);
+        Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
     }
 
     /// Whether a neighbour in the 2x2 block moves as the pixel (x, y) does.
@@ -181,6 +194,12 @@ impl<'a> Inputs<'a> {
         };
         depth::same_surface(expected, stored, test.relative, 0.0)
             || depth::same_surface(expected, stored, test.relative, test.slope_px * self.slope(x, y))
+    }
+
+    /// The depth test without the slope of the surface.
+    #[inline(always)]
+    pub fn same_disparity(&self, expected: f32, stored: f32) -> bool {
+        self.depth_test.is_none_or(|test| depth::same_surface(expected, stored, test.relative, 0.0))
     }
 
     /// Slope of disparity at a pixel. Needed only where the plain test fails, so that few pixels pay for the four taps.

@@ -9,7 +9,10 @@ use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample;
-use crate::kernel::resample::{Gathered, Resampled, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
+use crate::kernel::resample::{
+    Gathered, Resampled, STAND_IN_WEIGHT, TAP_RELATIVE, TAPS, catmull_rom, corner_weight, linear_weights,
+    second_corner, tap_at,
+};
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::wrs::expose;
 use glam::Vec3;
@@ -29,7 +32,7 @@ pub(super) struct Source {
     pub fraction: [f32; 2],
     /// Position in pixels.
     pub at: [f32; 2],
-    /// Nearest stored texel.
+    /// Nearest stored texel, or the one that stands in for it.
     pub nearest: Surface,
     /// Index of `nearest` in the stored view.
     pub index: usize,
@@ -51,22 +54,33 @@ impl SurfaceHistory<'_> {
     pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
         let mut nearest = Surface::EMPTY;
         let mut index = 0;
-        let previous = self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
+        let (previous, is_same) = self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
             index = qy as usize * self.inputs.size[0] as usize + qx as usize;
             nearest = unpack_surface(self.past.words[index]);
             [nearest.lod, nearest.disparity]
         })?;
         let Previous { at, expected, trust, .. } = previous;
         let whole = at.map(f32::floor);
-        Ok(Source {
-            texel: whole.map(|v| v as i32),
-            fraction: [at[0] - whole[0], at[1] - whole[1]],
-            at,
-            nearest,
-            index,
-            expected,
-            trust,
-        })
+        let (texel, fraction) = (whole.map(|v| v as i32), [at[0] - whole[0], at[1] - whole[1]]);
+        if !is_same {
+            (nearest, index) = self.stand_in(texel, fraction, expected).ok_or(Verdict::Disoccluded)?;
+        }
+        Ok(Source { texel, fraction, at, nearest, index, expected, trust })
+    }
+
+    /// The texel with the second largest weight around a position, and its index, if its disparity is the expected one.
+    /// At a silhouette the nearest one may show the other surface.
+    #[cold]
+    fn stand_in(&self, texel: [i32; 2], fraction: [f32; 2], expected: f32) -> Option<(Surface, usize)> {
+        let corner = second_corner(fraction);
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        let x = (texel[0] + (corner & 1) as i32).clamp(0, width - 1);
+        let y = (texel[1] + (corner >> 1) as i32).clamp(0, height - 1);
+        let stored = self.texel(x, y);
+        let stands_in = corner_weight(corner, fraction) > STAND_IN_WEIGHT
+            && stored.lod >= 0.0
+            && self.inputs.same_disparity(expected, stored.disparity);
+        stands_in.then_some((stored, (y * width + x) as usize))
     }
 
     /// History resampled at a position; a position exactly on a texel reads that texel.

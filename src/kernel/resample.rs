@@ -7,6 +7,10 @@ use glam::Vec3;
 /// for silhouettes.
 pub const TAP_RELATIVE: f32 = 0.1;
 
+/// Least bilinear weight of a texel that stands in for the nearest one, if that shows another surface: so that history
+/// moves by less than a pixel, but edges do not lose it wherever they are rounded away.
+pub const STAND_IN_WEIGHT: f32 = 0.1;
+
 /// Number of taps: 4x4 texels without the corners, whose weights are close to 0.
 pub const TAPS: u32 = 12;
 
@@ -14,6 +18,24 @@ pub const TAPS: u32 = 12;
 #[inline]
 pub fn tap_at(tap: u32) -> [u32; 2] {
     [((tap + 2) & 3) + u32::from(tap >= 10) - u32::from(tap < 2), (tap + 2) >> 2]
+}
+
+/// Number of the texel (as for [`corner_weight`]) that has the second largest bilinear weight at the fractions of a
+/// position: across the axis along which the position lies nearer to the middle.
+#[inline]
+pub fn second_corner(fraction: [f32; 2]) -> u32 {
+    let nearest = u32::from(fraction[0] >= 0.5) + 2 * u32::from(fraction[1] >= 0.5);
+    let along_x = (fraction[0] - 0.5).abs() <= (fraction[1] - 0.5).abs();
+    nearest ^ if along_x { 1 } else { 2 }
+}
+
+/// Bilinear weight of texel number `corner` (top left, top right, bottom left, bottom right) at the fractions of a
+/// position.
+#[inline]
+pub fn corner_weight(corner: u32, fraction: [f32; 2]) -> f32 {
+    let x = if corner & 1 == 1 { fraction[0] } else { 1.0 - fraction[0] };
+    let y = if corner >= 2 { fraction[1] } else { 1.0 - fraction[1] };
+    x * y
 }
 
 /// Catmull-Rom weights of four texels around a position at distance `t` in \[0, 1) after the second. At t = 0 the

@@ -214,6 +214,29 @@ fn a_camera_that_drives_keeps_what_it_drives_at() {
 }
 
 #[test]
+fn beside_a_depth_edge_another_texel_stands_in_for_the_nearest_one() {
+    // The far pixel in column 26 was at 25.4 or 25.05: the nearest texel shows the near surface, and the one that shows
+    // the far surface has a weight of 0.4 or 0.05.
+    let near = |[x, _]: [u32; 2]| x < 26;
+    let far_color = [0.1, 0.2, 0.4];
+    let color = Image::from_fn(SIZE, |at| if near(at) { [0.9, 0.6, 0.3] } else { far_color });
+    let depth = Some(Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 }));
+    for method in METHODS {
+        for (motion_px, verdict) in [(-0.6, Verdict::Valid), (-0.95, Verdict::Disoccluded)] {
+            let mut post = context(method);
+            step(&mut post, 0, &Input { depth: depth.clone(), ..Input::sharp(color.clone()) });
+            let motion = Some(Image::filled(SIZE, [motion_px, 0.0]));
+            let made = step(&mut post, 1, &Input { depth: depth.clone(), motion, ..Input::at_lod(color.clone(), 1.0) });
+            for y in 0..SIZE[1] as usize {
+                assert_eq!(made.trace.at(26, y).verdict, verdict, "{method:?} by {motion_px} px in row {y}");
+                let shown = made.shown.at(26, y);
+                assert!((0..3).all(|k| (shown[k] - far_color[k]).abs() < 0.006 * far_color[k]), "{shown:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn h58_nothing_is_read_over_a_depth_edge() {
     // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any that
     // do. smr accumulates what is coarse.

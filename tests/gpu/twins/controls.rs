@@ -140,6 +140,8 @@ fn a_surface_stored_or_read_wrongly_is_caught() {
 fn a_wrong_tap_or_weight_is_caught() {
     caught(surfaces::PROBES, "tap_at", "tap >= 10u", "tap > 10u");
     caught(surfaces::PROBES, "catmull_rom", "2.0 - 1.5 * t", "2.0 - 1.51 * t");
+    caught(surfaces::PROBES, "second_corner", "select(2u, 1u, along_x)", "select(1u, 2u, along_x)");
+    caught(surfaces::PROBES, "corner_weight", "corner >= 2u", "corner > 2u");
     caught(surfaces::PROBES, "linear_weights", "0.0, 1.0 - t, t, 0.0", "0.0, t, 1.0 - t, 0.0");
     caught(surfaces::PROBES, "gather", "tap.color * linear", "tap.color * sharp");
     caught(surfaces::PROBES, "resolve", "g.missing == 0u)", "g.missing <= 1u)");

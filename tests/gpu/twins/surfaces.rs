@@ -204,6 +204,31 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(1).cross(&[&(0..resample::TAPS).collect::<Vec<_>>()]),
     },
     Probe {
+        name: "second_corner",
+        module: "resample",
+        words: [2, 1],
+        wgsl: "out_u(second_corner(vec2<f32>(in_f(0u), in_f(1u))));",
+        rust: |r, o| o.u(resample::second_corner([r.f(0), r.f(1)])),
+        rows: || {
+            let f = floats(&[0.0, 0.1, 0.25, 0.499_999_97, 0.5, 0.75, 0.9, 1e-30]);
+            Rows::new(2).cross(&[&f, &f]).random("second_corner", |d, row| push(row, &[d.uniform(), d.uniform()]))
+        },
+    },
+    Probe {
+        name: "corner_weight",
+        module: "resample",
+        words: [3, 1],
+        wgsl: "out_f(corner_weight(in_u(2u), vec2<f32>(in_f(0u), in_f(1u))));",
+        rust: |r, o| o.f(resample::corner_weight(r.u(2), [r.f(0), r.f(1)])),
+        rows: || {
+            let f = floats(&[0.0, 0.1, 0.25, 0.5, 0.9, 1e-30]);
+            Rows::new(3).cross(&[&f, &f, &[0, 1, 2, 3]]).random("corner_weight", |d, row| {
+                push(row, &[d.uniform(), d.uniform()]);
+                row.push(d.bits() % 4);
+            })
+        },
+    },
+    Probe {
         name: "catmull_rom",
         module: "resample",
         words: [1, 4],

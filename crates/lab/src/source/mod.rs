@@ -4,6 +4,7 @@ pub mod analytic;
 
 #[cfg(feature = "full")]
 pub mod exr_file;
+mod gait;
 #[cfg(feature = "full")]
 pub mod limits;
 #[cfg(feature = "full")]

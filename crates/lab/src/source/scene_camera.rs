@@ -1,12 +1,14 @@
 //! Cameras and camera paths of scenes.
 
 use super::CameraPose;
+use super::gait::Head;
 use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene};
 use crate::trace::view::View;
 use afterimage::ViewGeometry;
 use glam::{DMat4, DQuat, DVec3};
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 /// Horizontal field of view in degrees of camera files that do not state one.
@@ -15,6 +17,8 @@ const DEFAULT_HFOV_DEG: f32 = 70.0;
 const LATERAL_SECONDS: f64 = 0.8;
 /// Angular speed of `orbit`, degrees per second.
 const ORBIT_DEG_PER_S: f64 = 15.0;
+/// Height of the eye above the floor in metres, where a scene has no camera.
+const EYE_HEIGHT_M: f64 = 1.6;
 
 /// A camera, its path, and its view parameters.
 #[derive(Clone, Debug)]
@@ -53,6 +57,10 @@ enum CameraPath {
         from: DMat4,
         middle: DVec3,
     },
+    /// The head of a person who walks forwards.
+    Walk {
+        from: DMat4,
+    },
 }
 
 impl SceneCamera {
@@ -63,7 +71,10 @@ impl SceneCamera {
     /// - `lateral`: the scene's first camera, else `framing`, moving to the right and back. Its largest speed is an
     ///   eighteenth of the scene's radius per second if it is inside the scene's bounding box (1 m/s in a hall of 36
     ///   m), else a fifth of its distance from the box's middle;
-    /// - `orbit`: the scene's first camera, else `framing`, rotating about the scene's middle at 15 degrees per second.
+    /// - `orbit`: the scene's first camera, else `framing`, rotating about the scene's middle at 15 degrees per second;
+    /// - `walk`: the head of a person who walks forwards at 0.9 m/s for 3 s and then back, from the scene's first
+    ///   camera, else from 1.6 m above the middle of the floor along the longer side. It looks left and right (by 14
+    ///   degrees, 45 degrees per second), nods (4.5 degrees, twice a second) and rolls (5 degrees, once a second).
     ///
     /// `None` selects `still` for an animated scene and `lateral` for a static one.
     ///
@@ -91,6 +102,10 @@ impl SceneCamera {
                 let (_, middle) = middle(scene);
                 (CameraPath::Orbit { from: first().world_from_camera, middle }, first())
             }
+            Some("walk") => {
+                let camera = cameras.first().cloned().unwrap_or_else(|| standing(scene, scene.framing_camera(aspect)));
+                (CameraPath::Walk { from: camera.world_from_camera }, camera)
+            }
             Some("framing") => {
                 let camera = scene.framing_camera(aspect);
                 (CameraPath::Framing(camera.clone()), camera)
@@ -107,7 +122,9 @@ impl SceneCamera {
                 return Err(InputError::request(
                     format!("camera {name}"),
                     "the scene has no such camera",
-                    format!("expected still, lateral, orbit, framing, a .json file, or one of its cameras: {listed}"),
+                    format!(
+                        "expected still, lateral, orbit, walk, framing, a .json file, or one of its cameras: {listed}"
+                    ),
                 ));
             }
         };
@@ -146,7 +163,7 @@ impl SceneCamera {
             CameraPath::Scene(_) => scene.duration_s() <= 0.0,
             CameraPath::Framing(_) => true,
             CameraPath::File(file) => file.is_still(),
-            CameraPath::Lateral { .. } | CameraPath::Orbit { .. } => false,
+            CameraPath::Lateral { .. } | CameraPath::Orbit { .. } | CameraPath::Walk { .. } => false,
         }
     }
 
@@ -184,6 +201,7 @@ impl SceneCamera {
                 let turn = DQuat::from_rotation_y((ORBIT_DEG_PER_S * time_s).to_radians());
                 DMat4::from_translation(*middle) * DMat4::from_quat(turn) * DMat4::from_translation(-*middle) * *from
             }
+            CameraPath::Walk { from } => walk(from, time_s),
         };
         View::new(self.geometry, world_from_camera)
     }
@@ -215,6 +233,29 @@ fn lateral(scene: &Scene, camera: &Camera) -> CameraPath {
     let is_inside = scene.bounds().is_some_and(|b| p.cmpge(b.min).all() && p.cmple(b.max).all());
     let speed = if is_inside { radius / 18.0 } else { eye.distance(middle) / 5.0 };
     CameraPath::Lateral { from: camera.world_from_camera, speed }
+}
+
+/// Camera at eye height in the middle of the scene, looking along the longer side of its floor; with the field of view
+/// of `camera`.
+fn standing(scene: &Scene, camera: Camera) -> Camera {
+    let Some(bounds) = scene.bounds() else { return camera };
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let middle = 0.5 * (min + max);
+    let turn = if max.x - min.x > max.z - min.z { DQuat::from_rotation_y(-FRAC_PI_2) } else { DQuat::IDENTITY };
+    let eye = DVec3::new(middle.x, min.y + EYE_HEIGHT_M, middle.z);
+    Camera { world_from_camera: DMat4::from_rotation_translation(turn, eye), ..camera }
+}
+
+/// Pose of the head at `time_s` of a walk that starts at `from`.
+fn walk(from: &DMat4, time_s: f64) -> DMat4 {
+    // Looking straight up or down gives no direction to walk in.
+    let ahead = (-from.z_axis.truncate() * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::NEG_Z);
+    let head = Head::at(time_s);
+    let step = ahead * head.ahead_m + DVec3::Y * head.up_m + ahead.cross(DVec3::Y) * head.right_m;
+    let eye = from.w_axis.truncate();
+    let turned = DQuat::from_rotation_y(head.yaw) * DQuat::from_mat4(from);
+    let turned = turned * DQuat::from_rotation_x(head.nod) * DQuat::from_rotation_z(head.roll);
+    DMat4::from_rotation_translation(turned, eye + step)
 }
 
 #[cfg(test)]
@@ -250,6 +291,44 @@ mod tests {
         let far = eye(&orbit, &scene, 0.0).distance(middle);
         assert!(eye(&orbit, &scene, 1.0).distance(eye(&orbit, &scene, 0.0)) > 0.1 * far);
         assert!((eye(&orbit, &scene, 7.0).distance(middle) - far).abs() < 1e-9 * far.max(1.0));
+    }
+
+    #[test]
+    fn a_walk_stays_in_the_courtyard_and_turns_as_fast_as_a_head() {
+        let scene = builtin::courtyard();
+        let walker = SceneCamera::choose(&scene, Some("walk"), [480, 270], None).unwrap();
+        assert!(!walker.is_still(&scene));
+        let pose = |i: i32| walker.view(&scene, 0, f64::from(i) / 60.0).world_from_camera();
+        assert!(pose(0).abs_diff_eq(scene.pose(0.0).cameras[0].world_from_camera, 1e-12));
+        let ahead = -pose(0).z_axis.truncate();
+        let (mut least_speed, mut most_speed, mut fastest_turn) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        for i in 0..720 {
+            let (now, next) = (pose(i), pose(i + 1));
+            let p = now.w_axis.truncate();
+            // Columns stand at 7.2 m, bushes reach up to 1.5 m.
+            assert!(p.x.abs() < 6.5 && p.z.abs() < 6.5 && (2.0..2.4).contains(&p.y), "{p} in frame {i}");
+            let step = (next.w_axis - now.w_axis).truncate() * 60.0;
+            let along = step.dot(DVec3::new(ahead.x, 0.0, ahead.z).normalize()).abs();
+            (least_speed, most_speed) = (least_speed.min(along), most_speed.max(along));
+            let turn = DQuat::from_mat4(&now).angle_between(DQuat::from_mat4(&next)).to_degrees() * 60.0;
+            fastest_turn = fastest_turn.max(turn);
+        }
+        println!("{least_speed:.3} to {most_speed:.3} m/s ahead, turning at most {fastest_turn:.1} degrees/s");
+        assert!((least_speed - 0.9).abs() < 1e-6 && (most_speed - 0.9).abs() < 1e-6);
+        // Yaw, nod and roll are at their fastest together once a second.
+        assert!((70.0..81.0).contains(&fastest_turn));
+    }
+
+    #[test]
+    fn a_walk_in_a_scene_without_cameras_starts_at_eye_height_along_the_longer_side() {
+        let mut scene = builtin::courtyard();
+        scene.rest.cameras.clear();
+        let p = SceneCamera::choose(&scene, Some("walk"), [64, 36], None).unwrap().view(&scene, 0, 0.0);
+        let bounds = scene.bounds().unwrap();
+        let m = p.world_from_camera();
+        assert!((m.w_axis.y - f64::from(bounds.min.y) - EYE_HEIGHT_M).abs() < 1e-6);
+        let ahead = -m.z_axis.truncate();
+        assert!(ahead.y.abs() < 1e-12 && (ahead.x.abs() > 0.999 || ahead.z.abs() > 0.999));
     }
 
     #[test]

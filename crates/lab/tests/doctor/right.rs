@@ -36,7 +36,7 @@ fn gazes(delivery: &mut Delivery, gaze: impl Fn(usize) -> Gaze) {
 
 #[test]
 fn clips_under_every_filter() {
-    for name in ["still", "lateral", "turn", "occluder", "light-step", "scroll"] {
+    for name in ["still", "lateral", "turn", "walk", "occluder", "light-step", "scroll"] {
         let clip = scene(["analytic:", name].concat().leak());
         for foveation in all_foveations() {
             let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);

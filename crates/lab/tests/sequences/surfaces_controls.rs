@@ -82,7 +82,10 @@ const SHARED: &[(&str, &str)] = &[
     // Inputs ignored (trust, exposure) and depth tests omitted.
     ("confidence = trust(trust_at(px, view));", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
-    ("if !is_same_surface(", "if false && !is_same_surface("),
+    ("let is_same = is_same_surface(", "let is_same = true || is_same_surface("),
+    ("let stands_in = previous.verdict", "let stands_in = false && previous.verdict"),
+    ("corner_weight(corner, fraction) > STAND_IN_WEIGHT", "true"),
+    ("same_surface(previous.expected, other.disparity, frame.depth_relative, 0.0)", "true"),
     ("same_surface(source.previous.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
     // Wrong counters.
     ("count_if(!usable, COUNT_NONFINITE);", ""),

@@ -17,7 +17,7 @@ use clap::{Args, ValueEnum};
 #[derive(Args, Clone, Debug)]
 pub struct InputArgs {
     /// A still (.png, .jpg, .exr), a folder of .exr frames, a scene (.gltf, .glb, builtin:NAME), or analytic:NAME with
-    /// NAME one of still, lateral, turn, occluder, light-step, spin, scroll
+    /// NAME one of still, lateral, turn, walk, occluder, light-step, spin, scroll
     #[arg(value_name = "INPUT")]
     pub name: String,
     /// Frames per second, for view an upper limit; default: the input's, else 60
@@ -38,7 +38,8 @@ pub struct InputArgs {
     #[command(flatten)]
     pub paths: PathArgs,
     /// Camera of a scene: one of its cameras by name, a .json file (a cameras.json, or a path of keyframes), or
-    /// lateral, orbit, framing; default: the scene's first camera, which glides sideways if nothing in the scene moves
+    /// lateral, orbit, walk (the head of a walking person), framing; default: the scene's first camera, which glides
+    /// sideways if nothing in the scene moves
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Limit on the size of input images, million pixels

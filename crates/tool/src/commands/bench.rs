@@ -46,7 +46,7 @@ pub struct BenchArgs {
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
     /// trace, papers (first paper): camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
-    /// lateral, orbit, or a file; default: still
+    /// lateral, orbit, walk, or a file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// trace, papers, effects: device that traces; papers use the adapter if there is one

@@ -55,8 +55,8 @@ pub struct TraceArgs {
     /// Horizontal field of view, degrees; default: the camera's
     #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
     pub hfov: Option<f32>,
-    /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit;
-    /// or a file: a cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
+    /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit,
+    /// walk; or a file: a cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Animation of the scene to play, by name or number; default: the first

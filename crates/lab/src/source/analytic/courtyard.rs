@@ -3,7 +3,8 @@
 use super::scene::{Camera, Object, Pose, Scene};
 use super::shape::{Cutout, Shape};
 use super::texture::Material;
-use glam::{Mat3, Vec2, Vec3};
+use crate::source::gait::Head;
+use glam::{DVec3, Mat3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
 /// y of the floor; y points down.
@@ -125,6 +126,20 @@ pub(super) fn turn() -> Scene {
     scene(notice(), |t| {
         let (yaw, pitch) = (0.14 * (2.0 * t).sin(), 0.05 * (1.4 * t).sin());
         Camera::looking(Vec3::ZERO, yaw as f32, pitch as f32)
+    })
+}
+
+/// `walk`: the head of a person who walks ahead, past posts 0.4 m to the side.
+pub(super) fn walk() -> Scene {
+    let mut extra = notice();
+    for (x, z) in [(0.4, 1.3), (-0.4, 1.9), (0.6, 2.5), (-0.9, 3.2)] {
+        extra.push(post(x, z, 0.05, -3.0, Material::Spiral));
+    }
+    scene(extra, |t| {
+        let head = Head::at(t);
+        let origin = DVec3::new(head.right_m, -head.up_m, head.ahead_m).as_vec3();
+        let level = Camera::looking(origin, -head.yaw as f32, -head.nod as f32);
+        Camera { axes: level.axes * Mat3::from_rotation_z(-head.roll as f32), ..level }
     })
 }
 

@@ -6,6 +6,7 @@
 //! | `still` | none | recovery of detail |
 //! | `lateral` | the camera, sideways, at most 1 m/s | reprojection, disocclusion behind near posts |
 //! | `turn` | the camera, rotation only, at most 17 degrees a second | camera rotation: every pixel moves, nothing is disoccluded |
+//! | `walk` | the head of a person who walks past posts: 0.9 m/s ahead, 45 degrees a second, nodding and rolling | magnification, resampling every frame |
 //! | `occluder` | a fence and a rolling ball in front, a spinning globe, the camera a little | motion of objects |
 //! | `light-step` | none; the light falls to 0.45 for 0.75 s | change without motion |
 //! | `spin` | a box, turning out of near-black shadow into the sun | change of light on a moving surface |
@@ -56,16 +57,18 @@ enum Kind {
     Still,
     Lateral,
     Turn,
+    Walk,
     Occluder,
     LightStep,
     Spin,
     Scroll,
 }
 
-const KINDS: [(&str, Kind); 7] = [
+const KINDS: [(&str, Kind); 8] = [
     ("still", Kind::Still),
     ("lateral", Kind::Lateral),
     ("turn", Kind::Turn),
+    ("walk", Kind::Walk),
     ("occluder", Kind::Occluder),
     ("light-step", Kind::LightStep),
     ("spin", Kind::Spin),
@@ -132,6 +135,7 @@ impl AnalyticSource {
             Kind::Still | Kind::LightStep => (courtyard::still(), SAMPLES_KEPT),
             Kind::Lateral => (courtyard::lateral(), SAMPLES_MOVING),
             Kind::Turn => (courtyard::turn(), SAMPLES_MOVING),
+            Kind::Walk => (courtyard::walk(), SAMPLES_MOVING),
             Kind::Occluder => (courtyard::occluder(), SAMPLES_MOVING),
             Kind::Spin => (courtyard::spin(), SAMPLES_MOVING),
             Kind::Scroll => (courtyard::scroll(), SAMPLES_MOVING),
@@ -263,7 +267,9 @@ impl FrameSource for AnalyticSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let mut frame = match self.kind {
-            Kind::Lateral | Kind::Turn | Kind::Occluder | Kind::Spin => self.cast(index, &self.view, &self.pattern),
+            Kind::Lateral | Kind::Turn | Kind::Walk | Kind::Occluder | Kind::Spin => {
+                self.cast(index, &self.view, &self.pattern)
+            }
             Kind::Still => self.cached(),
             Kind::Scroll => self.scrolled(index),
             Kind::LightStep => {

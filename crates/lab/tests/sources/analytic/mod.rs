@@ -71,7 +71,9 @@ fn explained(before: &SourceFrame, now: &SourceFrame, sign: f32) -> (f64, f64) {
 
 #[test]
 fn motion_explains_the_next_frame() {
-    for (name, index) in [("lateral", 4), ("lateral", 60), ("turn", 10), ("turn", 70), ("occluder", 40)] {
+    for (name, index) in
+        [("lateral", 4), ("lateral", 60), ("turn", 10), ("turn", 70), ("walk", 25), ("walk", 95), ("occluder", 40)]
+    {
         let [before, now] = frames(name, [index - 1, index]);
         let (right, share) = explained(&before, &now, 1.0);
         let (flipped, _) = explained(&before, &now, -1.0);

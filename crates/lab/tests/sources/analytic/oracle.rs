@@ -59,6 +59,41 @@ fn lateral_motion_is_parallax() {
     assert!(fastest > 5.0 && fastest < 9.0);
 }
 
+#[test]
+fn a_walk_turns_and_approaches_as_it_says() {
+    let pinhole = Pinhole::new(SIZE, 70.0);
+    let tau = std::f64::consts::TAU;
+    // The head, reimplemented: its place, and the rotation from its axes (right, down, forward) to the world's.
+    let head = |t: f64| {
+        let wave = |most: f64, hz: f64| most * (tau * hz * t).sin();
+        let place = DVec3::new(wave(0.02, 1.0), -wave(0.03, 2.0), 0.9 * (t.abs() % 6.0).min(6.0 - t.abs() % 6.0));
+        let [yaw, nod, roll] = [wave(45.0 / (0.5 * tau), 0.5), wave(4.5, 2.0), wave(5.0, 1.0)].map(f64::to_radians);
+        (place, DMat3::from_rotation_y(-yaw) * DMat3::from_rotation_x(nod) * DMat3::from_rotation_z(-roll))
+    };
+    let mut fastest = 0.0_f64;
+    for index in [1, 30, 62, 95, 250] {
+        let frame = source("walk", SIZE).frame(index).unwrap();
+        let (depth, motion) = geometry(&frame);
+        let [(place, axes), (past_place, past_axes)] = [0.0, 1.0].map(|ago| head((index as f64 - ago) / FPS));
+        let mut worst = 0.0_f64;
+        for (x, y) in pixels(SIZE) {
+            let px = DVec2::new(x as f64, y as f64);
+            let z = f64::from(depth.at(x, y));
+            let seen = axes * pinhole.ray(px);
+            // The sky is infinitely far.
+            let past = if z.is_finite() { seen * z + place - past_place } else { seen };
+            let exact = pinhole.project(past_axes.transpose() * past) - px;
+            worst = worst.max(apart(motion.at(x, y), exact));
+            fastest = fastest.max(exact.length());
+        }
+        println!("walk frame {index}: worst error {worst:.2e} px");
+        assert!(worst < MOTION_TOLERANCE_PX, "{worst} px in frame {index}");
+    }
+    // 17 px at 480x270.
+    println!("fastest {fastest:.2} px/frame");
+    assert!(fastest > 17.0 && fastest < 30.0);
+}
+
 /// Camera and moving objects of `occluder`, reimplemented.
 struct Occluder {
     camera: [(DVec3, DMat3); 2],
@@ -160,7 +195,7 @@ fn occluder_motion_follows_objects_and_camera() {
 #[test]
 fn camera_matrix_agrees_with_motion_and_previous_depth() {
     let pinhole = Pinhole::new(SIZE, 70.0);
-    for name in ["lateral", "turn", "occluder"] {
+    for name in ["lateral", "turn", "walk", "occluder"] {
         let [before, now] = frames(name, [79, 80]);
         let (depth, motion) = geometry(&now);
         let (previous_depth, _) = geometry(&before);
