@@ -14,7 +14,7 @@ const SAMPLE_GAIN: vec2<f32> = vec2<f32>(0.2, 5.0);
 const WORN: vec2<f32> = vec2<f32>(4.0, 1.0);
 const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
-const ACCUMULATE: f32 = 1.0f / 3.0f;
+const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
 
 // sparse::candidate_level

@@ -118,8 +118,8 @@ impl FrameUniforms {
         uniforms
     }
 
-    /// These uniforms on the device, for a dispatch from view `first_view` on. Each dispatch has a buffer of its own, so
-    /// that one submission can contain several. `lattice`: whose samples it processes, if it does.
+    /// These uniforms on the device, for a dispatch from view `first_view` on. Each has a buffer of its own, so that
+    /// one submission can contain several. `lattice`: whose samples it processes, if it does.
     pub(super) fn buffer(self, device: &Device, first_view: u32, lattice: u32) -> Buffer {
         let uniforms = Self { first_view, lattice, ..self };
         filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM)

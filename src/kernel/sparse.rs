@@ -39,7 +39,7 @@ const FINER_WIDTH: f32 = 0.25;
 /// Share of the samples' range by which a gain may exceed their largest value.
 const OVERSHOOT: f32 = 0.25;
 /// Share of equally fine history, as a part of `Smr::accumulate`: samples at their own pixels need less averaging.
-const ACCUMULATE: f32 = 1.0 / 3.0;
+const ACCUMULATE: f32 = 0.5;
 /// Share of history from which on the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
 
