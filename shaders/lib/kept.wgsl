@@ -152,6 +152,13 @@ fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool) -> Ar
     );
 }
 
+const STAND_IN: f32 = 1.6;
+
+// kept::stands_in
+fn stands_in(a: AroundKept) -> bool {
+    return a.weight >= STAND_IN;
+}
+
 struct Interpolated {
     color: vec3<f32>,
     lod: f32,

@@ -19,7 +19,13 @@ fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) 
     return previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
 }
 
-// History at a previous position, in this frame's exposure. Where `needed` is false the loop has zero iterations:
+// Whether history may be at a previous position.
+fn may_have_history(previous: Previous) -> bool {
+    return previous.verdict == VERDICT_VALID || previous.verdict == VERDICT_DISOCCLUDED;
+}
+
+// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
+// another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero iterations:
 // software Vulkan runs the body of an `if` for all pixels.
 fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
     var around = nothing_around();
@@ -33,6 +39,9 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
             same = same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0);
         }
         around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same);
+    }
+    if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {
+        around = nothing_around();
     }
     var found = interpolate(around);
     found.color = expose(found.color, frame.exposure);

@@ -12,7 +12,7 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let px = px_of(point, lattice);
     let motion = motion_at(px, view);
     let previous = kept_source(px, view, motion, disparity_at(px, view));
-    let needed = previous.verdict == VERDICT_VALID && color(sample_at(point, lattice, view).xyz).usable;
+    let needed = may_have_history(previous) && color(sample_at(point, lattice, view).xyz).usable;
     let history = kept_history(previous, view, needed);
     if !needed || history.lod < 0.0 {
         return nothing;

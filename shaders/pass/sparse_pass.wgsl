@@ -101,15 +101,16 @@ fn pixel(px: vec2<u32>, view: u32) {
     let lattice = lattice_at(px, view);
     let candidate = candidate_at(px, lattice, view, disparity_now);
     let previous = kept_source(px, view, motion, disparity_now);
-    let valid = previous.verdict == VERDICT_VALID;
-    count_pixel(px, view, candidate.usable, disparity_now, previous.verdict);
+    let full_rate = candidate.usable && lattice.level == 0u;
+    let history = kept_history(previous, view, may_have_history(previous) && !full_rate);
+    let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
+    let valid = verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, verdict);
 
     var shown = candidate.color;
     var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), disparity_now, vec2<f32>(0.0));
     var share = 0.0;
     var fits = 1.0;
-    let full_rate = candidate.usable && lattice.level == 0u;
-    let history = kept_history(previous, view, valid && !full_rate);
     if history.lod >= 0.0 {
         if candidate.usable {
             let result = reconstruct(Reconstruction(
@@ -146,7 +147,7 @@ fn pixel(px: vec2<u32>, view: u32) {
         view,
         shown,
         candidate.alpha,
-        PixelTrace(previous.verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
+        PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
     );
     if VIEW == 0u {
         textureStore(next_kept, px, view, vec4<u32>(pack_kept(next), 0u, 0u));

@@ -72,23 +72,9 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history. `stored` gives level
-    /// of detail (negative: empty) and disparity of a stored texel.
-    #[inline(always)]
-    pub fn previous(
-        &self,
-        x: u32,
-        y: u32,
-        motion: [f32; 2],
-        disparity: f32,
-        stored: impl FnOnce([u32; 2]) -> [f32; 2],
-    ) -> Result<Previous, Verdict> {
-        let (previous, is_same) = self.reprojected(x, y, motion, disparity, stored)?;
-        if is_same { Ok(previous) } else { Err(Verdict::Disoccluded) }
-    }
-
     /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface; or
-    /// the verdict that rejects its history whatever its neighbours store.
+    /// the verdict that rejects its history whatever its neighbours store. `stored` gives level of detail (negative:
+    /// empty) and disparity of a stored texel.
     #[inline(always)]
     pub fn reprojected(
         &self,

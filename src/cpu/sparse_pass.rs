@@ -12,7 +12,8 @@ use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{
-    Around, EXACT_PX, Interpolated, Kept, add_kept, interpolate, pack_color, pack_kept, unpack_color, unpack_kept,
+    Around, EXACT_PX, Interpolated, Kept, add_kept, interpolate, pack_color, pack_kept, stands_in, unpack_color,
+    unpack_kept,
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
@@ -113,18 +114,20 @@ impl View<'_> {
         !self.inputs.tests_depth() || same_surface(a, b, relative, 0.0)
     }
 
-    /// Previous position of a pixel's surface, or the verdict that rejects its history.
+    /// Previous position of a pixel's surface, and whether the nearest stored sample is of it; or the verdict that rejects
+    /// its history.
     #[inline(always)]
-    fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<Previous, Verdict> {
-        self.inputs.previous(x, y, motion, disparity, |[qx, qy]| {
+    fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<(Previous, bool), Verdict> {
+        self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
             let stored = self.stored(qx as i32, qy as i32);
             [stored.lod, stored.disparity]
         })
     }
 
-    /// History at a previous position, in this frame's exposure.
+    /// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
+    /// another surface (`is_same` is false), samples beside it stand in for it if they are near enough.
     #[inline(always)]
-    fn interpolated(&self, previous: &Previous) -> Interpolated {
+    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> Interpolated {
         let [x, y] = previous.at.map(|v| v.floor() as i32);
         let mut around = Around::NOTHING;
         for tap in 0..4 {
@@ -135,7 +138,7 @@ impl View<'_> {
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             around = add_kept(around, sample, texel_px, same);
         }
-        let found = interpolate(around);
+        let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
         Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found }
@@ -217,7 +220,14 @@ impl View<'_> {
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let candidate = self.candidate(index, [x, y], disparity, lights);
         let source = self.previous([x, y], motion, disparity);
-        let verdict = source.as_ref().err().copied().unwrap_or(Verdict::Valid);
+        let is_full_rate = candidate.usable && self.lattices[index].level == 0;
+        let history = source.as_ref().ok().filter(|_| !is_full_rate).map(|previous| self.interpolated(previous));
+        let history = history.filter(|history| history.lod >= 0.0);
+        let verdict = match &source {
+            Err(verdict) => *verdict,
+            Ok((_, false)) if history.is_none() => Verdict::Disoccluded,
+            Ok(_) => Verdict::Valid,
+        };
         inputs.count(x, y, candidate.usable, disparity, verdict, stats);
 
         let mut output = candidate.color;
@@ -228,14 +238,11 @@ impl View<'_> {
             place_px: Vec2::ZERO,
         };
         let (mut share, mut fits) = (0.0, 1.0);
-        if let Ok(previous) = source
-            && !(candidate.usable && self.lattices[index].level == 0)
-        {
-            let history = self.interpolated(&previous);
-            if history.lod >= 0.0 && !candidate.usable {
+        if let (Ok((previous, _)), Some(history)) = (source, history) {
+            if !candidate.usable {
                 (output, share) = (history.color, 1.0);
                 kept = Kept { disparity, ..history.nearest };
-            } else if history.lod >= 0.0 {
+            } else {
                 let result = reconstruct(&Reconstruction {
                     candidate: candidate.color,
                     lod: candidate.lod,

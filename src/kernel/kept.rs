@@ -145,6 +145,9 @@ pub fn moved_kept(s: Kept, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> Kept 
     Kept { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
 }
 
+/// Weight from which on samples beside a position stand in for the nearest one: of one at 0.65 px.
+const STAND_IN: f32 = 1.6;
+
 /// Sums over the samples around a position, and the sample to keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
@@ -217,6 +220,12 @@ pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool) -> Around {
         nearest: if nearer { Kept { place_px: place, ..sample } } else { a.nearest },
         cost: if nearer { cost } else { a.cost },
     }
+}
+
+/// Whether samples beside a position may stand in for the nearest one, which is of another surface.
+#[inline]
+pub fn stands_in(a: Around) -> bool {
+    a.weight >= STAND_IN
 }
 
 /// History at a position.

@@ -235,6 +235,7 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "add_kept", "wx * place.y, wy", "wx * place.x, wy");
     caught(sparse::PROBES, "add_kept", "if cost < a.cost {", "if cost > a.cost {");
     caught(sparse::PROBES, "interpolate", "a.square.y * a.weight - a.place.x", "a.square.y * a.weight - a.place.y");
+    caught(sparse::PROBES, "stands_in", "a.weight >= STAND_IN", "a.weight >= 0.0");
     caught(sparse::PROBES, "interpolate", "distance <= EXACT_PX", "distance < 0.0");
     caught(sparse::PROBES, "candidate_level", "1.0 + 2.0 * px", "1.0 + 2.01 * px");
     caught(sparse::PROBES, "expected_error", "by_motion + CONTRAST_ERROR * coarse", "by_motion + CONTRAST_ERROR");

@@ -194,6 +194,14 @@ pub const PROBES: &[Probe] = &[
         rows: || around_rows("add_kept"),
     },
     Probe {
+        name: "stands_in",
+        module: "kept",
+        words: [1, 1],
+        wgsl: "var a = nothing_around(); a.weight = in_f(0u); out_u(u32(stands_in(a)));",
+        rust: |r, o| o.u(u32::from(kept::stands_in(kept::Around { weight: r.f(0), ..kept::Around::NOTHING }))),
+        rows: || Rows::new(1).random("stands_in", |d, row| row.push(range(d, 0.0, 4.0))),
+    },
+    Probe {
         name: "interpolate",
         module: "kept",
         words: [28, 17],
