@@ -25,8 +25,8 @@ fn may_have_history(previous: Previous) -> bool {
 }
 
 // History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
-// another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero iterations:
-// software Vulkan runs the body of an `if` for all pixels.
+// another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero
+// iterations: software Vulkan runs the body of an `if` for all pixels.
 fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
     var around = nothing_around();
     let first = vec2<i32>(floor(previous.at));

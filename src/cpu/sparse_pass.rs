@@ -114,8 +114,8 @@ impl View<'_> {
         !self.inputs.tests_depth() || same_surface(a, b, relative, 0.0)
     }
 
-    /// Previous position of a pixel's surface, and whether the nearest stored sample is of it; or the verdict that rejects
-    /// its history.
+    /// Previous position of a pixel's surface, and whether the nearest stored sample is of it; or the verdict that
+    /// rejects its history.
     #[inline(always)]
     fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<(Previous, bool), Verdict> {
         self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
