@@ -19,7 +19,8 @@ const RATES: [[u32; 2]; 3] = [[2, 4], [4, 8], [8, 16]];
 /// Start of the clips in the scanpaths, in seconds.
 const START_S: f64 = 1.0;
 
-const METHODS: [(&str, Method); 3] = [("taa", Method::Taa), ("wrs", Method::Wrs), ("smr", Method::Smr)];
+const METHODS: [(&str, Method); 4] =
+    [("taa", Method::Taa), ("taau", Method::Taau), ("wrs", Method::Wrs), ("smr", Method::Smr)];
 
 /// A clip with a gaze and a foveation.
 struct Row {
@@ -85,7 +86,7 @@ fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Ro
     let mut rows = vec![];
     for file in scanpaths.split(',') {
         let path = read_csv(file)?;
-        for filter in [Filter::Mip, Filter::Block] {
+        for filter in [Filter::Mip, Filter::Block, Filter::Sparse] {
             for [rate_mid, rate_far] in RATES {
                 let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
                 let fps = info.fps.unwrap_or(60.0);

@@ -306,9 +306,6 @@ pub(super) mod tests {
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
         let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
-        let filters: Vec<_> = (0..4).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
-        assert_eq!(filters, ["gauss", "block", "off", "mip"]);
-        state.sides[0] = Shows::Post(Method::Taa);
         let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
         assert_eq!(filters, ["gauss", "block", "sparse", "off", "mip"]);
     }
