@@ -41,7 +41,7 @@ const REACH_PX2: f32 = 3.0;
 /// Added to squared distances, so that a sample at the position itself has a finite weight.
 const SOFTEN_PX2: f32 = 0.03;
 /// Added to the variance of the samples' places, so that a plane through few samples stays flat.
-const STIFF_PX2: f32 = 0.01;
+pub const STIFF_PX2: f32 = 0.01;
 /// Squared pixels that a level of detail is worth in the choice of the sample to keep.
 const LOD_PX2: f32 = 0.3;
 

@@ -7,6 +7,7 @@ mod commands;
 mod manifests;
 mod modules;
 mod paths;
+mod properties;
 mod prose;
 mod shader_tables;
 mod tree;

@@ -118,7 +118,7 @@ fn dominated(p: [f64; 3], q: [f64; 3]) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(7), cases: 500, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(afterimage_testing::property("frontier", 500))]
     #[test]
     fn the_frontier_is_that_of_brute_force(parts in prop::collection::vec((0..6_u8, 0..3_u8, 0..6_u8), 0..40)) {
         // Small numbers make ties frequent; the last value of the error represents NaN.

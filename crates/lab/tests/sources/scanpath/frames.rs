@@ -25,7 +25,7 @@ fn mapped(px: [f32; 2], map: GazeMap) -> [f32; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(afterimage_testing::property("gaze of frames", 256))]
 
     /// H63, against an oracle that searches all samples linearly.
     #[test]

@@ -184,7 +184,7 @@ fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(afterimage_testing::property("scanpath", 256))]
 
     #[test]
     fn writing_and_reading_gives_the_same_scanpath(

@@ -126,14 +126,13 @@ fn dwa_counters_do_not_set_memory_aside() {
     }
 }
 
-fn cases() -> ProptestConfig {
-    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok());
-    let rng_seed = proptest::test_runner::RngSeed::Fixed(0x6578_7220);
-    ProptestConfig { cases: asked.unwrap_or(4000), failure_persistence: None, rng_seed, ..ProptestConfig::default() }
+/// Cases asked for by `PROPTEST_CASES`, 4000 by default.
+fn cases() -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(4000)
 }
 
 proptest! {
-    #![proptest_config(cases())]
+    #![proptest_config(afterimage_testing::property("damaged files", cases()))]
 
     #[test]
     fn damage_gives_an_error_or_a_picture(
