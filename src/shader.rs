@@ -86,6 +86,8 @@ pub static MODULES: &[Module] = &[
     module!("pass", "taau_pass"),
     module!("pass", "view_uniforms"),
     module!("pass", "wrs_pass"),
+    module!("pass", "wrs_pixel"),
+    module!("pass", "wrs_sparse_pass"),
 ];
 
 /// This crate's shaders.

@@ -3,6 +3,7 @@
 // Twin of src/kernel/lattice.rs.
 
 const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
+const LEAST_PLACE_EXPONENT: u32 = 40u;
 
 struct Between {
     points: vec2<u32>,
@@ -17,6 +18,24 @@ fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     let fraction = f32(distance - (low << level)) * bitcast<f32>((127u - level) << 23u);
     let points = clamp(vec2<i32>(low, low + 1), vec2<i32>(0), vec2<i32>(i32(count) - 1));
     return Between(vec2<u32>(points), fraction);
+}
+
+// lattice::nearest_point
+fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
+    // The shift of a signed number rounds down.
+    return (i32(px) - i32(first) + ((1i << level) >> 1u)) >> level;
+}
+
+// lattice::point_offset_px
+fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
+    return f32((point << level) - (i32(px) - i32(first)));
+}
+
+// lattice::place_weight
+fn place_weight(offset_px: vec2<f32>) -> f32 {
+    let inverse = 1.0 + 8.0 * (offset_px.x * offset_px.x + offset_px.y * offset_px.y);
+    let exponent = 4u * ((bitcast<u32>(inverse) >> 23u) - 127u);
+    return bitcast<f32>((127u - min(exponent, LEAST_PLACE_EXPONENT)) << 23u);
 }
 
 // lattice::point_weight

@@ -17,17 +17,6 @@ fn lobe(squared: f32) -> f32 {
     return (max(1.0 - squared, 0.0) * b) * (b * b);
 }
 
-// taau::nearest_point
-fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
-    // The shift of a signed number rounds down.
-    return (i32(px) - i32(first) + ((1i << level) >> 1u)) >> level;
-}
-
-// taau::point_offset_px
-fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
-    return f32((point << level) - (i32(px) - i32(first)));
-}
-
 // taau::tail
 fn tail(confidence: f32) -> f32 {
     let unknown = clamp(1.0 - confidence * (1.0f / TAIL_UNTIL), 0.0, 1.0);

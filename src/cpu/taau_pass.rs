@@ -7,6 +7,7 @@
 use super::surface_history::SurfaceHistory;
 use super::surface_pass::Pixel;
 use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
 use crate::kernel::sanitize::MAX_HALF;
@@ -75,7 +76,7 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], tail: f32) -> Samples {
     let inputs = &view.inputs;
     let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
     let (first, level) = (lattice.first_px, lattice.level);
-    let middle = [0, 1].map(|i| taau::nearest_point(px[i], first[i], level));
+    let middle = [0, 1].map(|i| nearest_point(px[i], first[i], level));
     let sample_at = |point: [i32; 2]| {
         let [x, y] = lattice.texel_of([0, 1].map(|i| point[i].clamp(0, lattice.points[i] as i32 - 1) as u32));
         sanitize::color(Vec3::from(inputs.color.at(x as usize, y as usize)))
@@ -90,7 +91,7 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], tail: f32) -> Samples {
         let (color, usable) = sample_at(point);
         if usable {
             // A sample shows what is at its pixel minus the jitter.
-            let offset = [0, 1].map(|i| taau::point_offset_px(px[i], first[i], level, point[i]));
+            let offset = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
             let offset = Vec2::from(offset) - Vec2::from(inputs.uniforms.jitter_px);
             around = taau::add_around(around, nearest, color, taau::sample_weights(offset, level, tail));
         }

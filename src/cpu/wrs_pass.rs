@@ -7,9 +7,11 @@
 use super::Pass;
 use super::history::PastView;
 use super::inputs::Inputs;
+use crate::foveation::Filter;
 use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::lattice::{nearest_point, place_weight, point_offset_px};
 use crate::kernel::noise::sample_difference;
 use crate::kernel::pack;
 use crate::kernel::pack::Stored;
@@ -20,6 +22,7 @@ use crate::kernel::wrs;
 use crate::kernel::wrs::{Past, WrsParams};
 use crate::method::{inv_density_at_fovea, wrs_params};
 use crate::stats::FrameStats;
+use crate::uniforms::LatticeUniforms;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -31,6 +34,8 @@ struct ViewPass<'a> {
     fovea_radius_deg: f32,
     inv_density_at_fovea: f32,
     frame_low: u32,
+    /// Whether candidates count by the place of their sample, as in sparse frames.
+    weighs_places: bool,
 }
 
 struct Row<'a> {
@@ -55,6 +60,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             fovea_radius_deg: settings.foveation.fovea_radius_deg(),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,
+            weighs_places: settings.foveation.filter == Filter::Sparse,
         };
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
         let mut rows = split_rows(desc.size_px, words, output[i].pixels_mut(), log_keys, trace);
@@ -106,6 +112,9 @@ impl ViewPass<'_> {
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
         let mut weight = if usable { self.weight(ray) } else { 0.0 };
+        if self.weighs_places {
+            weight *= self.place_weight([x, y]);
+        }
         let mut params = self.params;
         if let Some(noise) = inputs.noise(x, y) {
             weight *= noise.samples;
@@ -145,6 +154,21 @@ impl ViewPass<'_> {
     #[inline(always)]
     fn weight(&self, ray: Vec3) -> f32 {
         acuity::candidate_weight(self.inputs.eccentricity_deg(ray), self.fovea_radius_deg, self.inv_density_at_fovea)
+    }
+
+    /// Weight of the place of the sample nearest to a pixel; 1 without samples in the frame.
+    #[inline(always)]
+    fn place_weight(&self, px: [u32; 2]) -> f32 {
+        let lattice = &self.inputs.lattices[LatticeUniforms::index_at(&self.inputs.lattices, px)];
+        if lattice.points.contains(&0) {
+            return 1.0;
+        }
+        let offset_px = [0, 1].map(|i| {
+            let (first, level) = (lattice.first_px[i], lattice.level);
+            let point = nearest_point(px[i], first, level).clamp(0, lattice.points[i] as i32 - 1);
+            point_offset_px(px[i], first, level, point)
+        });
+        place_weight(offset_px.into())
     }
 
     /// Reservoir of the pixel's surface in the previous frame and age of its sample, or the verdict that rejects it.

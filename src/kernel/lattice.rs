@@ -46,6 +46,32 @@ pub fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     Between { points: [low.clamp(0, last) as u32, (low + 1).clamp(0, last) as u32], fraction }
 }
 
+/// Number of the sample nearest to pixel `px` along an axis, of samples at `first + i * 2^level`; it may lie outside.
+#[inline]
+pub fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
+    // The shift of a signed number rounds down.
+    (px as i32 - first as i32 + ((1 << level) >> 1)) >> level
+}
+
+/// Distance in pixels from pixel `px` to sample `point` along an axis.
+#[inline]
+pub fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
+    ((point << level) - (px as i32 - first as i32)) as f32
+}
+
+/// Largest exponent of [`place_weight`], so that products with weights of the eccentricity stay normal.
+const LEAST_PLACE_EXPONENT: u32 = 40;
+
+/// Weight of a pixel's candidate whose nearest sample lies at a whole offset: 1 at the sample's own pixel, 2^-12 beside
+/// it, and about `(1 + 8 d^2)^-4` at `d` pixels. A reservoir then keeps the sample that landed on its pixel. A power of
+/// two, so that products are exact in any order.
+#[inline]
+pub fn place_weight(offset_px: Vec2) -> f32 {
+    let inverse = 1.0 + 8.0 * (offset_px.x * offset_px.x + offset_px.y * offset_px.y);
+    let exponent = 4 * ((inverse.to_bits() >> 23) - 127);
+    f32::from_bits((127 - exponent.min(LEAST_PLACE_EXPONENT)) << 23)
+}
+
 /// Weight along one axis of the first (`point` 0) or the second sample around a pixel.
 #[inline]
 pub fn point_weight(fraction: f32, point: u32) -> f32 {

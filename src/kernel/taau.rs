@@ -39,19 +39,6 @@ pub fn lobe(squared: f32) -> f32 {
     ((1.0 - squared).max(0.0) * b) * (b * b)
 }
 
-/// Number of the sample nearest to pixel `px` along an axis, of samples at `first + i * 2^level`; it may lie outside.
-#[inline]
-pub fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
-    // The shift of a signed number rounds down.
-    (px as i32 - first as i32 + ((1 << level) >> 1)) >> level
-}
-
-/// Distance in pixels from pixel `px` to sample `point` along an axis.
-#[inline]
-pub fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
-    ((point << level) - (px as i32 - first as i32)) as f32
-}
-
 /// Weight of interpolation between samples, for history of some confidence.
 #[inline]
 pub fn tail(confidence: f32) -> f32 {

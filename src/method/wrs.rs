@@ -3,6 +3,8 @@
 #[cfg(feature = "gpu")]
 use super::PassShader;
 use super::{Entry, HistoryLayout};
+#[cfg(feature = "gpu")]
+use crate::foveation::Filter;
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
 use crate::kernel::wrs::{BiasCode, GateCode, SamplerCode, WrsParams};
@@ -18,7 +20,10 @@ pub(super) static ENTRY: Entry = Entry {
         2 * reservoir + noise
     },
     #[cfg(feature = "gpu")]
-    shader: |_| PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
+    shader: |settings| match settings.foveation.filter {
+        Filter::Sparse => PassShader { name: "wrs_sparse_pass", block_px: 1, reads_samples: true },
+        _ => PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
+    },
     #[cfg(feature = "gpu")]
     overrides: |settings, _| {
         let params = wrs_params(settings);

@@ -2,7 +2,7 @@
 
 use afterimage::kernel::lattice::*;
 use afterimage::{Foveation, Lattice, Lattices, ViewGeometry};
-use glam::Vec4;
+use glam::{Vec2, Vec4};
 use std::collections::HashSet;
 
 #[test]
@@ -109,4 +109,22 @@ fn stacks_that_cannot_be_are_refused() {
     let (atlas, size) = Lattices::new(&[of(2), of(8)]).unwrap().in_atlas();
     assert_eq!(size, [32, 24 + 6]);
     assert_eq!(atlas.as_slice()[1].atlas_texel, Some([0, 24]));
+}
+
+#[test]
+fn the_weight_of_a_place_is_a_power_of_two_near_its_closed_form() {
+    assert_eq!(place_weight(Vec2::ZERO), 1.0);
+    let mut checked = 0;
+    for y in -300..=300 {
+        for x in -300..=300 {
+            let weight = place_weight(Vec2::new(x as f32, y as f32));
+            let inverse = 1.0 + 8.0 * f64::from(x * x + y * y);
+            // The exponent is rounded down four at a time, and limited.
+            let ratio = f64::from(weight) * inverse.powi(4);
+            assert!((1.0..16.0).contains(&ratio) || weight == (-40.0_f32).exp2(), "({x}, {y}): {weight}");
+            assert_eq!(weight.to_bits() & 0x007f_ffff, 0, "({x}, {y}): {weight} is no power of two");
+            checked += u32::from(weight > (-40.0_f32).exp2());
+        }
+    }
+    assert!(checked > 300, "{checked} places below the limit");
 }

@@ -289,6 +289,33 @@ fn a_wrong_upsampling_is_caught() {
 }
 
 #[test]
+fn wrong_weights_of_places_are_caught() {
+    let right = SHADERS.compose("wrs_sparse_pass").source;
+    let planted = [
+        ("point_offset_px(px.y, first.y, level, point.y)", "point_offset_px(px.y, first.y, level, point.x)"),
+        ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
+        ("vec2<i32>(lattice.points) - 1)", "vec2<i32>(lattice.points))"),
+        ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
+        ("pixel(id.xy, view, weight_of_place(id.xy, view))", "pixel(id.xy, view, 1.0)"),
+    ];
+    let settings = settings(Method::Wrs);
+    let differs = |source: &str| {
+        let mut rig = Rig::with_shader(desc(), settings, source)?;
+        Some((0..4).any(|index| {
+            let views = sparse_views(index, &settings);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        }))
+    };
+    let Some(without) = differs(&right) else { return };
+    assert!(!without, "without an error");
+    for (text, instead) in planted {
+        let wrong = right.replace(text, instead);
+        assert_ne!(wrong, right, "{text}");
+        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+    }
+}
+
+#[test]
 fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings(Method::Taa)) else { return };
     let mut view = View::still(noise(SIZE, "refused"), [20.0, 20.0]);

@@ -110,6 +110,9 @@ fn a_wrong_sample_is_caught() {
     caught(lattice::PROBES, "between", "let low = distance >> level;", "let low = distance / (1 << level);");
     caught(lattice::PROBES, "between", "(127u - level)", "(126u - level)");
     caught(lattice::PROBES, "between", "i32(count) - 1", "i32(count)");
+    caught(lattice::PROBES, "nearest_point", "((1i << level) >> 1u)", "(1i << level)");
+    caught(lattice::PROBES, "point_offset_px", "(i32(px) - i32(first))", "(i32(first) - i32(px))");
+    caught(lattice::PROBES, "place_weight", "offset_px.y * offset_px.y", "offset_px.x * offset_px.y");
     caught(lattice::PROBES, "point_weight", "point == 0u", "point == 1u");
     caught(lattice::PROBES, "add_sample", "if !usable {", "if false {");
     caught(lattice::PROBES, "add_geometry", "GEOMETRY_RELATIVE: f32 = 0.35", "GEOMETRY_RELATIVE: f32 = 0.36");
@@ -197,8 +200,6 @@ fn a_wrong_antialiasing_is_caught() {
 fn a_wrong_upsampling_is_caught() {
     let caught = |name, right, wrong| caught(upsampling::PROBES, name, right, wrong);
     caught("lobe", "max(1.0 - squared, 0.0)", "(1.0 - squared)");
-    caught("nearest_point", "((1i << level) >> 1u)", "(1i << level)");
-    caught("point_offset_px", "(i32(px) - i32(first))", "(i32(first) - i32(px))");
     caught("tail", "(1.0f - LEAST_TAIL)", "1.0f");
     caught("sample_weights", "(127u - level)", "(128u - level)");
     caught("add_around", "(sampled - centre) * weights.y", "(sampled - centre) * weights.x");

@@ -28,6 +28,41 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "nearest_point",
+        module: "lattice",
+        words: [3, 1],
+        wgsl: "out_u(bitcast<u32>(nearest_point(in_u(0u), in_u(1u), in_u(2u))));",
+        rust: |r, o| o.u(lattice::nearest_point(r.u(0), r.u(1), r.u(2)) as u32),
+        rows: || {
+            let ends = [0, 1, 2, 3, 7, 255, 256, 257, 16383];
+            Rows::new(3)
+                .cross(&[&ends, &ends, &(0..=8).collect::<Vec<_>>()])
+                .random("nearest_point", |d, row| row.extend([d.bits() % 16384, d.bits() % 16384, d.bits() % 9]))
+        },
+    },
+    Probe {
+        name: "point_offset_px",
+        module: "lattice",
+        words: [4, 1],
+        wgsl: "out_f(point_offset_px(in_u(0u), in_u(1u), in_u(2u), bitcast<i32>(in_u(3u))));",
+        rust: |r, o| o.f(lattice::point_offset_px(r.u(0), r.u(1), r.u(2), r.u(3) as i32)),
+        rows: || {
+            let (ends, points) = ([0, 1, 7, 255, 16383], [0, 1, 2, 64, !0, !1, !200]);
+            Rows::new(4).cross(&[&ends, &ends, &(0..=8).collect::<Vec<_>>(), &points])
+        },
+    },
+    Probe {
+        name: "place_weight",
+        module: "lattice",
+        words: [2, 1],
+        wgsl: "out_f(place_weight(vec2<f32>(in_f(0u), in_f(1u))));",
+        rust: |r, o| o.f(lattice::place_weight(Vec2::new(r.f(0), r.f(1)))),
+        rows: || {
+            let offsets: Vec<f32> = (-256..=256).map(|i| i as f32).collect();
+            Rows::new(2).cross(&[&floats(&offsets), &floats(&[-255.0, -3.0, 0.0, 1.0, 8.0])])
+        },
+    },
+    Probe {
         name: "point_weight",
         module: "lattice",
         words: [2, 1],

@@ -1,0 +1,33 @@
+//#use lattices
+//#use wrs_pixel
+// Weighted reservoirs over sparse frames: candidates count by the place of their sample. One invocation a pixel; z
+// is the view.
+
+// Weight of the place of the sample nearest to a pixel; 1 without samples in the frame.
+fn weight_of_place(px: vec2<u32>, view: u32) -> f32 {
+    let lattice = lattice_at(px, view);
+    if any(lattice.points == vec2<u32>(0u)) {
+        return 1.0;
+    }
+    let first = lattice.first_px;
+    let level = lattice.level;
+    let nearest = vec2<i32>(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
+    let point = clamp(nearest, vec2<i32>(0), vec2<i32>(lattice.points) - 1);
+    let x = point_offset_px(px.x, first.x, level, point.x);
+    let y = point_offset_px(px.y, first.y, level, point.y);
+    return place_weight(vec2<f32>(x, y));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        // View index from the workgroup id, which is uniform: the view's constants are loaded once.
+        let view = frame.first_view + group.z;
+        pixel(id.xy, view, weight_of_place(id.xy, view));
+    }
+    add_counts(invocation);
+}
