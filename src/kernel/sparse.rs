@@ -186,8 +186,8 @@ pub struct Lit {
     pub disparity: f32,
 }
 
-/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fit in 32nds in bits 10 to 15,
-/// disparity ([`disparity_code`]) in bits 16 to 31. Fits of 0 and 1 are exact.
+/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fit in 32nds in bits 10 to
+/// 15, disparity ([`disparity_code`]) in bits 16 to 31. Fits of 0 and 1 are exact.
 pub fn pack_lit(l: Lit) -> [u32; 2] {
     let (fit, own_fit) = ((l.fit * 256.0 + 0.5) as u32, (l.own_fit * 32.0 + 0.5) as u32);
     [pack_color(l.gain), fit | u32::from(l.is_own) << 9 | own_fit << 10 | disparity_code(l.disparity) << 16]

@@ -378,7 +378,7 @@ pub const ROWS: [Row; 98] = [
         CPU,
     )
     .but("holds for mip levels at rates 2/4 and 4/8 at 320x180. The box at 8/16 misses it by up to 0.5 dB, point-sampled blocks by several dB; docs/method.md has the crops and their causes."),
-    // Sparse frames: steps 2 and 4, so that every position is sampled once in 16 frames (a turn), if not stated otherwise
+    // Sparse frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a turn.
     row(
         "H86",
         "a gaze that jumps in step with the order of offsets, so that positions are never sampled",
