@@ -100,7 +100,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     // A trust of 0 shows what a reset would; elsewhere it changes nothing.
     let gaze = |index: u64| [40.0 + index as f32, 30.0];
     let (mut post, mut plain) = (make(smr(SIZE))?, make(smr(SIZE))?);
-    let is_distrusted = |px: [u32; 2]| px[0] / 5 % 3 == 0;
+    let is_distrusted = |px: [u32; 2]| (px[0] / 5).is_multiple_of(3);
     for index in 0..6 {
         post.one(index, &gliding(index, gaze(index), 0.0));
         plain.one(index, &gliding(index, gaze(index), 0.0));
