@@ -191,9 +191,15 @@ impl Foveation {
     /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
     /// counter.
     ///
-    /// Regions outside the view are left out.
+    /// Regions outside the view are left out. So are those whose samples would all lie beyond the view's edge: regions
+    /// that reach only its last blocks, in frames that sample the part of them beyond the edge. Steps larger than the
+    /// view have their sample inside it.
     pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
         let size = geometry.size_px();
+        let covering = |step, low, high| {
+            let offset = offset_px(index, step);
+            Lattice::covering(step, low, high, [0, 1].map(|i| offset[i] % size[i]))
+        };
         let mut stack = vec![];
         for (step, radius_deg) in [(1, self.fovea_radius_deg()), (self.rate_mid, self.mid_radius_deg())] {
             let [low, high] = geometry.around_px(gaze_px, radius_deg);
@@ -202,10 +208,11 @@ impl Foveation {
                 && step < self.rate_far
                 && stack.iter().all(|l: &Lattice| l.step < step)
             {
-                stack.push(Lattice::covering(step, low, high, offset_px(index, step)));
+                let lattice: Lattice = covering(step, low, high);
+                stack.extend((0..2).all(|i| lattice.first_px[i] < size[i]).then_some(lattice));
             }
         }
-        stack.push(Lattice::covering(self.rate_far, [0, 0], size, offset_px(index, self.rate_far)));
+        stack.push(covering(self.rate_far, [0, 0], size));
         Lattices::new(&stack).expect("steps ascend, and each lattice has a sample")
     }
 }

@@ -110,9 +110,15 @@ fn fit(errors: f32, sure: f32) -> f32 {
     return 1.0 - sure * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
+// sparse::own_fit
+fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
+    return fit(errors_left(own, gains), own.sure);
+}
+
 struct Lit {
     gains: vec3<f32>,
     fit: f32,
+    own_fit: f32,
     is_own: bool,
     disparity: f32,
 }
@@ -120,7 +126,9 @@ struct Lit {
 // sparse::pack_lit
 fn pack_lit(l: Lit) -> vec2<u32> {
     let fit_bits = u32(l.fit * 256.0 + 0.5);
-    return vec2<u32>(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | (disparity_code(l.disparity) << 16u));
+    let own_bits = u32(l.own_fit * 32.0 + 0.5) << 10u;
+    let disparity_bits = disparity_code(l.disparity) << 16u;
+    return vec2<u32>(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
 }
 
 // sparse::unpack_lit
@@ -128,6 +136,7 @@ fn unpack_lit(words: vec2<u32>) -> Lit {
     return Lit(
         unpack_color(words.x),
         f32(words.y & 511u) * (1.0f / 256.0),
+        f32((words.y >> 10u) & 63u) * (1.0f / 32.0),
         (words.y & 512u) != 0u,
         disparity_value(words.y >> 16u),
     );

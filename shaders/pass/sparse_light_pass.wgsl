@@ -67,7 +67,8 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     }
     let is_own = own.error >= 0.0;
     if sum.weight < 1e-6 {
-        return pack_lit(Lit(vec3<f32>(1.0), 1.0, is_own, own_disparity));
+        let unchanged = select(1.0, own_fit(own, vec3<f32>(1.0)), is_own);
+        return pack_lit(Lit(vec3<f32>(1.0), 1.0, unchanged, is_own, own_disparity));
     }
     var gains = vec3<f32>(1.0);
     if RELIGHT_ON != 0u {
@@ -86,7 +87,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         with_gain = without;
     }
     let left = fit(with_gain / sum.weight, min(sum.weight / sum.spatial, 1.0));
-    return pack_lit(Lit(gains, left, is_own, own_disparity));
+    return pack_lit(Lit(gains, left, select(1.0, own_fit(own, gains), is_own), is_own, own_disparity));
 }
 
 @compute @workgroup_size(64, 1)

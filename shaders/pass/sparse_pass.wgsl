@@ -42,6 +42,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     var nearest_px2 = NO_PX2;
     var own = Sanitized(vec3<f32>(0.0), false);
     var own_alpha = 1.0;
+    var fit_of_own = 1.0;
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
     for (var tap = 0u; tap < taps; tap++) {
         let right = tap & 1u;
@@ -55,6 +56,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
         if tap == 0u {
             own = sampled;
             own_alpha = given.w;
+            fit_of_own = lit.own_fit;
         }
         if sampled.usable {
             let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
@@ -90,7 +92,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
         lowest,
         highest,
         gain_sum * known,
-        fit_sum * known,
+        min(fit_sum * known, select(1.0, fit_of_own, is_own)),
         select(mean.w, own_alpha, is_own),
     );
 }

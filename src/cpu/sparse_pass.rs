@@ -23,7 +23,7 @@ use crate::kernel::resample::TAP_RELATIVE;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     Light, Lit, Observation, Reconstruction, add_light, agreement, candidate_level, errors_left, expected_error, fit,
-    neighbour_weight, pack_lit, reconstruct, relight, sureness, unpack_lit,
+    neighbour_weight, own_fit, pack_lit, reconstruct, relight, sureness, unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::settings::Settings;
@@ -198,7 +198,8 @@ impl View<'_> {
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
-        let unlit = Lit { gain: Vec3::ONE, fit: 1.0, is_own: own.is_some(), disparity };
+        let fit_of_own = |gain| own.map_or(1.0, |own| own_fit(own, gain));
+        let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
             return pack_lit(unlit);
         }
@@ -208,7 +209,7 @@ impl View<'_> {
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
         let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
-        pack_lit(Lit { gain, fit, ..unlit })
+        pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
 
     /// Processes one pixel and counts it in `stats`.
@@ -309,20 +310,21 @@ impl View<'_> {
                 nearest_px2 = nearest_px2.min(dx * dx + dy * dy);
             }
             if is_sample && tap == 0 {
-                own = Some(color);
+                own = Some((color, lit.own_fit));
             }
         }
         if sums.weight == 0.0 {
             return Candidate::NONE;
         }
         let coarsest = lattice.level as f32;
+        let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
         Candidate {
-            color: own.unwrap_or(sums.color * (1.0 / sums.weight)),
+            color,
             usable: true,
             lod: if nearest_px2 == f32::MAX { coarsest + 1.0 } else { candidate_level(nearest_px2.sqrt(), coarsest) },
             range: [low, high],
             gain: sums.gain * (1.0 / sums.valid),
-            fit: sums.fit * (1.0 / sums.valid),
+            fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
         }
     }
 }

@@ -157,6 +157,13 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
     root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
 }
 
+/// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]: what its neighbours say cannot
+/// outweigh the comparison at the pixel itself, as where a sparkle was sampled.
+#[inline]
+pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
+    fit(errors_left(own, gain), own.sure)
+}
+
 /// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: how much that mean
 /// says, in \[0, 1\].
 #[inline]
@@ -171,17 +178,19 @@ pub struct Lit {
     pub gain: Vec3,
     /// How well history fits after it: 0 to 1.
     pub fit: f32,
+    /// How well it fits at the sample's own pixel: 0 to 1.
+    pub own_fit: f32,
     /// Whether the sample was compared with history itself; otherwise its neighbours were.
     pub is_own: bool,
     /// Disparity of the sample.
     pub disparity: f32,
 }
 
-/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, disparity ([`disparity_code`]) in
-/// bits 16 to 31. A fit of 1 is exact.
+/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fit in 32nds in bits 10 to
+/// 15, disparity ([`disparity_code`]) in bits 16 to 31. Fits of 0 and 1 are exact.
 pub fn pack_lit(l: Lit) -> [u32; 2] {
-    let fit = (l.fit * 256.0 + 0.5) as u32;
-    [pack_color(l.gain), fit | u32::from(l.is_own) << 9 | disparity_code(l.disparity) << 16]
+    let (fit, own_fit) = ((l.fit * 256.0 + 0.5) as u32, (l.own_fit * 32.0 + 0.5) as u32);
+    [pack_color(l.gain), fit | u32::from(l.is_own) << 9 | own_fit << 10 | disparity_code(l.disparity) << 16]
 }
 
 /// Inverse of [`pack_lit`].
@@ -189,6 +198,7 @@ pub fn unpack_lit(words: [u32; 2]) -> Lit {
     Lit {
         gain: unpack_color(words[0]),
         fit: (words[1] & 511) as f32 * (1.0 / 256.0),
+        own_fit: (words[1] >> 10 & 63) as f32 * (1.0 / 32.0),
         is_own: words[1] >> 9 & 1 != 0,
         disparity: disparity_value(words[1] >> 16),
     }

@@ -6,4 +6,6 @@ mod any_frame;
 mod images;
 mod pass;
 mod simulator;
+#[path = "../common/sparse_hard/mod.rs"]
+mod sparse_hard;
 mod surfaces;

@@ -9,6 +9,8 @@ mod properties;
 mod reprojection;
 mod reservoirs;
 mod sparse;
+mod sparse_hard;
+mod sparse_planted;
 mod trust;
 mod upsampling;
 mod views;

@@ -11,5 +11,6 @@ mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
 pub mod rig;
 mod sparse;
+mod sparse_hard;
 mod surfaces;
 mod surfaces_hard;

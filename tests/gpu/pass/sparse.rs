@@ -261,6 +261,41 @@ fn a_wrong_reconstruction_is_caught() {
 }
 
 #[test]
+fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
+    let mut settings = settings(Method::Smr);
+    (settings.foveation.rate_mid, settings.foveation.rate_far) = (2, 2);
+    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    let picture = noise(SIZE, "a sparkle");
+    let differs = |sources: &[String; 3]| {
+        let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, &sources[2])?;
+        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        Some((0..12).any(|index| {
+            // Sampled in frame 5, and again in frame 9.
+            let is_bright = |px| index == 5 && px == [51, 31];
+            let color = |px: [u32; 2]| picture.at(px[0] as usize, px[1] as usize);
+            let color = Image::from_fn(SIZE, |px| if is_bright(px) { [50.0; 3] } else { color(px) });
+            let mut view = View::still(color, [10.0, 10.0]);
+            let lattices = settings.foveation.lattices(&view.facts.geometry, [10.0, 10.0], index);
+            view.facts.lattices = Some(lattices);
+            let views = [view];
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        }))
+    };
+    let Some(false) = differs(&right) else {
+        assert!(differs(&right).is_none(), "without an error");
+        return;
+    };
+    for (text, instead) in
+        [("select(1.0, fit_of_own, is_own)", "1.0"), ("select(1.0, own_fit(own, gains), is_own)", "1.0")]
+    {
+        let wrong = right.clone().map(|source| source.replace(text, instead));
+        assert_ne!(wrong, right, "{text}");
+        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+    }
+}
+
+#[test]
 fn a_wrong_upsampling_is_caught() {
     let right = SHADERS.compose("taau_pass").source;
     let planted = [

@@ -243,6 +243,7 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "agreement", "own.error + other.error", "own.error + own.error");
     caught(sparse::PROBES, "relight", "sqrt(l.squared)", "sqrt(l.weight)");
     caught(sparse::PROBES, "fit", "1.0 - sure * smooth_step", "1.0 - smooth_step");
+    caught(sparse::PROBES, "own_fit", "own.sure);", "1.0);");
     caught(sparse::PROBES, "pack_lit", "l.fit * 256.0 + 0.5", "l.fit * 256.0");
     caught(sparse::PROBES, "unpack_lit", "(words.y & 512u) != 0u", "(words.y & 1024u) != 0u");
     caught(sparse::PROBES, "reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE");

@@ -339,29 +339,41 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(2).random("fit", |d, row| row.extend([range(d, 0.0, 10.0), range(d, 0.0, 1.0)])),
     },
     Probe {
+        name: "own_fit",
+        module: "sparse",
+        words: [11, 1],
+        wgsl: "out_f(own_fit(Observation(in_v(0u), in_v(3u), in_f(6u), in_f(7u)), in_v(8u)));",
+        rust: |r, o| o.f(sparse::own_fit(observation_of(r, 0), r.v(8))),
+        rows: || Rows::new(11).random("own_fit", |d, row| {
+            push_observation(d, row);
+            row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
+        }),
+    },
+    Probe {
         name: "pack_lit",
         module: "sparse",
-        words: [6, 2],
-        wgsl: "let w = pack_lit(Lit(in_v(0u), in_f(3u), in_u(4u) != 0u, in_f(5u))); out_u(w.x); out_u(w.y);",
+        words: [7, 2],
+        wgsl: "let w = pack_lit(Lit(in_v(0u), in_f(3u), in_f(6u), in_u(4u) != 0u, in_f(5u))); out_u(w.x); out_u(w.y);",
         rust: |r, o| {
-            let lit = sparse::Lit { gain: r.v(0), fit: r.f(3), is_own: r.u(4) != 0, disparity: r.f(5) };
+            let lit = sparse::Lit { gain: r.v(0), fit: r.f(3), own_fit: r.f(6), is_own: r.u(4) != 0, disparity: r.f(5) };
             sparse::pack_lit(lit).into_iter().for_each(|w| o.u(w));
         },
-        rows: || Rows::new(6).random("pack_lit", |d, row| {
+        rows: || Rows::new(7).random("pack_lit", |d, row| {
             row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-            row.extend([range(d, 0.0, 1.0), d.bits() % 2, scaled(d, -20, 20)]);
+            row.extend([range(d, 0.0, 1.0), d.bits() % 2, scaled(d, -20, 20), range(d, 0.0, 1.0)]);
         }),
     },
     Probe {
         name: "unpack_lit",
         module: "sparse",
-        words: [2, 6],
-        wgsl: "let l = unpack_lit(vec2<u32>(in_u(0u), in_u(1u))); out_v(l.gains); out_f(l.fit); out_u(u32(l.is_own));
-            out_f(l.disparity);",
+        words: [2, 7],
+        wgsl: "let l = unpack_lit(vec2<u32>(in_u(0u), in_u(1u))); out_v(l.gains); out_f(l.fit); out_f(l.own_fit);
+            out_u(u32(l.is_own)); out_f(l.disparity);",
         rust: |r, o| {
             let lit = sparse::unpack_lit([r.u(0), r.u(1)]);
             o.v(lit.gain);
             o.f(lit.fit);
+            o.f(lit.own_fit);
             o.u(u32::from(lit.is_own));
             o.f(lit.disparity);
         },

@@ -65,11 +65,14 @@ impl SampleOrder {
     /// Never: the stack differs from a valid one in the offsets alone.
     pub fn lattices(self, foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
         let stack = foveation.lattices(geometry, gaze_px, index);
+        let size = geometry.size_px();
         let moved = |lattice: &Lattice| {
             let ([low, _], offset) = (lattice.covered_px(), self.offset_px(index, lattice.step));
-            Lattice { first_px: [low[0] + offset[0], low[1] + offset[1]], ..*lattice }
+            Lattice { first_px: [0, 1].map(|i| low[i] + offset[i] % size[i]), ..*lattice }
         };
-        let moved: Vec<_> = stack.as_slice().iter().map(moved).collect();
+        // As in the default order, a lattice whose samples all lie beyond the view's edge is left out.
+        let has_samples = |lattice: &Lattice| (0..2).all(|i| lattice.first_px[i] < size[i]);
+        let moved: Vec<_> = stack.as_slice().iter().map(moved).filter(has_samples).collect();
         Lattices::new(&moved).expect("only the offsets are new")
     }
 }

@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 85] = [
+pub const ROWS: [Row; 98] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -378,4 +378,86 @@ pub const ROWS: [Row; 85] = [
         CPU,
     )
     .but("holds for mip levels at rates 2/4 and 4/8 at 320x180. The box at 8/16 misses it by up to 0.5 dB, point-sampled blocks by several dB; docs/method.md has the crops and their causes."),
+    // Sparse frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a turn.
+    row(
+        "H86",
+        "a gaze that jumps in step with the order of offsets, so that positions are never sampled",
+        "finite; better than the foveated frame at those positions and in all frames; all other positions exact after a turn",
+        BOTH,
+    ),
+    row(
+        "H87",
+        "steps larger than the view, lattices of one pixel, off the view, without samples, empty; views of one pixel",
+        "finite; samples are shown bit for bit; lattices off the view change nothing; without samples history is shown; empty ones are refused",
+        BOTH,
+    ),
+    row(
+        "H88",
+        "reset in the middle of the order of offsets; order begun anew without a reset",
+        "bit for bit a fresh context; rebuilt after a turn",
+        BOTH,
+    ),
+    row(
+        "H89",
+        "borders between rates, gaze in motion",
+        "fovea is the candidate bit for bit; what was sampled is exact across borders; gliding: less error at borders than in the periphery",
+        BOTH,
+    ),
+    row(
+        "H90",
+        "lines of one pixel in the periphery",
+        "still: exact after a turn; gliding: better than foveated, and no frame by more than 0.3 dB worse",
+        BOTH,
+    ),
+    row(
+        "H91",
+        "a pixel of light 2 or 65504 in one frame, in which it is sampled, in a picture below 0.8",
+        "gone when its pixel is sampled again; never more than 1.25 of its light",
+        BOTH,
+    )
+    .but("until then it is shown at its pixel, since nothing says that it has gone; pixels nearer than a step show its interpolated light, less in each frame. A gain may exceed the samples by a quarter of their range."),
+    row(
+        "H92",
+        "everything moves by 20 and by 200 px a frame",
+        "finite; no frame more than 0.1 dB worse than the foveated frame",
+        BOTH,
+    )
+    .but("with motion vectors. Without them each frame is an unannounced cut (H93)."),
+    row(
+        "H93",
+        "cut in each frame, with and without a reset; one unannounced cut after a turn",
+        "with a reset or a change of depth: the foveated frame; unannounced: close to it, no ghost",
+        BOTH,
+    )
+    .but("cuts without reset, vectors and change of depth show a ghost: up to 3.5 dB below the foveated frame if in each frame, because samples of the first turn meet history that is too coarse to be compared with. After one such cut 2.3 dB in its frame and less than 0.4 dB after it; the picture is rebuilt slowly, as gains of relighting fade."),
+    row(
+        "H94",
+        "depth and motion at samples only, across silhouettes that move",
+        "finite; better than the foveated frame within 4 px of silhouettes and elsewhere",
+        BOTH,
+    ),
+    row(
+        "H95",
+        "NaN or infinity in a sample of a coarse lattice, or in the only one of the view",
+        "never shown; with complete history no pixel changes; otherwise pixels nearer than two steps, until it is sampled again",
+        BOTH,
+    ),
+    row(
+        "H96",
+        "lattices that stand still; offsets shown three times each",
+        "no worse than foveated, constant on a still picture; moving pictures better; rebuilt after three turns",
+        BOTH,
+    ),
+    row(
+        "H97",
+        "samples one pixel beside the claimed place, by turns on both sides, mirrored in their block, one frame late",
+        "finite; at most 3.1 dB below the same frames foveated (still), 1 dB (gliding)",
+        BOTH,
+    ),
+    row(
+        "H98",
+        "declared exposure steps of 256 and 4, trust 0, two views, lost and invalid gaze, another foveation in each frame",
+        "detail kept within 1 %; the candidate; as each view alone and as with any gaze, bit for bit; never worse than foveated",
+        BOTH,
+    ),
 ];

@@ -1,0 +1,190 @@
+//! Hard cases of sparse frames, H86 and up: pictures, and laws that hold on either executor. A law returns what it
+//! measured, or `None` without an executor.
+
+mod content;
+mod cuts;
+mod inputs;
+mod lattices;
+mod offsets;
+
+pub use content::{fast_motion, silhouettes, sparkles, thin_lines};
+pub use cuts::{announced_and_unannounced_cuts, restarts_of_the_order};
+pub use inputs::{invalid_samples, light_trust_views_gaze_and_foveation};
+pub use lattices::{borders, degenerate_lattices, starved_positions};
+pub use offsets::{offsets_off_by_one, repeated_offsets};
+
+use crate::images::{Images, OneView};
+use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::{
+    ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry,
+};
+use afterimage_testing::Draws;
+
+/// Neither side is a multiple of a step.
+pub const SIZE: [u32; 2] = [94, 70];
+/// Frames in which lattices of steps 2 and 4 visit every position.
+pub const TURN: u64 = 16;
+pub type Color = Image<[f32; 3]>;
+
+/// One view of one frame.
+#[derive(Clone)]
+pub struct Shot {
+    pub facts: ViewFrame,
+    pub color: Color,
+    pub depth: Option<Image<f32>>,
+    pub motion: Option<Image<[f32; 2]>>,
+    pub trust: Option<Image<f32>>,
+    pub exposure: Exposure,
+    pub reset: Reset,
+}
+
+impl Shot {
+    /// Without optional inputs. The color is a full-rate frame, of which only the samples are read.
+    pub fn new(color: Color, lattices: Lattices) -> Self {
+        let facts = ViewFrame { lattices: Some(lattices), ..ViewFrame::new(geometry(color.size()), Gaze::Lost) };
+        Self { facts, color, depth: None, motion: None, trust: None, exposure: Exposure::Same, reset: Reset::None }
+    }
+
+    /// A frame of `foveation`.
+    pub fn foveated(color: Color, foveation: &Foveation, gaze_px: [f32; 2], index: u64) -> Self {
+        let lattices = foveation.lattices(&geometry(color.size()), gaze_px, index);
+        Self::new(color, lattices)
+    }
+
+    /// In which everything moves by `speed_px` a frame.
+    pub fn moving(self, speed_px: [f32; 2]) -> Self {
+        Self { motion: Some(Image::filled(self.color.size(), speed_px.map(|v| -v))), ..self }
+    }
+
+    pub fn lattices(&self) -> Lattices {
+        self.facts.lattices.unwrap()
+    }
+
+    pub fn view(&self) -> OneView<'_> {
+        OneView {
+            depth: self.depth.as_ref(),
+            motion: self.motion.as_ref(),
+            trust: self.trust.as_ref(),
+            ..OneView::new(self.facts, &self.color)
+        }
+    }
+}
+
+/// An executor.
+pub trait Shows {
+    /// Outputs of a frame. Reset and exposure are those of the first view.
+    fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color>;
+
+    fn set_settings(&mut self, settings: Settings);
+
+    /// Output of a frame of one view.
+    fn one(&mut self, index: u64, shot: &Shot) -> Color {
+        self.show(index, std::slice::from_ref(shot)).remove(0)
+    }
+}
+
+/// Makes an executor, if there is one.
+pub type Make<'a> = &'a dyn Fn(ContextDesc) -> Option<Box<dyn Shows>>;
+
+impl Shows for CpuAfterimage {
+    fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color> {
+        let mut out: Vec<_> = shots.iter().map(|shot| Image::filled(shot.facts.geometry.size_px(), [0.0; 3])).collect();
+        let views: Vec<_> = shots.iter().map(Shot::view).collect();
+        let images = Images::of(&views);
+        let frame = Frame { reset: shots[0].reset, exposure: shots[0].exposure, ..images.frame(index) };
+        self.process(&frame, &mut out).unwrap();
+        out
+    }
+
+    fn set_settings(&mut self, settings: Settings) {
+        CpuAfterimage::set_settings(self, settings).unwrap();
+    }
+}
+
+pub fn on_cpu(desc: ContextDesc) -> Option<Box<dyn Shows>> {
+    Some(Box::new(CpuAfterimage::new(&desc).unwrap()))
+}
+
+pub fn geometry(size: [u32; 2]) -> ViewGeometry {
+    ViewGeometry::flat(size, 70.0).unwrap()
+}
+
+/// A fovea of 7 px and a middle region of 21 px around the gaze.
+pub fn foveation() -> Foveation {
+    Foveation {
+        filter: Filter::Sparse,
+        fovea_deg: 10.0,
+        mid_deg: 30.0,
+        rate_mid: 2,
+        rate_far: 4,
+        ..Foveation::default()
+    }
+}
+
+/// A context of one view for `smr`.
+pub fn smr(size: [u32; 2]) -> ContextDesc {
+    let settings = Settings { method: Method::Smr, foveation: foveation(), ..Settings::default() };
+    ContextDesc { settings, ..ContextDesc::new(size) }
+}
+
+/// The foveated frame alone: what is shown without a history.
+pub fn none(shot: &Shot) -> Color {
+    let desc = smr(shot.facts.geometry.size_px());
+    let settings = Settings { method: Method::None, ..desc.settings };
+    on_cpu(ContextDesc { settings, ..desc }).unwrap().one(0, &Shot { reset: Reset::None, ..shot.clone() })
+}
+
+/// Waves of 5 to 9 pixels at a position that may lie between pixels.
+pub fn wave([x, y]: [f32; 2]) -> [f32; 3] {
+    [(1.2 * x).sin(), (0.9 * y + 0.3 * x).cos(), (0.7 * x - 0.8 * y).sin()].map(|v| 0.5 + 0.3 * v)
+}
+
+/// The waves after a move by `shift_px`.
+pub fn waves(size: [u32; 2], shift_px: [f32; 2]) -> Color {
+    Image::from_fn(size, |[x, y]| wave([x as f32 - shift_px[0], y as f32 - shift_px[1]]))
+}
+
+/// Colors of pixels that have nothing in common with their neighbours', from 1/8 to 7/8.
+pub fn noise(size: [u32; 2], name: &str) -> Color {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [0; 3].map(|_| draws.range(0.125, 0.875)))
+}
+
+/// Mean squared error over the pixels that `counts`.
+pub fn squared_error(shown: &Color, full: &Color, counts: impl Fn([u32; 2]) -> bool) -> f64 {
+    let width = shown.size()[0];
+    let (mut sum, mut count) = (0.0, 0);
+    for (i, (a, b)) in (0..).zip(shown.pixels().iter().zip(full.pixels())) {
+        if counts([i % width, i / width]) {
+            sum += (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>() / 3.0;
+            count += 1;
+        }
+    }
+    assert!(count > 0, "no pixel counts");
+    sum / f64::from(count)
+}
+
+pub fn everywhere(_: [u32; 2]) -> bool {
+    true
+}
+
+/// PSNR in dB for a peak of 1.
+pub fn psnr(squared_error: f64) -> f64 {
+    -10.0 * squared_error.max(1e-12).log10()
+}
+
+#[track_caller]
+pub fn assert_finite(shown: &Color, at: &str) {
+    assert!(shown.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{at}: not finite");
+}
+
+/// Number of pixels that are off by more than the rounding of stored colors, 9 bits of the largest channel.
+pub fn wrong(shown: &Color, full: &Color, counts: impl Fn([u32; 2]) -> bool) -> usize {
+    let width = shown.size()[0];
+    let off = |(a, b): (&[f32; 3], &[f32; 3])| {
+        let rounding = b.iter().fold(0.0_f32, |m, &v| m.max(v)) / 511.0;
+        (0..3).any(|c| (a[c] - b[c]).abs() > rounding)
+    };
+    let pixels = (0..).zip(shown.pixels().iter().zip(full.pixels()));
+    pixels.filter(|&(i, pair)| counts([i % width, i / width]) && off(pair)).count()
+}
