@@ -1,7 +1,7 @@
 //! Options of the foveation simulator.
 
 use afterimage::{Filter, Foveation};
-use afterimage_lab::pipeline::SparseGeometry;
+use afterimage_lab::pipeline::{SampleOrder, SparseGeometry};
 use clap::{Args, ValueEnum};
 
 /// Foveation simulator, and the resolution by eccentricity.
@@ -28,6 +28,9 @@ pub struct FoveationArgs {
     /// With --foveation sparse: depth and motion of every pixel, or of the nearest sample
     #[arg(long = "geometry", alias = "sparse-geometry", value_enum, default_value = "full")]
     pub geometry: GeometryName,
+    /// With --foveation sparse: order in which the pixels of a block are sampled
+    #[arg(long = "order", alias = "sample-order", value_enum, default_value = "bayer")]
+    pub order: OrderName,
 }
 
 impl FoveationArgs {
@@ -74,6 +77,37 @@ impl FilterName {
             Self::Block => "block",
             Self::Sparse => "sparse",
             Self::Off => "off",
+        }
+    }
+}
+
+/// Values of `--order`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OrderName {
+    /// Every prefix is spread evenly over the block
+    Bayer,
+    /// Row by row
+    Scanline,
+    /// Every power of two of frames is spread evenly over rows and columns
+    Sobol,
+}
+
+impl OrderName {
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bayer => "bayer",
+            Self::Scanline => "scanline",
+            Self::Sobol => "sobol",
+        }
+    }
+
+    /// The lab's order of this name.
+    pub fn order(self) -> SampleOrder {
+        match self {
+            Self::Bayer => SampleOrder::Bayer,
+            Self::Scanline => SampleOrder::Scanline,
+            Self::Sobol => SampleOrder::Sobol,
         }
     }
 }

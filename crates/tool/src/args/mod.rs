@@ -18,7 +18,7 @@ pub mod pattern;
 mod picture;
 
 #[cfg(feature = "full")]
-pub use foveation::{FilterName, FoveationArgs, GeometryName};
+pub use foveation::{FilterName, FoveationArgs, GeometryName, OrderName};
 #[cfg(feature = "full")]
 pub use method::{MethodName, WrsArgs};
 #[cfg(feature = "full")]

@@ -28,6 +28,8 @@ pub struct Clip {
     pub foveation: Foveation,
     /// Depth and motion of sparse frames.
     pub sparse_geometry: SparseGeometry,
+    /// Order in which the pixels of sparse frames are sampled.
+    pub sample_order: SampleOrder,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
@@ -149,7 +151,7 @@ impl Clip {
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?
-            .with_sparse(self.sparse_geometry, SampleOrder::default());
+            .with_sparse(self.sparse_geometry, self.sample_order);
         if self.trust {
             pipeline = pipeline.with_trust();
         }

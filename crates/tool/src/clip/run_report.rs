@@ -17,6 +17,8 @@ pub struct RunFacts<'a> {
     pub simulator: &'static str,
     /// Where sparse frames have depth and motion; `None` for other frames.
     pub geometry: Option<&'static str>,
+    /// Order in which the pixels of sparse frames are sampled.
+    pub order: Option<&'static str>,
     pub gaze: &'a str,
     pub gaze_map: &'a str,
     pub start_s: f64,
@@ -50,6 +52,8 @@ struct FoveationReport {
     simulator: &'static str,
     /// Where depth and motion are known, full or samples; null unless frames are sparse.
     geometry: Option<&'static str>,
+    /// Order in which the pixels of a block are sampled; null unless frames are sparse.
+    order: Option<&'static str>,
     fovea_deg: f32,
     mid_deg: f32,
     blend_deg: f32,
@@ -84,6 +88,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         foveation: FoveationReport {
             simulator: facts.simulator,
             geometry: facts.geometry,
+            order: facts.order,
             fovea_deg: foveation.fovea_deg,
             mid_deg: foveation.mid_deg,
             blend_deg: foveation.blend_deg,

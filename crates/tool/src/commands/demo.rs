@@ -9,7 +9,7 @@ use crate::method_report::MethodReport;
 use crate::output::Output;
 use afterimage::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::pipeline::{RunKind, SparseGeometry};
+use afterimage_lab::pipeline::{RunKind, SampleOrder, SparseGeometry};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -45,6 +45,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         seed: 0,
         simulator: "mip",
         geometry: None,
+        order: None,
         gaze: GAZE,
         gaze_map: track.map,
         start_s: 0.0,
@@ -55,6 +56,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         geometry,
         foveation,
         sparse_geometry: SparseGeometry::Full,
+        sample_order: SampleOrder::default(),
         methods: vec![
             ("none", post_process(Method::None)),
             ("wrs", post_process(Method::Wrs)),

@@ -163,6 +163,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         seed: args.seed,
         simulator: simulator(args),
         geometry: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.geometry.name()),
+        order: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.order.name()),
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,

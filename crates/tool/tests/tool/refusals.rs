@@ -24,6 +24,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     let sparse = ["--foveation", "sparse", "--method"];
     refuses(&run(still, &out, &[&sparse[..], &["oracle"]].concat()), &["oracle", "moving samples"]);
     refuses(&run(still, &out, &["--geometry", "samples"]), &["--geometry samples", "--foveation sparse"]);
+    refuses(&run(still, &out, &["--order", "sobol"]), &["--order sobol", "--foveation sparse"]);
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps", "above 0"]);
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);

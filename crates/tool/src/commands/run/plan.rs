@@ -4,7 +4,7 @@ use super::{RunArgs, simulator};
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
-use crate::args::{GeometryName, MethodName};
+use crate::args::{GeometryName, MethodName, OrderName};
 use crate::clip::{Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
@@ -31,6 +31,10 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
     if args.foveation.geometry != GeometryName::Full && foveation.filter != Filter::Sparse {
         return refuse("--geometry samples: applies to sparse frames only; add --foveation sparse".into());
     }
+    if args.foveation.order != OrderName::Bayer && foveation.filter != Filter::Sparse {
+        let order = args.foveation.order.name();
+        return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
+    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -49,6 +53,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             geometry,
             foveation,
             sparse_geometry: args.foveation.geometry.geometry(),
+            sample_order: args.foveation.order.order(),
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,

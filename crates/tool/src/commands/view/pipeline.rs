@@ -8,7 +8,7 @@ use afterimage::wgpu::Texture;
 use afterimage::{ContextDesc, Filter, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, SparseGeometry};
+use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, SampleOrder, SparseGeometry};
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -31,6 +31,7 @@ pub struct ViewPipeline {
     examiner: Option<Examiner>,
     desc: ContextDesc,
     sparse_geometry: SparseGeometry,
+    sample_order: SampleOrder,
     // Properties of the uploaded frame.
     /// Depth and motion, if sparse frames have them at their samples alone.
     previous_from_current: Option<[[f32; 4]; 4]>,
@@ -49,7 +50,7 @@ impl ViewPipeline {
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
         state: &State,
-        sparse_geometry: SparseGeometry,
+        (sparse_geometry, sample_order): (SparseGeometry, SampleOrder),
         settings: &dyn Fn(Shows) -> Settings,
     ) -> Result<Self, Failure> {
         let desc = desc(&geometry, settings(Shows::Post(Method::None)));
@@ -59,6 +60,7 @@ impl ViewPipeline {
             examiner: None,
             desc,
             sparse_geometry,
+            sample_order,
             previous_from_current: None,
             cut: false,
             index: 0,
@@ -131,8 +133,10 @@ impl ViewPipeline {
     ) -> Result<(), Failure> {
         let foveation = &self.desc.settings.foveation;
         let is_sparse = foveation.filter == Filter::Sparse;
-        let lattices =
-            is_sparse.then(|| self.sparse_geometry.of(foveation.lattices(&self.geometry, gaze_px, self.index)));
+        let lattices = is_sparse.then(|| {
+            let lattices = self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index);
+            self.sparse_geometry.of(lattices)
+        });
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
             lattices,

@@ -34,10 +34,10 @@ impl DeviceResources {
         let surface = Surface::new(&device, [size.width, size.height])?;
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
+        let foveation = &setup.args.foveation;
+        let sparse = (foveation.geometry.geometry(), foveation.order.order());
         Ok(Self {
-            pipeline: ViewPipeline::new(gpu, geometry, state, setup.args.foveation.geometry.geometry(), &|shows| {
-                setup.settings(state, shows)
-            })?,
+            pipeline: ViewPipeline::new(gpu, geometry, state, sparse, &|shows| setup.settings(state, shows))?,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),
             screen: Screen::new(gpu, surface.format()),
