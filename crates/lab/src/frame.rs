@@ -54,7 +54,8 @@ pub struct Guide {
     pub deviation: Image<f32>,
 }
 
-/// A full-rate frame on a device, as the rasterizer leaves it until it renders the next one.
+/// A frame on a device, as the rasterizer leaves it until it renders the next one: the full-rate frame, or an atlas of
+/// the samples of a sparse one.
 #[cfg(feature = "full")]
 #[derive(Clone, Debug)]
 pub struct DeviceFrame {

@@ -83,8 +83,8 @@ impl Raster {
         let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size));
         let sections: Vec<Section> = windows.map(|w| self.section(device, [view, previous], w)).collect();
         let (full, points) = sections.split_at(sections.partition_point(|s| s.window.step == 1.0));
-        let FoveatedTargets { views: [color, depth, motion], samples: [samples, sample_depth], point_depth, .. } =
-            targets;
+        let FoveatedTargets { atlas, point_depth } = targets;
+        let Targets { views: [color, depth, motion], samples: [samples, sample_depth], .. } = atlas;
         self.surface_pass(encoder, [depth, motion], &sections);
         let blended = self.back_to_front(device, view);
         let mut load = LoadOp::Clear(Color::BLACK);

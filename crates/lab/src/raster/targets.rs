@@ -47,18 +47,11 @@ impl Targets {
     }
 }
 
-/// Textures of a foveated frame: atlases of color, depth and motion, with the contents of those of [`Targets`].
+/// Textures of a foveated frame.
 #[derive(Debug)]
 pub struct FoveatedTargets {
-    /// Linear color.
-    pub color: Texture,
-    /// Near plane divided by distance; 0 where there is no surface.
-    pub depth: Texture,
-    /// Motion in pixels of the full-rate frame, y down, previous minus current.
-    pub motion: Texture,
-    pub(super) views: [TextureView; 3],
-    /// Multisampled color and depth.
-    pub(super) samples: [TextureView; 2],
+    /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
+    pub atlas: Targets,
     /// Depth of the color of lattices with one sample per pixel.
     pub(super) point_depth: TextureView,
 }
@@ -66,14 +59,13 @@ pub struct FoveatedTargets {
 impl FoveatedTargets {
     /// Targets for atlases of at most `size` texels.
     pub fn new(device: &Device, size: [u32; 2]) -> Self {
-        let Targets { color, depth, motion, views, samples } = Targets::new(device, size);
         let point_depth = attachment(device, size, DEPTH_FORMAT, 1).create_view(&Default::default());
-        Self { color, depth, motion, views, samples, point_depth }
+        Self { atlas: Targets::new(device, size), point_depth }
     }
 
     /// Replaces the targets by larger ones if an atlas of `size` texels does not fit.
     pub fn fit(&mut self, device: &Device, size: [u32; 2]) {
-        let held = [self.color.width(), self.color.height()];
+        let held = [self.atlas.color.width(), self.atlas.color.height()];
         if (0..2).any(|i| size[i] > held[i]) {
             *self = Self::new(device, [0, 1].map(|i| size[i].max(held[i])));
         }

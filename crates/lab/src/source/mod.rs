@@ -44,6 +44,8 @@ use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::DeviceFrame;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use afterimage::Lattices;
 use glam::DMat4;
 
 /// Properties of a source that are known before its first frame is read.
@@ -100,6 +102,17 @@ pub trait FrameSource {
         _gaze_px: [f32; 2],
         _guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
+        Ok(None)
+    }
+
+    /// The frame at `index` with the samples of `lattices` alone, in an atlas ([`Lattices::in_atlas`]) on a device: color,
+    /// depth and motion. `None` if the source does not render such frames: samples are then taken from the full-rate
+    /// frame.
+    ///
+    /// # Errors
+    /// As for [`frame`](Self::frame).
+    #[cfg(feature = "full")]
+    fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<DeviceFrame>, InputError> {
         Ok(None)
     }
 

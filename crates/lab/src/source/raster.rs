@@ -7,9 +7,10 @@ use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::device::Headless;
 use crate::error::InputError;
 use crate::frame::{DeviceFrame, SourceFrame};
-use crate::raster::{Raster, RasterSettings};
+use crate::raster::{FoveatedTargets, Raster, RasterSettings, Targets};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
+use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ pub struct RasterSource {
     scene: Scene,
     camera: SceneCamera,
     raster: Raster,
+    /// None before the first foveated frame.
+    foveated: Option<FoveatedTargets>,
     fps: f64,
 }
 
@@ -83,7 +86,7 @@ impl RasterSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, device, scene, camera, raster, fps: f64::from(fps) })
+        Ok(Self { info, device, scene, camera, raster, foveated: None, fps: f64::from(fps) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -111,6 +114,26 @@ impl RasterSource {
         self.raster.record(&self.device.device, &mut encoder, &view, &previous);
         self.device.queue.submit([encoder.finish()]);
         &self.raster
+    }
+
+    /// Renders the samples of `lattices` of frame `index`, in the atlas of [`Lattices::in_atlas`], without reading them
+    /// back: [`Raster::record_foveated`].
+    pub fn render_foveated(&mut self, index: u64, lattices: &Lattices) -> &FoveatedTargets {
+        let ([view, previous], times) = self.views(index);
+        let (lattices, size) = lattices.in_atlas();
+        let device = &self.device.device;
+        self.raster.pose(&self.scene, times[0], times[1]);
+        let targets = self.foveated.get_or_insert_with(|| FoveatedTargets::new(device, size));
+        targets.fit(device, size);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
+        self.device.queue.submit([encoder.finish()]);
+        targets
+    }
+
+    /// Distance of the near plane in metres.
+    pub fn near(&self) -> f32 {
+        self.raster.near()
     }
 }
 
@@ -141,6 +164,16 @@ impl FrameSource for RasterSource {
             cut: index == 0,
             nonfinite,
         })
+    }
+
+    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<DeviceFrame>, InputError> {
+        let device = self.device.clone();
+        let near = self.raster.near();
+        let Targets { color, depth, motion, .. } = &self.render_foveated(index, lattices).atlas;
+        let (color, depth, motion) = (color.clone(), depth.clone(), motion.clone());
+        device.wait();
+        device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
+        Ok(Some(DeviceFrame { device, color, depth, motion, near }))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {
