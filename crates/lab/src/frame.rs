@@ -70,3 +70,32 @@ pub struct DeviceFrame {
     /// Distance of the near plane.
     pub near: f32,
 }
+
+/// The samples of a sparse frame, rendered alone: each lattice as a small view of its own.
+#[cfg(feature = "full")]
+#[derive(Clone, Debug)]
+pub struct SparseFrame {
+    /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
+    pub atlas: DeviceFrame,
+    /// The lattices, and where they lie in the atlases.
+    pub lattices: afterimage::Lattices,
+}
+
+#[cfg(feature = "full")]
+impl DeviceFrame {
+    /// Waits for all submitted work, then reads the color. Pixels that are not finite are black.
+    pub fn read_color(&self) -> Image<[f32; 3]> {
+        let color = crate::raster::read_color(&self.device, &self.color);
+        color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
+    }
+
+    /// Waits for all submitted work, then reads distance along the view axis; infinity where there is no surface.
+    pub fn read_distance(&self) -> Image<f32> {
+        crate::raster::read_distance(&self.device, &self.depth, self.near)
+    }
+
+    /// Waits for all submitted work, then reads the motion vectors.
+    pub fn read_motion(&self) -> Image<[f32; 2]> {
+        self.device.read(&self.motion, 0)
+    }
+}

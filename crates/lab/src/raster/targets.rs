@@ -32,19 +32,29 @@ impl Targets {
 
     /// Waits for all submitted work, then reads the color.
     pub fn read_color(&self, device: &Headless) -> Image<[f32; 3]> {
-        device.read::<[u16; 4]>(&self.color, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
+        read_color(device, &self.color)
     }
 
     /// Waits for all submitted work, then reads distance along the view axis in metres; infinity where there is no
     /// surface. `near` is [`Raster::near`](super::Raster::near).
     pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
-        device.read::<f32>(&self.depth, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
+        read_distance(device, &self.depth, near)
     }
 
     /// Waits for all submitted work, then reads the motion vectors.
     pub fn read_motion(&self, device: &Headless) -> Image<[f32; 2]> {
         device.read::<[f32; 2]>(&self.motion, 0)
     }
+}
+
+/// Reads a texture of [`COLOR_FORMAT`].
+pub(crate) fn read_color(device: &Headless, texture: &Texture) -> Image<[f32; 3]> {
+    device.read::<[u16; 4]>(texture, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
+}
+
+/// Reads a texture of [`DEPTH_FORMAT`] as distances.
+pub(crate) fn read_distance(device: &Headless, texture: &Texture, near: f32) -> Image<f32> {
+    device.read::<f32>(texture, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
 }
 
 /// Textures of a foveated frame.

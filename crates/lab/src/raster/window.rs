@@ -3,9 +3,42 @@
 use super::frame::Pixels;
 use super::vertices::{AlphaKind, Chunks, DrawRange};
 use crate::trace::view::View;
-use afterimage::Lattice;
+use afterimage::{Lattice, Lattices};
 use glam::DVec3;
 use std::ops::Range;
+
+/// Where foveated frames have the samples of their lattices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AtlasLayout {
+    /// Below each other, in an atlas as small as they are. Depth and color of the full-rate lattice differ from those of
+    /// the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
+    #[default]
+    Compact,
+    /// The full-rate lattice at its own pixels of an atlas as large as the frame, the others below that: the full-rate
+    /// frame's viewport and a scissor. Depth, motion and color are the full-rate frame's, bit for bit. Costs the memory
+    /// of full-rate targets.
+    InPlace,
+}
+
+impl AtlasLayout {
+    /// `lattices` in an atlas, finest first, and the atlas's size in texels. `size`: that of the full-rate frame in
+    /// pixels.
+    pub fn place(self, lattices: &Lattices, size: [u32; 2]) -> (Lattices, [u32; 2]) {
+        let mut placed = lattices.as_slice().to_vec();
+        let mut used = if self == Self::InPlace { size } else { [0; 2] };
+        for lattice in &mut placed {
+            let corner = match (self, lattice.step) {
+                (Self::InPlace, 1) => lattice.first_px,
+                // Pixels form the same quads of 2 x 2 as in the full-rate frame, for the same derivatives.
+                (Self::Compact, 1) => [lattice.first_px[0] % 2, used[1] + lattice.first_px[1] % 2],
+                _ => [0, used[1]],
+            };
+            lattice.atlas_texel = Some(corner);
+            used = [0, 1].map(|i| used[i].max(corner[i] + lattice.points[i]));
+        }
+        (Lattices::new(&placed).expect("only the texels are new"), used)
+    }
+}
 
 /// Part of a target, and the pixels of the full-rate frame that it shows: `first_px + step * (i, j)`.
 #[derive(Clone, Debug)]

@@ -42,7 +42,7 @@ pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::DeviceFrame;
+use crate::frame::{DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 #[cfg(feature = "full")]
 use afterimage::Lattices;
@@ -105,14 +105,13 @@ pub trait FrameSource {
         Ok(None)
     }
 
-    /// The frame at `index` with the samples of `lattices` alone, in an atlas ([`Lattices::in_atlas`]) on a device: color,
-    /// depth and motion. `None` if the source does not render such frames: samples are then taken from the full-rate
-    /// frame.
+    /// The frame at `index` with the samples of `lattices` alone: color, depth and motion in atlases on a device. `None` if the
+    /// source does not render such frames: samples are then taken from the full-rate frame.
     ///
     /// # Errors
     /// As for [`frame`](Self::frame).
     #[cfg(feature = "full")]
-    fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<DeviceFrame>, InputError> {
+    fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         Ok(None)
     }
 

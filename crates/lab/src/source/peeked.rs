@@ -3,7 +3,7 @@
 use super::{CameraPose, FrameSource, SourceInfo};
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::DeviceFrame;
+use crate::frame::{DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 #[cfg(feature = "full")]
 use afterimage::Lattices;
@@ -48,7 +48,7 @@ impl FrameSource for PeekedSource<'_> {
     }
 
     #[cfg(feature = "full")]
-    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<DeviceFrame>, InputError> {
+    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         self.source.sparse(index, lattices)
     }
 

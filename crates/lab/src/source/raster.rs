@@ -6,8 +6,8 @@ use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::device::Headless;
 use crate::error::InputError;
-use crate::frame::{DeviceFrame, SourceFrame};
-use crate::raster::{FoveatedTargets, Raster, RasterSettings, Targets};
+use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
+use crate::raster::{AtlasLayout, FoveatedTargets, Raster, RasterSettings, Targets};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
 use afterimage::Lattices;
@@ -116,11 +116,16 @@ impl RasterSource {
         &self.raster
     }
 
-    /// Renders the samples of `lattices` of frame `index`, in the atlas of [`Lattices::in_atlas`], without reading them
-    /// back: [`Raster::record_foveated`].
-    pub fn render_foveated(&mut self, index: u64, lattices: &Lattices) -> &FoveatedTargets {
+    /// Renders the samples of `lattices` of frame `index`, without reading them back: [`Raster::record_foveated`].
+    /// Returns the targets, and the lattices with their places in the atlases.
+    pub fn render_foveated(
+        &mut self,
+        index: u64,
+        lattices: &Lattices,
+        layout: AtlasLayout,
+    ) -> (&FoveatedTargets, Lattices) {
         let ([view, previous], times) = self.views(index);
-        let (lattices, size) = lattices.in_atlas();
+        let (lattices, size) = layout.place(lattices, self.info.size);
         let device = &self.device.device;
         self.raster.pose(&self.scene, times[0], times[1]);
         let targets = self.foveated.get_or_insert_with(|| FoveatedTargets::new(device, size));
@@ -128,12 +133,7 @@ impl RasterSource {
         let mut encoder = device.create_command_encoder(&Default::default());
         self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
         self.device.queue.submit([encoder.finish()]);
-        targets
-    }
-
-    /// Distance of the near plane in metres.
-    pub fn near(&self) -> f32 {
-        self.raster.near()
+        (targets, lattices)
     }
 }
 
@@ -166,14 +166,14 @@ impl FrameSource for RasterSource {
         })
     }
 
-    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<DeviceFrame>, InputError> {
-        let device = self.device.clone();
-        let near = self.raster.near();
-        let Targets { color, depth, motion, .. } = &self.render_foveated(index, lattices).atlas;
+    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
+        let (device, near) = (self.device.clone(), self.raster.near());
+        let (targets, lattices) = self.render_foveated(index, lattices, AtlasLayout::default());
+        let Targets { color, depth, motion, .. } = &targets.atlas;
         let (color, depth, motion) = (color.clone(), depth.clone(), motion.clone());
         device.wait();
         device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
-        Ok(Some(DeviceFrame { device, color, depth, motion, near }))
+        Ok(Some(SparseFrame { atlas: DeviceFrame { device, color, depth, motion, near }, lattices }))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {
