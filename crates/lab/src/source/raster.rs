@@ -30,8 +30,8 @@ pub struct RasterSource {
     scene: Scene,
     camera: SceneCamera,
     raster: Raster,
-    /// None before the first foveated frame.
-    foveated: Option<FoveatedTargets>,
+    /// By layout of their atlases; none before the first such frame.
+    foveated: [Option<FoveatedTargets>; 2],
     fps: f64,
 }
 
@@ -86,7 +86,7 @@ impl RasterSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, device, scene, camera, raster, foveated: None, fps: f64::from(fps) })
+        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], fps: f64::from(fps) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -128,7 +128,7 @@ impl RasterSource {
         let (lattices, size) = layout.place(lattices, self.info.size);
         let device = &self.device.device;
         self.raster.pose(&self.scene, times[0], times[1]);
-        let targets = self.foveated.get_or_insert_with(|| FoveatedTargets::new(device, size));
+        let targets = self.foveated[layout as usize].get_or_insert_with(|| FoveatedTargets::new(device, size));
         targets.fit(device, size);
         let mut encoder = device.create_command_encoder(&Default::default());
         self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
