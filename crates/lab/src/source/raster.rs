@@ -166,9 +166,10 @@ impl FrameSource for RasterSource {
         })
     }
 
+    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact.
     fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         let (device, near) = (self.device.clone(), self.raster.near());
-        let (targets, lattices) = self.render_foveated(index, lattices, AtlasLayout::default());
+        let (targets, lattices) = self.render_foveated(index, lattices, AtlasLayout::InPlace);
         let Targets { color, depth, motion, .. } = &targets.atlas;
         let (color, depth, motion) = (color.clone(), depth.clone(), motion.clone());
         device.wait();

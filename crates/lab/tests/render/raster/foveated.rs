@@ -1,13 +1,14 @@
 //! Foveated frames against the full-rate frame's pixels.
 
 use super::rig::{FAST, Frame, device};
-use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
-use afterimage_lab::device::Headless;
+use afterimage::{Filter, Foveation, Image, Lattice, Lattices, Method, Settings, ViewGeometry};
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry};
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, Raster, Targets};
 use afterimage_lab::scene::{
     Environment, Material, Pose, Scene, SceneLimits, Texture, TextureRef, Triangles, Wrap, builtin,
 };
-use afterimage_lab::source::SceneCamera;
+use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};
 use afterimage_lab::trace::view::View;
 use glam::{DMat4, DQuat, DVec3, Vec2, vec3};
 use proptest::prelude::*;
@@ -15,13 +16,14 @@ use std::sync::Arc;
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// PSNR that coarse samples reach away from silhouettes. Texture levels of detail come from differences over a step,
-/// instead of over a pixel; vertices are snapped to 1/256 of a step.
+/// PSNR that samples of steps up to 16 reach away from silhouettes. Texture levels of detail come from differences over
+/// a step instead of over a pixel, and vertices are snapped to 1/256 of a step. Measured: 53 dB and more at step 2, 49 at
+/// step 4, 47 at step 8, 45 at step 16, 37 at step 32.
 const SMOOTH_DB: f64 = 40.0;
-/// Largest difference of motion away from silhouettes, in pixels: that of snapped vertices.
-const MOTION_PX: f32 = 0.05;
+/// Largest difference of motion away from silhouettes, in pixels.
+const MOTION_PX: f32 = 1e-3;
 /// Largest relative difference of distance away from silhouettes.
-const DISTANCE: f32 = 5e-3;
+const DISTANCE: f32 = 2e-5;
 
 /// A floor and a wall of random texels, whose mean is gray: a wrong level of detail shows.
 fn noise() -> Scene {
@@ -214,7 +216,7 @@ fn foveal_samples_have_the_bits_of_the_full_rate_frame() {
             assert!(d.samples > 500 && d.bits == [0; 3]);
             // Planted: the neighbour's pixel.
             let planted = difference(&full, &seen.atlas, fovea, 1);
-            assert!(planted.bits.iter().all(|&n| 10 * n > planted.samples), "{planted:?}");
+            assert!(planted.bits.iter().any(|&n| 10 * n > planted.samples), "{planted:?}");
 
             // In the smallest atlas, rounding differs.
             let seen = rig.foveated(&views, &lattices, AtlasLayout::Compact);
@@ -237,15 +239,16 @@ fn coarse_samples_are_pixels_of_the_full_rate_frame() {
             for lattice in seen.lattices.as_slice().iter().filter(|l| l.step > 1) {
                 let d = difference(&full, &seen.atlas, lattice, 0);
                 println!("{name}, step {}: {d:?}", lattice.step);
-                assert!(d.smooth > 100 && d.is_small());
+                assert!(d.smooth > 20 && d.is_small());
                 // Planted: samples of the neighbouring pixel.
                 let planted = difference(&full, &seen.atlas, lattice, 1);
-                assert!(!planted.is_small() && planted.motion_px.max(planted.distance) > 0.0, "{planted:?}");
+                assert!(!planted.is_small(), "{planted:?}");
             }
             // Planted: motion in pixels of the small view.
             let far = *seen.lattices.as_slice().last().unwrap();
             seen.atlas.motion = seen.atlas.motion.map(|m| m.map(|v| v / far.step as f32));
-            assert!(difference(&full, &seen.atlas, &far, 0).motion_px > 10.0 * MOTION_PX);
+            let planted = difference(&full, &seen.atlas, &far, 0);
+            assert!(planted.motion_px > 100.0 * MOTION_PX, "{planted:?}");
         }
     }
 }
@@ -289,8 +292,8 @@ fn lattices_may_reach_beyond_the_frame() {
     let stack = [
         Lattice { step: 1, first_px: [300, 170], points: [60, 40], atlas_texel: None },
         Lattice { step: 2, first_px: [281, 150], points: [40, 33], atlas_texel: None },
-        Lattice { step: 16, first_px: [9, 4], points: [30, 20], atlas_texel: None },
-        Lattice { step: 32, first_px: [31, 30], points: [10, 6], atlas_texel: None },
+        Lattice { step: 8, first_px: [163, 4], points: [30, 20], atlas_texel: None },
+        Lattice { step: 16, first_px: [15, 14], points: [20, 12], atlas_texel: None },
     ];
     for layout in [AtlasLayout::Compact, AtlasLayout::InPlace] {
         let seen = rig.foveated(&views, &Lattices::new(&stack).unwrap(), layout);
@@ -302,6 +305,45 @@ fn lattices_may_reach_beyond_the_frame() {
             let d = difference(&full, &seen.atlas, lattice, 0);
             println!("step {}: {d:?}", lattice.step);
             assert!(d.is_small());
+        }
+    }
+}
+
+/// One walk with all methods: on the device, where samples stay, and read back for methods on the CPU.
+#[test]
+fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
+    const SMALL: [u32; 2] = [158, 90];
+    let Some(device) = device() else { return };
+    for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
+        let scene = noise();
+        let camera = SceneCamera::choose(&scene, Some("walk"), SMALL, None).unwrap();
+        let view = *camera.geometry();
+        let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
+        let foveation = Foveation { filter: Filter::Sparse, ..FOVEATION() };
+        let methods = [Method::None, Method::Taa, Method::Taau, Method::Wrs, Method::Smr];
+        let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
+        let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
+            let pipeline = Pipeline::new(view, foveation, &kinds, false, &[], &backend).unwrap();
+            pipeline.with_sparse(geometry, SampleOrder::Bayer)
+        });
+        for index in 0..4 {
+            let frame = source.frame(index).unwrap();
+            let rendered = source.device_frame();
+            let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
+            let lattices = pipelines[0].lattices(gaze_px, index).unwrap();
+            let sparse = source.sparse(index, &lattices).unwrap().unwrap();
+            let [gpu, cpu] = &mut pipelines;
+            let gpu = gpu.step_sparse(index, &frame, gaze_px, rendered.as_ref(), &sparse).unwrap();
+            let cpu = cpu.step_sparse(index, &frame, gaze_px, None, &sparse).unwrap();
+            for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
+                assert_eq!(gpu.image, cpu.image, "{geometry:?}, frame {index}, {}", method.name());
+            }
+            // Without a method, foveal pixels are those of the full-rate frame.
+            let fovea = lattices.as_slice()[0];
+            let [[left, top], [right, bottom]] = fovea.covered_px();
+            for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x as usize, y as usize))) {
+                assert_eq!(gpu.outputs[0].image.at(x, y), frame.color.at(x, y), "({x}, {y})");
+            }
         }
     }
 }
