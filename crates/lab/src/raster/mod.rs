@@ -15,6 +15,9 @@
 //! [`MotionConvention`](afterimage::MotionConvention). Motion includes the camera's and the vertices' (rigid, skinned,
 //! morphing); the sky's is the camera's rotation.
 //!
+//! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
+//! of its own in an atlas. Triangles outside a view are left out in groups, at full rate as well.
+//!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
 //!   writing the color pass' depth. Depth and motion include them where they are more than half opaque, as in

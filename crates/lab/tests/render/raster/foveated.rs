@@ -319,7 +319,7 @@ fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
         let camera = SceneCamera::choose(&scene, Some("walk"), SMALL, None).unwrap();
         let view = *camera.geometry();
         let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
-        let foveation = Foveation { filter: Filter::Sparse, ..FOVEATION() };
+        let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..FOVEATION() };
         let methods = [Method::None, Method::Taa, Method::Taau, Method::Wrs, Method::Smr];
         let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
         let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
