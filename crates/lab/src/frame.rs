@@ -80,22 +80,3 @@ pub struct SparseFrame {
     /// The lattices, and where they lie in the atlases.
     pub lattices: afterimage::Lattices,
 }
-
-#[cfg(feature = "full")]
-impl DeviceFrame {
-    /// Waits for all submitted work, then reads the color. Pixels that are not finite are black.
-    pub fn read_color(&self) -> Image<[f32; 3]> {
-        let color = crate::raster::read_color(&self.device, &self.color);
-        color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
-    }
-
-    /// Waits for all submitted work, then reads distance along the view axis; infinity where there is no surface.
-    pub fn read_distance(&self) -> Image<f32> {
-        crate::raster::read_distance(&self.device, &self.depth, self.near)
-    }
-
-    /// Waits for all submitted work, then reads the motion vectors.
-    pub fn read_motion(&self) -> Image<[f32; 2]> {
-        self.device.read(&self.motion, 0)
-    }
-}

@@ -95,9 +95,9 @@ pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
 #[cfg(feature = "full")]
 impl Pipeline {
     /// As [`step`](Self::step), for a sparse frame that its source rendered with the samples of
-    /// [`lattices`](Self::lattices) for the gaze of [`look`](Self::look). `frame` is the full-rate frame, for the metrics
-    /// and, with [`SparseGeometry::Full`], for depth and motion; `rendered` is that frame where it is on a device, too.
-    /// Samples on the pipeline's device stay there.
+    /// [`lattices`](Self::lattices) for the gaze of [`look`](Self::look). `frame` is the full-rate frame, for the
+    /// metrics and, with [`SparseGeometry::Full`], for depth and motion; `rendered` is that frame where it is on a
+    /// device, too. Samples on the pipeline's device stay there.
     ///
     /// # Errors
     /// As for `step`.
@@ -117,10 +117,10 @@ impl Pipeline {
         let view = ViewFrame { lattices: Some(lattices), ..self.view(frame, gaze_px) };
         let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
         let atlas = &sparse.atlas;
-        let color = self.foveates_in_memory().then(|| atlas.read_color());
+        let color = self.foveates_in_memory().then(|| color_of(atlas));
         #[cfg(feature = "ablation")]
         let color = color.map(|color| super::poisoned(color, self.poison, index as u32));
-        let geometry = (color.is_some() && has_geometry).then(|| (atlas.read_distance(), atlas.read_motion()));
+        let geometry = (color.is_some() && has_geometry).then(|| geometry_of(atlas));
         if let Some(device) = &mut self.device {
             let gpu = device.gpu.clone();
             let is_here = |frame: &&DeviceFrame| Arc::ptr_eq(&frame.device, &gpu);
@@ -150,4 +150,18 @@ impl Pipeline {
         let outputs = self.run(index, frame, &view, candidate.as_ref(), None)?;
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
+}
+
+/// Waits for all submitted work, then reads the color. Pixels that are not finite are black, as in imported frames.
+#[cfg(feature = "full")]
+fn color_of(atlas: &DeviceFrame) -> Image<[f32; 3]> {
+    let color = crate::raster::read_color(&atlas.device, &atlas.color);
+    color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
+}
+
+/// Waits for all submitted work, then reads distance and motion vectors.
+#[cfg(feature = "full")]
+fn geometry_of(atlas: &DeviceFrame) -> (Image<f32>, Image<[f32; 2]>) {
+    let DeviceFrame { device, depth, motion, near, .. } = atlas;
+    (crate::raster::read_distance(device, depth, *near), device.read(motion, 0))
 }

@@ -75,7 +75,8 @@ fn row(v: DVec3) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    /// Uniforms for camera `view`, previous camera `previous` and near plane `near` in metres, of the pixels of `window`.
+    /// Uniforms of the pixels of `window`, for camera `view`, previous camera `previous` and near plane `near` in
+    /// metres.
     pub fn new(view: &View, previous: &View, near: f32, window: &Window) -> Self {
         let (current_px, previous_px) = (Pixels::of(view), Pixels::of(previous));
         let previous_px_from_px = [current_px.right, current_px.down, current_px.corner]

@@ -58,11 +58,13 @@ impl Raster {
         self.color_pass(encoder, target, depth, &self.pipelines.color, &sections, &blended);
     }
 
-    /// Records a frame foveated: each lattice of `lattices`, which lie in an atlas ([`Lattices::in_atlas`]), as a view of
-    /// its own in `targets`. Sample (i, j) of a lattice shows the full-rate frame's pixel `first_px + step * (i, j)`;
-    /// motion is in pixels of the full-rate frame. `view` and `previous` are those of the full-rate frame.
+    /// Records a foveated frame: each lattice of `lattices`, which lie in an atlas
+    /// ([`AtlasLayout::place`](super::AtlasLayout::place)), as a view of its own in `targets`. Sample (i, j) of a
+    /// lattice shows the full-rate frame's pixel `first_px + step * (i, j)`; motion is in pixels of the full-rate
+    /// frame. `view` and `previous` are those of the full-rate frame.
     ///
-    /// Lattices of step 1 have four samples per pixel, as the full-rate frame has; the others one, at the pixel's centre.
+    /// Lattices of step 1 have four samples per pixel, as the full-rate frame has; the others one, at the pixel's
+    /// centre.
     ///
     /// # Panics
     /// If the atlas is larger than `targets`.

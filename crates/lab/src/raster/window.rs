@@ -10,8 +10,8 @@ use std::ops::Range;
 /// Where foveated frames have the samples of their lattices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AtlasLayout {
-    /// Below each other, in an atlas as small as they are. Depth and color of the full-rate lattice differ from those of
-    /// the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
+    /// Below each other, in an atlas as small as they are. Depth and color of the full-rate lattice differ from those
+    /// of the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
     #[default]
     Compact,
     /// The full-rate lattice at its own pixels of an atlas as large as the frame, the others below that: the full-rate
@@ -68,8 +68,8 @@ impl Window {
         }
     }
 
-    /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved by
-    /// whole pixels, so that its vertices get the full-rate frame's positions.
+    /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved
+    /// by whole pixels, so that its vertices get the full-rate frame's positions.
     pub fn of_lattice(lattice: &Lattice, size: [u32; 2]) -> Self {
         let texel = lattice.atlas_texel.unwrap_or_default();
         let (first, step) = (lattice.first_px, f64::from(lattice.step));

@@ -105,8 +105,8 @@ pub trait FrameSource {
         Ok(None)
     }
 
-    /// The frame at `index` with the samples of `lattices` alone: color, depth and motion in atlases on a device. `None` if the
-    /// source does not render such frames: samples are then taken from the full-rate frame.
+    /// The frame at `index` with the samples of `lattices` alone: color, depth and motion in atlases on a device.
+    /// `None` if the source does not render such frames: samples are then taken from the full-rate frame.
     ///
     /// # Errors
     /// As for [`frame`](Self::frame).

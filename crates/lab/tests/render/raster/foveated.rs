@@ -17,8 +17,8 @@ use std::sync::Arc;
 const SIZE: [u32; 2] = [320, 180];
 
 /// PSNR that samples of steps up to 16 reach away from silhouettes. Texture levels of detail come from differences over
-/// a step instead of over a pixel, and vertices are snapped to 1/256 of a step. Measured: 53 dB and more at step 2, 49 at
-/// step 4, 47 at step 8, 45 at step 16, 37 at step 32.
+/// a step instead of over a pixel, and vertices are snapped to 1/256 of a step. Measured: 53 dB and more at step 2, 49
+/// at step 4, 47 at step 8, 45 at step 16, 37 at step 32.
 const SMOOTH_DB: f64 = 40.0;
 /// Largest difference of motion away from silhouettes, in pixels.
 const MOTION_PX: f32 = 1e-3;
