@@ -56,7 +56,7 @@ impl SamplePasses {
             light: ComputeShader::with_bindings(device, "afterimage light", light, &bindings),
             observed,
             lights,
-            absent: Placeholders::new(device, HistoryLayout::Kept),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
         }
     }
 
@@ -161,7 +161,7 @@ fn results(device: &Device, desc: &ContextDesc) -> Texture {
 
 /// Whether contexts of `desc` reconstruct sparse frames.
 pub(super) fn is_needed(desc: &ContextDesc) -> bool {
-    desc.settings.history_layout() == HistoryLayout::Kept
+    matches!(desc.settings.history_layout(), HistoryLayout::Kept { .. })
 }
 
 /// Bytes of the results for samples, if the context has them.

@@ -150,6 +150,14 @@ pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
 }
 
+/// Difference of a sample and of history at its pixel that noise makes on average: the standard deviation at a luma, in
+/// units of [`root_difference`](super::matched::root_difference).
+#[inline]
+pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
+    let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
+    root_slope(luma) * (pooled_variance(history, candidate) * inverse_samples).sqrt()
+}
+
 /// Noise of the output color. `share`: history's share in it; `finer`: degree to which history replaced the candidate
 /// as the finer sample, in which case the candidate's samples do not count.
 #[inline]

@@ -8,7 +8,9 @@
 
 use super::approx;
 use super::kept::{Kept, pack_color, unpack_color};
+use super::color::luma;
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
+use super::noise::{Noise, discount_coarser, history_share, noise_after, noise_confidence};
 use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
@@ -272,4 +274,41 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
     let kept = Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
     Reconstructed { color, kept, share }
+}
+
+/// Result of [`accumulate`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accumulated {
+    /// Color to show, and sample to store.
+    pub result: Reconstructed,
+    /// Noise of that sample.
+    pub noise: Noise,
+}
+
+/// As [`reconstruct`], for noisy samples: averages history and candidate by their numbers of samples. `past`: noise of
+/// the kept sample; `now`: that of the candidate.
+#[inline]
+pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
+    let acceptance = r.fit * r.trust;
+    let history = relit(r.history, r.gain, r.range);
+    let bright = luma(history);
+    let sure = noise_confidence(past, bright);
+    let unsure = 1.0 - noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);
+    let finer = ((r.lod - r.history_lod) / FINER_WIDTH).clamp(0.0, 1.0) * sure;
+    let coarser = ((r.history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0) * (1.0 - unsure);
+    let known = history_share(discount_coarser(past, now, r.history_lod - r.lod), now, r.accumulate);
+    let alike = ((1.0 - finer) * (1.0 - coarser)) * known;
+    let share = (finer + alike) * acceptance;
+    let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
+    let place = r.nearest.place_px;
+    let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
+    let lod = r.lod + (r.history_lod - r.lod) * share;
+    let kept = if near && share >= 0.5 {
+        let sample = relit(r.nearest.color, r.gain, r.range);
+        Kept { color: r.candidate + (sample - r.candidate) * share, lod, ..r.nearest }
+    } else {
+        Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
+    };
+    let noise = noise_after(past, now, share, finer * acceptance);
+    Accumulated { result: Reconstructed { color, kept, share }, noise }
 }

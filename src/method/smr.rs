@@ -32,7 +32,7 @@ pub(super) static ENTRY: Entry = Entry {
 
 fn history(settings: &Settings) -> HistoryLayout {
     if settings.foveation.filter == Filter::Sparse {
-        return HistoryLayout::Kept;
+        return HistoryLayout::Kept { noisy: settings.noisy };
     }
     // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level
     // coarser.
