@@ -1,5 +1,7 @@
+//#use color
 //#use kept
 //#use matched
+//#use noise
 // Twin of src/kernel/sparse.rs, which documents the functions.
 
 const STILL_ERROR: f32 = 0.3;
@@ -16,6 +18,8 @@ const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
+const BLURRED_FRAMES: f32 = 8.0;
+const STAY_SHARE: f32 = 0.5;
 
 // sparse::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
@@ -186,4 +190,40 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     }
     let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
     return Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
+}
+
+struct Accumulated {
+    result: Reconstructed,
+    noise: Noise,
+}
+
+// sparse::accumulate
+fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
+    let acceptance = r.fit * r.trust;
+    let history = relit(r.history, r.gains, r.lowest, r.highest);
+    let bright = luma(history);
+    // The farther the samples are, the less they say of this pixel.
+    let now = Noise(candidate.samples * exp2(-r.lod), candidate.variance);
+    let certain = noise_confidence(past, bright);
+    let sharp = noise_confidence(Noise(now.samples, past.variance), bright);
+    let finer = clamp((r.lod - r.history_lod) / FINER_WIDTH, 0.0, 1.0) * certain;
+    let blurred = clamp((r.history_lod - r.lod) / COARSER_WIDTH, 0.0, 1.0);
+    let most = min(past.samples, BLURRED_FRAMES * now.samples);
+    let known = Noise(past.samples + (most - past.samples) * blurred, past.variance);
+    let alike = (1.0 - finer) * (1.0 - blurred * sharp);
+    let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
+    var shown = history;
+    if share != 1.0 {
+        shown = r.candidate + (history - r.candidate) * share;
+    }
+    let lod = r.lod + (r.history_lod - r.lod) * share;
+    let noise = noise_after(past, now, share, finer * acceptance);
+    let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
+    if near && share >= STAY_SHARE {
+        let sampled = relit(r.nearest.color, r.gains, r.lowest, r.highest);
+        let kept = r.candidate + (sampled - r.candidate) * share;
+        let next = Kept(kept, lod, r.nearest.disparity, r.nearest.place_px);
+        return Accumulated(Reconstructed(shown, next, share), noise);
+    }
+    return Accumulated(Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share), noise);
 }

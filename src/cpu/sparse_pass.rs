@@ -18,7 +18,7 @@ use crate::kernel::kept::{
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
-use crate::kernel::noise::{Noise, expected_noise, expose_noise, pack_noise, unpack_noise};
+use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, expected_noise, expose_noise, pack_noise, unpack_noise};
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::TAP_RELATIVE;
@@ -337,7 +337,7 @@ impl View<'_> {
             let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
             let own = Candidate { color, usable, lod: 0.0, noise: self.sample_noise(px), ..Candidate::NONE };
             let coarser = index + 1;
-            if !self.is_noisy() || !usable || coarser == self.lattices.len() || self.lattices[coarser].points[0] == 0 {
+            if !self.is_noisy() || !usable || coarser == self.lattices.len() || self.lattices[coarser].points.contains(&0) {
                 return own;
             }
             // The next lattice's samples say how well history fits.
@@ -349,7 +349,7 @@ impl View<'_> {
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         let mut nearest_px2 = f32::MAX;
         let mut own = None;
-        let (mut spread, mut variance) = (0.0, 0.0);
+        let mut noises = NoiseSum::default();
         for tap in 0..4 {
             let (right, below) = (tap & 1, tap >> 1);
             let point = [x.points[right as usize], y.points[below as usize]];
@@ -364,9 +364,7 @@ impl View<'_> {
             let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
             sums.add(color, weight, lit);
             if self.is_noisy() {
-                let noise = self.sample_noise(at);
-                spread += (weight * weight) / noise.samples;
-                variance += noise.variance * weight;
+                noises = add_noise(noises, self.sample_noise(at), weight);
             }
             (low, high) = (low.min(color), high.max(color));
             if alike {
@@ -386,8 +384,7 @@ impl View<'_> {
         } else if own.is_some() {
             self.sample_noise(px)
         } else {
-            // A weighted mean of samples is worth as many as its variance says.
-            Noise { samples: (sums.weight * sums.weight) / spread, variance: variance * (1.0 / sums.weight) }
+            mean_noise(noises)
         };
         Candidate {
             color: own.unwrap_or(sums.color * (1.0 / sums.weight)),

@@ -10,7 +10,7 @@ use super::approx;
 use super::kept::{Kept, pack_color, unpack_color};
 use super::color::luma;
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
-use super::noise::{Noise, discount_coarser, history_share, noise_after, noise_confidence};
+use super::noise::{Noise, history_share, noise_after, noise_confidence};
 use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
@@ -44,6 +44,11 @@ const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 /// Share of history from which on the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
+/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and keeps
+/// blurred history for longer.
+const BLURRED_FRAMES: f32 = 8.0;
+/// Noisy samples: share of history from which on the mean is stored in the place of the kept sample.
+const STAY_SHARE: f32 = 0.5;
 
 /// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
 /// sample's own pixel.
@@ -285,30 +290,36 @@ pub struct Accumulated {
     pub noise: Noise,
 }
 
-/// As [`reconstruct`], for noisy samples: averages history and candidate by their numbers of samples. `past`: noise of
-/// the kept sample; `now`: that of the candidate.
+/// As [`reconstruct`], for noisy samples: a mean of history and candidate by their numbers of samples. History replaces
+/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: that
+/// of the candidate.
+///
+/// The mean is stored in the place of the kept sample, so that history is not resampled.
 #[inline]
 pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let history = relit(r.history, r.gain, r.range);
     let bright = luma(history);
-    let sure = noise_confidence(past, bright);
-    let unsure = 1.0 - noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);
-    let finer = ((r.lod - r.history_lod) / FINER_WIDTH).clamp(0.0, 1.0) * sure;
-    let coarser = ((r.history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0) * (1.0 - unsure);
-    let known = history_share(discount_coarser(past, now, r.history_lod - r.lod), now, r.accumulate);
-    let alike = ((1.0 - finer) * (1.0 - coarser)) * known;
-    let share = (finer + alike) * acceptance;
+    // The farther the samples are, the less they say of this pixel.
+    let now = Noise { samples: now.samples * approx::exp2(-r.lod), variance: now.variance };
+    let certain = noise_confidence(past, bright);
+    let sharp = noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);
+    let finer = ((r.lod - r.history_lod) / FINER_WIDTH).clamp(0.0, 1.0) * certain;
+    let blurred = ((r.history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0);
+    let most = past.samples.min(BLURRED_FRAMES * now.samples);
+    let known = Noise { samples: past.samples + (most - past.samples) * blurred, variance: past.variance };
+    let alike = (1.0 - finer) * (1.0 - blurred * sharp);
+    let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
     let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
+    let lod = r.lod + (r.history_lod - r.lod) * share;
+    let noise = noise_after(past, now, share, finer * acceptance);
     let place = r.nearest.place_px;
     let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
-    let lod = r.lod + (r.history_lod - r.lod) * share;
-    let kept = if near && share >= 0.5 {
+    let kept = if near && share >= STAY_SHARE {
         let sample = relit(r.nearest.color, r.gain, r.range);
         Kept { color: r.candidate + (sample - r.candidate) * share, lod, ..r.nearest }
     } else {
         Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
     };
-    let noise = noise_after(past, now, share, finer * acceptance);
     Accumulated { result: Reconstructed { color, kept, share }, noise }
 }

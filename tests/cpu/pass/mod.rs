@@ -9,6 +9,7 @@ mod properties;
 mod reprojection;
 mod reservoirs;
 mod sparse;
+mod sparse_noise;
 mod trust;
 mod upsampling;
 mod views;
