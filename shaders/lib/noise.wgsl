@@ -92,10 +92,15 @@ fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES));
 }
 
+// noise::noise_visibility
+fn noise_visibility(history: Noise, around: f32) -> f32 {
+    let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
+    return smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
+}
+
 // noise::noise_confidence
 fn noise_confidence(history: Noise, around: f32) -> f32 {
-    let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
-    return 1.0 - smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
+    return 1.0 - noise_visibility(history, around);
 }
 
 // noise::discount_coarser

@@ -18,6 +18,7 @@ const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
+const MEAN_ERRORS: f32 = 3.0;
 const BLURRED_FRAMES: f32 = 8.0;
 const STAY_SHARE: f32 = 0.5;
 
@@ -44,6 +45,11 @@ fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
 // sparse::sureness
 fn sureness(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
+}
+
+// sparse::noisy_sureness
+fn noisy_sureness(lod: f32, past: Noise, around: f32) -> f32 {
+    return max(sureness(lod), noise_visibility(past, around));
 }
 
 // sparse::ratio
@@ -112,6 +118,13 @@ fn errors_left(o: Observation, gains: vec3<f32>) -> f32 {
 // sparse::fit
 fn fit(errors: f32, sure: f32) -> f32 {
     return 1.0 - sure * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
+}
+
+// sparse::mean_fit
+fn mean_fit(l: Light, sure: f32) -> f32 {
+    let inverse = 1.0 / l.weight;
+    let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * MEAN_ERRORS;
+    return 1.0 - sure * smooth_step(start, start, root_difference(l.sampled * inverse, l.history * inverse));
 }
 
 struct Lit {
@@ -200,8 +213,7 @@ struct Accumulated {
 // sparse::accumulate
 fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
-    let history = relit(r.history, r.gains, r.lowest, r.highest);
-    let bright = luma(history);
+    let bright = luma(r.history);
     // The farther the samples are, the less they say of this pixel.
     let now = Noise(candidate.samples * exp2(-r.lod), candidate.variance);
     let certain = noise_confidence(past, bright);
@@ -212,16 +224,15 @@ fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let known = Noise(past.samples + (most - past.samples) * blurred, past.variance);
     let alike = (1.0 - finer) * (1.0 - blurred * sharp);
     let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
-    var shown = history;
+    var shown = r.history;
     if share != 1.0 {
-        shown = r.candidate + (history - r.candidate) * share;
+        shown = r.candidate + (r.history - r.candidate) * share;
     }
     let lod = r.lod + (r.history_lod - r.lod) * share;
     let noise = noise_after(past, now, share, finer * acceptance);
     let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
     if near && share >= STAY_SHARE {
-        let sampled = relit(r.nearest.color, r.gains, r.lowest, r.highest);
-        let kept = r.candidate + (sampled - r.candidate) * share;
+        let kept = r.candidate + (r.nearest.color - r.candidate) * share;
         let next = Kept(kept, lod, r.nearest.disparity, r.nearest.place_px);
         return Accumulated(Reconstructed(shown, next, share), noise);
     }

@@ -85,7 +85,11 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         gains = vec3<f32>(1.0);
         with_gain = without;
     }
-    let left = fit(with_gain / sum.weight, min(sum.weight / sum.spatial, 1.0));
+    let sure = min(sum.weight / sum.spatial, 1.0);
+    var left = fit(with_gain / sum.weight, sure);
+    if NOISY != 0u {
+        left = min(left, mean_fit(sum, sure));
+    }
     return pack_lit(Lit(gains, left, is_own, own_disparity));
 }
 

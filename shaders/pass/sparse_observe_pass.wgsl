@@ -21,10 +21,13 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     }
     let contrast = root_difference(history.lowest, history.highest);
     var error = expected_error(history.lod, contrast, has_moved(motion, history.nearest.place_px));
+    var sure = sureness(history.lod);
     if NOISY != 0u {
-        error += expected_noise(stored_noise(kept.texel, view), noise_at(px, view), luma(history.color));
+        let past = stored_noise(kept.texel, view);
+        error += expected_noise(past, noise_at(px, view), luma(history.color));
+        sure = noisy_sureness(history.lod, past, luma(history.color));
     }
-    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sureness(history.lod)) << 16u));
+    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sure) << 16u));
 }
 
 @compute @workgroup_size(64, 1)

@@ -131,18 +131,19 @@ fn lattices_at(px: vec2<u32>, view: u32) -> PixelLattices {
     return PixelLattices(own, own);
 }
 
-// Candidate of a pixel at full rate, with what the samples of the next lattice say of its light.
-fn judged_by(around: Candidate, px: vec2<u32>, lattice: LatticeUniforms, view: u32) -> Candidate {
+// Candidate of a pixel at full rate. `fits`: how well history fits the samples of the next lattice.
+fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits: f32) -> Candidate {
     let given = sample_at(px - lattice.first_px, lattice, view);
     let own = color(given.xyz);
-    if !own.usable {
-        var none = no_candidate();
-        none.alpha = given.w;
-        return none;
+    var candidate = no_candidate();
+    candidate.alpha = given.w;
+    if own.usable {
+        candidate.color = own.color;
+        candidate.usable = true;
+        candidate.fit = fits;
+        candidate.noise = noise_at(px, view);
     }
-    let lowest = min(around.lowest, own.color);
-    let highest = max(around.highest, own.color);
-    return Candidate(own.color, true, 0.0, lowest, highest, around.gains, around.fit, given.w, noise_at(px, view));
+    return candidate;
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
@@ -152,7 +153,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     let lattice = lattices.own;
     var candidate = candidate_at(px, lattices.judging, view, disparity_now);
     if NOISY != 0u && lattice.level == 0u {
-        candidate = judged_by(candidate, px, lattice, view);
+        candidate = full_rate_candidate(px, lattice, view, candidate.fit);
     }
     let previous = kept_source(px, view, motion, disparity_now);
     let full_rate = candidate.usable && lattice.level == 0u && NOISY == 0u;

@@ -18,14 +18,17 @@ use crate::kernel::kept::{
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
-use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, expected_noise, expose_noise, pack_noise, unpack_noise};
+use crate::kernel::noise::{
+    Noise, NoiseSum, add_noise, expected_noise, expose_noise, mean_noise, pack_noise, unpack_noise,
+};
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::TAP_RELATIVE;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left, expected_error, fit,
-    neighbour_weight, pack_lit, reconstruct, relight, sureness, unpack_lit,
+    Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
+    expected_error, fit, mean_fit, neighbour_weight, noisy_sureness, pack_lit, reconstruct, relight, sureness,
+    unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::settings::Settings;
@@ -80,7 +83,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             noise: past.noise,
             lattices,
             accumulate: smr.accumulate,
-            relights: smr.relight,
+            relights: crate::method::smr_relights(&desc.settings),
         };
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
@@ -199,10 +202,13 @@ impl View<'_> {
         let moved = has_moved(motion, history.nearest.place_px);
         let [low, high] = history.range;
         let mut error = expected_error(history.lod, root_difference(low, high), moved);
+        let mut sure = sureness(history.lod);
         if self.is_noisy() {
-            error += expected_noise(past, self.sample_noise(px), luma(history.color));
+            let around = luma(history.color);
+            error += expected_noise(past, self.sample_noise(px), around);
+            sure = noisy_sureness(history.lod, past, around);
         }
-        Some(Observation { sampled, history: history.color, error, sure: sureness(history.lod) })
+        Some(Observation { sampled, history: history.color, error, sure })
     }
 
     /// An observation again, from its packed words.
@@ -250,7 +256,11 @@ impl View<'_> {
         let gain = if self.relights { relight(light) } else { Vec3::ONE };
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
-        let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
+        let sure = (light.weight / light.spatial).min(1.0);
+        let mut fit = fit(left / light.weight, sure);
+        if self.is_noisy() {
+            fit = fit.min(mean_fit(light, sure));
+        }
         pack_lit(Lit { gain, fit, ..unlit })
     }
 
@@ -335,15 +345,18 @@ impl View<'_> {
         let is_sample = x.fraction == 0.0 && y.fraction == 0.0;
         if lattice.level == 0 {
             let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
-            let own = Candidate { color, usable, lod: 0.0, noise: self.sample_noise(px), ..Candidate::NONE };
+            let noise = if usable { self.sample_noise(px) } else { NO_NOISE };
+            let own = Candidate { color, usable, lod: 0.0, noise, ..Candidate::NONE };
             let coarser = index + 1;
-            if !self.is_noisy() || !usable || coarser == self.lattices.len() || self.lattices[coarser].points.contains(&0) {
+            if !self.is_noisy()
+                || !usable
+                || coarser == self.lattices.len()
+                || self.lattices[coarser].points.contains(&0)
+            {
                 return own;
             }
             // The next lattice's samples say how well history fits.
-            let around = self.candidate(coarser, px, disparity, lights);
-            let Candidate { gain, fit, range: [low, high], .. } = around;
-            return Candidate { gain, fit, range: [low.min(color), high.max(color)], ..own };
+            return Candidate { fit: self.candidate(coarser, px, disparity, lights).fit, ..own };
         }
         let mut sums = Sums::default();
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);

@@ -10,7 +10,7 @@ use super::uniforms::{FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattic
 use super::{Frame, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::lattice::Lattices;
-use crate::method::{HistoryLayout, Overrides};
+use crate::method::{HistoryLayout, Overrides, smr_relights};
 use crate::shader::SHADERS;
 use crate::uniforms::results_size;
 use wgpu::{
@@ -153,7 +153,7 @@ fn samples(frame: &Frame<'_>, batch: &Batch, size_px: [u32; 2]) -> impl Iterator
 fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
     let mut observe = input_overrides(desc, variant);
     observe.push(("NOISY", u32::from(desc.settings.noisy)));
-    let relight = [("RELIGHT_ON", u32::from(desc.settings.smr.relight))];
+    let relight = [("RELIGHT_ON", u32::from(smr_relights(&desc.settings)))];
     let light = observe.iter().copied().chain(relight).collect();
     [observe, light]
 }

@@ -128,12 +128,18 @@ pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
 }
 
+/// Degree to which the noise of a color at a luma is visible, in \[0, 1\].
+#[inline]
+pub fn noise_visibility(history: Noise, luma: f32) -> f32 {
+    let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
+    smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
+}
+
 /// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer
 /// sample replace a coarser one.
 #[inline]
 pub fn noise_confidence(history: Noise, luma: f32) -> f32 {
-    let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
-    1.0 - smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
+    1.0 - noise_visibility(history, luma)
 }
 
 /// Noise of a history that is coarser than the candidate by `levels` of detail, with its number of samples limited to a

@@ -7,10 +7,10 @@
 //! blends its own history with the interpolated samples ([`reconstruct`]).
 
 use super::approx;
-use super::kept::{Kept, pack_color, unpack_color};
 use super::color::luma;
+use super::kept::{Kept, pack_color, unpack_color};
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
-use super::noise::{Noise, history_share, noise_after, noise_confidence};
+use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
 use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
@@ -44,6 +44,8 @@ const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 /// Share of history from which on the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
+/// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
+const MEAN_ERRORS: f32 = 3.0;
 /// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and keeps
 /// blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
@@ -83,6 +85,13 @@ pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
 #[inline]
 pub fn sureness(lod: f32) -> f32 {
     1.0 - lod.clamp(0.0, 1.0)
+}
+
+/// As [`sureness`], for noisy samples at a luma. Where history's noise is visible, the expected difference is that of
+/// noise, and coarse history says as much as fine history.
+#[inline]
+pub fn noisy_sureness(lod: f32, past: Noise, luma: f32) -> f32 {
+    sureness(lod).max(noise_visibility(past, luma))
 }
 
 /// Gain for one channel, limited.
@@ -169,6 +178,15 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
 #[inline]
 pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
+}
+
+/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples tell a smaller
+/// change from noise than each of them does.
+#[inline]
+pub fn mean_fit(l: Light, sure: f32) -> f32 {
+    let inverse = 1.0 / l.weight;
+    let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * MEAN_ERRORS;
+    1.0 - sure * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
 }
 
 /// What a sample says of the light on its surface.
@@ -292,14 +310,13 @@ pub struct Accumulated {
 
 /// As [`reconstruct`], for noisy samples: a mean of history and candidate by their numbers of samples. History replaces
 /// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: that
-/// of the candidate.
+/// of the candidate. History is not relit.
 ///
 /// The mean is stored in the place of the kept sample, so that history is not resampled.
 #[inline]
 pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
-    let history = relit(r.history, r.gain, r.range);
-    let bright = luma(history);
+    let bright = luma(r.history);
     // The farther the samples are, the less they say of this pixel.
     let now = Noise { samples: now.samples * approx::exp2(-r.lod), variance: now.variance };
     let certain = noise_confidence(past, bright);
@@ -310,14 +327,13 @@ pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let known = Noise { samples: past.samples + (most - past.samples) * blurred, variance: past.variance };
     let alike = (1.0 - finer) * (1.0 - blurred * sharp);
     let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
-    let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
+    let color = if share == 1.0 { r.history } else { r.candidate + (r.history - r.candidate) * share };
     let lod = r.lod + (r.history_lod - r.lod) * share;
     let noise = noise_after(past, now, share, finer * acceptance);
     let place = r.nearest.place_px;
     let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
     let kept = if near && share >= STAY_SHARE {
-        let sample = relit(r.nearest.color, r.gain, r.range);
-        Kept { color: r.candidate + (sample - r.candidate) * share, lod, ..r.nearest }
+        Kept { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
     } else {
         Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
     };

@@ -9,7 +9,7 @@ mod taa;
 mod taau;
 mod wrs;
 
-pub(crate) use smr::smr_params;
+pub(crate) use smr::{smr_params, smr_relights};
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;

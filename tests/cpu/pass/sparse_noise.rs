@@ -144,8 +144,7 @@ fn what_is_known_exactly_becomes_as_sharp_as_without_noise() {
             let noise = Image::filled(SIZE, [0.0, 4.0]);
             let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
             facts.lattices = Some(coarse(index));
-            let view =
-                OneView { noise: settings.noisy.then_some(&noise), ..OneView::new(facts, &picture) };
+            let view = OneView { noise: settings.noisy.then_some(&noise), ..OneView::new(facts, &picture) };
             let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
             post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
             [shown] = out;

@@ -32,13 +32,16 @@ impl Sampling {
     /// [`SettingsError`] unless the pattern has lattices whose steps are ascending powers of two from 1 on, without a
     /// lens.
     pub fn check_sparse(&self) -> Result<(), SettingsError> {
-        let refuse = |setting, found: String, expected: &str| {
-            Err(SettingsError { setting, found, expected: expected.into() })
-        };
+        let refuse =
+            |setting, found: String, expected: &str| Err(SettingsError { setting, found, expected: expected.into() });
         let (setting, steps) = match self {
             Self::Regions(r) => ("blocks of regions", vec![1, r.blocks[0], r.blocks[1]]),
             Self::Layers(Layers { lens_deg: Some(deg), .. }) => {
-                return refuse("lens of layers", format!("{deg} degrees"), "none: a sparse frame covers the whole view");
+                return refuse(
+                    "lens of layers",
+                    format!("{deg} degrees"),
+                    "none: a sparse frame covers the whole view",
+                );
             }
             Self::Layers(l) => ("steps of layers", l.steps.to_vec()),
             Self::Uniform | Self::Acuity(_) => {
@@ -75,7 +78,8 @@ impl Sampling {
         match self {
             Self::Layers(Layers { radii_deg, steps, .. }) => {
                 // A foveation has three regions: the second layer is the middle one of another foveation.
-                let inner = Foveation { mid_deg: 2.0 * radii_deg[1].max(radii_deg[0]), rate_mid: steps[1], ..foveation };
+                let inner =
+                    Foveation { mid_deg: 2.0 * radii_deg[1].max(radii_deg[0]), rate_mid: steps[1], ..foveation };
                 let second = order.lattices(&inner, geometry, gaze_px, frame);
                 let second = second.as_slice().iter().find(|lattice| lattice.step == steps[1]);
                 let before = stack.iter().position(|lattice| lattice.step > steps[1]).unwrap_or(stack.len());
@@ -143,8 +147,7 @@ impl SparsePlan {
         let mut noise = Image::filled(self.size_px, [0.0; 2]);
         let (mut rays, mut nonfinite) = (0, 0);
         let width = self.size_px[0] as usize;
-        for (lattice, (points, &samples)) in
-            self.lattices.as_slice().iter().zip(self.points.iter().zip(&self.samples))
+        for (lattice, (points, &samples)) in self.lattices.as_slice().iter().zip(self.points.iter().zip(&self.samples))
         {
             let grid = Lattice {
                 step: lattice.step,

@@ -141,7 +141,8 @@ fn samples_show_what_is_at_their_pixels() {
         let error = |shift: [i32; 2]| -> f64 {
             let of = |[x, y]: [u32; 2]| {
                 let at = [x as i32 + shift[0], y as i32 + shift[1]];
-                let [x2, y2] = [at[0].clamp(0, SIZE[0] as i32 - 1) as usize, at[1].clamp(0, SIZE[1] as i32 - 1) as usize];
+                let [x2, y2] =
+                    [at[0].clamp(0, SIZE[0] as i32 - 1) as usize, at[1].clamp(0, SIZE[1] as i32 - 1) as usize];
                 let (a, b) = (made.at(x as usize, y as usize), full.at(x2, y2));
                 (0..3).map(|i| f64::from((a[i].max(0.0).sqrt() - b[i].max(0.0).sqrt()).powi(2))).sum::<f64>()
             };
