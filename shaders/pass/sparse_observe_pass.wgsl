@@ -4,7 +4,8 @@
 // Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
 // src/cpu/sparse_pass.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
 //
-// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise 2 reads more.
+// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise
+// 2 reads more.
 
 @group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;
 

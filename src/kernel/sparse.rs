@@ -46,8 +46,8 @@ const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
 /// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
 const MEAN_ERRORS: f32 = 3.0;
-/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and keeps
-/// blurred history for longer.
+/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and
+/// keeps blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
 /// Noisy samples: share of history from which on the mean is stored in the place of the kept sample.
 const STAY_SHARE: f32 = 0.5;
@@ -180,8 +180,8 @@ pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
 }
 
-/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples tell a smaller
-/// change from noise than each of them does.
+/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples tell a
+/// smaller change from noise than each of them does.
 #[inline]
 pub fn mean_fit(l: Light, sure: f32) -> f32 {
     let inverse = 1.0 / l.weight;

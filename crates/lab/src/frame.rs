@@ -23,8 +23,8 @@ pub struct SourceFrame {
     pub nonfinite: u64,
 }
 
-/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel, or given with the places of
-/// its samples.
+/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel, or given with its samples'
+/// places.
 #[derive(Clone, Debug)]
 pub struct FoveatedFrame {
     /// Linear radiance.

@@ -116,6 +116,16 @@ fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
 }
 
 #[test]
+fn noise_takes_eight_bytes_a_pixel() {
+    let size = [1920, 1080];
+    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new(size) });
+    let (noisy, calm) = (bytes(traced()), bytes(Settings { noisy: false, ..traced() }));
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    println!("{:.1} bytes a pixel, {:.1} with noise", calm as f64 / pixels as f64, noisy as f64 / pixels as f64);
+    assert!(calm <= 24 * pixels && noisy == calm + 8 * pixels);
+}
+
+#[test]
 fn wrong_noise_is_caught() {
     let settings = traced();
     let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];

@@ -57,7 +57,7 @@ fn what_the_post_process_reads_is_traced_and_little_else() {
             println!("{}, {spare} of them spare", traced.len());
             assert!(spare * 20 < traced.len(), "{spare} samples of {} are not read", traced.len());
             offsets.insert(plan.lattices().as_slice().last().unwrap().offset_px());
-            assert_eq!(plan.samples().iter().sum::<u64>(), traced.values().map(|&n| u64::from(n)).sum());
+            assert_eq!(plan.samples().iter().sum::<u64>(), traced.values().map(|&n| u64::from(n)).sum::<u64>());
         }
         assert_eq!(offsets.len(), 4, "lattices move");
     }
@@ -150,7 +150,7 @@ fn samples_show_what_is_at_their_pixels() {
         };
         let shifts = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].map(error);
         println!("frame {frame}: {shifts:.1?}");
-        assert!(shifts[1..].iter().all(|&e| e > 1.5 * shifts[0]), "{shifts:?}");
+        assert!(shifts[1..].iter().all(|&e| e > 1.25 * shifts[0]), "{shifts:?}");
     }
 }
 
