@@ -4,7 +4,7 @@ pub mod plan;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
-use crate::args::input::{InputArgs, Rendering, SourceName};
+use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
@@ -100,7 +100,11 @@ impl RunArgs {
 
     /// Settings for rendering a scene on `backend`.
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
-        let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
+        let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
+            pattern,
+            sparse: self.is_sparse(),
+            reference_spp: self.reference_spp,
+        });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
     }
 
@@ -117,7 +121,21 @@ impl RunArgs {
                 self.sampling.sampling.name()
             )));
         }
-        self.sampling.sampling().map(Some)
+        let sampling = self.sampling.sampling()?;
+        if self.is_sparse() {
+            self.sampling.check_sparse(&sampling)?;
+            if self.guided {
+                return Err(Failure::Input(
+                    "--guided: distributes the samples of filled frames; leave out --foveation sparse".into(),
+                ));
+            }
+        }
+        Ok(Some(sampling))
+    }
+
+    /// Whether frames are given as samples: of a simulator, or of a sampling pattern.
+    pub fn is_sparse(&self) -> bool {
+        self.foveation.filter == FilterName::Sparse
     }
 }
 

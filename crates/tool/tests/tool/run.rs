@@ -215,3 +215,32 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
     assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
 }
+
+#[test]
+fn traced_samples_go_through_every_method_and_both_backends_agree() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let methods = ["none", "taa", "taau", "smr"];
+    for backend in ["cpu", "gpu"] {
+        let out = folder.text(backend);
+        let pattern = ["--source", "trace", "--sampling", "regions", "--region-spp", "2,1,1", "--foveation", "sparse"];
+        let rest = ["--reference-spp", "2", "--method", "none,taa,taau,smr", "--backend", backend, "--frames", "3"];
+        let view = ["--size", "64x36", "--gaze", "20,12", "--format", "exr"];
+        succeeds(&run("builtin:cubes", &out, &[&pattern[..], &rest, &view].concat()));
+    }
+    let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{b}/report.json"))));
+    assert_eq!((&cpu["foveation"]["simulator"], &cpu["foveation"]["geometry"]), (&"regions".into(), &"full".into()));
+    // Kept samples and their noise, of two frames.
+    assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
+    if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+        return;
+    }
+    for method in methods {
+        for i in 0..3 {
+            let path = |b: &str| folder.path(&format!("{b}/{method}/{i:06}.exr"));
+            assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
+        }
+    }
+}

@@ -76,7 +76,12 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
 
 /// Foveation of the frames: the simulator's, or the equivalent of the sampling pattern.
 pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
-    let foveation = args.sampling()?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    let simulated = args.foveation.foveation();
+    let foveation = match args.sampling()? {
+        None => simulated,
+        Some(pattern) if args.is_sparse() => Foveation { filter: simulated.filter, ..pattern.foveation() },
+        Some(pattern) => pattern.foveation(),
+    };
     foveation.validate()?;
     Ok(foveation)
 }
