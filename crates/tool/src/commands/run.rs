@@ -1,6 +1,7 @@
 //! `afterimage run`: foveate frames, run methods on them, score the results.
 
 pub mod plan;
+mod plot;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
@@ -9,8 +10,8 @@ use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
 };
-use crate::clip::ClipReport;
 use crate::clip::run_report::{RunFacts, write_report};
+use crate::clip::{ClipReport, REPORTS};
 use crate::failure::Failure;
 use crate::output::Output;
 use afterimage::Filter;
@@ -27,7 +28,8 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
-    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
+    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
     /// Output folder
@@ -173,8 +175,9 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), backend)?;
     // The input can be read, or nothing is written.
     let mut source = PeekedSource::new(source.as_mut())?;
-    let out = Output::create(&args.out, &folders(args), "report.json")?;
+    let out = Output::create(&args.out, &folders(args), &REPORTS)?;
     let report = plan.clip.run(&mut source, &out)?;
+    plot::write(&plan, simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
         fps: plan.fps,
@@ -237,4 +240,5 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
     );
     say!("contact sheet: {}", args.out.join("sheet.png").display());
+    say!("PSNR by frame: {}", args.out.join("psnr.png").display());
 }
