@@ -203,7 +203,8 @@ pub struct Settings {
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
     /// ([`Frame::noise`](crate::Frame::noise)), so that noise does not pass for a change. wrs weights a candidate by
     /// its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8
-    /// more bytes a pixel and a mip chain of the candidates. Default false.
+    /// more bytes a pixel and a mip chain of the candidates. On sparse frames it compares nine samples, needs the 8
+    /// bytes alone, and does not follow changes of light by gains. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,

@@ -66,6 +66,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "mip_chain_pass"),
     module!("pass", "inputs"),
     module!("pass", "kept_history"),
+    module!("pass", "kept_noise"),
     module!("pass", "lattices"),
     module!("pass", "none_pass"),
     module!("pass", "origin"),

@@ -11,6 +11,7 @@ const COARSER_FRAMES: f32 = 4.0;
 const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
 const UNKNOWN: f32 = -1.0;
+const LEAST_SPREAD: f32 = 1e-30;
 
 struct Noise {
     samples: f32,
@@ -91,10 +92,15 @@ fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES));
 }
 
+// noise::noise_visibility
+fn noise_visibility(history: Noise, around: f32) -> f32 {
+    let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
+    return smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
+}
+
 // noise::noise_confidence
 fn noise_confidence(history: Noise, around: f32) -> f32 {
-    let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
-    return 1.0 - smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
+    return 1.0 - noise_visibility(history, around);
 }
 
 // noise::discount_coarser
@@ -107,6 +113,29 @@ fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
 // noise::sample_difference
 fn sample_difference(candidate: Noise, around: f32) -> f32 {
     return (SIGMAS * root_slope(around)) * sqrt(candidate.variance * (2.0 / candidate.samples));
+}
+
+// noise::expected_noise
+fn expected_noise(history: Noise, candidate: Noise, around: f32) -> f32 {
+    let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
+    return root_slope(around) * sqrt(pooled_variance(history, candidate) * inverse_samples);
+}
+
+struct NoiseSum {
+    weight: f32,
+    spread: f32,
+    variance: f32,
+}
+
+// noise::add_noise
+fn add_noise(sum: NoiseSum, n: Noise, weight: f32) -> NoiseSum {
+    return NoiseSum(sum.weight + weight, sum.spread + (weight * weight) / n.samples, sum.variance + n.variance * weight);
+}
+
+// noise::mean_noise
+fn mean_noise(sum: NoiseSum) -> Noise {
+    let samples = (sum.weight * sum.weight) / max(sum.spread, LEAST_SPREAD);
+    return Noise(clamp(samples, 1.0, MAX_SAMPLES), sum.variance * (1.0 / max(sum.weight, LEAST_SPREAD)));
 }
 
 // noise::noise_after

@@ -1,5 +1,7 @@
+//#use color
 //#use kept
 //#use matched
+//#use noise
 // Twin of src/kernel/sparse.rs, which documents the functions.
 
 const STILL_ERROR: f32 = 0.3;
@@ -16,6 +18,9 @@ const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
+const MEAN_ERRORS: f32 = 3.0;
+const BLURRED_FRAMES: f32 = 8.0;
+const STAY_SHARE: f32 = 0.5;
 
 // sparse::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
@@ -40,6 +45,11 @@ fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
 // sparse::sureness
 fn sureness(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
+}
+
+// sparse::noisy_sureness
+fn noisy_sureness(lod: f32, past: Noise, around: f32) -> f32 {
+    return max(sureness(lod), noise_visibility(past, around));
 }
 
 // sparse::ratio
@@ -113,6 +123,13 @@ fn fit(errors: f32, sure: f32) -> f32 {
 // sparse::own_fit
 fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
     return fit(errors_left(own, gains), own.sure);
+}
+
+// sparse::mean_fit
+fn mean_fit(l: Light, sure: f32) -> f32 {
+    let inverse = 1.0 / l.weight;
+    let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * MEAN_ERRORS;
+    return 1.0 - sure * smooth_step(start, start, root_difference(l.sampled * inverse, l.history * inverse));
 }
 
 struct Lit {
@@ -195,4 +212,38 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     }
     let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
     return Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
+}
+
+struct Accumulated {
+    result: Reconstructed,
+    noise: Noise,
+}
+
+// sparse::accumulate
+fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
+    let acceptance = r.fit * r.trust;
+    let bright = luma(r.history);
+    // The farther the samples are, the less they say of this pixel.
+    let now = Noise(candidate.samples * exp2(-r.lod), candidate.variance);
+    let certain = noise_confidence(past, bright);
+    let sharp = noise_confidence(Noise(now.samples, past.variance), bright);
+    let finer = clamp((r.lod - r.history_lod) / FINER_WIDTH, 0.0, 1.0) * certain;
+    let blurred = clamp((r.history_lod - r.lod) / COARSER_WIDTH, 0.0, 1.0);
+    let most = min(past.samples, BLURRED_FRAMES * now.samples);
+    let known = Noise(past.samples + (most - past.samples) * blurred, past.variance);
+    let alike = (1.0 - finer) * (1.0 - blurred * sharp);
+    let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
+    var shown = r.history;
+    if share != 1.0 {
+        shown = r.candidate + (r.history - r.candidate) * share;
+    }
+    let lod = r.lod + (r.history_lod - r.lod) * share;
+    let noise = noise_after(past, now, share, finer * acceptance);
+    let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
+    if near && share >= STAY_SHARE {
+        let kept = r.candidate + (r.nearest.color - r.candidate) * share;
+        let next = Kept(kept, lod, r.nearest.disparity, r.nearest.place_px);
+        return Accumulated(Reconstructed(shown, next, share), noise);
+    }
+    return Accumulated(Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share), noise);
 }

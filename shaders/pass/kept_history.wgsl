@@ -24,12 +24,19 @@ fn may_have_history(previous: Previous) -> bool {
     return previous.verdict == VERDICT_VALID || previous.verdict == VERDICT_DISOCCLUDED;
 }
 
+// History, and the texel of the sample to keep.
+struct KeptHistory {
+    found: Interpolated,
+    texel: vec2<i32>,
+}
+
 // History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
 // another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero
 // iterations: software Vulkan runs the body of an `if` for all pixels.
-fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
+fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
     var around = nothing_around();
     let first = vec2<i32>(floor(previous.at));
+    var nearest_texel = first;
     let taps = select(0u, 4u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2<i32>(vec2<u32>(tap & 1u, tap >> 1u));
@@ -38,7 +45,9 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
         if DEPTH_TEST != 0u {
             same = same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0);
         }
+        let cost = around.cost;
         around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same);
+        nearest_texel = select(nearest_texel, texel, around.cost < cost);
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {
         around = nothing_around();
@@ -48,7 +57,7 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> Interpolated {
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return found;
+    return KeptHistory(found, nearest_texel);
 }
 
 // Whether history has moved since its samples were shaded, by more than their stored places resolve.

@@ -30,14 +30,19 @@ struct SparseUniforms {
 
 const LATTICES: u32 = 4u;
 
-// The first lattice that covers a pixel.
-fn lattice_at(px: vec2<u32>, view: u32) -> LatticeUniforms {
+// Index of the first lattice that covers a pixel.
+fn lattice_index_at(px: vec2<u32>, view: u32) -> u32 {
     var index = 0u;
     while index < LATTICES - 1u
         && !(all(px >= sparse.views[view][index].low_px) && all(px < sparse.views[view][index].high_px)) {
         index++;
     }
-    return sparse.views[view][index];
+    return index;
+}
+
+// The first lattice that covers a pixel.
+fn lattice_at(px: vec2<u32>, view: u32) -> LatticeUniforms {
+    return sparse.views[view][lattice_index_at(px, view)];
 }
 
 // Samples around a pixel along both axes. Without samples in the frame (`any` is false) the others are not valid.

@@ -4,7 +4,11 @@
 // invocation a pixel; z is the view.
 
 @group(0) @binding(1) var past_kept: texture_2d_array<u32>;
-@group(0) @binding(2) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(2) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(3) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(4) var next_noise: texture_storage_2d_array<r32uint, write>;
+
+override NOISY: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
@@ -16,4 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let stored = unpack_kept(textureLoad(past_kept, at, group.z, 0).xy);
     let moved = moved_kept(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
     textureStore(next_kept, id.xy, group.z, vec4<u32>(pack_kept(moved), 0u, 0u));
+    if NOISY != 0u {
+        textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));
+    }
 }

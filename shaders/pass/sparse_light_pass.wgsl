@@ -51,6 +51,14 @@ fn neighbour(
     return Neighbour(other, spatial * other.sure, spatial);
 }
 
+// Fit at the sample's own pixel; a single noisy sample says nothing.
+fn fit_at_sample(own: Observation, gains: vec3<f32>) -> f32 {
+    if NOISY != 0u || own.error < 0.0 {
+        return 1.0;
+    }
+    return own_fit(own, gains);
+}
+
 fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
@@ -67,8 +75,8 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     }
     let is_own = own.error >= 0.0;
     if sum.weight < 1e-6 {
-        let unchanged = select(1.0, own_fit(own, vec3<f32>(1.0)), is_own);
-        return pack_lit(Lit(vec3<f32>(1.0), 1.0, unchanged, is_own, own_disparity));
+        let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));
+        return pack_lit(Lit(vec3<f32>(1.0), 1.0, fit_unlit, is_own, own_disparity));
     }
     var gains = vec3<f32>(1.0);
     if RELIGHT_ON != 0u {
@@ -86,8 +94,12 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         gains = vec3<f32>(1.0);
         with_gain = without;
     }
-    let left = fit(with_gain / sum.weight, min(sum.weight / sum.spatial, 1.0));
-    return pack_lit(Lit(gains, left, select(1.0, own_fit(own, gains), is_own), is_own, own_disparity));
+    let sure = min(sum.weight / sum.spatial, 1.0);
+    var left = fit(with_gain / sum.weight, sure);
+    if NOISY != 0u {
+        left = min(left, mean_fit(sum, sure));
+    }
+    return pack_lit(Lit(gains, left, fit_at_sample(own, gains), is_own, own_disparity));
 }
 
 @compute @workgroup_size(64, 1)

@@ -1,9 +1,11 @@
 //#use kept_history
+//#use kept_noise
 //#use sparse_samples
 // Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
 // src/cpu/sparse_pass.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
 //
-// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written.
+// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise
+// 2 reads more.
 
 @group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
@@ -13,13 +15,20 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let motion = motion_at(px, view);
     let previous = kept_source(px, view, motion, disparity_at(px, view));
     let needed = may_have_history(previous) && color(sample_at(point, lattice, view).xyz).usable;
-    let history = kept_history(previous, view, needed);
+    let kept = kept_history(previous, view, needed);
+    let history = kept.found;
     if !needed || history.lod < 0.0 {
         return nothing;
     }
     let contrast = root_difference(history.lowest, history.highest);
-    let error = expected_error(history.lod, contrast, has_moved(motion, history.nearest.place_px));
-    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sureness(history.lod)) << 16u));
+    var error = expected_error(history.lod, contrast, has_moved(motion, history.nearest.place_px));
+    var sure = sureness(history.lod);
+    if NOISY != 0u {
+        let past = stored_noise(kept.texel, view);
+        error += expected_noise(past, noise_at(px, view), luma(history.color));
+        sure = noisy_sureness(history.lod, past, luma(history.color));
+    }
+    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sure) << 16u));
 }
 
 @compute @workgroup_size(64, 1)

@@ -1,4 +1,5 @@
 //#use kept_history
+//#use kept_noise
 //#use output
 //#use sparse_samples
 // Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
@@ -6,6 +7,7 @@
 
 @group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(10) var lights: texture_2d_array<u32>;
+@group(0) @binding(12) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 // Squared distance in pixels of a sample that there is not.
 const NO_PX2: f32 = 1e30;
@@ -20,11 +22,12 @@ struct Candidate {
     gains: vec3<f32>,
     fit: f32,
     alpha: f32,
+    noise: Noise,
 }
 
 fn no_candidate() -> Candidate {
     let zero = vec3<f32>(0.0);
-    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0);
+    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0, Noise(1.0, 0.0));
 }
 
 // Candidate from the samples around a pixel.
@@ -43,6 +46,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     var own = Sanitized(vec3<f32>(0.0), false);
     var own_alpha = 1.0;
     var fit_of_own = 1.0;
+    var noises = NoiseSum(0.0, 0.0, 0.0);
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
     for (var tap = 0u; tap < taps; tap++) {
         let right = tap & 1u;
@@ -70,12 +74,15 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
             lowest = min(lowest, sampled.color);
             highest = max(highest, sampled.color);
             let d = vec2<f32>(px) - vec2<f32>(at);
+            if NOISY != 0u {
+                noises = add_noise(noises, noise_at(at, view), weight);
+            }
             nearest_px2 = select(nearest_px2, min(nearest_px2, d.x * d.x + d.y * d.y), same);
         }
     }
     if level == 0u {
         let none = no_candidate();
-        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, own_alpha);
+        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, own_alpha, none.noise);
     }
     if weights == 0.0 {
         return no_candidate();
@@ -85,6 +92,13 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     let mean = sum * (1.0 / weights);
     let is_own = is_sample && own.usable;
     let known = 1.0 / valid_sum;
+    var noise = Noise(1.0, 0.0);
+    if NOISY != 0u {
+        noise = mean_noise(noises);
+        if is_own {
+            noise = noise_at(px, view);
+        }
+    }
     return Candidate(
         select(mean.xyz, own.color, is_own),
         true,
@@ -94,17 +108,59 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
         gain_sum * known,
         min(fit_sum * known, select(1.0, fit_of_own, is_own)),
         select(mean.w, own_alpha, is_own),
+        noise,
     );
+}
+
+// The lattice that a pixel is shaded by, and the one whose samples say how well history fits there: for noisy pixels
+// at full rate the next one, if it has samples.
+struct PixelLattices {
+    own: LatticeUniforms,
+    judging: LatticeUniforms,
+}
+
+fn lattices_at(px: vec2<u32>, view: u32) -> PixelLattices {
+    let index = lattice_index_at(px, view);
+    let own = sparse.views[view][index];
+    if NOISY == 0u {
+        return PixelLattices(own, own);
+    }
+    let next = min(index + 1u, LATTICES - 1u);
+    let coarser = sparse.views[view][next];
+    if own.level == 0u && next > index && all(coarser.points > vec2<u32>(0u)) {
+        return PixelLattices(own, coarser);
+    }
+    return PixelLattices(own, own);
+}
+
+// Candidate of a pixel at full rate. `fits`: how well history fits the samples of the next lattice.
+fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits: f32) -> Candidate {
+    let given = sample_at(px - lattice.first_px, lattice, view);
+    let own = color(given.xyz);
+    var candidate = no_candidate();
+    candidate.alpha = given.w;
+    if own.usable {
+        candidate.color = own.color;
+        candidate.usable = true;
+        candidate.fit = fits;
+        candidate.noise = noise_at(px, view);
+    }
+    return candidate;
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
-    let lattice = lattice_at(px, view);
-    let candidate = candidate_at(px, lattice, view, disparity_now);
+    let lattices = lattices_at(px, view);
+    let lattice = lattices.own;
+    var candidate = candidate_at(px, lattices.judging, view, disparity_now);
+    if NOISY != 0u && lattice.level == 0u {
+        candidate = full_rate_candidate(px, lattice, view, candidate.fit);
+    }
     let previous = kept_source(px, view, motion, disparity_now);
-    let full_rate = candidate.usable && lattice.level == 0u;
-    let history = kept_history(previous, view, may_have_history(previous) && !full_rate);
+    let full_rate = candidate.usable && lattice.level == 0u && NOISY == 0u;
+    let kept = kept_history(previous, view, may_have_history(previous) && !full_rate);
+    let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
@@ -113,9 +169,10 @@ fn pixel(px: vec2<u32>, view: u32) {
     var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), disparity_now, vec2<f32>(0.0));
     var share = 0.0;
     var fits = 1.0;
+    var noise = candidate.noise;
     if history.lod >= 0.0 {
         if candidate.usable {
-            let result = reconstruct(Reconstruction(
+            let inputs = Reconstruction(
                 candidate.color,
                 candidate.lod,
                 candidate.lowest,
@@ -128,7 +185,15 @@ fn pixel(px: vec2<u32>, view: u32) {
                 candidate.fit,
                 previous.trust,
                 frame.smr_accumulate,
-            ));
+            );
+            var result: Reconstructed;
+            if NOISY != 0u {
+                let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);
+                result = accumulated.result;
+                noise = accumulated.noise;
+            } else {
+                result = reconstruct(inputs);
+            }
             shown = result.color;
             share = result.share;
             fits = candidate.fit;
@@ -137,6 +202,9 @@ fn pixel(px: vec2<u32>, view: u32) {
             shown = history.color;
             share = 1.0;
             next = history.nearest;
+            if NOISY != 0u {
+                noise = stored_noise(kept.texel, view);
+            }
         }
         next.disparity = disparity_now;
     }
@@ -153,6 +221,9 @@ fn pixel(px: vec2<u32>, view: u32) {
     );
     if VIEW == 0u {
         textureStore(next_kept, px, view, vec4<u32>(pack_kept(next), 0u, 0u));
+        if NOISY != 0u {
+            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
+        }
     }
 }
 

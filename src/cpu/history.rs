@@ -35,11 +35,12 @@ impl Plane {
         let len = size_px[0] as usize * size_px[1] as usize * view_count as usize;
         let when = |used: bool| if used { len } else { 0 };
         let keyed = layout == HistoryLayout::Reservoirs { keys: true };
-        let noisy = matches!(layout, HistoryLayout::Surfaces { noisy: true, .. });
+        let noisy = matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Kept { noisy: true });
+        let is_stored = matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. });
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
             log_keys: vec![0.0; when(keyed)],
-            surfaces: vec![[0; 2]; when(matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept))],
+            surfaces: vec![[0; 2]; when(is_stored)],
             noise: vec![0; when(noisy)],
             mip_chains: mip_chains(size_px, view_count, layout),
         }
@@ -91,7 +92,7 @@ impl History {
         next.previous.reservoirs = past.reservoirs.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
-        let is_kept = self.layout == HistoryLayout::Kept;
+        let is_kept = matches!(self.layout, HistoryLayout::Kept { .. });
         let surfaces = |v| if is_kept { resize.kept(v) } else { resize.surfaces(v) };
         next.previous.surfaces = past.surfaces.chunks(len).flat_map(surfaces).collect();
         for (mip_chain, words) in next.previous.mip_chains.iter_mut().zip(next.previous.surfaces.chunks(next.view_len))
@@ -135,7 +136,7 @@ impl History {
 
     /// Previous packed samples of `view`; empty except for smr on sparse frames, and without history.
     pub(super) fn kept(&self, view: usize) -> &[[u32; 2]] {
-        let is_kept = self.layout == HistoryLayout::Kept && self.filled;
+        let is_kept = matches!(self.layout, HistoryLayout::Kept { .. }) && self.filled;
         if is_kept { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
     }
 

@@ -224,7 +224,7 @@ impl CpuAfterimage {
         check_inputs(&self.desc, frame)?;
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
-        let is_sparse_smr = self.history.layout() == HistoryLayout::Kept;
+        let is_sparse_smr = matches!(self.history.layout(), HistoryLayout::Kept { .. });
         let fills = self.desc.settings.fills_sparse_frames();
         let filled = if fills { fill::filled(frame, self.desc.size_px) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();

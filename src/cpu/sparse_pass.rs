@@ -9,6 +9,7 @@ use super::Pass;
 use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, Targets, for_pixels};
 use crate::kernel::approx;
+use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{
@@ -17,13 +18,17 @@ use crate::kernel::kept::{
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
+use crate::kernel::noise::{
+    Noise, NoiseSum, add_noise, expected_noise, expose_noise, mean_noise, pack_noise, unpack_noise,
+};
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::TAP_RELATIVE;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    Light, Lit, Observation, Reconstruction, add_light, agreement, candidate_level, errors_left, expected_error, fit,
-    neighbour_weight, own_fit, pack_lit, reconstruct, relight, sureness, unpack_lit,
+    Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
+    expected_error, fit, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct, relight, sureness,
+    unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::settings::Settings;
@@ -43,6 +48,9 @@ const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;
 
+/// Noise where candidates have none.
+const NO_NOISE: Noise = Noise { samples: 1.0, variance: 0.0 };
+
 /// Packed results for the samples of a lattice, row by row.
 type Samples = Vec<[u32; 2]>;
 
@@ -50,6 +58,8 @@ type Samples = Vec<[u32; 2]>;
 struct View<'a> {
     inputs: Inputs<'a>,
     words: &'a [[u32; 2]],
+    /// Packed noise of the stored samples; empty unless candidates are noisy.
+    noise: &'a [u32],
     lattices: ViewLattices,
     accumulate: f32,
     relights: bool,
@@ -63,15 +73,22 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     for i in 0..frame.views.len() {
         let held = history.hold(i, &frame.views[i]);
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
-        let (past, next, _) = history.split_surfaces(i);
+        let (past, next, next_noise) = history.split_surfaces(i);
         let lattices = frame.views[i].lattices.as_ref().expect("the frame was checked to have lattices");
         let Settings { smr, .. } = desc.settings;
         let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
-        let view = View { inputs, words: past.words, lattices, accumulate: smr.accumulate, relights: smr.relight };
+        let view = View {
+            inputs,
+            words: past.words,
+            noise: past.noise,
+            lattices,
+            accumulate: smr.accumulate,
+            relights: crate::method::smr_relights(&desc.settings),
+        };
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
         let traces = traces.as_mut().map(|t| &mut t[i]);
-        let targets = Targets { surfaces: next, noise: &mut [], output: &mut output[i], traces };
+        let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
         stats = stats.add(for_pixels(targets, |x, y, stats| view.pixel(x, y, &lights, stats)));
     }
     stats
@@ -108,6 +125,28 @@ impl View<'_> {
         unpack_kept(self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
     }
 
+    /// Noise of a stored sample, in this frame's exposure.
+    #[inline(always)]
+    fn stored_noise(&self, [x, y]: [i32; 2]) -> Noise {
+        if !self.is_noisy() {
+            return NO_NOISE;
+        }
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        let word = self.noise[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];
+        expose_noise(unpack_noise(word), self.inputs.exposure)
+    }
+
+    #[inline(always)]
+    fn is_noisy(&self) -> bool {
+        !self.noise.is_empty()
+    }
+
+    /// Noise of the sample at a pixel.
+    #[inline(always)]
+    fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
+        self.inputs.noise(x, y).filter(|_| self.is_noisy()).unwrap_or(NO_NOISE)
+    }
+
     /// Whether two disparities of this frame can belong to one surface.
     #[inline(always)]
     fn alike(&self, a: f32, b: f32, relative: f32) -> bool {
@@ -127,21 +166,25 @@ impl View<'_> {
     /// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
     /// another surface (`is_same` is false), samples beside it stand in for it if they are near enough.
     #[inline(always)]
-    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> Interpolated {
+    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> (Interpolated, Noise) {
         let [x, y] = previous.at.map(|v| v.floor() as i32);
         let mut around = Around::NOTHING;
+        let mut nearest_texel = [x, y];
         for tap in 0..4 {
             let (tx, ty) = (x + (tap & 1), y + (tap >> 1));
             let sample = self.stored(tx, ty);
             let same = sample.lod >= 0.0
                 && (!self.inputs.tests_depth() || same_surface(previous.expected, sample.disparity, TAP_RELATIVE, 0.0));
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
+            let cost = around.cost;
             around = add_kept(around, sample, texel_px, same);
+            nearest_texel = if around.cost < cost { [tx, ty] } else { nearest_texel };
         }
         let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
-        Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found }
+        let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
+        (history, self.stored_noise(nearest_texel))
     }
 
     /// Comparison of a sample with history at its pixel; `None` if either is missing.
@@ -152,14 +195,20 @@ impl View<'_> {
         let px = lattice.px_of(point);
         let motion = self.inputs.motion(px[0], px[1]);
         let previous = self.previous(px, motion, self.inputs.disparity(px[0], px[1])).ok().filter(|_| usable)?;
-        let history = self.interpolated(&previous);
+        let (history, past) = self.interpolated(&previous);
         if history.lod < 0.0 {
             return None;
         }
         let moved = has_moved(motion, history.nearest.place_px);
         let [low, high] = history.range;
-        let error = expected_error(history.lod, root_difference(low, high), moved);
-        Some(Observation { sampled, history: history.color, error, sure: sureness(history.lod) })
+        let mut error = expected_error(history.lod, root_difference(low, high), moved);
+        let mut sure = sureness(history.lod);
+        if self.is_noisy() {
+            let around = luma(history.color);
+            error += expected_noise(past, self.sample_noise(px), around);
+            sure = noisy_sureness(history.lod, past, around);
+        }
+        Some(Observation { sampled, history: history.color, error, sure })
     }
 
     /// An observation again, from its packed words.
@@ -198,7 +247,9 @@ impl View<'_> {
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
-        let fit_of_own = |gain| own.map_or(1.0, |own| own_fit(own, gain));
+        // A single noisy sample says nothing.
+        let judged = own.filter(|_| !self.is_noisy());
+        let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
             return pack_lit(unlit);
@@ -208,7 +259,11 @@ impl View<'_> {
         let gain = if self.relights { relight(light) } else { Vec3::ONE };
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
-        let fit = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
+        let sure = (light.weight / light.spatial).min(1.0);
+        let mut fit = fit(left / light.weight, sure);
+        if self.is_noisy() {
+            fit = fit.min(mean_fit(light, sure));
+        }
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
 
@@ -221,9 +276,9 @@ impl View<'_> {
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let candidate = self.candidate(index, [x, y], disparity, lights);
         let source = self.previous([x, y], motion, disparity);
-        let is_full_rate = candidate.usable && self.lattices[index].level == 0;
+        let is_full_rate = candidate.usable && self.lattices[index].level == 0 && !self.is_noisy();
         let history = source.as_ref().ok().filter(|_| !is_full_rate).map(|previous| self.interpolated(previous));
-        let history = history.filter(|history| history.lod >= 0.0);
+        let history = history.filter(|(history, _)| history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
             Ok((_, false)) if history.is_none() => Verdict::Disoccluded,
@@ -239,12 +294,13 @@ impl View<'_> {
             place_px: Vec2::ZERO,
         };
         let (mut share, mut fits) = (0.0, 1.0);
-        if let (Ok((previous, _)), Some(history)) = (source, history) {
+        let mut noise = candidate.noise;
+        if let (Ok((previous, _)), Some((history, past))) = (source, history) {
             if !candidate.usable {
-                (output, share) = (history.color, 1.0);
+                (output, share, noise) = (history.color, 1.0, past);
                 kept = Kept { disparity, ..history.nearest };
             } else {
-                let result = reconstruct(&Reconstruction {
+                let inputs = Reconstruction {
                     candidate: candidate.color,
                     lod: candidate.lod,
                     range: candidate.range,
@@ -256,7 +312,14 @@ impl View<'_> {
                     fit: candidate.fit,
                     trust: previous.trust,
                     accumulate: self.accumulate,
-                });
+                };
+                let result = if self.is_noisy() {
+                    let accumulated = accumulate(&inputs, past, candidate.noise);
+                    noise = accumulated.noise;
+                    accumulated.result
+                } else {
+                    reconstruct(&inputs)
+                };
                 (output, share, fits) = (result.color, result.share, candidate.fit);
                 kept = Kept { disparity, ..result.kept };
             }
@@ -274,7 +337,7 @@ impl View<'_> {
             take: share == 0.0,
             motion,
         };
-        Pixel { output, surface: pack_kept(kept), noise: 0, trace }
+        Pixel { output, surface: pack_kept(kept), noise: pack_noise(noise), trace }
     }
 
     /// Candidate of a pixel and what is known of its light, from the samples around it.
@@ -285,12 +348,24 @@ impl View<'_> {
         let is_sample = x.fraction == 0.0 && y.fraction == 0.0;
         if lattice.level == 0 {
             let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
-            return Candidate { color, usable, lod: 0.0, ..Candidate::NONE };
+            let noise = if usable { self.sample_noise(px) } else { NO_NOISE };
+            let own = Candidate { color, usable, lod: 0.0, noise, ..Candidate::NONE };
+            let coarser = index + 1;
+            if !self.is_noisy()
+                || !usable
+                || coarser == self.lattices.len()
+                || self.lattices[coarser].points.contains(&0)
+            {
+                return own;
+            }
+            // The next lattice's samples say how well history fits.
+            return Candidate { fit: self.candidate(coarser, px, disparity, lights).fit, ..own };
         }
         let mut sums = Sums::default();
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         let mut nearest_px2 = f32::MAX;
         let mut own = None;
+        let mut noises = NoiseSum::default();
         for tap in 0..4 {
             let (right, below) = (tap & 1, tap >> 1);
             let point = [x.points[right as usize], y.points[below as usize]];
@@ -304,6 +379,9 @@ impl View<'_> {
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
             let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
             sums.add(color, weight, lit);
+            if self.is_noisy() {
+                noises = add_noise(noises, self.sample_noise(at), weight);
+            }
             (low, high) = (low.min(color), high.max(color));
             if alike {
                 let [dx, dy] = [0, 1].map(|i| px[i] as f32 - at[i] as f32);
@@ -318,6 +396,13 @@ impl View<'_> {
         }
         let coarsest = lattice.level as f32;
         let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
+        let noise = if !self.is_noisy() {
+            NO_NOISE
+        } else if own.is_some() {
+            self.sample_noise(px)
+        } else {
+            mean_noise(noises)
+        };
         Candidate {
             color,
             usable: true,
@@ -325,6 +410,7 @@ impl View<'_> {
             range: [low, high],
             gain: sums.gain * (1.0 / sums.valid),
             fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
+            noise,
         }
     }
 }
@@ -345,11 +431,19 @@ struct Candidate {
     range: [Vec3; 2],
     gain: Vec3,
     fit: f32,
+    noise: Noise,
 }
 
 impl Candidate {
-    const NONE: Self =
-        Self { color: Vec3::ZERO, usable: false, lod: 0.0, range: [Vec3::ZERO; 2], gain: Vec3::ONE, fit: 1.0 };
+    const NONE: Self = Self {
+        color: Vec3::ZERO,
+        usable: false,
+        lod: 0.0,
+        range: [Vec3::ZERO; 2],
+        gain: Vec3::ONE,
+        fit: 1.0,
+        noise: NO_NOISE,
+    };
 }
 
 /// Sums over the samples around a pixel.

@@ -47,7 +47,7 @@ impl GeometryFill {
         ];
         Self {
             shader: ComputeShader::with_bindings(device, "afterimage fill geometry", source, &bindings),
-            absent: Placeholders::new(device, HistoryLayout::Kept),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
             textures: textures(device, desc),
         }
     }

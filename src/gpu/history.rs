@@ -118,7 +118,10 @@ fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
             let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
             formats.into_iter().take(if keys { 3 } else { 2 }).map(full).collect()
         }
-        HistoryLayout::Kept => vec![full(TextureFormat::Rg32Uint)],
+        HistoryLayout::Kept { noisy } => {
+            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint];
+            formats.into_iter().take(if noisy { 2 } else { 1 }).map(full).collect()
+        }
         HistoryLayout::Surfaces { levels, noisy } => {
             let mip_chain = (levels > 0).then(|| mip_chain_plan(desc, levels));
             let noise = (levels > 0 && noisy).then(|| full(TextureFormat::R32Uint));

@@ -169,9 +169,13 @@ impl MethodPass {
                 next_or(1),
                 next_or(2),
             ],
-            HistoryLayout::Kept => {
-                vec![past_or(0, &self.absent.word), next_or(0), job.lights.unwrap_or(&self.absent.word)]
-            }
+            HistoryLayout::Kept { .. } => vec![
+                past_or(0, &self.absent.word),
+                next_or(0),
+                job.lights.unwrap_or(&self.absent.word),
+                past_or(1, &self.absent.word),
+                next.get(1).unwrap_or(&self.absent.out[2]),
+            ],
             HistoryLayout::Surfaces { .. } => vec![
                 &lod,
                 past_or(0, &self.absent.word),
@@ -238,7 +242,7 @@ fn writing(device: &Device, source: &str, output: TextureFormat) -> String {
 /// Formats of the history textures that a pass writes.
 pub(super) fn written(history: HistoryLayout) -> [TextureFormat; 3] {
     match history {
-        HistoryLayout::Surfaces { .. } | HistoryLayout::Kept => {
+        HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. } => {
             [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint]
         }
         _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
@@ -266,7 +270,7 @@ fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> 
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
         HistoryLayout::Reservoirs { .. } => vec![words, words, float, first, second, third],
-        HistoryLayout::Kept => vec![words, first, words],
+        HistoryLayout::Kept { .. } => vec![words, first, words, words, third],
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });
     let lattices = pass.reads_samples.then(|| (LATTICES_BINDING, uniform()));

@@ -43,7 +43,12 @@ impl ResizePass {
         let [first, second, third] = written(layout).map(storage_texture);
         let (name, types, block_px, overrides) = match layout {
             HistoryLayout::Nothing => return None,
-            HistoryLayout::Kept => ("resize_kept_pass", vec![uniform(), uint_texture(), first], 1, vec![]),
+            HistoryLayout::Kept { noisy } => (
+                "resize_kept_pass",
+                vec![uniform(), uint_texture(), uint_texture(), first, third],
+                1,
+                vec![("NOISY", u32::from(noisy))],
+            ),
             HistoryLayout::Reservoirs { keys } => (
                 "resize_reservoirs_pass",
                 vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],
@@ -93,10 +98,14 @@ impl ResizePass {
         let next_or = |i: usize| next.get(i).unwrap_or(&self.absent.out[i]);
         let read = match self.layout {
             HistoryLayout::Surfaces { .. } => vec![&past[0], past.get(2).unwrap_or(&self.absent.word)],
-            HistoryLayout::Kept => vec![&past[0]],
+            HistoryLayout::Kept { .. } => vec![&past[0], past.get(1).unwrap_or(&self.absent.word)],
             _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&self.absent.float)],
         };
-        let views = read.into_iter().chain([next_or(0), next_or(1), next_or(2)]).map(BindingResource::TextureView);
+        let written = match self.layout {
+            HistoryLayout::Kept { .. } => vec![next_or(0), next.get(1).unwrap_or(&self.absent.out[2])],
+            _ => vec![next_or(0), next_or(1), next_or(2)],
+        };
+        let views = read.into_iter().chain(written).map(BindingResource::TextureView);
         let group = self.shader.group(device, std::iter::once(uniforms.as_entire_binding()).chain(views));
         let label = Some("afterimage resize");
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() });

@@ -10,7 +10,7 @@ use super::uniforms::{FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattic
 use super::{Frame, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::lattice::Lattices;
-use crate::method::{HistoryLayout, Overrides};
+use crate::method::{HistoryLayout, Overrides, smr_relights};
 use crate::shader::SHADERS;
 use crate::uniforms::results_size;
 use wgpu::{
@@ -48,7 +48,13 @@ impl SamplePasses {
     pub fn with_shaders(device: &Device, desc: &ContextDesc, [observe, light]: [String; 2]) -> Self {
         // Numbers in `inputs`, `lattices` and the passes.
         let color_to_trust = (1..5).map(|number| (number, float_texture()));
-        let own = [(8, uint_texture()), (17, uniform()), (18, storage_texture(FORMAT))];
+        let own = [
+            (7, float_texture()),
+            (8, uint_texture()),
+            (11, uint_texture()),
+            (17, uniform()),
+            (18, storage_texture(FORMAT)),
+        ];
         let bindings: Vec<_> = std::iter::once((0, uniform())).chain(color_to_trust).chain(own).collect();
         let [observed, lights] = [(); 2].map(|()| array_view(&results(device, desc)));
         Self {
@@ -56,7 +62,7 @@ impl SamplePasses {
             light: ComputeShader::with_bindings(device, "afterimage light", light, &bindings),
             observed,
             lights,
-            absent: Placeholders::new(device, HistoryLayout::Kept),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
         }
     }
 
@@ -93,25 +99,32 @@ impl SamplePasses {
         history: &History,
     ) {
         let overrides = overrides(desc, variant);
-        let past = &history.split().0.views[0];
+        let past = &history.split().0.views;
+        let past_noise = past.get(1).unwrap_or(&self.absent.word);
         for batch in batches(frame.views.len(), variant.regions) {
             let optional = |textures: Option<Textures<'_>>| {
                 textures.map_or_else(|| self.absent.float.clone(), |textures| textures.bind(&batch))
             };
-            let inputs =
-                [frame.color.bind(&batch), optional(frame.depth), optional(frame.motion), optional(frame.trust)];
+            let inputs = [
+                frame.color.bind(&batch),
+                optional(frame.depth),
+                optional(frame.motion),
+                optional(frame.trust),
+                optional(frame.noise),
+            ];
             let first_view = batch.views.start;
             let samples: Vec<_> = samples(frame, &batch, uniforms.size)
                 .map(|(lattice, points)| (uniforms.buffer(device, first_view, lattice), points))
                 .collect();
             let shaders = [&self.observe, &self.light];
-            let images = [[past, &self.observed], [&self.observed, &self.lights]];
+            let images = [[&past[0], &self.observed], [&self.observed, &self.lights]];
             for ((shader, overrides), [read, written]) in shaders.into_iter().zip(&overrides).zip(images) {
                 for (uniforms, points) in &samples {
                     let resources = std::iter::once(uniforms.as_entire_binding())
                         .chain(inputs.iter().map(BindingResource::TextureView))
                         .chain([
                             BindingResource::TextureView(read),
+                            BindingResource::TextureView(past_noise),
                             lattices.as_entire_binding(),
                             BindingResource::TextureView(written),
                         ]);
@@ -138,8 +151,9 @@ fn samples(frame: &Frame<'_>, batch: &Batch, size_px: [u32; 2]) -> impl Iterator
 
 /// Override values of the two passes.
 fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
-    let observe = input_overrides(desc, variant);
-    let relight = [("RELIGHT_ON", u32::from(desc.settings.smr.relight))];
+    let mut observe = input_overrides(desc, variant);
+    observe.push(("NOISY", u32::from(desc.settings.noisy)));
+    let relight = [("RELIGHT_ON", u32::from(smr_relights(&desc.settings)))];
     let light = observe.iter().copied().chain(relight).collect();
     [observe, light]
 }
@@ -161,7 +175,7 @@ fn results(device: &Device, desc: &ContextDesc) -> Texture {
 
 /// Whether contexts of `desc` reconstruct sparse frames.
 pub(super) fn is_needed(desc: &ContextDesc) -> bool {
-    desc.settings.history_layout() == HistoryLayout::Kept
+    matches!(desc.settings.history_layout(), HistoryLayout::Kept { .. })
 }
 
 /// Bytes of the results for samples, if the context has them.

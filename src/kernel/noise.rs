@@ -27,6 +27,8 @@ const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
 /// Alpha of a texel without usable candidates.
 const UNKNOWN: f32 = -1.0;
+/// Keeps quotients of sums finite.
+const LEAST_SPREAD: f32 = 1e-30;
 
 /// Noise of a color: number of samples, and variance of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,12 +128,18 @@ pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
 }
 
+/// Degree to which the noise of a color at a luma is visible, in \[0, 1\].
+#[inline]
+pub fn noise_visibility(history: Noise, luma: f32) -> f32 {
+    let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
+    smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
+}
+
 /// Noise confidence of a color at a luma, in \[0, 1\]: 1 where its standard error is invisible. Only then does a finer
 /// sample replace a coarser one.
 #[inline]
 pub fn noise_confidence(history: Noise, luma: f32) -> f32 {
-    let error = root_slope(luma) * (history.variance / history.samples.max(1.0)).sqrt();
-    1.0 - smooth_step(CONFIDENCE_FALLOFF[0], CONFIDENCE_FALLOFF[1], error)
+    1.0 - noise_visibility(history, luma)
 }
 
 /// Noise of a history that is coarser than the candidate by `levels` of detail, with its number of samples limited to a
@@ -148,6 +156,42 @@ pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise 
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
+}
+
+/// Difference of a sample and of history at its pixel that noise makes on average: the standard deviation at a luma, in
+/// units of [`root_difference`](super::matched::root_difference).
+#[inline]
+pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
+    let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
+    root_slope(luma) * (pooled_variance(history, candidate) * inverse_samples).sqrt()
+}
+
+/// Noise of a weighted mean of samples, in the making.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NoiseSum {
+    /// Weights.
+    pub weight: f32,
+    /// Squared weights over numbers of samples.
+    pub spread: f32,
+    /// Variances times weights.
+    pub variance: f32,
+}
+
+/// A sum with one color more.
+#[inline]
+pub fn add_noise(sum: NoiseSum, n: Noise, weight: f32) -> NoiseSum {
+    NoiseSum {
+        weight: sum.weight + weight,
+        spread: sum.spread + (weight * weight) / n.samples,
+        variance: sum.variance + n.variance * weight,
+    }
+}
+
+/// Noise of the mean: it is worth as many samples as its variance says, at least one.
+#[inline]
+pub fn mean_noise(sum: NoiseSum) -> Noise {
+    let samples = (sum.weight * sum.weight) / sum.spread.max(LEAST_SPREAD);
+    Noise { samples: samples.clamp(1.0, MAX_SAMPLES), variance: sum.variance * (1.0 / sum.weight.max(LEAST_SPREAD)) }
 }
 
 /// Noise of the output color. `share`: history's share in it; `finer`: degree to which history replaced the candidate

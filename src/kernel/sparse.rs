@@ -7,8 +7,10 @@
 //! blends its own history with the interpolated samples ([`reconstruct`]).
 
 use super::approx;
+use super::color::luma;
 use super::kept::{Kept, pack_color, unpack_color};
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
+use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
 use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
@@ -42,6 +44,13 @@ const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
 /// Share of history from which on the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
+/// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
+const MEAN_ERRORS: f32 = 3.0;
+/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and
+/// keeps blurred history for longer.
+const BLURRED_FRAMES: f32 = 8.0;
+/// Noisy samples: share of history from which on the mean is stored in the place of the kept sample.
+const STAY_SHARE: f32 = 0.5;
 
 /// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
 /// sample's own pixel.
@@ -76,6 +85,13 @@ pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
 #[inline]
 pub fn sureness(lod: f32) -> f32 {
     1.0 - lod.clamp(0.0, 1.0)
+}
+
+/// As [`sureness`], for noisy samples at a luma. Where history's noise is visible, the expected difference is that of
+/// noise, and coarse history says as much as fine history.
+#[inline]
+pub fn noisy_sureness(lod: f32, past: Noise, luma: f32) -> f32 {
+    sureness(lod).max(noise_visibility(past, luma))
 }
 
 /// Gain for one channel, limited.
@@ -169,6 +185,15 @@ pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
 #[inline]
 pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
+}
+
+/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples tell a
+/// smaller change from noise than each of them does.
+#[inline]
+pub fn mean_fit(l: Light, sure: f32) -> f32 {
+    let inverse = 1.0 / l.weight;
+    let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * MEAN_ERRORS;
+    1.0 - sure * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
 }
 
 /// What a sample says of the light on its surface.
@@ -282,4 +307,45 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
     let kept = Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
     Reconstructed { color, kept, share }
+}
+
+/// Result of [`accumulate`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accumulated {
+    /// Color to show, and sample to store.
+    pub result: Reconstructed,
+    /// Noise of that sample.
+    pub noise: Noise,
+}
+
+/// As [`reconstruct`], for noisy samples: a mean of history and candidate by their numbers of samples. History replaces
+/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: that
+/// of the candidate. History is not relit.
+///
+/// The mean is stored in the place of the kept sample, so that history is not resampled.
+#[inline]
+pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
+    let acceptance = r.fit * r.trust;
+    let bright = luma(r.history);
+    // The farther the samples are, the less they say of this pixel.
+    let now = Noise { samples: now.samples * approx::exp2(-r.lod), variance: now.variance };
+    let certain = noise_confidence(past, bright);
+    let sharp = noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);
+    let finer = ((r.lod - r.history_lod) / FINER_WIDTH).clamp(0.0, 1.0) * certain;
+    let blurred = ((r.history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0);
+    let most = past.samples.min(BLURRED_FRAMES * now.samples);
+    let known = Noise { samples: past.samples + (most - past.samples) * blurred, variance: past.variance };
+    let alike = (1.0 - finer) * (1.0 - blurred * sharp);
+    let share = (finer + alike * history_share(known, now, r.accumulate)) * acceptance;
+    let color = if share == 1.0 { r.history } else { r.candidate + (r.history - r.candidate) * share };
+    let lod = r.lod + (r.history_lod - r.lod) * share;
+    let noise = noise_after(past, now, share, finer * acceptance);
+    let place = r.nearest.place_px;
+    let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
+    let kept = if near && share >= STAY_SHARE {
+        Kept { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
+    } else {
+        Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
+    };
+    Accumulated { result: Reconstructed { color, kept, share }, noise }
 }

@@ -9,7 +9,7 @@ mod taa;
 mod taau;
 mod wrs;
 
-pub(crate) use smr::smr_params;
+pub(crate) use smr::{smr_params, smr_relights};
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
@@ -89,7 +89,10 @@ pub(crate) enum HistoryLayout {
         keys: bool,
     },
     /// Packed samples that keep their places ([`kept`](crate::kernel::kept)).
-    Kept,
+    Kept {
+        /// Whether there is packed noise ([`noise`](crate::kernel::noise)).
+        noisy: bool,
+    },
     /// Packed surfaces ([`surface`](crate::kernel::surface)), and their mip chain.
     Surfaces {
         /// Number of mip levels above the full-rate one.

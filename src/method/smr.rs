@@ -32,7 +32,7 @@ pub(super) static ENTRY: Entry = Entry {
 
 fn history(settings: &Settings) -> HistoryLayout {
     if settings.foveation.filter == Filter::Sparse {
-        return HistoryLayout::Kept;
+        return HistoryLayout::Kept { noisy: settings.noisy };
     }
     // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level
     // coarser.
@@ -49,7 +49,9 @@ fn history_traffic_bytes(settings: &Settings) -> u32 {
         // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
         // most have samples of this frame: for each, history is read (8), the observation is written and read (16), and
         // so is the light (16).
-        return 2 * 8 + (8 + 16 + 16_u32).div_ceil(3);
+        let samples = (8 + 16 + 16_u32).div_ceil(3);
+        // The noise of samples (4) and that of history (4) are read, and the latter is written (4).
+        return 2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 };
     }
     // Surfaces: 8 bytes read, 8 written. Their mip chain has a third of the texels, 8 bytes each: read by the pass,
     // written, and read again to fill its coarser levels.
@@ -66,6 +68,12 @@ fn filter(settings: &Settings) -> Filter {
         Filter::Block if settings.noisy => Filter::Mip,
         filter => filter,
     }
+}
+
+/// Whether history of sparse frames is relit. Not that of noisy ones: a gain is the ratio of nine samples, and history
+/// would be multiplied by their noise.
+pub(crate) fn smr_relights(settings: &Settings) -> bool {
+    settings.smr.relight && !settings.noisy
 }
 
 /// Parameters of the kernel from smr's settings.

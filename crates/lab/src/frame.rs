@@ -1,6 +1,6 @@
 //! Frames in memory: the output of sources and the input of methods.
 
-use afterimage::Image;
+use afterimage::{Image, Lattices};
 
 /// A full-rate frame with the auxiliary images of a temporal method.
 #[derive(Clone, Debug)]
@@ -23,7 +23,8 @@ pub struct SourceFrame {
     pub nonfinite: u64,
 }
 
-/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel.
+/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel, or given with its samples'
+/// places.
 #[derive(Clone, Debug)]
 pub struct FoveatedFrame {
     /// Linear radiance.
@@ -32,6 +33,8 @@ pub struct FoveatedFrame {
     pub lod: Image<f32>,
     /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
     pub noise: Image<[f32; 2]>,
+    /// Where the samples lie, if the frame is not reconstructed between them: only they have a color.
+    pub lattices: Option<Lattices>,
     /// Number of samples in each ring.
     pub samples: Vec<u64>,
     /// Number of rays of all kinds.

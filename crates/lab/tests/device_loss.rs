@@ -70,7 +70,7 @@ fn sources_say_that_their_device_was_lost() {
 
     let lost = device().unwrap();
     let (settings, samples) =
-        (TraceSettings::default(), TracedSamples { foveated: None, samples: 1, full_rate_samples: 1 });
+        (TraceSettings::default(), TracedSamples { foveated: None, sparse: None, samples: 1, full_rate_samples: 1 });
     let backend = Backend::Gpu(lost.clone());
     let traced = TracedSource::open("builtin:cubes", &limits, &OPTIONS, Some("orbit"), &backend, settings, samples);
     let said = error_of(traced.unwrap(), &lost);

@@ -62,6 +62,7 @@ pub struct MethodAccumulator {
     with_history: u64,
     replaced: u64,
     last: Option<FrameErrors>,
+    frame_mse: Vec<f64>,
     traffic: Option<u32>,
 }
 
@@ -76,7 +77,9 @@ impl MethodAccumulator {
         shown: &MethodOutput,
         step: &Step,
     ) {
-        self.last = Some(self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg));
+        let errors = self.scorer.push(reference, encoded, &step.tracked, &step.ecc_deg);
+        self.frame_mse.push(errors.mse);
+        self.last = Some(errors);
         if let Some(foveated) = foveated {
             self.crops.push(reference.encoded(), encoded, foveated);
         }
@@ -103,6 +106,11 @@ impl MethodAccumulator {
     /// Cost of the pass in each frame, [`MethodOutput::cost_ms`].
     pub fn cost_ms(&self) -> &[f64] {
         &self.cost_ms
+    }
+
+    /// Mean squared error of each frame.
+    pub fn into_frame_mse(self) -> Vec<f64> {
+        self.frame_mse
     }
 
     /// A row of `frames.csv` for the last frame.

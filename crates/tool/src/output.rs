@@ -25,9 +25,9 @@ pub struct Table {
 }
 
 impl Output {
-    /// Creates the folder and its subfolders `parts`. Removes frames of an earlier run, if its `report` (`report.json`
-    /// or `trace.json`) shows that this tool wrote them.
-    pub fn create(root: &Path, parts: &[String], report: &str) -> Result<Self, Failure> {
+    /// Creates the folder and its subfolders `parts`. Removes frames and `reports` of an earlier run, if the first of
+    /// these (`report.json` or `trace.json`) shows that this tool wrote them.
+    pub fn create(root: &Path, parts: &[String], reports: &[&str]) -> Result<Self, Failure> {
         let refuse = |path: &Path, error: &dyn std::fmt::Display| {
             Failure::Input(format!(
                 "{}: cannot be written ({error}); give --out a folder that can be created or written",
@@ -35,7 +35,9 @@ impl Output {
             ))
         };
         fs::create_dir_all(root).map_err(|e| refuse(root, &e))?;
-        let ours = fs::read_to_string(root.join(report)).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""));
+        let ours = reports.first().is_some_and(|report| {
+            fs::read_to_string(root.join(report)).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""))
+        });
         let mut stale = vec![];
         for part in parts {
             stale.extend(numbered_frames(&root.join(part)));
@@ -49,7 +51,10 @@ impl Output {
         // Create a file to check that the folder can be written.
         let probe = root.join(".afterimage.partial");
         File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
-        for path in stale.into_iter().chain(ours.then(|| root.join(report))) {
+        if ours {
+            stale.extend(reports.iter().map(|report| root.join(report)).filter(|path| path.exists()));
+        }
+        for path in stale {
             fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
         }
         for part in parts {

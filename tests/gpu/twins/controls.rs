@@ -1,7 +1,7 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, sparse, state, surfaces, upsampling};
+use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -241,12 +241,28 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "candidate_level", "1.0 + 2.0 * px", "1.0 + 2.01 * px");
     caught(sparse::PROBES, "expected_error", "by_motion + CONTRAST_ERROR * coarse", "by_motion + CONTRAST_ERROR");
     caught(sparse::PROBES, "agreement", "own.error + other.error", "own.error + own.error");
-    caught(sparse::PROBES, "relight", "sqrt(l.squared)", "sqrt(l.weight)");
-    caught(sparse::PROBES, "fit", "1.0 - sure * smooth_step", "1.0 - smooth_step");
+    let standard_error =
+        ["(sqrt(l.squared) * inverse)) * RELIGHT_ERRORS", "(sqrt(l.weight) * inverse)) * RELIGHT_ERRORS"];
+    caught(sparse::PROBES, "relight", standard_error[0], standard_error[1]);
+    caught(sparse::PROBES, "fit", "1.0 - sure * smooth_step(FIT_ERRORS.x", "1.0 - smooth_step(FIT_ERRORS.x");
+    caught(sparse::PROBES, "mean_fit", "sqrt(l.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS");
+    caught(sparse::PROBES, "noisy_sureness", "max(sureness(lod), noise", "max(0.0 * sureness(lod), noise");
     caught(sparse::PROBES, "own_fit", "own.sure);", "1.0);");
     caught(sparse::PROBES, "pack_lit", "l.fit * 256.0 + 0.5", "l.fit * 256.0");
     caught(sparse::PROBES, "unpack_lit", "(words.y & 512u) != 0u", "(words.y & 1024u) != 0u");
     caught(sparse::PROBES, "reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE");
     caught(sparse::PROBES, "reconstruct", "select(WORN.y, WORN.x, r.moved)", "WORN.x");
+    caught(sparse::PROBES, "accumulate", "near && share >= STAY_SHARE", "share >= STAY_SHARE");
+    caught(sparse::PROBES, "accumulate", "BLURRED_FRAMES * now.samples", "BLURRED_FRAMES * candidate.samples");
+    caught(sparse::PROBES, "accumulate", "* certain;", ";");
+    caught(sparse::PROBES, "accumulate", "1.0 - blurred * sharp", "1.0 - blurred");
+    caught(
+        noise::PROBES,
+        "expected_noise",
+        "1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);\n    return root",
+        "1.0 / candidate.samples;\n    return root",
+    );
+    caught(noise::PROBES, "add_noise", "(weight * weight) / n.samples", "weight / n.samples");
+    caught(noise::PROBES, "mean_noise", "sum.weight * sum.weight", "sum.weight");
     caught(sparse::PROBES, "relit", "highest + (highest - lowest)", "highest + highest");
 }

@@ -80,6 +80,11 @@ fn texel_rows(name: &str, fractions: usize) -> Rows {
     })
 }
 
+/// A sum of noises in the making.
+fn sum_of(r: &Row<'_>) -> noise::NoiseSum {
+    noise::NoiseSum { weight: r.f(0), spread: r.f(1), variance: r.f(2) }
+}
+
 pub const PROBES: &[Probe] = &[
     Probe {
         name: "positive",
@@ -194,6 +199,55 @@ pub const PROBES: &[Probe] = &[
         wgsl: "out_f(noise_difference(Noise(in_f(0u), in_f(1u)), Noise(in_f(2u), in_f(3u)), in_f(4u)));",
         rust: |r, o| o.f(noise::noise_difference(known(r, 0), known(r, 2), r.f(4))),
         rows: || pair_rows("noise_difference", &[&channels()]),
+    },
+    Probe {
+        name: "expected_noise",
+        module: "noise",
+        words: [5, 1],
+        wgsl: "out_f(expected_noise(Noise(in_f(0u), in_f(1u)), Noise(in_f(2u), in_f(3u)), in_f(4u)));",
+        rust: |r, o| o.f(noise::expected_noise(known(r, 0), known(r, 2), r.f(4))),
+        rows: || pair_rows("expected_noise", &[&channels()]),
+    },
+    Probe {
+        name: "add_noise",
+        module: "noise",
+        words: [6, 3],
+        wgsl: "let s = add_noise(NoiseSum(in_f(0u), in_f(1u), in_f(2u)), Noise(in_f(3u), in_f(4u)), in_f(5u));
+            out_f(s.weight); out_f(s.spread); out_f(s.variance);",
+        rust: |r, o| {
+            let sum = noise::add_noise(sum_of(r), known(r, 3), r.f(5));
+            [sum.weight, sum.spread, sum.variance].into_iter().for_each(|v| o.f(v));
+        },
+        rows: || Rows::new(6).random("add_noise", |d, row| {
+            let n = noise(d);
+            push(row, &[d.range(0.0, 4.0), d.range(0.0, 4.0), d.range(0.0, 9.0), n[0], n[1], d.range(0.0, 1.0)]);
+        }),
+    },
+    Probe {
+        name: "mean_noise",
+        module: "noise",
+        words: [3, 2],
+        wgsl: "let n = mean_noise(NoiseSum(in_f(0u), in_f(1u), in_f(2u))); out_f(n.samples); out_f(n.variance);",
+        rust: |r, o| put(o, noise::mean_noise(sum_of(r))),
+        rows: || {
+            let sums = floats(&[0.0, 1e-8, 1e-4, 1.0]);
+            Rows::new(3).cross(&[&sums, &sums, &variances()]).random("mean_noise", |d, row| {
+                push(row, &[d.range(0.0, 4.0), d.range(0.0, 4.0), d.range(0.0, 9.0)]);
+            })
+        },
+    },
+    Probe {
+        name: "noise_visibility",
+        module: "noise",
+        words: [3, 1],
+        wgsl: "out_f(noise_visibility(Noise(in_f(0u), in_f(1u)), in_f(2u)));",
+        rust: |r, o| o.f(noise::noise_visibility(known(r, 0), r.f(2))),
+        rows: || {
+            Rows::new(3).random("noise_visibility", |d, row| {
+                let n = noise(d);
+                push(row, &[n[0], n[1], d.range(0.0, 4.0)]);
+            })
+        },
     },
     Probe {
         name: "noise_confidence",

@@ -2,6 +2,7 @@
 
 use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
+use afterimage::kernel::noise::Noise;
 use afterimage::kernel::{kept, sparse};
 use afterimage_testing::Draws;
 use glam::Vec2;
@@ -70,6 +71,40 @@ fn around_of(r: &Row<'_>) -> kept::Around {
     (0..r.u(27) as usize).map(|i| 9 * i).fold(kept::Around::NOTHING, |a, at| {
         kept::add_kept(a, kept_of(r, at), Vec2::new(r.f(at + 7), r.f(at + 8)), true)
     })
+}
+
+/// Twenty-nine words of a reconstruction.
+fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
+    row.extend(color(d));
+    row.push(range(d, 0.0, 4.0));
+    let (low, more) = (color(d), color(d));
+    row.extend(low);
+    row.extend((0..3).map(|i| (f32::from_bits(low[i]) + f32::from_bits(more[i])).to_bits()));
+    row.extend(color(d));
+    row.push(range(d, 0.0, 4.0));
+    push_kept(d, row);
+    row.push(d.bits() % 2);
+    let lit = d.bits().is_multiple_of(2);
+    row.extend([0; 3].map(|_| if lit { 1.0_f32.to_bits() } else { range(d, 0.2, 5.0) }));
+    let sure = d.bits().is_multiple_of(2);
+    row.extend([0; 2].map(|_| if sure { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) }));
+    row.extend([range(d, 0.0, 0.98), 0]);
+}
+
+fn reconstruction_of(r: &Row<'_>) -> sparse::Reconstruction {
+    sparse::Reconstruction {
+        candidate: r.v(0),
+        lod: r.f(3),
+        range: [r.v(4), r.v(7)],
+        history: r.v(10),
+        history_lod: r.f(13),
+        nearest: kept_of(r, 14),
+        moved: r.u(21) != 0,
+        gain: r.v(22),
+        fit: r.f(25),
+        trust: r.f(26),
+        accumulate: r.f(27),
+    }
 }
 
 pub const PROBES: &[Probe] = &[
@@ -247,6 +282,19 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(1).random("sureness", |d, row| row.push(range(d, 0.0, 3.0))),
     },
     Probe {
+        name: "noisy_sureness",
+        module: "sparse",
+        words: [4, 1],
+        wgsl: "out_f(noisy_sureness(in_f(0u), Noise(in_f(1u), in_f(2u)), in_f(3u)));",
+        rust: |r, o| {
+            let past = Noise { samples: r.f(1), variance: r.f(2) };
+            o.f(sparse::noisy_sureness(r.f(0), past, r.f(3)));
+        },
+        rows: || Rows::new(4).random("noisy_sureness", |d, row| {
+            row.extend([range(d, 0.0, 3.0), range(d, 1.0, 80.0), range(d, 0.0, 0.01), range(d, 0.0, 2.0)]);
+        }),
+    },
+    Probe {
         name: "ratio",
         module: "sparse",
         words: [2, 1],
@@ -350,6 +398,19 @@ pub const PROBES: &[Probe] = &[
         }),
     },
     Probe {
+        name: "mean_fit",
+        module: "sparse",
+        words: [11, 1],
+        wgsl: "out_f(mean_fit(Light(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_f(8u), in_f(9u)), in_f(10u)));",
+        rust: |r, o| o.f(sparse::mean_fit(light_of(r), r.f(10))),
+        rows: || {
+            Rows::new(11).random("mean_fit", |d, row| {
+                push_light(d, row);
+                row.push(range(d, 0.0, 1.0));
+            })
+        },
+    },
+    Probe {
         name: "pack_lit",
         module: "sparse",
         words: [7, 2],
@@ -402,38 +463,38 @@ pub const PROBES: &[Probe] = &[
             in_f(25u), in_f(26u), in_f(27u))); out_v(r.color); out_v(r.kept.color); out_f(r.kept.lod);
             out_f(r.kept.disparity); out_f(r.kept.place_px.x); out_f(r.kept.place_px.y); out_f(r.share);",
         rust: |r, o| {
-            let result = sparse::reconstruct(&sparse::Reconstruction {
-                candidate: r.v(0),
-                lod: r.f(3),
-                range: [r.v(4), r.v(7)],
-                history: r.v(10),
-                history_lod: r.f(13),
-                nearest: kept_of(r, 14),
-                moved: r.u(21) != 0,
-                gain: r.v(22),
-                fit: r.f(25),
-                trust: r.f(26),
-                accumulate: r.f(27),
-            });
+            let result = sparse::reconstruct(&reconstruction_of(r));
             o.v(result.color);
             put_kept(o, result.kept);
             o.f(result.share);
         },
-        rows: || Rows::new(29).random("reconstruct", |d, row| {
-            row.extend(color(d));
-            row.push(range(d, 0.0, 4.0));
-            let (low, more) = (color(d), color(d));
-            row.extend(low);
-            row.extend((0..3).map(|i| (f32::from_bits(low[i]) + f32::from_bits(more[i])).to_bits()));
-            row.extend(color(d));
-            row.push(range(d, 0.0, 4.0));
-            push_kept(d, row);
-            row.push(d.bits() % 2);
-            let lit = d.bits().is_multiple_of(2);
-            row.extend([0; 3].map(|_| if lit { 1.0_f32.to_bits() } else { range(d, 0.2, 5.0) }));
-            let sure = d.bits().is_multiple_of(2);
-            row.extend([0; 2].map(|_| if sure { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) }));
-            row.extend([range(d, 0.0, 0.98), 0]);
+        rows: || Rows::new(29).random("reconstruct", push_reconstruction),
+    },
+    Probe {
+        name: "accumulate",
+        module: "sparse",
+        words: [33, 13],
+        wgsl: "let a = accumulate(Reconstruction(in_v(0u), in_f(3u), in_v(4u), in_v(7u), in_v(10u), in_f(13u),
+            Kept(in_v(14u), in_f(17u), in_f(18u), vec2<f32>(in_f(19u), in_f(20u))), in_u(21u) != 0u, in_v(22u),
+            in_f(25u), in_f(26u), in_f(27u)), Noise(in_f(29u), in_f(30u)), Noise(in_f(31u), in_f(32u)));
+            let r = a.result; out_v(r.color); out_v(r.kept.color); out_f(r.kept.lod); out_f(r.kept.disparity);
+            out_f(r.kept.place_px.x); out_f(r.kept.place_px.y); out_f(r.share); out_f(a.noise.samples);
+            out_f(a.noise.variance);",
+        rust: |r, o| {
+            let known = |k: usize| Noise { samples: r.f(k), variance: r.f(k + 1) };
+            let made = sparse::accumulate(&reconstruction_of(r), known(29), known(31));
+            o.v(made.result.color);
+            put_kept(o, made.result.kept);
+            o.f(made.result.share);
+            o.f(made.noise.samples);
+            o.f(made.noise.variance);
+        },
+        rows: || Rows::new(33).random("accumulate", |d, row| {
+            push_reconstruction(d, row);
+            for _ in 0..2 {
+                let variance = [0.0, d.range(0.0, 1e-3), d.range(0.0, 2.0)][d.bits() as usize % 3];
+                row.extend([(1.0 + (d.bits() % 64) as f32).to_bits(), variance.to_bits()]);
+            }
         }),
     },
 ];

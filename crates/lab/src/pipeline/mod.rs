@@ -303,13 +303,16 @@ impl Pipeline {
         gaze_px: [f32; 2],
         foveated: FoveatedFrame,
     ) -> Result<Step, FrameError> {
-        let FoveatedFrame { color, lod, noise, .. } = foveated;
+        let FoveatedFrame { color, lod, noise, lattices, .. } = foveated;
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lod);
         #[cfg(feature = "ablation")]
         let color = poisoned(color, self.poison, index as u32);
-        let candidate = Candidate { color: &color, lod_given: Some(&lod), noise: Some(&noise), geometry: None };
-        let view = self.view(frame, gaze_px);
+        // Lattices say how coarse a sparse frame is.
+        let lod_given = lattices.is_none().then_some(&lod);
+        let candidate = Candidate { color: &color, lod_given, noise: Some(&noise), geometry: None };
+        let lattices = lattices.map(|lattices| self.sparse_geometry.of(lattices));
+        let view = ViewFrame { lattices, ..self.view(frame, gaze_px) };
         #[cfg(feature = "full")]
         if let Some(device) = &mut self.device {
             device.inputs.upload_foveated(frame, candidate.color, candidate.lod_given, candidate.noise);

@@ -9,6 +9,7 @@ use crate::device::Backend;
 use crate::error::InputError;
 use crate::frame::SourceFrame;
 use crate::frame::{FoveatedFrame, Guide};
+use crate::pipeline::SampleOrder;
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -30,6 +31,9 @@ const FULL_RATE_FRAMES: u64 = 1 << 31;
 pub struct TracedSamples {
     /// Sampling pattern of the foveated frame; `None` leaves foveation to a simulator.
     pub foveated: Option<Sampling>,
+    /// Order in which the pattern's lattices move, for foveated frames that are given as samples
+    /// ([`Sampling::sparse_plan`]); `None`: frames that are reconstructed between the samples.
+    pub sparse: Option<SampleOrder>,
     /// Largest number of samples per pixel of the foveated frame, unless the pattern states its own.
     pub samples: u32,
     /// Samples per pixel of the full-rate frame.
@@ -169,7 +173,16 @@ impl FrameSource for TracedSource {
     ) -> Result<Option<FoveatedFrame>, InputError> {
         let Some(sampling) = self.samples.foveated else { return Ok(None) };
         let [view, _] = self.pose(index)?;
-        let plan = sampling.plan(view.geometry(), gaze_px, self.samples.samples.max(1), index);
+        let samples = self.samples.samples.max(1);
+        if let Some(order) = self.samples.sparse {
+            let plan = sampling.sparse_plan(view.geometry(), gaze_px, samples, index, order);
+            let frame = plan
+                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern"))?
+                .trace(&self.tracer, &self.world, &view, index);
+            self.check()?;
+            return Ok(Some(frame));
+        }
+        let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
         let plan = match guide {
             None => plan,
             Some(guide) => plan

@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, one moving sample a block, or none
+    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, one moving sample a block, or none.
+    /// With --sampling regions or layers, sparse gives the traced samples to the methods in their places
     #[arg(long = "foveation", value_enum, default_value = "mip")]
     pub filter: FilterName,
     /// Diameter of the full-rate region, degrees

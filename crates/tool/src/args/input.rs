@@ -6,6 +6,7 @@ use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::pipeline::SampleOrder;
 use afterimage_lab::source;
 use afterimage_lab::source::{
     FrameSource, RasterSource, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,
@@ -60,9 +61,19 @@ pub enum SourceName {
 pub struct Rendering {
     pub backend: Backend,
     pub seed: u64,
-    /// Sampling pattern of foveated frames, and samples per pixel of their full-rate references; `None`: full-rate
-    /// frames only.
-    pub foveated: Option<(Sampling, u32)>,
+    /// Sampling pattern of foveated frames; `None`: full-rate frames only.
+    pub foveated: Option<FoveatedSampling>,
+}
+
+/// Samples of foveated frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoveatedSampling {
+    /// Their pattern.
+    pub pattern: Sampling,
+    /// Whether they are given as samples, not filled in between.
+    pub sparse: bool,
+    /// Samples per pixel of their full-rate references.
+    pub reference_spp: u32,
 }
 
 impl InputArgs {
@@ -103,8 +114,13 @@ impl InputArgs {
 
     /// Opens a scene for path tracing.
     fn traced(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        let (foveated, full_rate_samples) = rendering.foveated.map_or((None, self.spp), |(s, n)| (Some(s), n));
-        let samples = TracedSamples { foveated, samples: self.spp, full_rate_samples };
+        let foveated = rendering.foveated;
+        let samples = TracedSamples {
+            foveated: foveated.map(|f| f.pattern),
+            sparse: foveated.filter(|f| f.sparse).map(|_| SampleOrder::default()),
+            samples: self.spp,
+            full_rate_samples: foveated.map_or(self.spp, |f| f.reference_spp),
+        };
         let settings = self.paths.settings(rendering.seed)?;
         let (limits, options, camera) = (self.limits(), self.scene_options(), self.camera.as_deref());
         let backend = &rendering.backend;

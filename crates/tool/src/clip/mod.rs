@@ -20,6 +20,9 @@ use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, S
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
+/// Files that tell of a whole clip, the one that marks the folder first. `demo` draws no plot.
+pub const REPORTS: [&str; 3] = ["report.json", "psnr.svg", "psnr.png"];
+
 /// Settings of a clip: foveation, methods, gaze, and files to write.
 pub struct Clip {
     /// First line of the contact sheet.
@@ -76,6 +79,8 @@ pub struct ClipReport {
     pub backend: String,
     /// Gaze position used for each frame, in frame pixels.
     pub gaze_px: Vec<[f32; 2]>,
+    /// Mean squared error of each method's frames.
+    pub frame_mse: Vec<Vec<f64>>,
 }
 
 /// Gives a frame to the pipeline, from the device where it was rendered, if it was. Sparse frames are rendered with
@@ -153,6 +158,7 @@ impl Clip {
         };
         report.methods = accumulators.iter().enumerate().map(of).collect();
         compare_with_oracle(&mut report.methods);
+        report.frame_mse = accumulators.into_iter().map(MethodAccumulator::into_frame_mse).collect();
         report.foveation_ms = Quartiles::of(&foveation_ms);
         Ok(report)
     }

@@ -3,7 +3,7 @@
 use crate::args::FormatName;
 use crate::args::gaze::GazeArgs;
 use crate::clip::run_report::{RunFacts, write_report};
-use crate::clip::{Clip, ClipReport, title};
+use crate::clip::{Clip, ClipReport, REPORTS, title};
 use crate::failure::Failure;
 use crate::method_report::MethodReport;
 use crate::output::Output;
@@ -83,7 +83,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
 fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let (mut source, clip, facts) = clip()?;
     let folders = clip.methods.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
-    let out = Output::create(out, &folders, "report.json")?;
+    let out = Output::create(out, &folders, &REPORTS)?;
     let report = clip.run(&mut source, &out)?;
     write_report(&facts, &clip, &report, &out)?;
     Ok(report)

@@ -1,16 +1,17 @@
 //! `afterimage run`: foveate frames, run methods on them, score the results.
 
 pub mod plan;
+mod plot;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
-use crate::args::input::{InputArgs, Rendering, SourceName};
+use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
 };
-use crate::clip::ClipReport;
 use crate::clip::run_report::{RunFacts, write_report};
+use crate::clip::{ClipReport, REPORTS};
 use crate::failure::Failure;
 use crate::output::Output;
 use afterimage::Filter;
@@ -27,7 +28,8 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
-    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+    Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
+    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]
 pub struct RunArgs {
     /// Output folder
@@ -100,7 +102,11 @@ impl RunArgs {
 
     /// Settings for rendering a scene on `backend`.
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
-        let foveated = self.sampling()?.map(|sampling| (sampling, self.reference_spp));
+        let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
+            pattern,
+            sparse: self.is_sparse(),
+            reference_spp: self.reference_spp,
+        });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
     }
 
@@ -117,7 +123,21 @@ impl RunArgs {
                 self.sampling.sampling.name()
             )));
         }
-        self.sampling.sampling().map(Some)
+        let sampling = self.sampling.sampling()?;
+        if self.is_sparse() {
+            self.sampling.check_sparse(&sampling)?;
+            if self.guided {
+                return Err(Failure::Input(
+                    "--guided: distributes the samples of filled frames; leave out --foveation sparse".into(),
+                ));
+            }
+        }
+        Ok(Some(sampling))
+    }
+
+    /// Whether frames are given as samples: of a simulator, or of a sampling pattern.
+    pub fn is_sparse(&self) -> bool {
+        self.foveation.filter == FilterName::Sparse
     }
 }
 
@@ -155,8 +175,9 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), backend)?;
     // The input can be read, or nothing is written.
     let mut source = PeekedSource::new(source.as_mut())?;
-    let out = Output::create(&args.out, &folders(args), "report.json")?;
+    let out = Output::create(&args.out, &folders(args), &REPORTS)?;
     let report = plan.clip.run(&mut source, &out)?;
+    plot::write(&plan, simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
         fps: plan.fps,
@@ -219,4 +240,5 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
     );
     say!("contact sheet: {}", args.out.join("sheet.png").display());
+    say!("PSNR by frame: {}", args.out.join("psnr.png").display());
 }

@@ -127,7 +127,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut eyes = Eyes::new(args.stereo, args.size)?;
     let mut setup = Setup::new(args)?;
     let parts: Vec<String> = eyes.names().iter().flat_map(|eye| folders(args, eye)).collect();
-    let out = Output::create(&args.out, &parts, "trace.json")?;
+    let out = Output::create(&args.out, &parts, &["trace.json"])?;
     let mut report = Report::new(eyes.names().len());
     if args.verbose {
         report.print_effects(&setup);

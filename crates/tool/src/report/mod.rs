@@ -8,4 +8,8 @@ pub mod jpeg;
 pub mod page;
 #[cfg(feature = "full")]
 pub mod pareto;
+#[cfg(feature = "full")]
+pub mod plot;
+#[cfg(feature = "full")]
+pub mod psnr_plot;
 pub mod sheet;

@@ -14,13 +14,28 @@ fn run_writes_what_the_contract_says() {
     let out = folder.path("out");
     assert_eq!(
         files(&out),
-        ["debug", "frames.csv", "gaze.csv", "none", "reference", "report.json", "sheet.png", "wrs"]
+        [
+            "debug",
+            "frames.csv",
+            "gaze.csv",
+            "none",
+            "psnr.png",
+            "psnr.svg",
+            "reference",
+            "report.json",
+            "sheet.png",
+            "wrs"
+        ]
     );
     let frames = ["000000.png", "000001.png", "000002.png", "000003.png"];
     for part in ["none", "wrs", "reference", "debug/wrs/flush", "debug/none/motion"] {
         assert_eq!(files(&out.join(part)), frames, "{part}");
     }
     assert_eq!(image::open(out.join("wrs/000003.png")).unwrap().to_rgb8().dimensions(), (160, 90));
+    let plot = fs::read_to_string(out.join("psnr.svg")).unwrap();
+    assert!(plot.contains("lateral: PSNR by frame, mip 8 and 16"), "{plot}");
+    assert_eq!(plot.matches("class=\"curve\"").count(), 2, "a line for each method");
+    assert_eq!(image::open(out.join("psnr.png")).unwrap().width(), 1920);
 
     let report = read_json(&out.join("report.json"));
     assert_eq!(report["tool"], "afterimage");
@@ -164,11 +179,41 @@ fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
     succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2"]));
     assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
+    // The plot is that of the new run: lines of two points.
+    let plot = fs::read_to_string(folder.path("out/psnr.svg")).unwrap();
+    let line = plot.split("class=\"curve\"").nth(1).unwrap();
+    assert_eq!(line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().split(['M', 'L']).skip(1).count(), 2);
     // Frames from other tools are not touched.
     fs::create_dir_all(folder.path("foreign/wrs")).unwrap();
     fs::write(folder.path("foreign/wrs/000007.png"), "photo").unwrap();
     refuses(&run("analytic:still", &folder.text("foreign"), SMALL), &["frames of something else", "--out"]);
     assert_eq!(fs::read_to_string(folder.path("foreign/wrs/000007.png")).unwrap(), "photo");
+}
+
+#[test]
+fn a_run_that_fails_leaves_no_plot_of_the_run_before() {
+    let folder = Folder::new();
+    let sequence = afterimage_testing::workspace().join("fixtures/sequences/lateral_160x90");
+    fs::create_dir(folder.path("frames")).unwrap();
+    for name in files(&sequence) {
+        fs::copy(sequence.join(&name), folder.path("frames").join(&name)).unwrap();
+    }
+    let (frames, out) = (folder.text("frames"), folder.text("out"));
+    let more = ["--frames", "6", "--no-flip"];
+    succeeds(&run(&frames, &out, &more));
+    assert!(folder.path("out/psnr.svg").is_file() && folder.path("out/psnr.png").is_file());
+    let last = folder.path("frames/frame_0005.exr");
+    let mut bytes = fs::read(&last).unwrap();
+    // Inside the last chunk: found only when the frame is read.
+    let from = bytes.len() - 200;
+    bytes[from..].fill(0xff);
+    fs::write(&last, bytes).unwrap();
+    assert!(!tool(&run(&frames, &out, &more)).status.success());
+    let left = files(&folder.path("out"));
+    assert!(
+        left.contains(&"none".to_owned()) && left.iter().all(|f| !f.starts_with("psnr") && f != "report.json"),
+        "{left:?}"
+    );
 }
 
 #[test]
@@ -214,4 +259,33 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     assert!(share("wrs") > 0.0 && share("wrs") < 1.0);
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
     assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
+}
+
+#[test]
+fn traced_samples_go_through_every_method_and_both_backends_agree() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let methods = ["none", "taa", "taau", "smr"];
+    for backend in ["cpu", "gpu"] {
+        let out = folder.text(backend);
+        let pattern = ["--source", "trace", "--sampling", "regions", "--region-spp", "2,1,1", "--foveation", "sparse"];
+        let rest = ["--reference-spp", "2", "--method", "none,taa,taau,smr", "--backend", backend, "--frames", "3"];
+        let view = ["--size", "64x36", "--gaze", "20,12", "--format", "exr"];
+        succeeds(&run("builtin:cubes", &out, &[&pattern[..], &rest, &view].concat()));
+    }
+    let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{b}/report.json"))));
+    assert_eq!((&cpu["foveation"]["simulator"], &cpu["foveation"]["geometry"]), (&"regions".into(), &"full".into()));
+    // Kept samples and their noise, of two frames.
+    assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
+    if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+        return;
+    }
+    for method in methods {
+        for i in 0..3 {
+            let path = |b: &str| folder.path(&format!("{b}/{method}/{i:06}.exr"));
+            assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
+        }
+    }
 }

@@ -11,11 +11,13 @@ mod lattice;
 mod layers;
 mod regions;
 mod rings;
+mod sparse;
 
 pub use acuity::Acuity;
 pub use lattice::Lattice;
 pub use layers::Layers;
 pub use regions::Regions;
+pub use sparse::SparsePlan;
 
 use super::Tracer;
 use super::film::Film;
@@ -178,6 +180,7 @@ impl Plan {
             color: Image::filled(self.size_px, [0.0; 3]),
             lod: Image::filled(self.size_px, 0.0),
             noise: Image::filled(self.size_px, [0.0; 2]),
+            lattices: None,
             samples: vec![],
             rays: 0,
             nonfinite: 0,

@@ -17,7 +17,7 @@ fn patterns() -> [Sampling; 4] {
     ]
 }
 
-fn view(scene: &Scene, size: [u32; 2]) -> View {
+pub(super) fn view(scene: &Scene, size: [u32; 2]) -> View {
     View::of_camera(&scene.pose(0.0).cameras[0], size, None).unwrap()
 }
 

@@ -4,3 +4,4 @@ mod acuity;
 mod fills;
 mod guided;
 mod papers;
+mod sparse;

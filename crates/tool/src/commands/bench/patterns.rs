@@ -140,7 +140,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
         .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
     let stage = Stage { world, view, tracer, gaze_px, exposure: args.exposure.exp2() };
     let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
-    let out = Output::create(&args.out, &[], "patterns.md")?;
+    let out = Output::create(&args.out, &[], &["patterns.md"])?;
     let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
     out.root_picture("reference.png", &to_rgb8(&stage.display(&linear)))?;
     let path = args.out.join("reference.exr");

@@ -14,6 +14,8 @@ use afterimage_lab::source::SourceInfo;
 
 /// The clip of a run, and facts that its report needs.
 pub struct Plan {
+    /// Name of the input.
+    pub input: String,
     pub fps: f32,
     pub clip: Clip,
     pub gaze_map: &'static str,
@@ -46,6 +48,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
     }
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
     Ok(Plan {
+        input: info.name.clone(),
         fps,
         gaze_map: track.map,
         clip: Clip {
@@ -76,7 +79,12 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
 
 /// Foveation of the frames: the simulator's, or the equivalent of the sampling pattern.
 pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
-    let foveation = args.sampling()?.map_or_else(|| args.foveation.foveation(), |s| s.foveation());
+    let simulated = args.foveation.foveation();
+    let foveation = match args.sampling()? {
+        None => simulated,
+        Some(pattern) if args.is_sparse() => Foveation { filter: simulated.filter, ..pattern.foveation() },
+        Some(pattern) => pattern.foveation(),
+    };
     foveation.validate()?;
     Ok(foveation)
 }

@@ -3,7 +3,7 @@
 use super::SweepArgs;
 use crate::failure::Failure;
 use crate::report::page::page;
-use crate::report::pareto;
+use crate::report::{pareto, plot};
 use crate::sweep::grid::quoted;
 use crate::sweep::markdown::markdown;
 use crate::sweep::{Measurement, Store, Table};
@@ -21,9 +21,10 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
     for (i, input) in table.clips.keys().enumerate() {
         // The help promises this name for the first input.
         let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
-        text(store, &format!("{name}.svg"), &pareto::svg(&table, input, args.pick.by))?;
+        let svg = pareto::svg(&table, input, args.pick.by);
+        text(store, &format!("{name}.svg"), &svg)?;
         let path = store.root().join(format!("{name}.png"));
-        write_png(&path, &pareto::png(&table, input, args.pick.by)).map_err(|e| Failure::writing(&path, e))?;
+        write_png(&path, &plot::png(&svg)).map_err(|e| Failure::writing(&path, e))?;
     }
     let picture =
         |id: &str, what: &str| std::fs::read(store.root().join("pictures").join(format!("{id}-{what}.jpg"))).ok();

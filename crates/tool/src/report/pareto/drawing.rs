@@ -1,27 +1,17 @@
 //! SVG drawing of the plot.
 
-use super::marks::Mark;
-use super::scale::Scale;
 use super::tags;
+use crate::report::plot::{
+    FAINT, HIGH_PX, INK, LINE_PX, LOW_PX, Mark, Scale, axes, chars_from, document, legend, line, mark, on_ground, px,
+    reading, shortened, spread, text, visible,
+};
 use crate::sweep::equal::{class, in_order};
 use crate::sweep::{Metric, Row, Table};
 use std::collections::BTreeMap;
-use svg::Document;
-use svg::node::element::{Group, Line, Path, Rectangle, Text};
+use svg::node::element::{Group, Path, Text};
 
-const WIDTH_PX: f64 = 960.0;
-/// Corners of the plot area.
-const LOW_PX: [f64; 2] = [84.0, 78.0];
-const HIGH_PX: [f64; 2] = [886.0, 500.0];
 /// X position of the second column of notes.
 const MIDDLE_PX: f64 = 528.0;
-const LINE_PX: f64 = 20.0;
-/// Width of a character in notes: a little more than the font's mean.
-const CHAR_PX: f64 = 6.9;
-
-const INK: &str = "#1b1b1f";
-const FAINT: &str = "#5c5c66";
-const GRID: &str = "#dcdce2";
 
 /// A row with its value and position.
 struct Spot<'a> {
@@ -52,31 +42,18 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
         .collect();
     let best: Vec<&Spot<'_>> = spots.iter().filter(|s| s.is_best).collect();
 
-    let mut plot = Group::new().set("fill", INK);
     let title = format!("{}: {} and cost of {} points", visible(input), metric.title, spots.len());
-    plot = plot.add(text(&title, [LOW_PX[0], 24.0], "start").set("font-size", 17).set("class", "ink"));
-    plot = plot.add(legend(&spots)).add(axes(&x, &y, metric, renders_known)).add(roofline(&floors, &x));
-    plot = plot.add(steps(&best, metric));
+    let methods = in_order(spots.iter().map(|s| s.row.point.method.as_str()));
+    let [along, up] = names(metric, renders_known);
+    let mut plot = Group::new().add(legend(methods.iter().map(String::as_str))).add(axes(&x, &y, &along, &up));
+    plot = plot.add(roofline(&floors, &x)).add(steps(&best, metric));
     // Draw the frontier on top.
     for spot in spots.iter().filter(|s| !s.is_best).chain(best.iter().copied()) {
         plot = plot.add(point(spot, &x));
     }
     plot = plot.add(numbers(&best, &spots));
     let (notes, height) = notes(&best, metric, missing, spots.iter().any(|s| is_bound(s.row)));
-    Document::new()
-        .set("class", "pareto")
-        .set("viewBox", format!("0 0 {WIDTH_PX} {height}"))
-        .set("width", WIDTH_PX)
-        .set("height", height)
-        .set("font-family", "system-ui, sans-serif")
-        .set("font-size", 13)
-        .set("role", "img")
-        .set("aria-label", title)
-        .add(
-            Rectangle::new().set("class", "ground").set("width", WIDTH_PX).set("height", height).set("fill", "#ffffff"),
-        )
-        .add(plot.add(notes))
-        .to_string()
+    document("pareto", &title, height, plot.add(notes))
 }
 
 /// The oracle is an upper bound that no renderer can run, so its time has no meaning.
@@ -94,41 +71,12 @@ fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
     floors
 }
 
-fn axes(x: &Scale, y: &Scale, metric: &Metric, renders_known: bool) -> Group {
-    let mut axes = Group::new();
-    for (value, name) in x.ticks() {
-        let at = px(x.px(value));
-        axes = axes.add(line([at, LOW_PX[1]], [at, HIGH_PX[1]], GRID).set("class", "grid"));
-        axes = axes.add(text(&name, [at, HIGH_PX[1] + 18.0], "middle").set("class", "ink"));
-    }
-    for (value, name) in y.ticks() {
-        let at = px(y.px(value));
-        axes = axes.add(line([LOW_PX[0], at], [HIGH_PX[0], at], GRID).set("class", "grid"));
-        axes = axes.add(text(&name, [LOW_PX[0] - 8.0, at + 4.5], "end").set("class", "ink"));
-    }
+/// Names of the axes.
+fn names(metric: &Metric, renders_known: bool) -> [String; 2] {
     let cost = if renders_known { "renderer and pass" } else { "pass alone, renderer's time unknown" };
-    let along = format!("milliseconds a frame ({cost}); left is cheaper");
     let unit = if metric.unit.is_empty() { String::new() } else { format!(", {}", metric.unit) };
     let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
-    let up = format!("{}{unit}; {better}", metric.title);
-    let middle = [0, 1].map(|i| 0.5 * (LOW_PX[i] + HIGH_PX[i]));
-    let turned = format!("rotate(-90 20 {})", middle[1]);
-    axes.add(line([LOW_PX[0], HIGH_PX[1]], HIGH_PX, INK).set("class", "axis"))
-        .add(line(LOW_PX, [LOW_PX[0], HIGH_PX[1]], INK).set("class", "axis"))
-        .add(text(&along, [middle[0], HIGH_PX[1] + 40.0], "middle").set("class", "ink"))
-        .add(text(&up, [20.0, middle[1]], "middle").set("transform", turned).set("class", "ink"))
-}
-
-/// Legend: the methods in a line above the plot.
-fn legend(spots: &[Spot<'_>]) -> Group {
-    let mut left = LOW_PX[0];
-    in_order(spots.iter().map(|s| s.row.point.method.as_str())).iter().fold(Group::new(), |legend, method| {
-        let method = visible(method);
-        let mark = mark(&method, [left + 8.0, 52.0], true);
-        let name = text(&method, [left + 22.0, 57.0], "start").set("class", "ink");
-        left += 48.0 + 8.0 * method.chars().count() as f64;
-        legend.add(mark).add(name)
-    })
+    [format!("milliseconds a frame ({cost}); left is cheaper"), format!("{}{unit}; {better}", metric.title)]
 }
 
 /// A bar at the bottom for each method's lower bound. Bars that would overlap are stacked.
@@ -139,8 +87,9 @@ fn roofline(floors: &BTreeMap<&str, f64>, x: &Scale) -> Group {
     let mut below = (f64::NEG_INFINITY, HIGH_PX[1]);
     for (at, method) in sorted {
         let foot = if at - below.0 < 4.0 { below.1 - 20.0 } else { HIGH_PX[1] };
-        let bar = line([at, foot - 18.0], [at, foot], Mark::of(method).color);
-        group = group.add(bar.set("class", format!("line {}", name(method))).set("stroke-width", 3));
+        let mark = Mark::of(method);
+        let bar = line([at, foot - 18.0], [at, foot], mark.color);
+        group = group.add(bar.set("class", format!("line {}", mark.class)).set("stroke-width", 3));
         below = (at, foot);
     }
     group
@@ -165,25 +114,16 @@ fn steps(best: &[&Spot<'_>], metric: &Metric) -> Group {
         group = group.add(path.set("fill", "none").set("stroke", INK).set("stroke-dasharray", "5 3"));
         ends.extend(class.map(|thousandths| (last.at[1], format!("{:.1} %", f64::from(thousandths) / 10.0))));
     }
-    // Labels at the ends of the lines, without overlaps.
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut lowest = LOW_PX[1] - 12.0;
     if !ends.is_empty() {
-        ends.insert(0, (lowest, "samples".into()));
+        group = group.add(faint("samples", LOW_PX[1] + 3.0));
     }
-    for (end, share) in ends {
-        lowest = (end + 4.5).max(lowest + 15.0);
-        let share = text(&share, [HIGH_PX[0] + 12.0, px(lowest)], "start").set("fill", FAINT).set("class", "faint");
-        group = group.add(share);
-    }
-    group
+    let places = spread(&ends.iter().map(|end| end.0 + 4.5).collect::<Vec<_>>(), LOW_PX[1] + 18.0, HIGH_PX[1]);
+    ends.iter().zip(places).fold(group, |group, ((_, share), at)| group.add(faint(share, px(at))))
 }
 
-/// Text with an outline in the background color, legible on lines.
-fn on_ground(text: Text) -> Text {
-    let class = format!("{} over", text.get_attributes().get("class").map_or_else(String::new, ToString::to_string));
-    let text = text.set("class", class).set("paint-order", "stroke").set("stroke", "#ffffff");
-    text.set("stroke-width", 4).set("stroke-linejoin", "round")
+/// Text to the right of the plot area.
+fn faint(content: &str, y: f64) -> Text {
+    text(content, [HIGH_PX[0] + 12.0, y], "start").set("fill", FAINT).set("class", "faint")
 }
 
 /// A point, with a bar for the quartiles of its pass.
@@ -191,20 +131,11 @@ fn point(spot: &Spot<'_>, x: &Scale) -> Group {
     let row = spot.row;
     let other = row.cost_ms - row.pass_ms.median;
     let [from, to] = [row.pass_ms.p25, row.pass_ms.p75].map(|ms| px(x.px(other + ms)));
-    let color = Mark::of(&row.point.method).color;
-    let bar =
-        line([from, spot.at[1]], [to, spot.at[1]], color).set("class", format!("line {}", name(&row.point.method)));
+    let Mark { color, class, .. } = Mark::of(&row.point.method);
+    let bar = line([from, spot.at[1]], [to, spot.at[1]], color).set("class", format!("line {class}"));
     let group = Group::new().set("class", "point").set("data-row", visible(&row.id));
     let group = if is_bound(row) { group } else { group.add(bar.set("stroke-width", 2)) };
     group.add(mark(&row.point.method, spot.at, spot.is_best))
-}
-
-/// A method's mark; filled if the point is on the frontier.
-fn mark(method: &str, at: [f64; 2], is_best: bool) -> Path {
-    let mark = Mark::of(method);
-    let path = Path::new().set("d", mark.path(at)).set("fill", mark.color).set("stroke", mark.color);
-    let path = path.set("stroke-width", 1.5).set("class", format!("mark {}", name(method)));
-    if is_best { path } else { path.set("fill-opacity", 0.15) }
 }
 
 fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
@@ -234,60 +165,19 @@ fn notes(best: &[&Spot<'_>], metric: &Metric, missing: usize, has_bound: bool) -
         let (x, y) = if i < lines { (LOW_PX[0], i) } else { (MIDDLE_PX, i - lines) };
         let y = top + LINE_PX * y as f64;
         let number = text(&(i + 1).to_string(), [x - 10.0, y], "end").set("fill", FAINT).set("class", "faint");
-        notes = notes.add(number).add(text(&shortened(entry), [x, y], "start").set("class", "ink"));
+        notes =
+            notes.add(number).add(text(&shortened(entry, chars_from(LOW_PX[0])), [x, y], "start").set("class", "ink"));
     }
-    let mut reading = vec![
+    let mut how = vec![
         "filled, with a number: on the frontier, no point is both cheaper and better; hollow: other points; dashed: the frontier".into(),
         "bars at marks: quartiles of the pass; bars at the bottom: lower bound of the method's time, a copy of as many bytes".into(),
     ];
     if has_bound {
-        reading.push("oracle: upper bound of any reuse; no renderer can run it, so it is drawn at the border instead of at its time".into());
+        how.push("oracle: upper bound of any reuse; no renderer can run it, so it is drawn at the border instead of at its time".into());
     }
     if missing > 0 {
-        reading.push(format!("{missing} points without this metric are left out"));
+        how.push(format!("{missing} points without this metric are left out"));
     }
-    let mut y = top + LINE_PX * lines as f64 + 6.0;
-    for line in reading {
-        notes = notes.add(text(&line, [LOW_PX[0], y], "start").set("fill", FAINT).set("class", "faint"));
-        y += LINE_PX;
-    }
-    (notes, y)
-}
-
-fn text(content: &str, at: [f64; 2], anchor: &str) -> Text {
-    Text::new(content).set("x", at[0]).set("y", at[1]).set("text-anchor", anchor)
-}
-
-fn line(from: [f64; 2], to: [f64; 2], color: &str) -> Line {
-    Line::new().set("x1", from[0]).set("y1", from[1]).set("x2", to[0]).set("y2", to[1]).set("stroke", color)
-}
-
-/// Rounds to a tenth of a pixel.
-fn px(v: f64) -> f64 {
-    (v * 10.0).round() / 10.0
-}
-
-/// CSS class of a method; `other` for unknown ones.
-fn name(method: &str) -> &'static str {
-    ["none", "taa", "taau", "wrs", "smr", "oracle"].into_iter().find(|m| *m == method).unwrap_or("other")
-}
-
-/// Replaces characters that XML forbids.
-fn visible(text: &str) -> String {
-    let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
-    text.chars().map(|c| if forbidden(c) { '\u{fffd}' } else { c }).collect()
-}
-
-/// Number of characters that fit between `x` and the border.
-fn chars_from(x: f64) -> usize {
-    ((WIDTH_PX - x) / CHAR_PX) as usize
-}
-
-/// Shortens a text to one line.
-fn shortened(label: &str) -> String {
-    let max = chars_from(LOW_PX[0]);
-    if label.chars().count() <= max {
-        return label.to_owned();
-    }
-    label.chars().take(max - 1).chain(['…']).collect()
+    let (how, height) = reading(&how, top + LINE_PX * lines as f64 + 6.0);
+    (notes.add(how), height)
 }

@@ -1,6 +1,8 @@
 //! Reports of a sweep: tables at equal time and equal quality, plots, the page.
 
+mod drawn;
 mod equal;
 mod page;
 mod pareto;
+mod psnr;
 mod table;

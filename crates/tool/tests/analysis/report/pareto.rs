@@ -1,16 +1,13 @@
 //! The plot: well-formed, complete, legible, reproducible.
 
+use super::drawn::{has_text, mark_at, number, with_class};
 use super::table::{INPUTS, measurements, of, table};
-use afterimage_cli::report::pareto;
+use afterimage_cli::report::{pareto, plot};
 use afterimage_cli::sweep::{METRICS, Metric, Table};
 use resvg::usvg::roxmltree::{Document, Node};
 
 fn flip() -> &'static Metric {
     Metric::find("flip").unwrap()
-}
-
-fn with_class<'a>(document: &'a Document<'_>, class: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
-    document.descendants().filter(move |n| n.attribute("class").is_some_and(|c| c.split(' ').any(|c| c == class)))
 }
 
 #[test]
@@ -30,7 +27,7 @@ fn every_plot_is_xml_with_a_mark_for_each_point() {
             let numbers = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).count();
             assert_eq!(numbers, best);
             let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
-            assert!(document.descendants().any(|n| n.text().is_some_and(|t| t.contains(better))));
+            assert!(has_text(&document, better));
         }
     }
 }
@@ -44,13 +41,7 @@ fn better_and_cheaper_are_where_the_axes_say() {
         let document = Document::parse(&svg).unwrap();
         let at = |id: &str| -> [f64; 2] {
             let point = with_class(&document, "point").find(|n| n.attribute("data-row") == Some(id)).unwrap();
-            let path = point.descendants().find(|n| n.tag_name().name() == "path").unwrap().attribute("d").unwrap();
-            let [x, y] =
-                path[1..path.find('m').unwrap()].split(' ').map(|v| v.parse().unwrap()).collect::<Vec<f64>>()[..]
-            else {
-                panic!("{path}")
-            };
-            [x, y]
+            mark_at(&point.descendants().find(|n| n.tag_name().name() == "path").unwrap())
         };
         let rows: Vec<_> = table.rows.iter().filter(|r| r.point.input == INPUTS[0]).collect();
         for pair in rows.windows(2) {
@@ -72,7 +63,6 @@ fn numbers_lie_on_no_other_number() {
     }
     let svg = pareto::svg(&of(&all, None), INPUTS[0], flip());
     let document = Document::parse(&svg).unwrap();
-    let number = |n: &Node<'_, '_>, name: &str| n.attribute(name).unwrap().parse::<f64>().unwrap();
     let texts: Vec<_> = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).collect();
     assert!(texts.len() >= 20, "{} numbers crowd", texts.len());
     for (i, a) in texts.iter().enumerate() {
@@ -100,7 +90,7 @@ fn labels_that_differ_at_their_ends_are_whole() {
         let whole = |n: &Node<'_, '_>| n.text().is_some_and(|t| t.trim().ends_with(&row.label));
         let note = document.descendants().filter(Node::is_element).find(whole);
         let note = note.unwrap_or_else(|| panic!("'{}' is cut", row.label));
-        places.push(note.attribute("y").unwrap().parse::<f64>().unwrap());
+        places.push(number(&note, "y"));
     }
     assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
     // Labels that are too long even so are cut before the border.
@@ -109,7 +99,7 @@ fn labels_that_differ_at_their_ends_are_whole() {
         let value = format!("{fovea} {}", "a much longer value ".repeat(10));
         m.point.options.insert("a-long-option".into(), value);
     }
-    let picture = pareto::png(&of(&all, None), INPUTS[0], flip());
+    let picture = plot::png(&pareto::svg(&of(&all, None), INPUTS[0], flip()));
     let paper = *picture.get_pixel(0, 0);
     assert!((0..picture.height()).all(|y| *picture.get_pixel(picture.width() - 4, y) == paper), "ink at the border");
 }
@@ -117,9 +107,9 @@ fn labels_that_differ_at_their_ends_are_whole() {
 #[test]
 fn png_has_marks_and_letters_and_is_the_same_again() {
     let table = table(None);
-    let picture = pareto::png(&table, INPUTS[1], flip());
+    let picture = plot::png(&pareto::svg(&table, INPUTS[1], flip()));
     assert_eq!(picture.width(), 1920);
-    assert_eq!(picture, pareto::png(&table, INPUTS[1], flip()));
+    assert_eq!(picture, plot::png(&pareto::svg(&table, INPUTS[1], flip())));
     let count = |color: [u8; 3]| picture.pixels().filter(|p| p.0 == color).count();
     for (method, color) in
         [("none", [122, 122, 122]), ("taa", [230, 159, 0]), ("wrs", [0, 114, 178]), ("smr", [0, 158, 115])]
@@ -142,7 +132,7 @@ fn odd_tables_make_a_plot() {
     let table = of(&one, None);
     let svg = pareto::svg(&table, &one[0].point.input, flip());
     let document = Document::parse(&svg).unwrap();
-    assert!(document.descendants().any(|n| n.text().is_some_and(|t| t.contains("<b>&\"'"))), "names are text");
+    assert!(has_text(&document, "<b>&\"'"), "names are text");
     assert_eq!(with_class(&document, "point").count(), 1);
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
     let mut strange = measurements();

@@ -11,6 +11,8 @@ pub struct Scale {
     low: f64,
     high: f64,
     is_log: bool,
+    /// Ticks are no closer than this.
+    least_step: f64,
     from_px: f64,
     to_px: f64,
 }
@@ -22,14 +24,26 @@ impl Scale {
         let high = values.fold(f64::NEG_INFINITY, f64::max);
         let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
         let is_log = may_be_log && low > 0.0 && high > LOG_FROM * low;
+        let least_step = 0.0;
         if is_log {
             let room = (high / low).powf(0.06);
-            return Self { low: low / room, high: high * room, is_log, from_px, to_px };
+            return Self { low: low / room, high: high * room, is_log, least_step, from_px, to_px };
         }
         let room = if high > low { 0.06 * (high - low) } else { 0.05 * high.abs().max(1e-3) };
         // The axis of nonnegative values does not extend below zero.
         let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
-        Self { low: (low - room).max(floor), high: high + room, is_log, from_px, to_px }
+        Self { low: (low - room).max(floor), high: high + room, is_log, least_step, from_px, to_px }
+    }
+
+    /// A scale for the whole numbers below `count`, without margins; a single one is in the middle.
+    pub fn counting(count: usize, from_px: f64, to_px: f64) -> Self {
+        let (low, high) = if count > 1 { (0.0, (count - 1) as f64) } else { (-0.5, 0.5) };
+        Self { low, high, is_log: false, least_step: 1.0, from_px, to_px }
+    }
+
+    /// The same axis in another unit, `factor` of it for one of this.
+    pub fn in_unit(&self, factor: f64) -> Self {
+        Self { low: factor * self.low, high: factor * self.high, least_step: 0.0, ..*self }
     }
 
     /// Position of a value, clamped to the ends.
@@ -54,7 +68,7 @@ impl Scale {
     }
 
     fn linear_ticks(&self) -> Vec<f64> {
-        let rough = (self.high - self.low) / MAX_TICKS as f64;
+        let rough = ((self.high - self.low) / MAX_TICKS as f64).max(self.least_step);
         let decade = 10.0_f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
         let first = (self.low / step).ceil() as i64;

@@ -1,0 +1,232 @@
+//! Samples of moving lattices: they lie where the post-process reads them, have the color that was traced there, and
+//! nothing else is traced.
+
+use super::fills::view;
+use afterimage::{Filter, Foveation, Lattices, Method, Settings};
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, levels};
+use afterimage_lab::scene::builtin;
+use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
+use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::work::WorkItem;
+use afterimage_lab::trace::world::World;
+use std::collections::HashMap;
+
+const SIZE: [u32; 2] = [160, 90];
+
+fn patterns() -> [Sampling; 2] {
+    let regions = Regions { samples: [3, 2, 1], diameters_deg: [8.0, 25.0], ..Regions::default() };
+    let layers = Layers { radii_deg: [3.0, 7.0, 15.0], steps: [1, 2, 4, 8], lens_deg: None };
+    [Sampling::Regions(regions), Sampling::Layers(layers)]
+}
+
+/// Pixels whose samples the post-process reads for a pixel: the four of its lattice around it.
+fn read_for(lattices: &Lattices, [x, y]: [u32; 2]) -> Vec<[u32; 2]> {
+    let lattice = lattices.at([x, y]).unwrap();
+    let along = |i: usize, px: u32| {
+        let (first, step) = (i64::from(lattice.first_px[i]), i64::from(lattice.step));
+        let last = i64::from(lattice.points[i] - 1).min((i64::from(SIZE[i]) - 1 - first) / step);
+        let low = (i64::from(px) - first).div_euclid(step);
+        // A sample beyond a pixel on the lattice has no weight.
+        let high = if (i64::from(px) - first).rem_euclid(step) == 0 { low } else { low + 1 };
+        [low, high].map(|point| (first + point.clamp(0, last) * step) as u32)
+    };
+    let (xs, ys) = (along(0, x), along(1, y));
+    ys.into_iter().flat_map(|y| xs.map(|x| [x, y])).collect()
+}
+
+#[test]
+fn what_the_post_process_reads_is_traced_and_little_else() {
+    let scene = builtin::courtyard_of(2000);
+    let view = view(&scene, SIZE);
+    for sampling in patterns() {
+        let mut offsets = std::collections::HashSet::new();
+        for (frame, gaze) in [(0, [80.0, 45.0]), (5, [10.0, 80.0]), (11, [150.3, 2.0]), (14, [-400.0, 45.0])] {
+            let plan = sampling.sparse_plan(view.geometry(), gaze, 2, frame, SampleOrder::Bayer).unwrap();
+            let traced: HashMap<[u32; 2], u32> = plan.pixels().collect();
+            assert_eq!(traced.len(), plan.pixels().count(), "no pixel is traced twice");
+            let read = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).flat_map(move |x| [[x, y]]));
+            let read: std::collections::HashSet<_> = read.flat_map(|px| read_for(plan.lattices(), px)).collect();
+            for px in &read {
+                assert!(traced.contains_key(px), "{sampling:?}, frame {frame}: {px:?} is read");
+            }
+            let spare = traced.keys().filter(|px| !read.contains(*px)).count();
+            println!("{}, {spare} of them spare", traced.len());
+            assert!(spare * 20 < traced.len(), "{spare} samples of {} are not read", traced.len());
+            offsets.insert(plan.lattices().as_slice().last().unwrap().offset_px());
+            assert_eq!(plan.samples().iter().sum::<u64>(), traced.values().map(|&n| u64::from(n)).sum::<u64>());
+        }
+        assert_eq!(offsets.len(), 4, "lattices move");
+    }
+}
+
+#[test]
+fn lattices_are_those_of_the_sparse_simulator() {
+    let scene = builtin::courtyard_of(2000);
+    let geometry = *view(&scene, SIZE).geometry();
+    let [regions, layers] = patterns();
+    for order in SampleOrder::ALL {
+        for frame in 0..16 {
+            let gaze = [20.0 + 7.0 * frame as f32, 40.0];
+            let plan = regions.sparse_plan(&geometry, gaze, 1, frame, order).unwrap();
+            let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
+            assert_eq!(*plan.lattices(), order.lattices(&foveation, &geometry, gaze, frame));
+            let plan = layers.sparse_plan(&geometry, gaze, 1, frame, order).unwrap();
+            let steps: Vec<u32> = plan.lattices().as_slice().iter().map(|l| l.step).collect();
+            assert_eq!(steps, [1, 2, 4, 8]);
+            for lattice in plan.lattices().as_slice() {
+                assert_eq!(lattice.offset_px(), order.offset_px(frame, lattice.step), "{order:?}, frame {frame}");
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_have_the_colors_traced_at_their_places() {
+    let scene = builtin::courtyard_of(2000);
+    let world = World::new(&scene);
+    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
+    let view = view(&scene, SIZE);
+    for sampling in patterns() {
+        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, 7, SampleOrder::Bayer).unwrap();
+        let made = plan.trace(&tracer, &world, &view, 7);
+        assert_eq!(made.lattices, Some(*plan.lattices()));
+        assert_eq!(made.lod, levels(plan.lattices(), SIZE));
+        let traced: HashMap<[u32; 2], u32> = plan.pixels().collect();
+        for (i, color) in made.color.pixels().iter().enumerate() {
+            let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
+            assert_eq!(traced.contains_key(&px), color.iter().all(|v| v.is_finite()), "{sampling:?} at {px:?}");
+        }
+        // Each point of each lattice again, by itself, in a view whose pixel (x, y) is the lattice's point.
+        let mut seen = 0;
+        for lattice in plan.lattices().as_slice() {
+            let grid = Lattice {
+                step: lattice.step,
+                first_px: lattice.first_px.map(|v| v as f32),
+                points: lattice.points,
+                footprint_px: 1.0,
+            };
+            for (x, y) in (0..lattice.points[1]).flat_map(|y| (0..lattice.points[0]).map(move |x| (x, y))) {
+                let px = [lattice.first_px[0] + x * lattice.step, lattice.first_px[1] + y * lattice.step];
+                if px[0] >= SIZE[0] || px[1] >= SIZE[1] || plan.lattices().at(px) != Some(lattice) {
+                    continue;
+                }
+                let items: Vec<WorkItem> = (0..traced[&px]).map(|s| WorkItem::new(x, y, s)).collect();
+                let mut film = Film::window([x, y], [1, 1]);
+                tracer.trace(&world, &view.on_lattice(&grid), 7, &items, &mut film);
+                assert_eq!(made.color.at(px[0] as usize, px[1] as usize), film.at([x, y]).mean.to_array(), "{px:?}");
+                assert_eq!(made.noise.at(px[0] as usize, px[1] as usize)[1], traced[&px] as f32);
+                seen += 1;
+            }
+        }
+        assert!(seen * 10 > traced.len() * 9, "{seen} of {}", traced.len());
+    }
+}
+
+#[test]
+fn samples_show_what_is_at_their_pixels() {
+    // Many samples a point, against many samples of all pixels: the places agree better than any shifted by a pixel.
+    let scene = builtin::courtyard_of(2000);
+    let world = World::new(&scene);
+    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings { max_depth: 1, ..Default::default() }).unwrap();
+    let view = view(&scene, SIZE);
+    let full = Sampling::Uniform.plan(view.geometry(), [0.0; 2], 24, 0).trace(&tracer, &world, &view, 0).color;
+    let sampling = Sampling::Regions(Regions { samples: [24; 3], ..Regions::default() });
+    for frame in [1, 6] {
+        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, frame, SampleOrder::Bayer).unwrap();
+        let made = plan.trace(&tracer, &world, &view, frame).color;
+        let error = |shift: [i32; 2]| -> f64 {
+            let of = |[x, y]: [u32; 2]| {
+                let at = [x as i32 + shift[0], y as i32 + shift[1]];
+                let [x2, y2] =
+                    [at[0].clamp(0, SIZE[0] as i32 - 1) as usize, at[1].clamp(0, SIZE[1] as i32 - 1) as usize];
+                let (a, b) = (made.at(x as usize, y as usize), full.at(x2, y2));
+                (0..3).map(|i| f64::from((a[i].max(0.0).sqrt() - b[i].max(0.0).sqrt()).powi(2))).sum::<f64>()
+            };
+            plan.pixels().map(|(px, _)| of(px)).sum()
+        };
+        let shifts = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].map(error);
+        println!("frame {frame}: {shifts:.1?}");
+        assert!(shifts[1..].iter().all(|&e| e > 1.25 * shifts[0]), "{shifts:?}");
+    }
+}
+
+#[test]
+fn the_post_process_shows_the_samples_and_reads_nothing_between() {
+    let scene = builtin::courtyard_of(2000);
+    let world = World::new(&scene);
+    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
+    let view = view(&scene, SIZE);
+    let [regions, _] = patterns();
+    let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
+    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
+    let mut pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
+    for frame in 0..4 {
+        let gaze = [40.0 + 20.0 * frame as f32, 45.0];
+        let made = regions
+            .sparse_plan(view.geometry(), gaze, 2, frame, SampleOrder::Bayer)
+            .unwrap()
+            .trace(&tracer, &world, &view, frame);
+        let (color, lattices) = (made.color.clone(), made.lattices.unwrap());
+        let source = SourceFrame {
+            color: color.map(|_| [0.0; 3]),
+            depth: None,
+            motion: None,
+            trust: None,
+            previous_from_current: None,
+            cut: frame == 0,
+            nonfinite: 0,
+        };
+        let step = pipeline.step_foveated(frame, &source, gaze, made).unwrap();
+        for (method, output) in methods.iter().zip(&step.outputs) {
+            assert!(output.image.pixels().iter().flatten().all(|v| v.is_finite()), "{method:?}");
+            assert_eq!(output.stats.nonfinite, 0, "{method:?}, frame {frame}");
+            let shows = *method == Method::None || frame == 0;
+            for (i, shown) in output.image.pixels().iter().enumerate().filter(|_| shows) {
+                let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
+                if lattices.at(px).unwrap().samples(px) {
+                    assert_eq!(*shown, color.pixels()[i], "{method:?}, frame {frame}, {px:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_device_traces_the_same_samples() {
+    // Prints that there is no adapter, and fails where one is required.
+    if afterimage_testing::gpu::device().is_none() {
+        return;
+    }
+    let device = Headless::find_roomy(true).expect("there is an adapter");
+    let scene = builtin::courtyard_of(2000);
+    let world = World::new(&scene);
+    let [cpu, gpu] = [Backend::Cpu, Backend::Gpu(device)]
+        .map(|backend| Tracer::new(&backend, &world, TraceSettings::default()).unwrap());
+    let view = view(&scene, SIZE);
+    for sampling in patterns() {
+        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, 5, SampleOrder::Bayer).unwrap();
+        let [a, b] = [&cpu, &gpu].map(|tracer| plan.trace(tracer, &world, &view, 5));
+        let bits = |image: &afterimage::Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
+        assert_eq!((&a.samples, a.rays), (&b.samples, b.rays), "{sampling:?}");
+        assert!(bits(&a.color) == bits(&b.color) && a.noise == b.noise, "{sampling:?}");
+    }
+}
+
+#[test]
+fn patterns_without_moving_lattices_are_refused() {
+    let refused = |sampling: Sampling| sampling.check_sparse().unwrap_err().to_string();
+    assert!(refused(Sampling::Uniform).contains("regions or layers"));
+    assert!(refused(Sampling::Acuity(Acuity::default())).contains("regions or layers"));
+    assert!(refused(Sampling::Layers(Layers::default())).contains("[1, 2, 3, 4]"));
+    let lens = Layers { lens_deg: Some(40.0), steps: [1, 2, 4, 8], ..Layers::default() };
+    assert!(refused(Sampling::Layers(lens)).contains("lens"));
+    for blocks in [[3, 6], [4, 4], [4, 2], [1, 2]] {
+        assert!(refused(Sampling::Regions(Regions { blocks, ..Regions::default() })).contains("powers of two"));
+    }
+    assert!(patterns().iter().all(|sampling| sampling.check_sparse().is_ok()));
+}

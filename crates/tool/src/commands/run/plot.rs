@@ -1,0 +1,34 @@
+//! The plot of a run: PSNR by frame.
+
+use super::plan::Plan;
+use crate::clip::ClipReport;
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::report::plot::png;
+use crate::report::psnr_plot::PsnrPlot;
+use afterimage::Filter;
+use std::path::Path;
+
+/// Writes the plot. `simulator` names what foveates the frames.
+pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) -> Result<(), Failure> {
+    let foveation = plan.clip.foveation;
+    let foveation = match foveation.filter {
+        Filter::Off => "full rate".into(),
+        _ => format!("{simulator} {} and {}", foveation.rate_mid, foveation.rate_far),
+    };
+    let methods: Vec<(&str, &[f64])> =
+        plan.clip.methods.iter().zip(&report.frame_mse).map(|((name, _), mse)| (*name, mse.as_slice())).collect();
+    let moved = |pair: &[[f32; 2]]| plan.clip.geometry.eccentricity_deg(pair[1], pair[0]);
+    let moves_deg: Vec<f32> = [0.0].into_iter().chain(report.gaze_px.windows(2).map(moved)).collect();
+    let file = Path::new(&plan.input).file_name().and_then(|name| name.to_str());
+    let plot = PsnrPlot {
+        input: file.unwrap_or(&plan.input),
+        foveation: &foveation,
+        fps: plan.fps,
+        moves_deg: &moves_deg,
+        methods: &methods,
+    };
+    let svg = plot.svg();
+    out.text("psnr.svg", &svg)?;
+    out.root_picture("psnr.png", &png(&svg))
+}

@@ -1,0 +1,170 @@
+//! Noisy sparse frames: averaging lowers the variance and keeps the mean, noise is no change, a change is no noise.
+
+use super::*;
+use afterimage::kernel::noise::unpack_noise;
+use afterimage::{Filter, Foveation, Lattice, Lattices};
+use afterimage_testing::{accept, p_of_z, reject};
+
+const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
+
+fn settings() -> Settings {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    Settings { foveation, ..Settings::traced() }
+}
+
+/// Frame `index` of a still view: the sample at a pixel, if there is one, is the mean of `samples` draws.
+fn frame(
+    post: &mut CpuAfterimage,
+    index: u64,
+    lattices: Lattices,
+    samples: usize,
+    mut draw: impl FnMut([u32; 2]) -> f32,
+) -> Color {
+    let made = Image::from_fn(SIZE, |px| {
+        let drawn: Vec<f32> = (0..samples).map(|_| draw(px)).collect();
+        let mean = drawn.iter().sum::<f32>() / samples as f32;
+        let squares: f32 = drawn.iter().map(|v| (v - mean) * (v - mean)).sum();
+        (mean, (squares / (samples * (samples - 1)).max(1) as f32).sqrt())
+    });
+    let color = made.map(|(mean, _)| [mean; 3]);
+    let noise = made.map(|(_, error)| [error, samples as f32]);
+    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
+    facts.lattices = Some(lattices);
+    let view = OneView { noise: Some(&noise), ..OneView::new(facts, &color) };
+    let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
+    post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
+    let [out] = out;
+    out
+}
+
+fn full() -> Lattices {
+    Lattices::new(&[Lattice::covering(1, [0, 0], SIZE, [0, 0])]).unwrap()
+}
+
+fn coarse(index: u64) -> Lattices {
+    let offset = afterimage::kernel::lattice::offset_px(index, 4);
+    Lattices::new(&[Lattice::covering(4, [0, 0], SIZE, offset)]).unwrap()
+}
+
+/// Full rate in the left half, steps of 4 in the right one.
+fn both(index: u64) -> Lattices {
+    let fine = Lattice::covering(1, [0, 0], [32, 48], [0, 0]);
+    Lattices::new(&[fine, coarse(index).as_slice()[0]]).unwrap()
+}
+
+fn moments(shown: &Color) -> (f64, f64) {
+    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / PIXELS;
+    let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
+    (mean, squares / (PIXELS - 1.0))
+}
+
+#[test]
+fn the_fovea_has_the_variance_that_its_weights_predict() {
+    let of_one_frame = 0.6 * 0.6 / 12.0 / 2.0;
+    for (frames, most) in [(5, 0.95), (60, 0.95), (60, 0.5)] {
+        let mut draws = Draws::new(&format!("sparse still {frames} {most}"));
+        let smr = afterimage::Smr { accumulate: most as f32, ..settings().smr };
+        let mut post = context(Settings { smr, ..settings() });
+        let shown = (0..frames).map(|i| frame(&mut post, i, full(), 2, |_| draws.range(0.2, 0.8))).last().unwrap();
+        let (mut variance, mut known) = (1.0, 1.0);
+        for _ in 1..frames {
+            let share = f64::min(known / (known + 1.0), most);
+            variance = share * share * variance + (1.0 - share) * (1.0 - share);
+            known = 1.0 / (1.0 - share);
+        }
+        let expected = of_one_frame * variance;
+        let (mean, variance) = moments(&shown);
+        println!("{frames} frames, share {most}: variance {variance:.2e}, predicted {expected:.2e}");
+        // Storage rounds to multiples of 2^-9, which adds a twelfth of a step's square each frame.
+        let rounding = f64::from(2.0_f32.powi(-9)).powi(2) / 12.0 / (1.0 - most * most);
+        let scale = expected * (2.0 / PIXELS).sqrt();
+        accept("variance", p_of_z((((variance - expected).abs() - rounding) / scale).max(0.0)));
+        accept("mean", p_of_z((mean - 0.5) / (expected / PIXELS).sqrt()));
+        if frames > 5 {
+            reject("variance, of one frame fewer", p_of_z((variance - 1.3 * expected) / scale));
+        }
+        let words = post.history().noise();
+        let samples = words.iter().map(|&w| f64::from(unpack_noise(w).samples)).sum::<f64>() / PIXELS;
+        assert!((samples / (2.0 * known) - 1.0).abs() < 0.01, "{samples} samples are known, of {}", 2.0 * known);
+    }
+}
+
+#[test]
+fn coarse_lattices_are_averaged_without_bias() {
+    // A lamp that one sample in 16 hits.
+    let truth = 4.0 / 16.0 + 0.05 * 15.0 / 16.0;
+    let mut draws = Draws::new("sparse rare");
+    let mut rare = |_: [u32; 2]| if draws.bits().is_multiple_of(16) { 4.0 } else { 0.05 };
+    for lattices in [coarse as fn(u64) -> Lattices, both] {
+        let mut post = context(settings());
+        let (mut sum, mut squares, mut frames) = (0.0, 0.0, 0.0);
+        let mut first = 0.0;
+        let mut last = 0.0;
+        for index in 0..600 {
+            let (mean, variance) = moments(&frame(&mut post, index, lattices(index), 2, &mut rare));
+            first = if index == 0 { variance } else { first };
+            last = variance;
+            if index >= 60 && index % 40 == 0 {
+                (sum, squares, frames) = (sum + mean, squares + mean * mean, frames + 1.0);
+            }
+        }
+        let mean: f64 = sum / frames;
+        let error = ((squares / frames - mean * mean) / (frames - 1.0)).sqrt();
+        println!("shown {mean:.4} +- {error:.4}, truth {truth:.4}; variance {first:.2e}, then {last:.2e}");
+        assert!((mean - truth).abs() < 5.0 * error + 0.01 * truth, "{mean} for {truth}");
+        assert!(last * 12.0 < first, "noise is averaged: {first} becomes {last}");
+    }
+}
+
+#[test]
+fn a_change_beyond_the_noise_is_followed() {
+    for lattices in [coarse as fn(u64) -> Lattices, both] {
+        let mut draws = Draws::new("sparse change");
+        let mut post = context(settings());
+        let mut around = |level: f32| draws.range(level - 0.1, level + 0.1);
+        for index in 0..40 {
+            frame(&mut post, index, lattices(index), 2, |_| around(0.2));
+        }
+        let change = |index: u64, around: &mut dyn FnMut(f32) -> f32, post: &mut CpuAfterimage| {
+            moments(&frame(post, index, lattices(index), 2, |_| around(0.6))).0
+        };
+        let after: Vec<f64> = (40..46).map(|index| change(index, &mut around, &mut post)).collect();
+        println!("0.2 becomes 0.6: {after:.3?}");
+        assert!((after[2] - 0.6).abs() < 0.03, "{after:?}");
+    }
+}
+
+#[test]
+fn what_is_known_exactly_becomes_as_sharp_as_without_noise() {
+    let picture = noise(SIZE, "sparse, no noise");
+    let run = |settings: Settings| {
+        let mut post = context(settings);
+        let mut shown = Image::filled(SIZE, [0.0; 3]);
+        for index in 0..40 {
+            let noise = Image::filled(SIZE, [0.0, 4.0]);
+            let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
+            facts.lattices = Some(coarse(index));
+            let view = OneView { noise: settings.noisy.then_some(&noise), ..OneView::new(facts, &picture) };
+            let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
+            post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
+            [shown] = out;
+        }
+        let error: f64 = shown
+            .pixels()
+            .iter()
+            .zip(picture.pixels())
+            .flat_map(|(a, b)| (0..3).map(move |i| f64::from(a[i] - b[i]).powi(2)))
+            .sum();
+        (error / (3.0 * PIXELS)).sqrt()
+    };
+    let (noisy, calm) = (run(settings()), run(Settings { noisy: false, ..settings() }));
+    println!("root mean square error {noisy:.5} with certain samples, {calm:.5} without noise");
+    assert!(noisy < calm * 1.5 + 2e-3, "{noisy}, {calm}");
+}
+
+#[test]
+fn noise_takes_eight_bytes_a_pixel() {
+    let bytes = |settings| context(settings).memory_bytes() as f64 / PIXELS;
+    let (noisy, calm) = (bytes(settings()), bytes(Settings { noisy: false, ..settings() }));
+    assert_eq!((noisy, calm), (24.0, 16.0));
+}
