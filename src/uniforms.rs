@@ -123,7 +123,7 @@ pub struct LatticeUniforms {
     pub level: u32,
     /// Distance of neighbouring samples in texels: 1 in an atlas, otherwise as in pixels.
     pub stride: u32,
-    /// Texel of the top-left sample's results ([`result_texel`]).
+    /// Texel of the top-left sample's results (`result_texel`).
     pub results: [u32; 2],
     /// Padding to a multiple of 16 bytes.
     pub unused: [u32; 2],

@@ -1,7 +1,7 @@
 //! A device without a window, with uploads and readbacks. For experiments only: an engine keeps its frames on its own
 //! device and calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
 
-use super::mapped;
+use super::wait_mapped;
 use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -185,12 +185,8 @@ impl Headless {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         copy(&mut encoder, &buffer);
         self.queue.submit([encoder.finish()]);
-        let is_mapped = Arc::new(AtomicBool::new(false));
-        let mapped_flag = is_mapped.clone();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| mapped_flag.store(result.is_ok(), Ordering::Release));
-        self.wait();
+        let bytes = wait_mapped(&self.device, &buffer);
         let error = pollster::block_on(scope.pop());
-        let bytes = is_mapped.load(Ordering::Acquire).then(|| mapped(&buffer)).flatten();
         bytes.map(|bytes| bytes.to_vec()).unwrap_or_else(|| {
             let is_lost = self.is_lost.load(Ordering::Relaxed);
             assert!(is_lost, "{error:?}: a bug in this package");

@@ -20,6 +20,8 @@ pub use headless::Headless;
 #[cfg(feature = "full")]
 pub use mapped::mapped;
 #[cfg(feature = "full")]
+pub(crate) use mapped::wait_mapped;
+#[cfg(feature = "full")]
 pub use timestamps::DeviceClock;
 
 #[cfg(feature = "full")]

@@ -1,11 +1,11 @@
 //! Times of passes from timestamp queries.
 
-use super::{Headless, mapped};
+use super::{Headless, mapped, wait_mapped};
 use afterimage::gpu::Timestamps;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{Buffer, BufferUsages, CommandEncoder, ComputePassTimestampWrites, Features, QuerySet};
+use wgpu::{Buffer, BufferUsages, BufferView, CommandEncoder, ComputePassTimestampWrites, Features, QuerySet};
 
 /// Timestamp queries at the begin and the end of each span.
 #[derive(Debug)]
@@ -65,19 +65,19 @@ impl DeviceClock {
 
     /// Milliseconds of every span. Values of spans that were not resolved are undefined. Empty on a lost device.
     pub fn take_ms(&self) -> Vec<f64> {
-        let ticks: Vec<u64> = match mapped(&self.readback) {
-            Some(bytes) => bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect(),
-            None => vec![],
-        };
-        self.readback.unmap();
-        let spans = ticks.as_chunks::<2>().0;
-        spans.iter().map(|[begin, end]| end.saturating_sub(*begin) as f64 * self.period_ms).collect()
+        mapped(&self.readback).map(|ticks| self.span_ms(ticks)).unwrap_or_default()
     }
 
     /// Waits for submitted work and returns the milliseconds of every span. Empty on a lost device.
     pub fn wait_ms(&self, gpu: &Headless) -> Vec<f64> {
-        let done = self.start_reading();
-        gpu.wait();
-        if done.load(Ordering::Acquire) { self.take_ms() } else { vec![] }
+        wait_mapped(&gpu.device, &self.readback).map(|ticks| self.span_ms(ticks)).unwrap_or_default()
+    }
+
+    fn span_ms(&self, mapped: BufferView) -> Vec<f64> {
+        let ticks: Vec<u64> = mapped.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
+        drop(mapped);
+        self.readback.unmap();
+        let spans = ticks.as_chunks::<2>().0;
+        spans.iter().map(|[begin, end]| end.saturating_sub(*begin) as f64 * self.period_ms).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::compute::{Kernel, bind_group, empty_buffer};
 use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
-use crate::device::mapped;
+use crate::device::wait_mapped;
 use crate::shader::SHADERS;
 use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
@@ -115,9 +115,7 @@ impl GpuRays {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(&batch.hits, 0, &readback, 0, size);
         self.queue.submit([encoder.finish()]);
-        readback.map_async(wgpu::MapMode::Read, .., |_| ());
-        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
-        let bytes = mapped(&readback).expect("the buffer was mapped and waited for");
+        let bytes = wait_mapped(&self.device, &readback).expect("the device is not lost");
         let words: &[[u32; 4]] = bytemuck::cast_slice(&bytes);
         let hit = |&[triangle, t, u, v]: &[u32; 4]| {
             let found = match self.query {
