@@ -57,7 +57,8 @@ pub struct Guide {
     pub deviation: Image<f32>,
 }
 
-/// A full-rate frame on a device, as the rasterizer leaves it until it renders the next one.
+/// A frame on a device, as the rasterizer leaves it until it renders the next one: the full-rate frame, or an atlas of
+/// the samples of a sparse one.
 #[cfg(feature = "full")]
 #[derive(Clone, Debug)]
 pub struct DeviceFrame {
@@ -71,4 +72,14 @@ pub struct DeviceFrame {
     pub motion: wgpu::Texture,
     /// Distance of the near plane.
     pub near: f32,
+}
+
+/// The samples of a sparse frame, rendered alone: each lattice as a small view of its own.
+#[cfg(feature = "full")]
+#[derive(Clone, Debug)]
+pub struct SparseFrame {
+    /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
+    pub atlas: DeviceFrame,
+    /// The lattices, and where they lie in the atlases.
+    pub lattices: afterimage::Lattices,
 }

@@ -12,6 +12,8 @@ override SURFACE_TEXTURE: bool = true;
 override NORMAL_MAP: bool = true;
 override EMISSIVE_TEXTURE: bool = true;
 override HAS_SUN: bool = true;
+// Alpha test instead of alpha to coverage, where pixels have one sample.
+override ALPHA_TEST: bool = false;
 
 struct ColorVarying {
     @builtin(position) position: vec4<f32>,
@@ -49,22 +51,22 @@ fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
     s.thin = (material.flags & FLAG_VOLUME) == 0u;
     s.entering = front;
     if SURFACE_TEXTURE {
-        let surface = textureSample(metallic_roughness_map, metallic_roughness_sampler, uv);
+        let surface = textureSampleBias(metallic_roughness_map, metallic_roughness_sampler, uv, frame.texture_bias);
         s.roughness *= surface.y;
         s.metallic *= surface.z;
-        s.specular *= textureSample(specular_map, base_color_sampler, uv).w;
-        s.specular_color *= textureSample(specular_color_map, base_color_sampler, uv).xyz;
+        s.specular *= textureSampleBias(specular_map, base_color_sampler, uv, frame.texture_bias).w;
+        s.specular_color *= textureSampleBias(specular_color_map, base_color_sampler, uv, frame.texture_bias).xyz;
     }
     if SURFACE_TEXTURE && LOBE_CLEARCOAT {
-        s.clearcoat *= textureSample(clearcoat_map, base_color_sampler, uv).x;
-        s.clearcoat_roughness *= textureSample(clearcoat_roughness_map, base_color_sampler, uv).y;
+        s.clearcoat *= textureSampleBias(clearcoat_map, base_color_sampler, uv, frame.texture_bias).x;
+        s.clearcoat_roughness *= textureSampleBias(clearcoat_roughness_map, base_color_sampler, uv, frame.texture_bias).y;
     }
     if SURFACE_TEXTURE && LOBE_SHEEN {
-        s.sheen_color *= textureSample(sheen_color_map, base_color_sampler, uv).xyz;
-        s.sheen_roughness *= textureSample(sheen_roughness_map, base_color_sampler, uv).w;
+        s.sheen_color *= textureSampleBias(sheen_color_map, base_color_sampler, uv, frame.texture_bias).xyz;
+        s.sheen_roughness *= textureSampleBias(sheen_roughness_map, base_color_sampler, uv, frame.texture_bias).w;
     }
     if SURFACE_TEXTURE && LOBE_TRANSMISSION {
-        s.transmission *= textureSample(transmission_map, base_color_sampler, uv).x;
+        s.transmission *= textureSampleBias(transmission_map, base_color_sampler, uv, frame.texture_bias).x;
     }
     s.specular_color *= tint(base, material.specular_tint);
     s.sheen_color *= tint(base, material.sheen_tint);
@@ -111,7 +113,7 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     let base = base_at(in.uv, in.color);
     let across = cross(dpdx(in.relative), dpdy(in.relative));
     // An alpha-tested edge is widened to one pixel, for alpha to coverage.
-    let edge = max(fwidth(base.w), 1e-4);
+    let edge = max(fwidth(base.w) * frame.per_step, 1e-4);
     var opacity = 1.0;
     if (material.flags & FLAG_MASK) != 0u {
         opacity = clamp((base.w - material.cutoff) / edge + 0.5, 0.0, 1.0);
@@ -121,11 +123,11 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     let surface = surface_of(base.xyz, in.uv, front);
     var mapped = vec3<f32>(0.5, 0.5, 1.0);
     if NORMAL_MAP {
-        mapped = textureSample(normal_map, normal_sampler, in.uv).xyz;
+        mapped = textureSampleBias(normal_map, normal_sampler, in.uv, frame.texture_bias).xyz;
     }
     var emitted = material.emissive;
     if EMISSIVE_TEXTURE {
-        emitted *= textureSample(emissive_map, emissive_sampler, in.uv).xyz;
+        emitted *= textureSampleBias(emissive_map, emissive_sampler, in.uv, frame.texture_bias).xyz;
     }
     if !front && (material.flags & FLAG_DOUBLE_SIDED) == 0u {
         emitted = vec3<f32>(0.0);
@@ -190,6 +192,10 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     color = clamp(color, vec3<f32>(0.0), vec3<f32>(MAX_COLOR));
     if (material.flags & FLAG_BLEND) != 0u {
         color *= opacity;
+    }
+    // Last: discarded invocations may give neighbours no derivatives.
+    if ALPHA_TEST && !passes_alpha_test(base.w) {
+        discard;
     }
     return vec4<f32>(color, opacity * (1.0 - through));
 }

@@ -19,9 +19,18 @@ struct RasterFrame {
     corner: vec4<f32>,
     right: vec4<f32>,
     down: vec4<f32>,
+    // Pixels of the viewport, each of which shows one pixel of the full-rate frame: pixel (x, y) of the viewport shows
+    // first_px + step * (x, y).
     size: vec2<f32>,
     near: f32,
-    unused: f32,
+    // Level of detail that is added to that of textures: -log2(step).
+    texture_bias: f32,
+    first_px: vec2<f32>,
+    // Corner of the viewport in the target.
+    origin: vec2<f32>,
+    step: f32,
+    per_step: f32,
+    unused: vec2<f32>,
 }
 
 struct RasterLight {
@@ -85,9 +94,15 @@ fn homogeneous_px(eye: Eye, relative: vec3<f32>) -> vec3<f32> {
 
 // Clip position with reversed depth and no far plane: depth is near / distance.
 fn clip(px: vec3<f32>) -> vec4<f32> {
-    let x = (2.0 * px.x + px.z) / frame.size.x - px.z;
-    let y = px.z - (2.0 * px.y + px.z) / frame.size.y;
+    let at = (px.xy - frame.first_px * px.z) * frame.per_step;
+    let x = (2.0 * at.x + px.z) / frame.size.x - px.z;
+    let y = px.z - (2.0 * at.y + px.z) / frame.size.y;
     return vec4<f32>(x, y, frame.near, px.z);
+}
+
+// Pixel of the full-rate frame that a fragment shows.
+fn full_rate_px(position: vec4<f32>) -> vec2<f32> {
+    return frame.first_px + ((position.xy - vec2<f32>(0.5)) - frame.origin) * frame.step;
 }
 
 // A triangle that covers the frame, at infinite distance.

@@ -1,3 +1,4 @@
+//#use raster_frame
 // Group 1: a material in the tracer's layout, with its textures; white where it has none.
 
 override BASE_COLOR_TEXTURE: bool = true;
@@ -68,7 +69,7 @@ struct RasterMaterial {
 fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
     var base = vec4<f32>(material.base_color, material.opacity) * color;
     if BASE_COLOR_TEXTURE {
-        base *= textureSample(base_color_map, base_color_sampler, uv);
+        base *= textureSampleBias(base_color_map, base_color_sampler, uv, frame.texture_bias);
     }
     return base;
 }

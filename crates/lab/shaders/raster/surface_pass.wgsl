@@ -52,7 +52,7 @@ fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32>
 // The sky is infinitely far away: only camera rotation moves it.
 @fragment
 fn motion_far(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
-    let px = position.xy - vec2<f32>(0.5);
+    let px = full_rate_px(position);
     let before = (frame.previous_px_from_px[0].xyz * px.x + frame.previous_px_from_px[1].xyz * px.y) + frame.previous_px_from_px[2].xyz;
     return moved(vec3<f32>(px, 1.0), before);
 }

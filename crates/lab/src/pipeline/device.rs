@@ -35,7 +35,6 @@ const WRITTEN: TextureUsages =
 #[derive(Debug)]
 pub struct DeviceInputs {
     gpu: Arc<Headless>,
-    size: [u32; 2],
     formats: DeviceFormats,
     full: Texture,
     depth: Texture,
@@ -48,7 +47,17 @@ pub struct DeviceInputs {
     foveated: Texture,
     simulator: GpuSimulator,
     import: Option<ComputeShader>,
+    /// Samples of the last sparse frame that its source rendered.
+    atlas: Option<Atlas>,
     given: Given,
+}
+
+/// Color, depth and motion of samples.
+#[derive(Debug)]
+struct Atlas {
+    color: Texture,
+    depth: Texture,
+    motion: Texture,
 }
 
 /// Inputs that the current frame has.
@@ -59,6 +68,9 @@ struct Given {
     trust: bool,
     lod: bool,
     noise: bool,
+    /// Whether color is that of the atlas, and whether depth and motion are.
+    atlas: bool,
+    atlas_geometry: bool,
 }
 
 impl DeviceInputs {
@@ -70,7 +82,6 @@ impl DeviceInputs {
         let texture = |format, usage| gpu.texture(desc.size_px, 1, format, usage);
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
         Ok(Self {
-            size: desc.size_px,
             formats,
             full: texture(formats.color, read | TextureUsages::STORAGE_BINDING),
             depth: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
@@ -82,6 +93,7 @@ impl DeviceInputs {
             foveated: texture(formats.color, WRITTEN | TextureUsages::COPY_DST),
             simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
             import: None,
+            atlas: None,
             given: Given::default(),
             gpu: gpu.clone(),
         })
@@ -107,6 +119,38 @@ impl DeviceInputs {
     /// Imports a full-rate frame that was rendered on this device. The values equal those of a readback followed by
     /// [`upload`](Self::upload). Records into `encoder`.
     pub fn import(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame) {
+        self.import_to(encoder, frame, [&self.full.clone(), &self.depth.clone()]);
+        let size = frame.motion.size();
+        encoder.copy_texture_to_texture(frame.motion.as_image_copy(), self.motion.as_image_copy(), size);
+        self.given = Given { depth: true, motion: true, ..Given::default() };
+    }
+
+    /// Imports the samples of a sparse frame that was rendered on this device. `has_geometry`: with their depth and
+    /// motion, instead of those of the full-rate frame that was imported or uploaded last. Records into `encoder`.
+    pub fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame, has_geometry: bool) {
+        let size = [atlas.color.width(), atlas.color.height()];
+        let fits = |held: &Atlas| [held.color.width(), held.color.height()] == size;
+        let held = self.atlas.take().filter(fits).unwrap_or_else(|| {
+            let texture = |format| self.gpu.texture(size, 1, format, WRITTEN | TextureUsages::COPY_DST);
+            let [color, depth] = [self.formats.color, TextureFormat::R32Float].map(texture);
+            Atlas { color, depth, motion: atlas.motion.clone() }
+        });
+        self.import_to(encoder, atlas, [&held.color, &held.depth]);
+        self.atlas = Some(Atlas { motion: atlas.motion.clone(), ..held });
+        (self.given.atlas, self.given.atlas_geometry) = (true, has_geometry);
+        (self.given.lod, self.given.noise) = (false, false);
+    }
+
+    /// Replaces the color of the atlas.
+    #[cfg(feature = "ablation")]
+    pub(super) fn write_atlas_color(&self, color: &Image<[f32; 3]>) {
+        if let Some(atlas) = &self.atlas {
+            self.gpu.write_rgb(&atlas.color, 0, color);
+        }
+    }
+
+    /// Records the conversion of a rendered frame's color and depth.
+    fn import_to(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame, to: [&Texture; 2]) {
         let device = &self.gpu.device;
         let import = self.import.get_or_insert_with(|| {
             let types = [
@@ -119,16 +163,11 @@ impl DeviceInputs {
             ComputeShader::new(device, "import", SHADERS.compose("import_pass").source, &types)
         });
         let near = filled(device, "near", &frame.near.to_ne_bytes(), BufferUsages::UNIFORM);
-        let views = [&frame.color, &frame.depth, &self.full, &self.depth].map(array_view);
+        let views = [&frame.color, &frame.depth, to[0], to[1]].map(array_view);
         let resources = std::iter::once(near.as_entire_binding()).chain(views.iter().map(BindingResource::TextureView));
         let group = import.group(device, resources);
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            import.dispatch(device, &mut pass, &[], &group, self.size, 1);
-        }
-        let size = frame.motion.size();
-        encoder.copy_texture_to_texture(frame.motion.as_image_copy(), self.motion.as_image_copy(), size);
-        self.given = Given { depth: true, motion: true, ..Given::default() };
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        import.dispatch(device, &mut pass, &[], &group, [frame.color.width(), frame.color.height()], 1);
     }
 
     /// Uploads a frame that its source foveated, with the depth, motion and trust of the full-rate frame `frame`.
@@ -198,14 +237,20 @@ impl DeviceInputs {
     /// The foveated frame as input of the methods. `use_trust`: include the trust mask, if the frame has one.
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
         let given = self.given;
+        let atlas = self.atlas.as_ref().filter(|_| given.atlas);
+        let geometry = atlas.filter(|_| given.atlas_geometry);
+        let [depth, motion] = match geometry {
+            Some(atlas) => [Some(&atlas.depth), Some(&atlas.motion)],
+            None => [given.depth.then_some(&self.depth), given.motion.then_some(&self.motion)],
+        };
         Frame {
-            depth: given.depth.then_some((&self.depth).into()),
-            motion: given.motion.then_some((&self.motion).into()),
+            depth: depth.map(Into::into),
+            motion: motion.map(Into::into),
             trust: (given.trust && use_trust).then_some((&self.trust).into()),
             lod: given.lod.then_some((&self.lod).into()),
             noise: given.noise.then_some((&self.noise).into()),
             reset,
-            ..Frame::new(&self.foveated, views, index)
+            ..Frame::new(atlas.map_or(&self.foveated, |atlas| &atlas.color), views, index)
         }
     }
 

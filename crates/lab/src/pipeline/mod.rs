@@ -93,6 +93,8 @@ struct Candidate<'a> {
     /// Levels of detail as an input of the methods, if any.
     lod_given: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
+    /// Depth and motion of the samples, where they replace those of the full-rate frame.
+    geometry: Option<(&'a Image<f32>, &'a Image<[f32; 2]>)>,
 }
 
 /// State of a run.
@@ -278,6 +280,7 @@ impl Pipeline {
             color,
             lod_given: needs_lod(self.foveation.filter).then_some(&lods),
             noise: None,
+            geometry: None,
         });
         #[cfg(feature = "full")]
         self.foveate_on_device(frame, rendered, candidate.as_ref(), &view)?;
@@ -307,7 +310,7 @@ impl Pipeline {
         let color = poisoned(color, self.poison, index as u32);
         // Lattices say how coarse a sparse frame is.
         let lod_given = lattices.is_none().then_some(&lod);
-        let candidate = Candidate { color: &color, lod_given, noise: Some(&noise) };
+        let candidate = Candidate { color: &color, lod_given, noise: Some(&noise), geometry: None };
         let lattices = lattices.map(|lattices| self.sparse_geometry.of(lattices));
         let view = ViewFrame { lattices, ..self.view(frame, gaze_px) };
         #[cfg(feature = "full")]
@@ -344,8 +347,8 @@ impl Pipeline {
         }
     }
 
-    /// Lattices of frame `index`, if it is sparse.
-    fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
+    /// Lattices of frame `index` for the gaze of [`look`](Self::look), if frames are sparse.
+    pub fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
         let is_sparse = self.foveation.filter == Filter::Sparse;
         is_sparse.then(|| {
             let lattices = self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index);
@@ -539,7 +542,10 @@ fn on_cpu(
     let size = post.desc().size_px;
     let mut output = [Image::filled(size, [0.0; 3])];
     let mut traces = (!debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
-    let (depth, motion) = (source.depth.as_ref(), source.motion.as_ref());
+    let (depth, motion) = match candidate.geometry {
+        Some((depth, motion)) => (Some(depth), Some(motion)),
+        None => (source.depth.as_ref(), source.motion.as_ref()),
+    };
     let frame = Frame {
         depth: depth.as_ref().map(from_ref),
         motion: motion.as_ref().map(from_ref),

@@ -1,7 +1,17 @@
 //! Sparse frames: lattices of samples that move every frame.
 
+#[cfg(feature = "full")]
+use super::{Candidate, Pipeline, Step};
+#[cfg(feature = "full")]
+use crate::clock::Stopwatch;
+#[cfg(feature = "full")]
+use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
+#[cfg(feature = "full")]
+use afterimage::{FrameError, ViewFrame};
+#[cfg(feature = "full")]
+use std::sync::Arc;
 
 /// Depth and motion of a sparse frame. Default: [`Full`](Self::Full).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,4 +90,78 @@ impl SampleOrder {
 /// Level of detail of every pixel: log2 of the step of its lattice.
 pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
     Image::from_fn_parallel(size_px, |px| lattices.at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32))
+}
+
+#[cfg(feature = "full")]
+impl Pipeline {
+    /// As [`step`](Self::step), for a sparse frame that its source rendered with the samples of
+    /// [`lattices`](Self::lattices) for the gaze of [`look`](Self::look). `frame` is the full-rate frame, for the
+    /// metrics and, with [`SparseGeometry::Full`], for depth and motion; `rendered` is that frame where it is on a
+    /// device, too. Samples on the pipeline's device stay there.
+    ///
+    /// # Errors
+    /// As for `step`.
+    pub fn step_sparse(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze_px: [f32; 2],
+        rendered: Option<&DeviceFrame>,
+        sparse: &SparseFrame,
+    ) -> Result<Step, FrameError> {
+        let size = self.geometry.size_px();
+        let watch = Stopwatch::start();
+        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
+        let lattices = self.sparse_geometry.of(sparse.lattices);
+        let lods = levels(&lattices, size);
+        let view = ViewFrame { lattices: Some(lattices), ..self.view(frame, gaze_px) };
+        let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
+        let atlas = &sparse.atlas;
+        let color = self.foveates_in_memory().then(|| color_of(atlas));
+        #[cfg(feature = "ablation")]
+        let color = color.map(|color| super::poisoned(color, self.poison, index as u32));
+        let geometry = (color.is_some() && has_geometry).then(|| geometry_of(atlas));
+        if let Some(device) = &mut self.device {
+            let gpu = device.gpu.clone();
+            let is_here = |frame: &&DeviceFrame| Arc::ptr_eq(&frame.device, &gpu);
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            match rendered.filter(is_here) {
+                _ if has_geometry => {}
+                Some(rendered) => device.inputs.import(&mut encoder, rendered),
+                None => device.inputs.upload(frame),
+            }
+            device.inputs.import_atlas(&mut encoder, atlas, has_geometry);
+            gpu.queue.submit([encoder.finish()]);
+            gpu.wait();
+            #[cfg(feature = "ablation")]
+            if let Some(color) = color.as_ref().filter(|_| self.poison > 0.0) {
+                device.inputs.write_atlas_color(color);
+            }
+            gpu.check()?;
+        }
+        let candidate = color.as_ref().map(|color| Candidate {
+            color,
+            lod_given: None,
+            noise: None,
+            geometry: geometry.as_ref().map(|(depth, motion)| (depth, motion)),
+        });
+        let foveation_ms = watch.wall_ms();
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+        let outputs = self.run(index, frame, &view, candidate.as_ref(), None)?;
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
+    }
+}
+
+/// Waits for all submitted work, then reads the color. Pixels that are not finite are black, as in imported frames.
+#[cfg(feature = "full")]
+fn color_of(atlas: &DeviceFrame) -> Image<[f32; 3]> {
+    let color = crate::raster::read_color(&atlas.device, &atlas.color);
+    color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
+}
+
+/// Waits for all submitted work, then reads distance and motion vectors.
+#[cfg(feature = "full")]
+fn geometry_of(atlas: &DeviceFrame) -> (Image<f32>, Image<[f32; 2]>) {
+    let DeviceFrame { device, depth, motion, near, .. } = atlas;
+    (crate::raster::read_distance(device, depth, *near), device.read(motion, 0))
 }

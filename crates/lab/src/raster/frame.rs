@@ -1,5 +1,6 @@
 //! Frame uniforms. Twin of `RasterFrame` in `shaders/raster/raster_frame.wgsl`.
 
+use super::window::Window;
 use crate::trace::view::View;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -27,19 +28,24 @@ pub(super) struct FrameUniforms {
     down: [f32; 4],
     size: [f32; 2],
     near: f32,
-    unused: f32,
+    texture_bias: f32,
+    first_px: [f32; 2],
+    origin: [f32; 2],
+    step: f32,
+    per_step: f32,
+    unused: [f32; 2],
 }
 
 /// Projection in f64: rows from direction to homogeneous pixels, and columns from pixels to direction.
-struct Pixels {
-    rows: [DVec3; 3],
+pub(super) struct Pixels {
+    pub rows: [DVec3; 3],
     corner: DVec3,
     right: DVec3,
     down: DVec3,
 }
 
 impl Pixels {
-    fn of(view: &View) -> Self {
+    pub fn of(view: &View) -> Self {
         let m = view.world_from_camera();
         let (right, below, ahead) = (m.x_axis.truncate(), -m.y_axis.truncate(), -m.z_axis.truncate());
         let (scale, offset) = view.geometry().scale_offset();
@@ -69,8 +75,9 @@ fn row(v: DVec3) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    /// Uniforms for camera `view`, previous camera `previous` and near plane `near` in metres.
-    pub fn new(view: &View, previous: &View, near: f32) -> Self {
+    /// Uniforms of the pixels of `window`, for camera `view`, previous camera `previous` and near plane `near` in
+    /// metres.
+    pub fn new(view: &View, previous: &View, near: f32, window: &Window) -> Self {
         let (current_px, previous_px) = (Pixels::of(view), Pixels::of(previous));
         let previous_px_from_px = [current_px.right, current_px.down, current_px.corner]
             .map(|d| row(DVec3::from(previous_px.rows.map(|r| r.dot(d)))));
@@ -81,9 +88,14 @@ impl FrameUniforms {
             corner: row(current_px.corner),
             right: row(current_px.right),
             down: row(current_px.down),
-            size: view.geometry().size_px().map(|s| s as f32),
+            size: window.size.map(|s| s as f32),
             near,
-            unused: 0.0,
+            texture_bias: -window.step.log2(),
+            first_px: window.first_px,
+            origin: window.origin,
+            step: window.step,
+            per_step: window.step.recip(),
+            unused: [0.0; 2],
         }
     }
 }

@@ -15,6 +15,9 @@
 //! [`MotionConvention`](afterimage::MotionConvention). Motion includes the camera's and the vertices' (rigid, skinned,
 //! morphing); the sky's is the camera's rotation.
 //!
+//! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
+//! of its own in an atlas. Triangles outside a view are left out in groups, at full rate as well.
+//!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
 //!   writing the color pass' depth. Depth and motion include them where they are more than half opaque, as in
@@ -34,10 +37,13 @@ mod pipelines;
 mod record;
 mod targets;
 mod vertices;
+mod window;
 
 pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
-pub use targets::Targets;
+pub use targets::{FoveatedTargets, Targets};
+pub(crate) use targets::{read_color, read_distance};
+pub use window::AtlasLayout;
 
 use crate::error::{Bound, Exceeded, InputError};
 use crate::kernel::albedo::AlbedoTables;
@@ -47,9 +53,10 @@ use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
 use lighting::Lighting;
 use materials::upload_levels;
-use pipelines::{Layouts, Pipelines};
+use pipelines::{ColorPipelines, Layouts, Pipelines};
+use std::cell::OnceCell;
 use std::sync::LazyLock;
-use vertices::{Blended, GroupedTriangles, STRIDE, Vertex};
+use vertices::{Blended, Chunks, GroupedTriangles, STRIDE, Vertex};
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureFormat, TextureView};
 
 /// Settings of the rasterizer.
@@ -73,6 +80,9 @@ impl Default for RasterSettings {
 pub struct Raster {
     layouts: Layouts,
     pipelines: Pipelines,
+    /// Pipelines of lattices with one sample per pixel; none before the first foveated frame.
+    point_pipelines: OnceCell<ColorPipelines>,
+    effects: Effects,
     materials: Vec<BindGroup>,
     /// Bind group of the color pass. It includes the shadow map, so it is not bound while that is drawn.
     lighting_maps: BindGroup,
@@ -99,6 +109,7 @@ pub struct Raster {
 struct VertexSet {
     grouped: GroupedTriangles,
     buffer: Buffer,
+    chunks: Chunks,
     blended: Vec<Blended>,
 }
 
@@ -137,15 +148,19 @@ impl Raster {
         let vertices = grouped.vertices(scene.still());
         let buffer = vertex_buffer(device, vertices.len());
         queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&vertices));
-        let still = VertexSet { blended: grouped.blended(&vertices), grouped, buffer };
+        let chunks = Chunks::new(&grouped.parts, &vertices);
+        let still = VertexSet { blended: grouped.blended(&vertices), grouped, buffer, chunks };
         let grouped = GroupedTriangles::new(&pose.moving, &scene.materials);
         let count = 3 * pose.moving.len();
-        let moving = VertexSet { grouped, buffer: vertex_buffer(device, count), blended: vec![] };
+        let moving =
+            VertexSet { grouped, buffer: vertex_buffer(device, count), chunks: Chunks::default(), blended: vec![] };
         // Much nearer than anything of interest, but not so near that 1/near overflows.
         let near = (lighting.radius * 1e-4).clamp(1e-6, 1e-2);
         let mut raster = Self {
             layouts,
             pipelines,
+            point_pipelines: OnceCell::new(),
+            effects,
             materials,
             lighting_maps,
             shadow,
@@ -177,6 +192,7 @@ impl Raster {
         if !pose.moving.is_empty() {
             let now = self.moving.grouped.vertices(&pose.moving);
             self.moving.blended = self.moving.grouped.blended(&now);
+            self.moving.chunks = Chunks::new(&self.moving.grouped.parts, &now);
             self.pending = Some([now, self.moving.grouped.vertices(&previous.moving)]);
         }
         self.lights = pose.lights;

@@ -32,35 +32,25 @@ pub(super) struct Pipelines {
     motion: [RenderPipeline; 2],
     pub motion_far: RenderPipeline,
     sun: [RenderPipeline; 2],
-    color: [RenderPipeline; 3],
+    /// With [`SAMPLES`] samples per pixel.
+    pub color: ColorPipelines,
+}
+
+/// Pipelines of the color pass, with a number of samples per pixel.
+#[derive(Debug)]
+pub(super) struct ColorPipelines {
+    surfaces: [RenderPipeline; 3],
     pub sky: RenderPipeline,
 }
 
-impl Pipelines {
-    /// Depth and motion of a kind of surface.
-    pub fn motion(&self, kind: AlphaKind) -> &RenderPipeline {
-        &self.motion[usize::from(kind != AlphaKind::Opaque)]
-    }
-
-    /// Shadow map of a kind of surface.
-    pub fn sun(&self, kind: AlphaKind) -> &RenderPipeline {
-        &self.sun[usize::from(kind != AlphaKind::Opaque)]
-    }
-
+impl ColorPipelines {
     /// Color of a kind of surface.
-    pub fn color(&self, kind: AlphaKind) -> &RenderPipeline {
-        &self.color[kind as usize]
+    pub fn surfaces(&self, kind: AlphaKind) -> &RenderPipeline {
+        &self.surfaces[kind as usize]
     }
 
-    pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool) -> Self {
-        let module = |name: &str| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(SHADERS.compose(name).source.into()),
-            })
-        };
-        let [surface, sun, color, sky] = ["surface_pass", "sun_pass", "color_pass", "sky_pass"].map(module);
-        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
+    pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool, samples: u32) -> Self {
+        let [color, sky] = ["color_pass", "sky_pass"].map(|name| shader(device, name));
         let mut shading = constants(
             effects,
             &[
@@ -78,9 +68,61 @@ impl Pipelines {
             ],
         );
         shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
+        let mut tested = shading.clone();
+        tested.push(("ALPHA_TEST", f64::from(u8::from(samples == 1))));
+        let groups = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.lighting_maps)];
+        let shade = |constants, depth, blend, coverage| {
+            let recipe = Recipe {
+                constants,
+                depth,
+                blend,
+                coverage,
+                samples,
+                ..Recipe::new(&color, "shade_vertex", Some("shade"), COLOR_FORMAT)
+            };
+            recipe.make(device, &groups)
+        };
+        let blend = Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let sky = Recipe {
+            depth: false,
+            vertices: false,
+            samples,
+            ..Recipe::new(&sky, "fullscreen", Some("sky"), COLOR_FORMAT)
+        };
+        Self {
+            surfaces: [
+                shade(&shading, true, None, false),
+                shade(&tested, true, None, samples > 1),
+                shade(&shading, false, blend, false),
+            ],
+            sky: sky.make(device, &groups),
+        }
+    }
+}
+
+fn shader(device: &Device, name: &str) -> ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(SHADERS.compose(name).source.into()),
+    })
+}
+
+impl Pipelines {
+    /// Depth and motion of a kind of surface.
+    pub fn motion(&self, kind: AlphaKind) -> &RenderPipeline {
+        &self.motion[usize::from(kind != AlphaKind::Opaque)]
+    }
+
+    /// Shadow map of a kind of surface.
+    pub fn sun(&self, kind: AlphaKind) -> &RenderPipeline {
+        &self.sun[usize::from(kind != AlphaKind::Opaque)]
+    }
+
+    pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool) -> Self {
+        let [surface, sun] = ["surface_pass", "sun_pass"].map(|name| shader(device, name));
+        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
         let two = [Some(&layouts.frame), Some(&layouts.material)];
-        let three = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.lighting_maps)];
-        let make = |recipe: Recipe<'_>| recipe.make(device, if recipe.samples > 1 { &three } else { &two });
+        let make = |recipe: Recipe<'_>| recipe.make(device, &two);
         let motion = |fragment, depth| {
             make(Recipe { constants: &base, depth, ..Recipe::new(&surface, "motion_vertex", fragment, MOTION_FORMAT) })
         };
@@ -93,16 +135,6 @@ impl Pipelines {
                 ..Recipe::new(&sun, "shadow_vertex", fragment, COLOR_FORMAT)
             })
         };
-        let shade = |depth, blend, coverage| {
-            make(Recipe {
-                constants: &shading,
-                depth,
-                blend,
-                coverage,
-                samples: SAMPLES,
-                ..Recipe::new(&color, "shade_vertex", Some("shade"), COLOR_FORMAT)
-            })
-        };
         Self {
             motion: [motion(Some("motion_opaque"), true), motion(Some("motion"), true)],
             motion_far: make(Recipe {
@@ -111,17 +143,7 @@ impl Pipelines {
                 ..Recipe::new(&surface, "fullscreen", Some("motion_far"), MOTION_FORMAT)
             }),
             sun: [shadow(None), shadow(Some("alpha_test"))],
-            color: [
-                shade(true, None, false),
-                shade(true, None, true),
-                shade(false, Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), false),
-            ],
-            sky: make(Recipe {
-                depth: false,
-                vertices: false,
-                samples: SAMPLES,
-                ..Recipe::new(&sky, "fullscreen", Some("sky"), COLOR_FORMAT)
-            }),
+            color: ColorPipelines::new(device, layouts, effects, has_sun, SAMPLES),
         }
     }
 }

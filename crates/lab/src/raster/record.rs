@@ -2,14 +2,18 @@
 
 use super::frame::FrameUniforms;
 use super::lighting::LightingRecord;
+use super::pipelines::ColorPipelines;
+use super::targets::{FoveatedTargets, Targets};
 use super::vertices::{AlphaKind, STRIDE};
+use super::window::{DrawCall, Frustum, Window};
 use super::{Raster, VertexSet};
 use crate::trace::view::View;
+use afterimage::Lattices;
 use afterimage::gpu::filled;
 use std::ops::Range;
 use wgpu::{
     BindGroup, Buffer, BufferUsages, Color, CommandEncoder, Device, IndexFormat, LoadOp, Operations, RenderPass,
-    StoreOp,
+    RenderPassColorAttachment, StoreOp,
 };
 
 /// Index range of blended triangles with one material.
@@ -19,20 +23,102 @@ struct Run {
     indices: Range<u32>,
 }
 
+/// A window with its uniforms and draw calls.
+struct Section {
+    window: Window,
+    group: BindGroup,
+    calls: Vec<DrawCall>,
+}
+
+impl Section {
+    fn set_up(&self, pass: &mut RenderPass<'_>) {
+        let Window { origin: [x, y], size, scissor: [corner, extent], .. } = self.window;
+        let [w, h] = size.map(|v| v as f32);
+        pass.set_viewport(x, y, w, h, 0.0, 1.0);
+        pass.set_scissor_rect(corner[0], corner[1], extent[0], extent[1]);
+        pass.set_bind_group(0, &self.group, &[]);
+    }
+}
+
 impl Raster {
     /// Records a frame for camera `view` and previous camera `previous`, both of the targets' size. Several frames may
     /// be recorded into one encoder; each has its own uniforms.
     pub fn record(&mut self, device: &Device, encoder: &mut CommandEncoder, view: &View, previous: &View) {
         self.upload(device, encoder);
-        let frame = FrameUniforms::new(view, previous, self.near);
-        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
-        let group = self.frame_group(device, &frame, &lights);
+        let window = Window::full(view.geometry().size_px());
+        let section = self.section(device, [view, previous], window);
+        self.shadows(encoder, &section.group);
+        let sections = [section];
+        let Targets { views: [color, depth, motion], samples, .. } = &self.targets;
+        self.surface_pass(encoder, [depth, motion], &sections);
+        let blended = self.back_to_front(device, view);
+        let ops = Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard };
+        let [samples, depth] = samples;
+        let target = RenderPassColorAttachment { view: samples, depth_slice: None, resolve_target: Some(color), ops };
+        self.color_pass(encoder, target, depth, &self.pipelines.color, &sections, &blended);
+    }
+
+    /// Records a foveated frame: each lattice of `lattices`, which lie in an atlas
+    /// ([`AtlasLayout::place`](super::AtlasLayout::place)), as a view of its own in `targets`. Sample (i, j) of a
+    /// lattice shows the full-rate frame's pixel `first_px + step * (i, j)`; motion is in pixels of the full-rate
+    /// frame. `view` and `previous` are those of the full-rate frame.
+    ///
+    /// Lattices of step 1 have four samples per pixel, as the full-rate frame has; the others one, at the pixel's
+    /// centre.
+    ///
+    /// # Panics
+    /// If the atlas is larger than `targets`.
+    pub fn record_foveated(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        lattices: &Lattices,
+        targets: &FoveatedTargets,
+    ) {
+        self.upload(device, encoder);
+        let size = view.geometry().size_px();
         if self.has_sun && self.is_shadow_stale {
-            self.sun_pass(encoder, &group);
+            let full = self.section(device, [view, previous], Window::full(size));
+            self.shadows(encoder, &full.group);
+        }
+        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size));
+        let sections: Vec<Section> = windows.map(|w| self.section(device, [view, previous], w)).collect();
+        let (full, points) = sections.split_at(sections.partition_point(|s| s.window.step == 1.0));
+        let FoveatedTargets { atlas, point_depth } = targets;
+        let Targets { views: [color, depth, motion], samples: [samples, sample_depth], .. } = atlas;
+        self.surface_pass(encoder, [depth, motion], &sections);
+        let blended = self.back_to_front(device, view);
+        let mut load = LoadOp::Clear(Color::BLACK);
+        if !full.is_empty() {
+            let ops = Operations { load, store: StoreOp::Discard };
+            let target =
+                RenderPassColorAttachment { view: samples, depth_slice: None, resolve_target: Some(color), ops };
+            self.color_pass(encoder, target, sample_depth, &self.pipelines.color, full, &blended);
+            load = LoadOp::Load;
+        }
+        let point_pipelines = self
+            .point_pipelines
+            .get_or_init(|| ColorPipelines::new(device, &self.layouts, self.effects, self.has_sun, 1));
+        let ops = Operations { load, store: StoreOp::Store };
+        let target = RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
+        self.color_pass(encoder, target, point_depth, point_pipelines, points, &blended);
+    }
+
+    /// Uniforms and draw calls of what a window shows.
+    fn section(&self, device: &Device, [view, previous]: [&View; 2], window: Window) -> Section {
+        let frame = FrameUniforms::new(view, previous, self.near, &window);
+        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
+        let calls = self.calls(Some(&Frustum::new(view, &window)));
+        Section { group: self.frame_group(device, &frame, &lights), calls, window }
+    }
+
+    /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
+    fn shadows(&mut self, encoder: &mut CommandEncoder, group: &BindGroup) {
+        if self.has_sun && self.is_shadow_stale {
+            self.sun_pass(encoder, group);
             self.is_shadow_stale = false;
         }
-        self.surface_pass(encoder, &group);
-        self.color_pass(device, encoder, &group, view);
     }
 
     /// Uploads vertices that moved since the last frame.
@@ -61,17 +147,19 @@ impl Raster {
     fn sun_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {
         let mut pass = begin(encoder, "sun", None, &self.shadow, StoreOp::Store);
         pass.set_bind_group(0, group, &[]);
-        self.for_each_draw(|set, is_moving, part| {
-            // Transmissive and blended surfaces cast no shadow.
-            if part.kind != AlphaKind::Blend {
-                pass.set_pipeline(self.pipelines.sun(part.kind));
-                self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
-            }
-        });
+        // Transmissive and blended surfaces cast no shadow.
+        for call in self.calls(None).iter().filter(|call| call.kind != AlphaKind::Blend) {
+            pass.set_pipeline(self.pipelines.sun(call.kind));
+            self.draw(&mut pass, call);
+        }
     }
 
-    fn surface_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {
-        let [_, depth, motion] = &self.targets.views;
+    fn surface_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        [depth, motion]: [&wgpu::TextureView; 2],
+        sections: &[Section],
+    ) {
         let color = wgpu::RenderPassColorAttachment {
             view: motion,
             depth_slice: None,
@@ -79,70 +167,72 @@ impl Raster {
             ops: Operations { load: LoadOp::Clear(Color::TRANSPARENT), store: StoreOp::Store },
         };
         let mut pass = begin(encoder, "surfaces", Some(color), depth, StoreOp::Store);
-        pass.set_bind_group(0, group, &[]);
-        self.for_each_draw(|set, is_moving, part| {
-            pass.set_pipeline(self.pipelines.motion(part.kind));
-            self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
-        });
-        pass.set_bind_group(1, &self.materials[0], &[]);
-        pass.set_pipeline(&self.pipelines.motion_far);
-        pass.draw(0..3, 0..1);
+        for section in sections {
+            section.set_up(&mut pass);
+            for call in &section.calls {
+                pass.set_pipeline(self.pipelines.motion(call.kind));
+                self.draw(&mut pass, call);
+            }
+            pass.set_bind_group(1, &self.materials[0], &[]);
+            pass.set_pipeline(&self.pipelines.motion_far);
+            pass.draw(0..3, 0..1);
+        }
     }
 
-    fn color_pass(&self, device: &Device, encoder: &mut CommandEncoder, group: &BindGroup, view: &View) {
-        let [color, _, _] = &self.targets.views;
-        let [samples, depth] = &self.targets.samples;
-        let (indices, runs) = self.back_to_front(device, view);
-        let color = wgpu::RenderPassColorAttachment {
-            view: samples,
-            depth_slice: None,
-            resolve_target: Some(color),
-            ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard },
-        };
-        let mut pass = begin(encoder, "color", Some(color), depth, StoreOp::Discard);
-        pass.set_bind_group(0, group, &[]);
+    fn color_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        target: RenderPassColorAttachment<'_>,
+        depth: &wgpu::TextureView,
+        pipelines: &ColorPipelines,
+        sections: &[Section],
+        (indices, runs): &(Option<Buffer>, Vec<Run>),
+    ) {
+        let mut pass = begin(encoder, "color", Some(target), depth, StoreOp::Discard);
         pass.set_bind_group(2, &self.lighting_maps, &[]);
-        self.for_each_draw(|set, is_moving, part| {
-            if part.kind != AlphaKind::Blend {
-                pass.set_pipeline(self.pipelines.color(part.kind));
-                self.draw(&mut pass, set, is_moving, part.material, part.vertices.clone());
+        for section in sections {
+            section.set_up(&mut pass);
+            for call in section.calls.iter().filter(|call| call.kind != AlphaKind::Blend) {
+                pass.set_pipeline(pipelines.surfaces(call.kind));
+                self.draw(&mut pass, call);
             }
-        });
-        pass.set_bind_group(1, &self.materials[0], &[]);
-        pass.set_pipeline(&self.pipelines.sky);
-        pass.draw(0..3, 0..1);
-        if let Some(indices) = &indices {
-            pass.set_pipeline(self.pipelines.color(AlphaKind::Blend));
-            pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
-            for run in runs {
-                let set = if run.is_moving { &self.moving } else { &self.still };
-                self.bind(&mut pass, set, run.is_moving, run.material);
-                pass.draw_indexed(run.indices, 0, 0..1);
+            pass.set_bind_group(1, &self.materials[0], &[]);
+            pass.set_pipeline(&pipelines.sky);
+            pass.draw(0..3, 0..1);
+            if let Some(indices) = indices {
+                pass.set_pipeline(pipelines.surfaces(AlphaKind::Blend));
+                pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+                for run in runs {
+                    self.bind(&mut pass, run.is_moving, run.material);
+                    pass.draw_indexed(run.indices.clone(), 0, 0..1);
+                }
             }
         }
     }
 
-    /// Calls `f` on the draw ranges of static and moving triangles, opaque ones first.
-    fn for_each_draw(&self, mut f: impl FnMut(&VertexSet, bool, &super::vertices::DrawRange)) {
-        let of = |set: &'_ VertexSet| set.grouped.parts.clone();
-        let mut parts: Vec<_> = of(&self.still).into_iter().map(|p| (false, p)).collect();
-        parts.extend(of(&self.moving).into_iter().map(|p| (true, p)));
-        parts.sort_by_key(|(_, p)| p.kind);
-        for (is_moving, part) in &parts {
-            f(if *is_moving { &self.moving } else { &self.still }, *is_moving, part);
-        }
+    /// Draw calls of the static and moving triangles that meet `frustum`, opaque ones first.
+    fn calls(&self, frustum: Option<&Frustum>) -> Vec<DrawCall> {
+        let of = |set: &VertexSet, is_moving| {
+            let parts = set.grouped.parts.iter();
+            parts.flat_map(|part| DrawCall::of(part, &set.chunks, is_moving, frustum)).collect::<Vec<_>>()
+        };
+        let mut calls = of(&self.still, false);
+        calls.extend(of(&self.moving, true));
+        calls.sort_by_key(|call| call.kind);
+        calls
     }
 
-    fn bind(&self, pass: &mut RenderPass<'_>, set: &VertexSet, is_moving: bool, material: u32) {
+    fn bind(&self, pass: &mut RenderPass<'_>, is_moving: bool, material: u32) {
+        let set = if is_moving { &self.moving } else { &self.still };
         let material = self.materials.get(material as usize).unwrap_or(&self.materials[0]);
         pass.set_bind_group(1, material, &[]);
         pass.set_vertex_buffer(0, set.buffer.slice(..));
         pass.set_vertex_buffer(1, if is_moving { &self.previous } else { &set.buffer }.slice(..));
     }
 
-    fn draw(&self, pass: &mut RenderPass<'_>, set: &VertexSet, is_moving: bool, material: u32, vertices: Range<u32>) {
-        self.bind(pass, set, is_moving, material);
-        pass.draw(vertices, 0..1);
+    fn draw(&self, pass: &mut RenderPass<'_>, call: &DrawCall) {
+        self.bind(pass, call.is_moving, call.material);
+        pass.draw(call.vertices.clone(), 0..1);
     }
 
     /// Index buffer of the blended triangles and its draws. Groups of one material are ordered by the mean distance of

@@ -32,18 +32,53 @@ impl Targets {
 
     /// Waits for all submitted work, then reads the color.
     pub fn read_color(&self, device: &Headless) -> Image<[f32; 3]> {
-        device.read::<[u16; 4]>(&self.color, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
+        read_color(device, &self.color)
     }
 
     /// Waits for all submitted work, then reads distance along the view axis in metres; infinity where there is no
     /// surface. `near` is [`Raster::near`](super::Raster::near).
     pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
-        device.read::<f32>(&self.depth, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
+        read_distance(device, &self.depth, near)
     }
 
     /// Waits for all submitted work, then reads the motion vectors.
     pub fn read_motion(&self, device: &Headless) -> Image<[f32; 2]> {
         device.read::<[f32; 2]>(&self.motion, 0)
+    }
+}
+
+/// Reads a texture of [`COLOR_FORMAT`].
+pub(crate) fn read_color(device: &Headless, texture: &Texture) -> Image<[f32; 3]> {
+    device.read::<[u16; 4]>(texture, 0).map(|[r, g, b, _]| [r, g, b].map(|v| half_value(u32::from(v))))
+}
+
+/// Reads a texture of [`DEPTH_FORMAT`] as distances.
+pub(crate) fn read_distance(device: &Headless, texture: &Texture, near: f32) -> Image<f32> {
+    device.read::<f32>(texture, 0).map(|d| if d > 0.0 { near / d } else { f32::INFINITY })
+}
+
+/// Textures of a foveated frame.
+#[derive(Debug)]
+pub struct FoveatedTargets {
+    /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
+    pub atlas: Targets,
+    /// Depth of the color of lattices with one sample per pixel.
+    pub(super) point_depth: TextureView,
+}
+
+impl FoveatedTargets {
+    /// Targets for atlases of at most `size` texels.
+    pub fn new(device: &Device, size: [u32; 2]) -> Self {
+        let point_depth = attachment(device, size, DEPTH_FORMAT, 1).create_view(&Default::default());
+        Self { atlas: Targets::new(device, size), point_depth }
+    }
+
+    /// Replaces the targets by larger ones if an atlas of `size` texels does not fit.
+    pub fn fit(&mut self, device: &Device, size: [u32; 2]) {
+        let held = [self.atlas.color.width(), self.atlas.color.height()];
+        if (0..2).any(|i| size[i] > held[i]) {
+            *self = Self::new(device, [0, 1].map(|i| size[i].max(held[i])));
+        }
     }
 }
 

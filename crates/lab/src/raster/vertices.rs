@@ -2,8 +2,9 @@
 
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A vertex of a triangle.
@@ -122,6 +123,44 @@ impl GroupedTriangles {
                 })
             })
             .collect()
+    }
+}
+
+/// Triangles of a chunk. Fewer leave out more, at more draw calls and tests.
+const CHUNK: u32 = 256;
+
+/// Bounding boxes of successive triangles of a vertex buffer, for leaving out those outside a view.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chunks {
+    /// By first vertex.
+    boxes: BTreeMap<u32, [DVec3; 2]>,
+}
+
+impl Chunks {
+    /// Boxes of the triangles of `parts`.
+    pub fn new(parts: &[DrawRange], vertices: &[Vertex]) -> Self {
+        let firsts: Vec<(u32, u32)> = parts
+            .iter()
+            .flat_map(|part| part.vertices.clone().step_by(3 * CHUNK as usize).map(|first| (first, part.vertices.end)))
+            .collect();
+        let bounds = |&(first, end): &(u32, u32)| {
+            let of_chunk = &vertices[first as usize..end.min(first + 3 * CHUNK) as usize];
+            let positions = of_chunk.iter().map(|v| Vec3::from(v.position).as_dvec3());
+            // A position that is not finite makes its box so: Vec3::min would ignore it.
+            let is_finite = positions.clone().all(|p| p.is_finite());
+            let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
+            let high = positions.fold(DVec3::NEG_INFINITY, DVec3::max);
+            (first, if is_finite { [low, high] } else { [DVec3::NAN; 2] })
+        };
+        Self { boxes: firsts.par_iter().with_min_len(64).map(bounds).collect() }
+    }
+
+    /// Vertices and boxes of a part's chunks, in order.
+    pub fn of(&self, part: &DrawRange) -> impl Iterator<Item = (Range<u32>, [DVec3; 2])> + '_ {
+        let end = part.vertices.end;
+        self.boxes
+            .range(part.vertices.clone())
+            .map(move |(&first, &bounds)| (first..end.min(first + 3 * CHUNK), bounds))
     }
 }
 

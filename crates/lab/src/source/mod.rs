@@ -42,8 +42,10 @@ pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::DeviceFrame;
+use crate::frame::{DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use afterimage::Lattices;
 use glam::DMat4;
 
 /// Properties of a source that are known before its first frame is read.
@@ -100,6 +102,16 @@ pub trait FrameSource {
         _gaze_px: [f32; 2],
         _guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
+        Ok(None)
+    }
+
+    /// The frame at `index` with the samples of `lattices` alone: color, depth and motion in atlases on a device.
+    /// `None` if the source does not render such frames: samples are then taken from the full-rate frame.
+    ///
+    /// # Errors
+    /// As for [`frame`](Self::frame).
+    #[cfg(feature = "full")]
+    fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         Ok(None)
     }
 

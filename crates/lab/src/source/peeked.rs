@@ -3,8 +3,10 @@
 use super::{CameraPose, FrameSource, SourceInfo};
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::DeviceFrame;
+use crate::frame::{DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use afterimage::Lattices;
 use glam::DMat4;
 
 /// Reads frame 0 when it is made, as a check that the input can be read, and hands that out when it is asked for first.
@@ -43,6 +45,11 @@ impl FrameSource for PeekedSource<'_> {
         guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
         self.source.foveated(index, gaze_px, guide)
+    }
+
+    #[cfg(feature = "full")]
+    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
+        self.source.sparse(index, lattices)
     }
 
     #[cfg(feature = "full")]

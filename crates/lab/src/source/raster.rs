@@ -6,10 +6,11 @@ use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::device::Headless;
 use crate::error::InputError;
-use crate::frame::{DeviceFrame, SourceFrame};
-use crate::raster::{Raster, RasterSettings};
+use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
+use crate::raster::{AtlasLayout, FoveatedTargets, Raster, RasterSettings, Targets};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
+use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ pub struct RasterSource {
     scene: Scene,
     camera: SceneCamera,
     raster: Raster,
+    /// By layout of their atlases; none before the first such frame.
+    foveated: [Option<FoveatedTargets>; 2],
     fps: f64,
 }
 
@@ -83,7 +86,7 @@ impl RasterSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, device, scene, camera, raster, fps: f64::from(fps) })
+        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], fps: f64::from(fps) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -111,6 +114,26 @@ impl RasterSource {
         self.raster.record(&self.device.device, &mut encoder, &view, &previous);
         self.device.queue.submit([encoder.finish()]);
         &self.raster
+    }
+
+    /// Renders the samples of `lattices` of frame `index`, without reading them back: [`Raster::record_foveated`].
+    /// Returns the targets, and the lattices with their places in the atlases.
+    pub fn render_foveated(
+        &mut self,
+        index: u64,
+        lattices: &Lattices,
+        layout: AtlasLayout,
+    ) -> (&FoveatedTargets, Lattices) {
+        let ([view, previous], times) = self.views(index);
+        let (lattices, size) = layout.place(lattices, self.info.size);
+        let device = &self.device.device;
+        self.raster.pose(&self.scene, times[0], times[1]);
+        let targets = self.foveated[layout as usize].get_or_insert_with(|| FoveatedTargets::new(device, size));
+        targets.fit(device, size);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
+        self.device.queue.submit([encoder.finish()]);
+        (targets, lattices)
     }
 }
 
@@ -141,6 +164,17 @@ impl FrameSource for RasterSource {
             cut: index == 0,
             nonfinite,
         })
+    }
+
+    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact.
+    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
+        let (device, near) = (self.device.clone(), self.raster.near());
+        let (targets, lattices) = self.render_foveated(index, lattices, AtlasLayout::InPlace);
+        let Targets { color, depth, motion, .. } = &targets.atlas;
+        let (color, depth, motion) = (color.clone(), depth.clone(), motion.clone());
+        device.wait();
+        device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
+        Ok(Some(SparseFrame { atlas: DeviceFrame { device, color, depth, motion, near }, lattices }))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {

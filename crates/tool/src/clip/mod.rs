@@ -9,7 +9,7 @@ use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::output::Output;
 use crate::progress;
 use crate::report::sheet::{Column, Sheet};
-use afterimage::{DebugView, Foveation, FrameError, Image, Method, ViewGeometry};
+use afterimage::{DebugView, Foveation, Image, Method, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
@@ -83,19 +83,36 @@ pub struct ClipReport {
     pub frame_mse: Vec<Vec<f64>>,
 }
 
-/// Gives a frame to the pipeline, from the device where it was rendered, if it was.
+/// Gives a frame to the pipeline, from the device where it was rendered, if it was. Sparse frames are rendered with
+/// their samples alone, if the source can: the number of samples, the milliseconds of rendering them, and the result.
 fn step(
     pipeline: &mut Pipeline,
     index: u64,
     frame: &SourceFrame,
-    gaze: Option<[f32; 2]>,
-    #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "renders nothing"))] source: &dyn FrameSource,
-) -> Result<Step, FrameError> {
+    gaze_px: [f32; 2],
+    #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "renders nothing"))]
+    source: &mut dyn FrameSource,
+) -> Result<(Option<u64>, Option<f64>, Step), Failure> {
     #[cfg(feature = "full")]
-    if let Some(rendered) = source.device_frame() {
-        return pipeline.step_on_device(index, frame, gaze, &rendered);
+    {
+        let rendered = source.device_frame();
+        let watch = Stopwatch::start();
+        let sparse = match pipeline.lattices(gaze_px, index) {
+            Some(lattices) => source.sparse(index, &lattices)?,
+            None => None,
+        };
+        if let Some(sparse) = sparse {
+            let render_ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
+            let samples =
+                sparse.lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
+            let step = pipeline.step_sparse(index, frame, gaze_px, rendered.as_ref(), &sparse)?;
+            return Ok((Some(samples.sum()), Some(render_ms), step));
+        }
+        if let Some(rendered) = rendered {
+            return Ok((None, None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));
+        }
     }
-    pipeline.step(index, frame, gaze)
+    Ok((None, None, pipeline.step(index, frame, Some(gaze_px))?))
 }
 
 /// Title of a contact sheet: input, size and foveation.
@@ -174,11 +191,13 @@ impl Clip {
             let guide = pipeline.guide(&frame);
             let watch = Stopwatch::start();
             let foveated = source.foveated(index as u64, at, guide.as_ref())?;
-            let samples = foveated.as_ref().map(|f| f.samples.iter().sum());
-            let render_ms = foveated.as_ref().map(|_| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()));
-            let step = match foveated {
-                Some(foveated) => pipeline.step_foveated(index as u64, &frame, at, foveated)?,
-                None => step(&mut pipeline, index as u64, &frame, gaze, source)?,
+            let render_ms = |watch: &Stopwatch| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
+            let (samples, render_ms, step) = match foveated {
+                Some(foveated) => {
+                    let (samples, render_ms) = (foveated.samples.iter().sum(), render_ms(&watch));
+                    (Some(samples), Some(render_ms), pipeline.step_foveated(index as u64, &frame, at, foveated)?)
+                }
+                None => step(&mut pipeline, index as u64, &frame, at, source)?,
             };
             let reference = references.next(&full, &step.tracked);
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;

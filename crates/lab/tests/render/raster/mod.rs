@@ -1,5 +1,6 @@
 //! The rasterizer: motion and depth against rays, colors against closed forms, and every available scene.
 
+mod foveated;
 mod geometry;
 mod light;
 mod real;

@@ -1,0 +1,173 @@
+//! Windows: what a target shows of the full-rate frame, and which triangles it shows.
+
+use super::frame::Pixels;
+use super::vertices::{AlphaKind, Chunks, DrawRange};
+use crate::trace::view::View;
+use afterimage::{Lattice, Lattices};
+use glam::DVec3;
+use std::ops::Range;
+
+/// Where foveated frames have the samples of their lattices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AtlasLayout {
+    /// Below each other, in an atlas as small as they are. Depth and color of the full-rate lattice differ from those
+    /// of the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
+    #[default]
+    Compact,
+    /// The full-rate lattice at its own pixels of an atlas as large as the frame, the others below that: the full-rate
+    /// frame's viewport and a scissor. Depth, motion and color are the full-rate frame's, bit for bit. Costs the memory
+    /// of full-rate targets.
+    InPlace,
+}
+
+impl AtlasLayout {
+    /// `lattices` in an atlas, finest first, and the atlas's size in texels. `size`: that of the full-rate frame in
+    /// pixels.
+    pub fn place(self, lattices: &Lattices, size: [u32; 2]) -> (Lattices, [u32; 2]) {
+        let mut placed = lattices.as_slice().to_vec();
+        let mut used = if self == Self::InPlace { size } else { [0; 2] };
+        for lattice in &mut placed {
+            let corner = match (self, lattice.step) {
+                (Self::InPlace, 1) => lattice.first_px,
+                // Pixels form the same quads of 2 x 2 as in the full-rate frame, for the same derivatives.
+                (Self::Compact, 1) => [lattice.first_px[0] % 2, used[1] + lattice.first_px[1] % 2],
+                _ => [0, used[1]],
+            };
+            lattice.atlas_texel = Some(corner);
+            used = [0, 1].map(|i| used[i].max(corner[i] + lattice.points[i]));
+        }
+        (Lattices::new(&placed).expect("only the texels are new"), used)
+    }
+}
+
+/// Part of a target, and the pixels of the full-rate frame that it shows: `first_px + step * (i, j)`.
+#[derive(Clone, Debug)]
+pub(super) struct Window {
+    /// Viewport in pixels of the target. It may extend beyond the target.
+    pub origin: [f32; 2],
+    pub size: [u32; 2],
+    /// Rectangle of the target that is drawn to: corner and size.
+    pub scissor: [[u32; 2]; 2],
+    /// Pixel of the full-rate frame at the viewport's corner.
+    pub first_px: [f32; 2],
+    pub step: f32,
+    /// Rectangle of the full-rate frame that is visible, pixel centres at integers.
+    visible_px: [[f64; 2]; 2],
+}
+
+impl Window {
+    /// The full-rate frame.
+    pub fn full(size: [u32; 2]) -> Self {
+        Self {
+            origin: [0.0; 2],
+            size,
+            scissor: [[0; 2], size],
+            first_px: [0.0; 2],
+            step: 1.0,
+            visible_px: [[-0.5; 2], size.map(|s| f64::from(s) - 0.5)],
+        }
+    }
+
+    /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved
+    /// by whole pixels, so that its vertices get the full-rate frame's positions.
+    pub fn of_lattice(lattice: &Lattice, size: [u32; 2]) -> Self {
+        let texel = lattice.atlas_texel.unwrap_or_default();
+        let (first, step) = (lattice.first_px, f64::from(lattice.step));
+        let scissor = [texel, lattice.points];
+        let low = first.map(|v| f64::from(v) - 0.5 * step);
+        let visible_px = [low, [0, 1].map(|i| low[i] + f64::from(lattice.points[i]) * step)];
+        let whole = Self { scissor, visible_px, ..Self::full(size) };
+        if lattice.step == 1 {
+            return Self { origin: [0, 1].map(|i| texel[i] as f32 - first[i] as f32), ..whole };
+        }
+        Self {
+            origin: texel.map(|v| v as f32),
+            size: lattice.points,
+            first_px: first.map(|v| v as f32),
+            step: lattice.step as f32,
+            ..whole
+        }
+    }
+}
+
+/// Planes around what a window shows: directions `n` with `n . (point - eye) >= 0` inside.
+pub(super) struct Frustum {
+    eye: DVec3,
+    planes: [DVec3; 5],
+}
+
+impl Frustum {
+    /// Frustum of a window of `view`, a sample spacing wider on each side to allow for rounding.
+    pub fn new(view: &View, window: &Window) -> Self {
+        let [x, y, along] = Pixels::of(view).rows;
+        let margin = f64::from(window.step);
+        let [low, high] = window.visible_px;
+        let [low, high] = [low.map(|v| v - margin), high.map(|v| v + margin)];
+        Self {
+            eye: view.world_from_camera().w_axis.truncate(),
+            planes: [x - along * low[0], along * high[0] - x, y - along * low[1], along * high[1] - y, along],
+        }
+    }
+
+    /// Whether a part of the box may be visible. Boxes that are not finite may be.
+    fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
+        let (middle, half) = (0.5 * (low + high) - self.eye, 0.5 * (high - low));
+        !self.planes.iter().any(|n| n.dot(middle) + n.abs().dot(half) < 0.0)
+    }
+
+    /// Runs of a part's vertices whose triangles may be visible.
+    fn visible(&self, part: &DrawRange, chunks: &Chunks) -> Vec<Range<u32>> {
+        let mut runs: Vec<Range<u32>> = vec![];
+        for (vertices, bounds) in chunks.of(part) {
+            if self.meets(bounds) {
+                match runs.last_mut() {
+                    Some(last) if last.end == vertices.start => last.end = vertices.end,
+                    _ => runs.push(vertices),
+                }
+            }
+        }
+        runs
+    }
+}
+
+/// Draw calls of a window, opaque surfaces first.
+#[derive(Clone, Debug)]
+pub(super) struct DrawCall {
+    pub kind: AlphaKind,
+    pub material: u32,
+    pub is_moving: bool,
+    pub vertices: Range<u32>,
+}
+
+impl DrawCall {
+    /// All of a part's triangles, or those that meet `frustum`.
+    pub fn of<'a>(
+        part: &'a DrawRange,
+        chunks: &Chunks,
+        is_moving: bool,
+        frustum: Option<&Frustum>,
+    ) -> impl Iterator<Item = Self> + use<'a> {
+        let runs = frustum.map_or_else(|| vec![part.vertices.clone()], |frustum| frustum.visible(part, chunks));
+        runs.into_iter().map(move |vertices| Self { kind: part.kind, material: part.material, is_moving, vertices })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_show_the_pixels_of_their_lattices() {
+        let texel = |l: Lattice, at| Lattice { atlas_texel: Some(at), ..l };
+        let fovea = texel(Lattice::covering(1, [40, 30], [72, 62], [0, 0]), [0, 0]);
+        let far = texel(Lattice::covering(8, [0, 0], [100, 90], [3, 5]), [0, 32]);
+        for lattice in [fovea, far] {
+            let window = Window::of_lattice(&lattice, [100, 90]);
+            for (point, i) in [([0, 0], 0), ([0, 0], 1), ([7, 3], 0), ([7, 3], 1)] {
+                let target = (lattice.atlas_texel.unwrap()[i] + point[i]) as f32;
+                let px = window.first_px[i] + (target - window.origin[i]) * window.step;
+                assert_eq!(px, (lattice.first_px[i] + lattice.step * point[i]) as f32);
+            }
+        }
+    }
+}
