@@ -140,8 +140,9 @@ impl ViewGeometry {
     }
 
     /// Smallest rectangle of pixels around all that lies within `radius_deg` of the gaze: first pixel, and pixel after
-    /// the last; clamped to the view, empty if nothing of it lies in the view.
-    pub(crate) fn around_px(&self, gaze_px: [f32; 2], radius_deg: f32) -> [[u32; 2]; 2] {
+    /// the last; clamped to the view, empty if nothing of it lies in the view. For renderers that draw regions as views
+    /// of their own.
+    pub fn around_px(&self, gaze_px: [f32; 2], radius_deg: f32) -> [[u32; 2]; 2] {
         let gaze = Vec3::from(self.ray(gaze_px)).normalize();
         let edges = [0, 1].map(|axis| {
             // Planes through the other axis that touch the cone around the gaze ray.

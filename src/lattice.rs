@@ -191,7 +191,7 @@ impl Foveation {
     /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
     /// counter.
     ///
-    /// Regions outside the view are left out. So are those whose samples would all lie beyond the view's edge: regions
+    /// Regions outside the view, and of 0 degrees, are left out. So are those whose samples would all lie beyond the view's edge: regions
     /// that reach only its last blocks, in frames that sample the part of them beyond the edge. Steps larger than the
     /// view have their sample inside it.
     pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
@@ -203,7 +203,8 @@ impl Foveation {
         let mut stack = vec![];
         for (step, radius_deg) in [(1, self.fovea_radius_deg()), (self.rate_mid, self.mid_radius_deg())] {
             let [low, high] = geometry.around_px(gaze_px, radius_deg);
-            if low[0] < high[0]
+            if radius_deg > 0.0
+                && low[0] < high[0]
                 && low[1] < high[1]
                 && step < self.rate_far
                 && stack.iter().all(|l: &Lattice| l.step < step)

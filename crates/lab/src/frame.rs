@@ -83,3 +83,19 @@ pub struct SparseFrame {
     /// The lattices, and where they lie in the atlases.
     pub lattices: afterimage::Lattices,
 }
+
+/// A frame composed of quad views, at full size. It stays on the device until the next one is composed.
+#[cfg(feature = "full")]
+#[derive(Clone, Debug)]
+pub struct ComposedFrame {
+    /// The device.
+    pub device: std::sync::Arc<crate::device::Headless>,
+    /// Linear color, `Rgba32Float`, finite.
+    pub color: wgpu::Texture,
+    /// Distance along the view axis, `R32Float`; infinity where there is nothing. Of the nearest pixel of a view.
+    pub distance: wgpu::Texture,
+    /// Pixels, y down, previous minus current; `Rg32Float`. Of the nearest pixel of a view.
+    pub motion: wgpu::Texture,
+    /// Level of detail, `R32Float`.
+    pub lod: wgpu::Texture,
+}

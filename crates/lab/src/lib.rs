@@ -4,6 +4,7 @@
 //! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at
 //!   full rate.
 //! - [`scanpath`]: recorded and synthetic gaze.
+//! - [`quad_views`]: foveation as headset runtimes draw it, as a rival.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
@@ -21,6 +22,7 @@ pub mod kernel;
 pub mod metric;
 pub mod picture;
 pub mod pipeline;
+pub mod quad_views;
 #[cfg(feature = "full")]
 pub mod raster;
 pub mod scanpath;

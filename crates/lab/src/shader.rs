@@ -5,6 +5,7 @@ use afterimage::shader::{Composer, Module};
 
 /// Modules of this crate.
 static MODULES: &[Module] = &[
+    module!("pipeline", "compose_pass"),
     module!("pipeline", "import_pass"),
     module!("lib", "albedo"),
     module!("lib", "bsdf"),

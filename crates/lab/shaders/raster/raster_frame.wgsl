@@ -23,7 +23,7 @@ struct RasterFrame {
     // first_px + step * (x, y).
     size: vec2<f32>,
     near: f32,
-    // Level of detail that is added to that of textures: -log2(step).
+    // Level of detail that is added to that of textures: -log2(step) where pixels are samples of a full-rate frame.
     texture_bias: f32,
     first_px: vec2<f32>,
     // Corner of the viewport in the target.

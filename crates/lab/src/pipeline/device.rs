@@ -3,7 +3,7 @@
 
 use super::needs_lod;
 use crate::device::Headless;
-use crate::frame::{DeviceFrame, SourceFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame};
 use crate::shader::SHADERS;
 use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps, array_view, filled};
@@ -49,6 +49,8 @@ pub struct DeviceInputs {
     import: Option<ComputeShader>,
     /// Samples of the last sparse frame that its source rendered.
     atlas: Option<Atlas>,
+    /// The last frame that was composed of quad views.
+    composed: Option<ComposedFrame>,
     given: Given,
 }
 
@@ -68,9 +70,16 @@ struct Given {
     trust: bool,
     lod: bool,
     noise: bool,
-    /// Whether color is that of the atlas, and whether depth and motion are.
-    atlas: bool,
-    atlas_geometry: bool,
+    rendered: Option<RenderedAs>,
+    /// Whether depth and motion, too, are those that the source rendered.
+    rendered_geometry: bool,
+}
+
+/// Where the color of a frame is that its source foveated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RenderedAs {
+    Atlas,
+    Composed,
 }
 
 impl DeviceInputs {
@@ -94,6 +103,7 @@ impl DeviceInputs {
             simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
             import: None,
             atlas: None,
+            composed: None,
             given: Given::default(),
             gpu: gpu.clone(),
         })
@@ -137,8 +147,16 @@ impl DeviceInputs {
         });
         self.import_to(encoder, atlas, [&held.color, &held.depth]);
         self.atlas = Some(Atlas { motion: atlas.motion.clone(), ..held });
-        (self.given.atlas, self.given.atlas_geometry) = (true, has_geometry);
+        (self.given.rendered, self.given.rendered_geometry) = (Some(RenderedAs::Atlas), has_geometry);
         (self.given.lod, self.given.noise) = (false, false);
+    }
+
+    /// Takes a frame that was composed on this device. `has_geometry`: with its depth and motion, instead of those of
+    /// the full-rate frame that was imported or uploaded last. The frame must stay as it is until the methods have run.
+    pub fn take_composed(&mut self, frame: &ComposedFrame, has_geometry: bool) {
+        self.composed = Some(frame.clone());
+        (self.given.rendered, self.given.rendered_geometry) = (Some(RenderedAs::Composed), has_geometry);
+        (self.given.lod, self.given.noise) = (true, false);
     }
 
     /// Replaces the color of the atlas.
@@ -230,27 +248,30 @@ impl DeviceInputs {
         let lod = needs_lod.then_some(&self.lod);
         let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, views) };
         self.simulator.record(&self.gpu.device, encoder, &frame)?;
-        (self.given.lod, self.given.noise) = (needs_lod, false);
+        (self.given.lod, self.given.noise, self.given.rendered) = (needs_lod, false, None);
+        self.given.rendered_geometry = false;
         Ok(())
     }
 
     /// The foveated frame as input of the methods. `use_trust`: include the trust mask, if the frame has one.
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
         let given = self.given;
-        let atlas = self.atlas.as_ref().filter(|_| given.atlas);
-        let geometry = atlas.filter(|_| given.atlas_geometry);
-        let [depth, motion] = match geometry {
-            Some(atlas) => [Some(&atlas.depth), Some(&atlas.motion)],
+        let atlas = self.atlas.as_ref().filter(|_| given.rendered == Some(RenderedAs::Atlas));
+        let composed = self.composed.as_ref().filter(|_| given.rendered == Some(RenderedAs::Composed));
+        let rendered = atlas.map(|atlas| [&atlas.color, &atlas.depth, &atlas.motion]);
+        let rendered = rendered.or(composed.map(|frame| [&frame.color, &frame.distance, &frame.motion]));
+        let [depth, motion] = match rendered.filter(|_| given.rendered_geometry) {
+            Some([_, depth, motion]) => [Some(depth), Some(motion)],
             None => [given.depth.then_some(&self.depth), given.motion.then_some(&self.motion)],
         };
         Frame {
             depth: depth.map(Into::into),
             motion: motion.map(Into::into),
             trust: (given.trust && use_trust).then_some((&self.trust).into()),
-            lod: given.lod.then_some((&self.lod).into()),
+            lod: given.lod.then_some(composed.map_or(&self.lod, |frame| &frame.lod).into()),
             noise: given.noise.then_some((&self.noise).into()),
             reset,
-            ..Frame::new(atlas.map_or(&self.foveated, |atlas| &atlas.color), views, index)
+            ..Frame::new(rendered.map_or(&self.foveated, |[color, ..]| color), views, index)
         }
     }
 

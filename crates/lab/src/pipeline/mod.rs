@@ -3,6 +3,8 @@
 #[cfg(feature = "ablation")]
 pub mod ablation;
 #[cfg(feature = "full")]
+mod composed;
+#[cfg(feature = "full")]
 mod device;
 mod guide;
 mod sparse;
@@ -19,6 +21,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::DeviceFrame;
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 use crate::metric::{Tracked, Tracker};
+use crate::quad_views::{QuadViewLayout, QuadViews};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
@@ -132,6 +135,7 @@ pub struct Pipeline {
     use_trust: bool,
     sparse_geometry: SparseGeometry,
     sample_order: SampleOrder,
+    quad_views: Option<QuadViewLayout>,
     /// For guided sampling.
     history_noise: Option<HistoryNoise>,
     is_guided: bool,
@@ -179,6 +183,7 @@ impl Pipeline {
             use_trust: false,
             sparse_geometry: SparseGeometry::default(),
             sample_order: SampleOrder::default(),
+            quad_views: None,
             history_noise: None,
             is_guided: false,
             #[cfg(feature = "ablation")]
@@ -196,6 +201,12 @@ impl Pipeline {
     #[must_use]
     pub fn with_sparse(self, geometry: SparseGeometry, order: SampleOrder) -> Self {
         Self { sparse_geometry: geometry, sample_order: order, ..self }
+    }
+
+    /// Frames are composed of quad views, which their source renders.
+    #[must_use]
+    pub fn with_quad_views(self, layout: Option<QuadViewLayout>) -> Self {
+        Self { quad_views: layout, ..self }
     }
 
     /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
@@ -354,6 +365,11 @@ impl Pipeline {
             let lattices = self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index);
             self.sparse_geometry.of(lattices)
         })
+    }
+
+    /// Quad views of a frame for the gaze of [`look`](Self::look), if frames are composed of them.
+    pub fn quad_views(&self, gaze_px: [f32; 2]) -> Option<QuadViews> {
+        Some(self.quad_views?.views(&self.foveation, &self.geometry, gaze_px))
     }
 
     fn view(&self, frame: &SourceFrame, gaze_px: [f32; 2]) -> ViewFrame {

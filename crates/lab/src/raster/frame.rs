@@ -90,7 +90,7 @@ impl FrameUniforms {
             down: row(current_px.down),
             size: window.size.map(|s| s as f32),
             near,
-            texture_bias: -window.step.log2(),
+            texture_bias: if window.is_point { -window.step.log2() } else { 0.0 },
             first_px: window.first_px,
             origin: window.origin,
             step: window.step,

@@ -16,7 +16,8 @@
 //! morphing); the sky's is the camera's rotation.
 //!
 //! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
-//! of its own in an atlas. Triangles outside a view are left out in groups, at full rate as well.
+//! of its own in an atlas. [`record_quad_views`](Raster::record_quad_views) draws regions as views without moving
+//! samples, and a [`Composer`] enlarges them into a frame. Triangles outside a view are left out in groups, at full rate as well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
@@ -29,6 +30,7 @@
 //! - **Refraction** is not simulated: glass shows what is straight behind it, dimmed by the base color's luminance.
 
 mod bounce;
+mod compose;
 mod frame;
 mod lighting;
 mod materials;
@@ -39,6 +41,7 @@ mod targets;
 mod vertices;
 mod window;
 
+pub use compose::Composer;
 pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
 pub use targets::{FoveatedTargets, Targets};

@@ -7,6 +7,7 @@ use super::targets::{FoveatedTargets, Targets};
 use super::vertices::{AlphaKind, STRIDE};
 use super::window::{DrawCall, Frustum, Window};
 use super::{Raster, VertexSet};
+use crate::quad_views::QuadViews;
 use crate::trace::view::View;
 use afterimage::Lattices;
 use afterimage::gpu::filled;
@@ -76,15 +77,46 @@ impl Raster {
         lattices: &Lattices,
         targets: &FoveatedTargets,
     ) {
-        self.upload(device, encoder);
         let size = view.geometry().size_px();
+        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size));
+        self.record_windows(device, encoder, [view, previous], windows, targets);
+    }
+
+    /// Records quad views, which lie in an atlas ([`AtlasLayout::place_views`](super::AtlasLayout::place_views)), in
+    /// `targets`: four samples per pixel, textures filtered for the view's own resolution, motion in pixels of the
+    /// full-rate frame. `view` and `previous` are those of the full-rate frame.
+    ///
+    /// # Panics
+    /// If the atlas is larger than `targets`.
+    pub fn record_quad_views(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        views: &QuadViews,
+        targets: &FoveatedTargets,
+    ) {
+        let size = view.geometry().size_px();
+        let windows = views.as_slice().iter().map(|quad| Window::of_quad_view(quad, size));
+        self.record_windows(device, encoder, [view, previous], windows, targets);
+    }
+
+    /// Records windows, those with several samples per pixel first.
+    fn record_windows(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        windows: impl Iterator<Item = Window>,
+        targets: &FoveatedTargets,
+    ) {
+        self.upload(device, encoder);
         if self.has_sun && self.is_shadow_stale {
-            let full = self.section(device, [view, previous], Window::full(size));
+            let full = self.section(device, [view, previous], Window::full(view.geometry().size_px()));
             self.shadows(encoder, &full.group);
         }
-        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size));
         let sections: Vec<Section> = windows.map(|w| self.section(device, [view, previous], w)).collect();
-        let (full, points) = sections.split_at(sections.partition_point(|s| s.window.step == 1.0));
+        let (full, points) = sections.split_at(sections.partition_point(|s| !s.window.is_point));
         let FoveatedTargets { atlas, point_depth } = targets;
         let Targets { views: [color, depth, motion], samples: [samples, sample_depth], .. } = atlas;
         self.surface_pass(encoder, [depth, motion], &sections);
@@ -96,6 +128,9 @@ impl Raster {
                 RenderPassColorAttachment { view: samples, depth_slice: None, resolve_target: Some(color), ops };
             self.color_pass(encoder, target, sample_depth, &self.pipelines.color, full, &blended);
             load = LoadOp::Load;
+        }
+        if points.is_empty() {
+            return;
         }
         let point_pipelines = self
             .point_pipelines

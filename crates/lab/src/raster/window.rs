@@ -2,6 +2,7 @@
 
 use super::frame::Pixels;
 use super::vertices::{AlphaKind, Chunks, DrawRange};
+use crate::quad_views::{QuadView, QuadViews};
 use crate::trace::view::View;
 use afterimage::{Lattice, Lattices};
 use glam::DVec3;
@@ -25,18 +26,40 @@ impl AtlasLayout {
     /// pixels.
     pub fn place(self, lattices: &Lattices, size: [u32; 2]) -> (Lattices, [u32; 2]) {
         let mut placed = lattices.as_slice().to_vec();
-        let mut used = if self == Self::InPlace { size } else { [0; 2] };
+        let mut used = self.start(size);
         for lattice in &mut placed {
-            let corner = match (self, lattice.step) {
-                (Self::InPlace, 1) => lattice.first_px,
-                // Pixels form the same quads of 2 x 2 as in the full-rate frame, for the same derivatives.
-                (Self::Compact, 1) => [lattice.first_px[0] % 2, used[1] + lattice.first_px[1] % 2],
-                _ => [0, used[1]],
-            };
-            lattice.atlas_texel = Some(corner);
-            used = [0, 1].map(|i| used[i].max(corner[i] + lattice.points[i]));
+            let full_rate = (lattice.step == 1).then_some(lattice.first_px);
+            lattice.atlas_texel = Some(self.next(&mut used, full_rate, lattice.points));
         }
         (Lattices::new(&placed).expect("only the texels are new"), used)
+    }
+
+    /// As [`place`](Self::place), for quad views.
+    pub fn place_views(self, views: &QuadViews, size: [u32; 2]) -> (QuadViews, [u32; 2]) {
+        let mut placed = views.as_slice().to_vec();
+        let mut used = self.start(size);
+        for view in &mut placed {
+            let full_rate = (view.step == 1.0).then_some(view.first);
+            view.atlas_texel = self.next(&mut used, full_rate, view.points);
+        }
+        (views.with(placed), used)
+    }
+
+    /// Texels of the atlas that are used before anything is placed.
+    fn start(self, size: [u32; 2]) -> [u32; 2] {
+        if self == Self::InPlace { size } else { [0; 2] }
+    }
+
+    /// Corner of the next lattice or view. `full_rate`: its first pixel, if it is at full rate.
+    fn next(self, used: &mut [u32; 2], full_rate: Option<[u32; 2]>, points: [u32; 2]) -> [u32; 2] {
+        let corner = match (self, full_rate) {
+            (Self::InPlace, Some(first)) => first,
+            // Pixels form the same quads of 2 x 2 as in the full-rate frame, for the same derivatives.
+            (Self::Compact, Some(first)) => [first[0] % 2, used[1] + first[1] % 2],
+            _ => [0, used[1]],
+        };
+        *used = [0, 1].map(|i| used[i].max(corner[i] + points[i]));
+        corner
     }
 }
 
@@ -51,6 +74,9 @@ pub(super) struct Window {
     /// Pixel of the full-rate frame at the viewport's corner.
     pub first_px: [f32; 2],
     pub step: f32,
+    /// Whether pixels are samples of the full-rate frame's: one sample each, with its textures' level of detail. Else
+    /// they have four samples and the level of detail of their own resolution.
+    pub is_point: bool,
     /// Rectangle of the full-rate frame that is visible, pixel centres at integers.
     visible_px: [[f64; 2]; 2],
 }
@@ -64,6 +90,7 @@ impl Window {
             scissor: [[0; 2], size],
             first_px: [0.0; 2],
             step: 1.0,
+            is_point: false,
             visible_px: [[-0.5; 2], size.map(|s| f64::from(s) - 0.5)],
         }
     }
@@ -85,7 +112,27 @@ impl Window {
             size: lattice.points,
             first_px: first.map(|v| v as f32),
             step: lattice.step as f32,
+            is_point: true,
             ..whole
+        }
+    }
+
+    /// A quad view in an atlas, of frames of `size` pixels.
+    pub fn of_quad_view(view: &QuadView, size: [u32; 2]) -> Self {
+        let &QuadView { step, first, points, atlas_texel, .. } = view;
+        if step == 1.0 {
+            let lattice = Lattice { step: 1, first_px: first, points, atlas_texel: Some(atlas_texel) };
+            return Self::of_lattice(&lattice, size);
+        }
+        let low = first.map(|v| f64::from(v) * f64::from(step) - 0.5);
+        Self {
+            origin: atlas_texel.map(|v| v as f32),
+            size: points,
+            scissor: [atlas_texel, points],
+            first_px: view.center_px([0; 2]),
+            step,
+            is_point: false,
+            visible_px: [low, [0, 1].map(|i| low[i] + f64::from(points[i]) * f64::from(step))],
         }
     }
 }

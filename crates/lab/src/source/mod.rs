@@ -42,8 +42,10 @@ pub use traced::{TracedSamples, TracedSource};
 
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::{DeviceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use crate::quad_views::QuadViews;
 #[cfg(feature = "full")]
 use afterimage::Lattices;
 use glam::DMat4;
@@ -112,6 +114,15 @@ pub trait FrameSource {
     /// As for [`frame`](Self::frame).
     #[cfg(feature = "full")]
     fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
+        Ok(None)
+    }
+
+    /// The frame at `index`, composed of quad views. `None` if the source does not render such frames.
+    ///
+    /// # Errors
+    /// As for [`frame`](Self::frame).
+    #[cfg(feature = "full")]
+    fn composed(&mut self, _index: u64, _views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
         Ok(None)
     }
 

@@ -3,8 +3,10 @@
 use super::{CameraPose, FrameSource, SourceInfo};
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::{DeviceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use crate::quad_views::QuadViews;
 #[cfg(feature = "full")]
 use afterimage::Lattices;
 use glam::DMat4;
@@ -50,6 +52,11 @@ impl FrameSource for PeekedSource<'_> {
     #[cfg(feature = "full")]
     fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         self.source.sparse(index, lattices)
+    }
+
+    #[cfg(feature = "full")]
+    fn composed(&mut self, index: u64, views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
+        self.source.composed(index, views)
     }
 
     #[cfg(feature = "full")]

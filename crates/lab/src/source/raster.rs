@@ -6,13 +6,15 @@ use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::device::Headless;
 use crate::error::InputError;
-use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
-use crate::raster::{AtlasLayout, FoveatedTargets, Raster, RasterSettings, Targets};
+use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame, SparseFrame};
+use crate::quad_views::QuadViews;
+use crate::raster::{AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::view::View;
 use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
+use wgpu::Device;
 
 /// Default width and height in pixels.
 pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
@@ -32,6 +34,8 @@ pub struct RasterSource {
     raster: Raster,
     /// By layout of their atlases; none before the first such frame.
     foveated: [Option<FoveatedTargets>; 2],
+    /// None before the first frame of quad views.
+    composer: Option<Composer>,
     fps: f64,
 }
 
@@ -86,7 +90,7 @@ impl RasterSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], fps: f64::from(fps) })
+        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], composer: None, fps: f64::from(fps) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -128,13 +132,41 @@ impl RasterSource {
         let (lattices, size) = layout.place(lattices, self.info.size);
         let device = &self.device.device;
         self.raster.pose(&self.scene, times[0], times[1]);
-        let targets = self.foveated[layout as usize].get_or_insert_with(|| FoveatedTargets::new(device, size));
-        targets.fit(device, size);
+        let targets = fitted(&mut self.foveated[layout as usize], device, size);
         let mut encoder = device.create_command_encoder(&Default::default());
         self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
         self.device.queue.submit([encoder.finish()]);
         (targets, lattices)
     }
+
+    /// Renders the quad views of frame `index` and composes them, without reading anything back:
+    /// [`Raster::record_quad_views`]. Returns the views' targets, the views with their places in the atlases, and the
+    /// composer, which holds the frame.
+    pub fn render_composed(
+        &mut self,
+        index: u64,
+        views: &QuadViews,
+        layout: AtlasLayout,
+    ) -> (&FoveatedTargets, QuadViews, &Composer) {
+        let ([view, previous], times) = self.views(index);
+        let (views, size) = layout.place_views(views, self.info.size);
+        let device = &self.device.device;
+        self.raster.pose(&self.scene, times[0], times[1]);
+        let targets = fitted(&mut self.foveated[layout as usize], device, size);
+        let composer = self.composer.get_or_insert_with(|| Composer::new(device, self.info.size));
+        let mut encoder = device.create_command_encoder(&Default::default());
+        self.raster.record_quad_views(device, &mut encoder, [&view, &previous], &views, targets);
+        composer.record(device, &mut encoder, &views, &targets.atlas, self.raster.near());
+        self.device.queue.submit([encoder.finish()]);
+        (targets, views, composer)
+    }
+}
+
+/// Targets for an atlas of `size` texels, made at the first use and enlarged if they are too small.
+fn fitted<'a>(held: &'a mut Option<FoveatedTargets>, device: &Device, size: [u32; 2]) -> &'a FoveatedTargets {
+    let targets = held.get_or_insert_with(|| FoveatedTargets::new(device, size));
+    targets.fit(device, size);
+    targets
 }
 
 impl FrameSource for RasterSource {
@@ -175,6 +207,15 @@ impl FrameSource for RasterSource {
         device.wait();
         device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
         Ok(Some(SparseFrame { atlas: DeviceFrame { device, color, depth, motion, near }, lattices }))
+    }
+
+    /// The full-rate view lies in place, as in [`sparse`](Self::sparse).
+    fn composed(&mut self, index: u64, views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
+        let device = self.device.clone();
+        let [color, distance, motion, lod] = self.render_composed(index, views, AtlasLayout::InPlace).2.frame().clone();
+        device.wait();
+        device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
+        Ok(Some(ComposedFrame { device, color, distance, motion, lod }))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {

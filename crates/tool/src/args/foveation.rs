@@ -1,14 +1,18 @@
 //! Options of the foveation simulator.
 
+use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
+use super::number::parse_scale;
 use afterimage_lab::pipeline::{SampleOrder, SparseGeometry};
+use afterimage_lab::quad_views::QuadViewLayout;
 use clap::{Args, ValueEnum};
 
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// Foveation simulator: box mip levels, Gaussian blur, point-sampled blocks, one moving sample a block, or none.
-    /// With --sampling regions or layers, sparse gives the traced samples to the methods in their places
+    /// How frames are foveated. mip, gauss and block simulate it on full-rate frames; sparse, too, but rasterised scenes
+    /// render its samples alone, and with --sampling regions or layers it gives the traced samples to the methods in
+    /// their places; layers and uniform render views of rasterised scenes
     #[arg(long = "foveation", value_enum, default_value = "mip")]
     pub filter: FilterName,
     /// Diameter of the full-rate region, degrees
@@ -26,9 +30,13 @@ pub struct FoveationArgs {
     /// Block edge beyond the middle region, pixels, a power of two
     #[arg(long, default_value_t = 16, value_name = "N")]
     pub rate_far: u32,
-    /// With --foveation sparse: depth and motion of every pixel, or of the nearest sample
-    #[arg(long = "geometry", alias = "sparse-geometry", value_enum, default_value = "full")]
-    pub geometry: GeometryName,
+    /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole; default: 2
+    #[arg(long, value_parser = parse_scale, value_name = "S")]
+    pub scale: Option<f32>,
+    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:
+    /// full, in a view of a rasterised scene samples
+    #[arg(long = "geometry", alias = "sparse-geometry", value_enum)]
+    pub geometry: Option<GeometryName>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
     #[arg(long = "order", alias = "sample-order", value_enum, default_value = "bayer")]
     pub order: OrderName,
@@ -37,9 +45,16 @@ pub struct FoveationArgs {
 impl FoveationArgs {
     /// Converts the options to the library's settings.
     pub fn foveation(&self) -> Foveation {
+        if self.filter == FilterName::Uniform {
+            // Levels of detail are an input; a method reads here how coarse they may be.
+            let rate = (self.scale().ceil() as u32).next_power_of_two();
+            let no_region = Foveation { fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
+            return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
+        }
         Foveation {
             filter: match self.filter {
-                FilterName::Mip => Filter::Mip,
+                // Of quad views, levels of detail are an input.
+                FilterName::Mip | FilterName::Layers | FilterName::Uniform => Filter::Mip,
                 FilterName::Gauss => Filter::Gauss,
                 FilterName::Block => Filter::Block,
                 FilterName::Sparse => Filter::Sparse,
@@ -52,6 +67,49 @@ impl FoveationArgs {
             rate_far: self.rate_far,
         }
     }
+
+    /// Side of a pixel of uniform frames, in pixels.
+    fn scale(&self) -> f32 {
+        self.scale.unwrap_or(2.0)
+    }
+
+    /// Quad views of the frames, if they are composed of such.
+    pub fn quad_views(&self) -> Option<QuadViewLayout> {
+        match self.filter {
+            FilterName::Layers => Some(QuadViewLayout::Regions),
+            FilterName::Uniform => Some(QuadViewLayout::Uniform { step: self.scale() }),
+            _ => None,
+        }
+    }
+
+    /// Whether frames may have depth and motion at their samples alone.
+    pub fn may_lack_geometry(&self) -> bool {
+        self.filter == FilterName::Sparse || self.filter.is_quad_views()
+    }
+
+    /// Refuses options that do not apply to this foveation. `is_rasterised`: frames are those of a rasterised scene.
+    pub fn check(&self, is_rasterised: bool) -> Result<(), Failure> {
+        let name = self.filter.name();
+        let refuse = |text: String| Err(Failure::Input(text));
+        if self.filter.is_quad_views() && !is_rasterised {
+            return refuse(format!(
+                "--foveation {name}: renders views of a scene; give a scene (.gltf, .glb, builtin:NAME) with --source raster, \
+                 or use another --foveation"
+            ));
+        }
+        if self.scale.is_some() && self.filter != FilterName::Uniform {
+            return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
+        }
+        if self.geometry == Some(GeometryName::Samples) && !self.may_lack_geometry() {
+            return refuse("--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into());
+        }
+        if self.order != OrderName::Bayer && self.filter != FilterName::Sparse {
+            let order = self.order.name();
+            return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
+        }
+        Ok(())
+    }
+
 }
 
 /// Values of `--foveation`.
@@ -65,6 +123,12 @@ pub enum FilterName {
     Block,
     /// One point sample per block that moves every frame, in regions without blends
     Sparse,
+    /// Views of the regions at lower resolutions without moving samples, enlarged bilinearly: quad views, as headset
+    /// runtimes draw them
+    Layers,
+    /// The whole frame at a lower resolution without moving samples, enlarged bilinearly; see --scale. With moving
+    /// samples for taau: --foveation sparse --fovea 0 --mid 0 --rate-mid 2 --rate-far 2
+    Uniform,
     /// Full rate everywhere
     Off,
 }
@@ -77,8 +141,17 @@ impl FilterName {
             Self::Gauss => "gauss",
             Self::Block => "block",
             Self::Sparse => "sparse",
+            Self::Layers => "layers",
+            Self::Uniform => "uniform",
             Self::Off => "off",
         }
+    }
+}
+
+impl FilterName {
+    /// Whether frames are composed of quad views.
+    pub fn is_quad_views(self) -> bool {
+        matches!(self, Self::Layers | Self::Uniform)
     }
 }
 

@@ -77,6 +77,11 @@ pub struct FoveatedSampling {
 }
 
 impl InputArgs {
+    /// Whether the frames are those of a rasterised scene.
+    pub fn is_rasterised(&self) -> bool {
+        source::is_scene(&self.name) && self.source != Some(SourceName::Trace)
+    }
+
     /// Opens files directly, and scenes with a renderer.
     pub fn open(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
         let refuse = |option: &str| {

@@ -18,7 +18,7 @@ pub mod pattern;
 mod picture;
 
 #[cfg(feature = "full")]
-pub use foveation::{FilterName, FoveationArgs, GeometryName, OrderName};
+pub use foveation::{FilterName, FoveationArgs, GeometryName};
 #[cfg(feature = "full")]
 pub use method::{MethodName, WrsArgs};
 #[cfg(feature = "full")]

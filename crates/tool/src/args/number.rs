@@ -32,6 +32,11 @@ pub fn parse_hfov(text: &str) -> Result<f32, String> {
     within(text, "above 0 and below 180 degrees", |v| *v > 0.0 && *v < 180.0)
 }
 
+/// Side of a pixel in pixels of the full-rate frame.
+pub fn parse_scale(text: &str) -> Result<f32, String> {
+    within(text, "1 to 256 pixels", |v| (1.0..=256.0).contains(v))
+}
+
 /// Exposure in stops.
 pub fn parse_exposure(text: &str) -> Result<f32, String> {
     within(text, "-64 to 64 stops", |v| (-64.0..=64.0).contains(v))

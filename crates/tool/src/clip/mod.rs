@@ -17,6 +17,7 @@ use afterimage_lab::metric;
 use afterimage_lab::metric::{Flip, Reference, References};
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, Step};
+use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
@@ -31,6 +32,8 @@ pub struct Clip {
     pub foveation: Foveation,
     /// Depth and motion of sparse frames.
     pub sparse_geometry: SparseGeometry,
+    /// Quad views that the source renders; `None`: a simulator or lattices foveate.
+    pub quad_views: Option<QuadViewLayout>,
     /// Order in which the pixels of sparse frames are sampled.
     pub sample_order: SampleOrder,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
@@ -108,6 +111,12 @@ fn step(
             let step = pipeline.step_sparse(index, frame, gaze_px, rendered.as_ref(), &sparse)?;
             return Ok((Some(samples.sum()), Some(render_ms), step));
         }
+        if let Some(views) = pipeline.quad_views(gaze_px) {
+            let composed = source.composed(index, &views)?.ok_or_else(|| no_quad_views(source))?;
+            let render_ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
+            let step = pipeline.step_composed(index, frame, gaze_px, rendered.as_ref(), &composed)?;
+            return Ok((Some(views.pixels()), Some(render_ms), step));
+        }
         if let Some(rendered) = rendered {
             return Ok((None, None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));
         }
@@ -115,12 +124,21 @@ fn step(
     Ok((None, None, pipeline.step(index, frame, Some(gaze_px))?))
 }
 
+/// The plan refuses quad views of other sources.
+#[cfg(feature = "full")]
+fn no_quad_views(source: &dyn FrameSource) -> Failure {
+    Failure::Input(format!("{}: renders no quad views; use another --foveation", source.info().name))
+}
+
 /// Title of a contact sheet: input, size and foveation.
-pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &Foveation, simulator: &str) -> String {
-    format!(
-        "{name}   {}x{}, {frames} frames at {fps} fps, fovea {} deg, blocks {} and {} px, {simulator}",
-        size[0], size[1], foveation.fovea_deg, foveation.rate_mid, foveation.rate_far,
-    )
+pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &str) -> String {
+    format!("{name}   {}x{}, {frames} frames at {fps} fps, {foveation}", size[0], size[1])
+}
+
+/// Regions of a foveation in words.
+pub fn foveation_words(foveation: &Foveation, simulator: &str) -> String {
+    let Foveation { fovea_deg, rate_mid, rate_far, .. } = foveation;
+    format!("fovea {fovea_deg} deg, blocks {rate_mid} and {rate_far} px, {simulator}")
 }
 
 impl Clip {
@@ -174,7 +192,8 @@ impl Clip {
         let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?
-            .with_sparse(self.sparse_geometry, self.sample_order);
+            .with_sparse(self.sparse_geometry, self.sample_order)
+            .with_quad_views(self.quad_views);
         if self.trust {
             pipeline = pipeline.with_trust();
         }

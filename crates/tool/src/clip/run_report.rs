@@ -15,8 +15,10 @@ pub struct RunFacts<'a> {
     pub seed: u64,
     /// Simulator filter or sampling pattern that foveates the frames.
     pub simulator: &'static str,
-    /// Where sparse frames have depth and motion; `None` for other frames.
+    /// Where rendered samples have depth and motion; `None` for other frames.
     pub geometry: Option<&'static str>,
+    /// Side of the pixels of uniform frames, pixels of the full-rate frame.
+    pub scale: Option<f32>,
     /// Order in which the pixels of sparse frames are sampled.
     pub order: Option<&'static str>,
     pub gaze: &'a str,
@@ -50,7 +52,8 @@ struct RunReport<'a> {
 #[derive(Serialize)]
 struct FoveationReport {
     simulator: &'static str,
-    /// Where depth and motion are known, full or samples; null unless frames are sparse.
+    /// Where depth and motion are known, full or samples; null unless frames are sparse or composed of
+    /// quad views.
     geometry: Option<&'static str>,
     /// Order in which the pixels of a block are sampled; null unless frames are sparse.
     order: Option<&'static str>,
@@ -59,6 +62,8 @@ struct FoveationReport {
     blend_deg: f32,
     rate_mid: u32,
     rate_far: u32,
+    /// Side of the pixels of uniform frames, pixels of the full-rate frame; null for other frames.
+    scale: Option<f32>,
     ms: Option<Quartiles>,
 }
 
@@ -94,6 +99,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
             blend_deg: foveation.blend_deg,
             rate_mid: foveation.rate_mid,
             rate_far: foveation.rate_far,
+            scale: facts.scale,
             ms: report.foveation_ms,
         },
         samples: (report.samples > 0).then_some(report.samples),

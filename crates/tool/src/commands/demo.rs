@@ -3,7 +3,7 @@
 use crate::args::FormatName;
 use crate::args::gaze::GazeArgs;
 use crate::clip::run_report::{RunFacts, write_report};
-use crate::clip::{Clip, ClipReport, REPORTS, title};
+use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title};
 use crate::failure::Failure;
 use crate::method_report::MethodReport;
 use crate::output::Output;
@@ -45,6 +45,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         seed: 0,
         simulator: "mip",
         geometry: None,
+        scale: None,
         order: None,
         gaze: GAZE,
         gaze_map: track.map,
@@ -52,10 +53,11 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
     };
     let post_process = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
     let clip = Clip {
-        title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation, facts.simulator),
+        title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
         foveation,
         sparse_geometry: SparseGeometry::Full,
+        quad_views: None,
         sample_order: SampleOrder::default(),
         methods: vec![
             ("none", post_process(Method::None)),

@@ -8,7 +8,7 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
-    DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
+    DebugName, FilterName, FormatName, FoveationArgs, GeometryName, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -18,6 +18,7 @@ use afterimage::Filter;
 use afterimage_lab::device::Backend;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
+use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::PeekedSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
@@ -183,7 +184,14 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         fps: plan.fps,
         seed: args.seed,
         simulator: simulator(args),
-        geometry: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.geometry.name()),
+        geometry: args
+            .foveation
+            .may_lack_geometry()
+            .then(|| args.foveation.geometry.unwrap_or(GeometryName::Full).name()),
+        scale: match args.foveation.quad_views() {
+            Some(QuadViewLayout::Uniform { step }) => Some(step),
+            _ => None,
+        },
         order: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.order.name()),
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,

@@ -4,12 +4,13 @@ use super::{RunArgs, simulator};
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
-use crate::args::{GeometryName, MethodName, OrderName};
-use crate::clip::{Clip, title};
+use crate::args::{GeometryName, MethodName};
+use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
+use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::SourceInfo;
 
 /// The clip of a run, and facts that its report needs.
@@ -30,13 +31,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
     let foveation = foveation(args)?;
-    if args.foveation.geometry != GeometryName::Full && foveation.filter != Filter::Sparse {
-        return refuse("--geometry samples: applies to sparse frames only; add --foveation sparse".into());
-    }
-    if args.foveation.order != OrderName::Bayer && foveation.filter != Filter::Sparse {
-        let order = args.foveation.order.name();
-        return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
-    }
+    args.foveation.check(args.input.is_rasterised())?;
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -52,10 +47,11 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
         fps,
         gaze_map: track.map,
         clip: Clip {
-            title: title(&info.name, info.size, track.px.len(), fps, &foveation, simulator(args)),
+            title: title(&info.name, info.size, track.px.len(), fps, &words(args, &foveation)),
             geometry,
             foveation,
-            sparse_geometry: args.foveation.geometry.geometry(),
+            sparse_geometry: args.foveation.geometry.unwrap_or(GeometryName::Full).geometry(),
+            quad_views: args.foveation.quad_views(),
             sample_order: args.foveation.order.order(),
             methods,
             gaze: track.px,
@@ -89,11 +85,30 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
     Ok(foveation)
 }
 
+/// The foveation in words, for titles.
+fn words(args: &RunArgs, foveation: &Foveation) -> String {
+    match args.foveation.quad_views() {
+        Some(QuadViewLayout::Uniform { step }) => format!("uniform, 1/{step} of the pixels along an axis"),
+        _ => clip::foveation_words(foveation, simulator(args)),
+    }
+}
+
 /// Pipeline stage of a method with these options. The oracle needs a still input.
 pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
     let foveation = foveation(args)?;
     let method = match method {
+        MethodName::Post(Method::Taau) if args.foveation.filter.is_quad_views() => {
+            let name = args.foveation.filter.name();
+            return Err(Failure::Input(format!(
+                "--method taau: needs moving samples, which --foveation {name} has not; use --foveation sparse, for a \
+                 uniform frame with --fovea 0 --mid 0 and equal rates, or leave it out"
+            )));
+        }
+        MethodName::Oracle if args.foveation.filter.is_quad_views() => {
+            let text = "--method oracle: is defined for simulated levels of detail; use --foveation mip, or leave it out";
+            return Err(Failure::Input(text.into()));
+        }
         MethodName::Post(method) => method,
         MethodName::Oracle if sampling.is_some() => {
             let text = "--method oracle: needs simulated foveation; leave out --sampling";

@@ -7,6 +7,7 @@ use crate::output::Output;
 use crate::report::plot::png;
 use crate::report::psnr_plot::PsnrPlot;
 use afterimage::Filter;
+use afterimage_lab::quad_views::QuadViewLayout;
 use std::path::Path;
 
 /// Writes the plot. `simulator` names what foveates the frames.
@@ -14,6 +15,7 @@ pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) ->
     let foveation = plan.clip.foveation;
     let foveation = match foveation.filter {
         Filter::Off => "full rate".into(),
+        _ if let Some(QuadViewLayout::Uniform { step }) = plan.clip.quad_views => format!("uniform 1/{step}"),
         _ => format!("{simulator} {} and {}", foveation.rate_mid, foveation.rate_far),
     };
     let methods: Vec<(&str, &[f64])> =

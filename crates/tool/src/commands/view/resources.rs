@@ -9,6 +9,7 @@ use super::setup::Setup;
 use super::state::{Side, State};
 use super::surface::Surface;
 use super::times::PassTimes;
+use crate::args::GeometryName;
 use crate::failure::Failure;
 use std::sync::Arc;
 use winit::window::Window;
@@ -35,7 +36,7 @@ impl DeviceResources {
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
         let foveation = &setup.args.foveation;
-        let sparse = (foveation.geometry.geometry(), foveation.order.order());
+        let sparse = (foveation.geometry.unwrap_or(GeometryName::Full).geometry(), foveation.order.order());
         Ok(Self {
             pipeline: ViewPipeline::new(gpu, geometry, state, sparse, &|shows| setup.settings(state, shows))?,
             times: PassTimes::new(gpu),
