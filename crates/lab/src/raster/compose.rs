@@ -85,14 +85,7 @@ impl Composer {
     }
 
     /// Records the composition of `views`, whose atlas is `from`. `near`: distance of the near plane in metres.
-    pub fn record(
-        &self,
-        device: &Device,
-        encoder: &mut CommandEncoder,
-        views: &QuadViews,
-        from: &Targets,
-        near: f32,
-    ) {
+    pub fn record(&self, device: &Device, encoder: &mut CommandEncoder, views: &QuadViews, from: &Targets, near: f32) {
         let mut composition = Composition { near, ..Composition::zeroed() };
         for (record, view) in composition.views.iter_mut().zip(views.as_slice()) {
             *record = view.into();

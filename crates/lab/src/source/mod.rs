@@ -30,7 +30,7 @@ pub use limits::ReadLimits;
 pub use open::{is_scene, open};
 pub use peeked::PeekedSource;
 #[cfg(feature = "full")]
-pub use raster::RasterSource;
+pub use raster::{RasterScene, RasterSource};
 #[cfg(feature = "full")]
 pub use scene_camera::SceneCamera;
 #[cfg(feature = "full")]

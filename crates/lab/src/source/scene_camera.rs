@@ -141,6 +141,12 @@ impl SceneCamera {
         &self.geometry
     }
 
+    /// The same camera with another frame size or field of view.
+    #[must_use]
+    pub fn with_geometry(self, geometry: ViewGeometry) -> Self {
+        Self { geometry, ..self }
+    }
+
     /// Frames per second, if a camera file states them.
     pub fn fps(&self) -> Option<f32> {
         match &self.path {

@@ -1,8 +1,8 @@
 //! Options of the foveation simulator.
 
+use super::number::parse_scale;
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
-use super::number::parse_scale;
 use afterimage_lab::pipeline::{SampleOrder, SparseGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use clap::{Args, ValueEnum};
@@ -101,7 +101,9 @@ impl FoveationArgs {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
         }
         if self.geometry == Some(GeometryName::Samples) && !self.may_lack_geometry() {
-            return refuse("--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into());
+            return refuse(
+                "--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into(),
+            );
         }
         if self.order != OrderName::Bayer && self.filter != FilterName::Sparse {
             let order = self.order.name();
@@ -109,7 +111,6 @@ impl FoveationArgs {
         }
         Ok(())
     }
-
 }
 
 /// Values of `--foveation`.

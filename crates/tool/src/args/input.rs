@@ -9,7 +9,7 @@ use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::SampleOrder;
 use afterimage_lab::source;
 use afterimage_lab::source::{
-    FrameSource, RasterSource, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,
+    FrameSource, RasterScene, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,
 };
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, ValueEnum};
@@ -111,10 +111,14 @@ impl InputArgs {
             Backend::Cpu => Headless::find_roomy(true),
         };
         let device = device.ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
-        let (limits, options) = (self.limits(), self.scene_options());
-        let source = RasterSource::open(&self.name, &limits, &options, self.camera.as_deref(), device)?;
-        warn(source.warnings());
-        Ok(Box::new(source))
+        Ok(Box::new(self.scene()?.on(device)?))
+    }
+
+    /// Opens a scene for rasterization on any device.
+    pub fn scene(&self) -> Result<RasterScene, Failure> {
+        let scene = RasterScene::open(&self.name, &self.limits(), &self.scene_options(), self.camera.as_deref())?;
+        warn(scene.warnings());
+        Ok(scene)
     }
 
     /// Opens a scene for path tracing.

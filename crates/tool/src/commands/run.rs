@@ -8,7 +8,8 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
-    DebugName, FilterName, FormatName, FoveationArgs, GeometryName, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
+    DebugName, FilterName, FormatName, FoveationArgs, GeometryName, MethodName, WrsArgs, parse_exposure, parse_frames,
+    parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};

@@ -6,6 +6,7 @@ mod device;
 mod examiner;
 mod fly_camera;
 mod frame_loader;
+mod frames;
 mod graph;
 mod layout;
 mod panel;
@@ -31,6 +32,7 @@ use crate::failure::Failure;
 use app::App;
 use clap::Args;
 use frame_loader::FrameLoader;
+use frames::Frames;
 use setup::Setup;
 use state::Shows;
 use std::path::PathBuf;
@@ -40,7 +42,8 @@ use winit::event_loop::EventLoop;
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Keys: 1 to 6 choose the method (none, taa, wrs, smr, taau, reference), with Shift that of the right side; Tab splits the picture; drag the \
-    divider with the left button. F foveation filter, - and = fovea diameter, V debug views, P scanpath or mouse, G gaze mark, Space freezes, C steers \
+    divider with the left button. F foveation, \
+    T renders a scene's samples, quad views or full rate, - and = fovea diameter, V debug views, P scanpath or mouse, G gaze mark, Space freezes, C steers \
     the camera of a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 saves the picture, Shift F12 the window, \
     H hides the panel, Ctrl Shift L destroys the device (to test recovery), Esc quits.\n\n\
     Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
@@ -97,14 +100,18 @@ pub struct ViewArgs {
 
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
-    let backend = BackendName::Auto.open_for(&args.input.name)?;
-    let rendering = Rendering { backend, seed: args.seed, foveated: None };
-    let source = args.input.open(&rendering)?;
-    let setup = Setup::new(args, source.info())?;
+    let (setup, frames) = if args.input.is_rasterised() {
+        let scene = args.input.scene()?;
+        (Setup::new(args, scene.info())?, Frames::of_scene(scene))
+    } else {
+        let backend = BackendName::Auto.open_for(&args.input.name)?;
+        let source = args.input.open(&Rendering { backend, seed: args.seed, foveated: None })?;
+        (Setup::new(args, source.info())?, Frames::Loaded(FrameLoader::new(source)))
+    };
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())
     })?;
-    let mut app = App::new(setup, FrameLoader::new(source));
+    let mut app = App::new(setup, frames);
     events.run_app(&mut app).map_err(|e| Failure::Work(format!("the window's event loop failed ({e})")))?;
     app.outcome?;
     match device::validation_errors() {

@@ -106,7 +106,8 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             )));
         }
         MethodName::Oracle if args.foveation.filter.is_quad_views() => {
-            let text = "--method oracle: is defined for simulated levels of detail; use --foveation mip, or leave it out";
+            let text =
+                "--method oracle: is defined for simulated levels of detail; use --foveation mip, or leave it out";
             return Err(Failure::Input(text.into()));
         }
         MethodName::Post(method) => method,

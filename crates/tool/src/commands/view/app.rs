@@ -1,6 +1,6 @@
 //! Window events, passed on to the viewer.
 
-use super::frame_loader::FrameLoader;
+use super::frames::Frames;
 use super::layout::Layout;
 use super::setup::Setup;
 use super::state::{Action, action_of};
@@ -33,7 +33,7 @@ enum Drag {
 /// A viewer and its window.
 pub struct App {
     /// Arguments of the viewer, until the window is open.
-    start: Option<(Setup, FrameLoader)>,
+    start: Option<(Setup, Frames)>,
     window: Option<Arc<Window>>,
     viewer: Option<Viewer>,
     modifiers: ModifiersState,
@@ -49,9 +49,9 @@ pub struct App {
 }
 
 impl App {
-    pub fn new(setup: Setup, loader: FrameLoader) -> Self {
+    pub fn new(setup: Setup, frames: Frames) -> Self {
         Self {
-            start: Some((setup, loader)),
+            start: Some((setup, frames)),
             window: None,
             viewer: None,
             modifiers: ModifiersState::empty(),
@@ -65,7 +65,7 @@ impl App {
     }
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
-        let Some((setup, loader)) = self.start.take() else { return Ok(()) };
+        let Some((setup, frames)) = self.start.take() else { return Ok(()) };
         let monitor = events.primary_monitor().or_else(|| events.available_monitors().next());
         let screen = monitor.map(|m| m.size()).filter(|s| s.width > 0 && s.height > 0);
         let [width, height] = Layout::window(setup.info.size, screen.map_or(SCREEN, |s| [s.width, s.height]));
@@ -74,7 +74,7 @@ impl App {
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|e| Failure::Work(format!("no window can be opened ({e})")))?);
-        self.viewer = Some(Viewer::new(setup, loader, window.clone())?);
+        self.viewer = Some(Viewer::new(setup, frames, window.clone())?);
         self.window = Some(window);
         Ok(())
     }

@@ -39,6 +39,9 @@ impl Device {
         });
         let limits = |offered: wgpu::Limits| wgpu::Limits {
             max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            // For scenes.
+            max_buffer_size: offered.max_buffer_size,
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
             ..wgpu::Limits::default()
         };
         let found = adapters.iter().find_map(|a| Some((Headless::on(a, limits(a.limits())).ok()?, a)));

@@ -78,20 +78,32 @@ impl FrameLoader {
     }
 }
 
+/// The pose (world from camera) to which the user steered the camera last.
+#[derive(Default)]
+pub struct Steering(Option<DMat4>);
+
+impl Steering {
+    /// Steers the camera of `source` to `pose` in frame `index`; `None`: on its own path. Returns whether it jumps.
+    pub fn steer(&mut self, source: &mut dyn FrameSource, index: u64, pose: Option<DMat4>) -> bool {
+        // A steered camera moves from its previous pose. Back on its own path it jumps, which is a cut.
+        let before = self.0.or_else(|| Some(source.camera_pose(index.saturating_sub(1))?.world_from_camera));
+        let steps = before.zip(pose).map(|(before, now)| [before, now]);
+        let cut = self.0.is_some() && steps.is_none();
+        source.steer(index, steps);
+        self.0 = steps.map(|[_, now]| now);
+        cut
+    }
+}
+
 /// Serves requests until the loader is dropped.
 fn serve(
     mut source: Box<dyn FrameSource + Send>,
     requests: &Receiver<Request>,
     frames: &Sender<Result<LoadedFrame, Failure>>,
 ) {
-    let mut steered: Option<DMat4> = None;
+    let mut steering = Steering::default();
     while let Ok(request) = requests.recv() {
-        // A steered camera moves from its previous pose. Back on its own path it jumps, which is a cut.
-        let before = steered.or_else(|| Some(source.camera_pose(request.index.saturating_sub(1))?.world_from_camera));
-        let steps = before.zip(request.pose).map(|(before, now)| [before, now]);
-        let cut = steered.is_some() && steps.is_none();
-        source.steer(request.index, steps);
-        steered = steps.map(|[_, now]| now);
+        let cut = steering.steer(source.as_mut(), request.index, request.pose);
         let loaded = source.frame(request.index).map(|frame| {
             let frame = SourceFrame { cut: frame.cut || cut, ..resized(frame, request.size) };
             LoadedFrame { frame, stance: source.camera_pose(request.index), generation: request.generation }

@@ -2,6 +2,7 @@
 
 use super::graph::Graph;
 use super::state::{Action, Side, State};
+use crate::args::FilterName;
 use crate::report::canvas::Canvas;
 use image::RgbImage;
 
@@ -46,6 +47,16 @@ fn rows(state: &State) -> Vec<Row> {
     rows.extend([
         row("split", on_off(state.is_split), "Tab", Action::Split),
         row("foveation", state.filter.name(), "F", Action::Filter),
+    ]);
+    if state.is_rasterised {
+        let value = match state.filter {
+            FilterName::Sparse => "samples",
+            filter if filter.is_quad_views() => "quad views",
+            _ => "full rate",
+        };
+        rows.push(row("rendered", value, "T", Action::Render));
+    }
+    rows.extend([
         row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
         row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
         row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
@@ -123,6 +134,9 @@ mod tests {
         assert_eq!(click_on(&state, "right"), Some(Action::Next(Side::Right)));
         assert_eq!(click_on(&state, "frozen"), Some(Action::Freeze));
         assert!(rows(&state).iter().all(|r| r.name != "camera"), "there is none to steer");
+        assert!(rows(&state).iter().all(|r| r.name != "rendered"), "frames are given");
+        state.is_rasterised = true;
+        assert_eq!(click_on(&state, "rendered"), Some(Action::Render));
     }
 
     #[test]

@@ -13,6 +13,7 @@ const INTERVAL: Duration = Duration::from_millis(250);
 const NEWEST_WEIGHT: f64 = 0.1;
 
 /// Colors, the same in every graph.
+const RENDER: (&str, [u8; 3]) = ("render", [190, 160, 255]);
 const FOVEATION: (&str, [u8; 3]) = ("foveation", [120, 200, 255]);
 const LEFT: (&str, [u8; 3]) = ("left", [250, 190, 80]);
 const RIGHT: (&str, [u8; 3]) = ("right", [235, 120, 160]);
@@ -37,7 +38,7 @@ impl PanelStats {
             begun: Instant::now(),
             last: None,
             seconds_a_frame: None,
-            milliseconds: Graph::new("milliseconds", &[FOVEATION, LEFT, RIGHT, SCREEN]),
+            milliseconds: Graph::new("milliseconds", &[RENDER, FOVEATION, LEFT, RIGHT, SCREEN]),
             periphery_db: Graph::new("periphery, PSNR dB", &[LEFT, RIGHT]),
             lines: vec![],
             panel: RgbImage::new(1, 1),

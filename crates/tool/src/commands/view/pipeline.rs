@@ -1,14 +1,19 @@
-//! GPU passes of the viewer: foveate the full-rate frame, then run the method of each side. Nothing is read back.
+//! GPU passes of the viewer: render a scene or foveate the full-rate frame, then run the method of each side. Nothing is
+//! read back.
 
 use super::examiner::Examiner;
+use super::setup::Setup;
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
-use afterimage::wgpu::Texture;
-use afterimage::{ContextDesc, Filter, Finding, Gaze, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::wgpu::{CommandEncoder, Texture};
+use afterimage::{ContextDesc, Filter, Finding, Gaze, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun, SampleOrder, SparseGeometry};
+use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::raster::AtlasLayout;
+use afterimage_lab::source::{FrameSource, RasterSource};
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -32,8 +37,13 @@ pub struct ViewPipeline {
     desc: ContextDesc,
     sparse_geometry: SparseGeometry,
     sample_order: SampleOrder,
-    // Properties of the uploaded frame.
-    /// Depth and motion, if sparse frames have them at their samples alone.
+    /// Quad views of rendered frames.
+    quad_views: Option<QuadViewLayout>,
+    // Properties of the uploaded or posed frame.
+    /// Position of the frame to render.
+    position: u64,
+    /// Whether the full-rate frame is on the device.
+    has_full: bool,
     previous_from_current: Option<[[f32; 4]; 4]>,
     cut: bool,
     /// Frames since the last history reset.
@@ -45,15 +55,15 @@ fn desc(geometry: &ViewGeometry, settings: Settings) -> ContextDesc {
 }
 
 impl ViewPipeline {
-    /// Creates textures of `geometry`'s size. `settings` returns a method's settings, foveation included.
+    /// Creates textures of `geometry`'s size.
     pub fn new(
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
         state: &State,
         (sparse_geometry, sample_order): (SparseGeometry, SampleOrder),
-        settings: &dyn Fn(Shows) -> Settings,
+        setup: &Setup,
     ) -> Result<Self, Failure> {
-        let desc = desc(&geometry, settings(Shows::Post(Method::None)));
+        let desc = desc(&geometry, setup.settings(state, Shows::Post(Method::None)));
         let mut pipeline = Self {
             inputs: DeviceInputs::new(gpu, &desc, FORMATS)?,
             runs: vec![],
@@ -61,18 +71,23 @@ impl ViewPipeline {
             desc,
             sparse_geometry,
             sample_order,
+            quad_views: None,
+            position: 0,
+            has_full: false,
             previous_from_current: None,
             cut: false,
             index: 0,
             geometry,
             gpu: gpu.clone(),
         };
-        pipeline.adapt(state, settings)?;
+        pipeline.adapt(state, setup)?;
         Ok(pipeline)
     }
 
     /// Applies changes of the state to methods and foveation. Resets all history.
-    pub fn adapt(&mut self, state: &State, settings: &dyn Fn(Shows) -> Settings) -> Result<(), Failure> {
+    pub fn adapt(&mut self, state: &State, setup: &Setup) -> Result<(), Failure> {
+        let settings = |shows| setup.settings(state, shows);
+        self.quad_views = setup.quad_views(state);
         self.desc = desc(&self.geometry, settings(Shows::Post(Method::None)));
         self.inputs.set_foveation(&self.desc)?;
         let sides = state.shown_sides();
@@ -85,16 +100,16 @@ impl ViewPipeline {
                         run.post_mut().set_settings(&self.gpu.device, settings(shows))?;
                     }
                 }
-                Some(_) => self.runs[i] = self.side_run(shows, settings)?,
-                None => self.runs.push(self.side_run(shows, settings)?),
+                Some(_) => self.runs[i] = self.side_run(shows, settings(shows))?,
+                None => self.runs.push(self.side_run(shows, settings(shows))?),
             }
         }
         self.forget();
         Ok(())
     }
 
-    fn side_run(&self, shows: Shows, settings: &dyn Fn(Shows) -> Settings) -> Result<SideRun, Failure> {
-        let new = |_| DeviceRun::new(&self.gpu, &desc(&self.geometry, settings(shows)), FORMATS);
+    fn side_run(&self, shows: Shows, settings: Settings) -> Result<SideRun, Failure> {
+        let new = |_| DeviceRun::new(&self.gpu, &desc(&self.geometry, settings), FORMATS);
         Ok(SideRun { shows, run: shows.method().map(new).transpose()? })
     }
 
@@ -120,30 +135,43 @@ impl ViewPipeline {
         self.inputs.upload(frame);
         self.previous_from_current = frame.previous_from_current;
         self.cut = frame.cut;
+        self.has_full = true;
     }
 
-    /// Foveates the uploaded frame around `gaze_px` and runs the methods. `again`: the frame is that of the last call,
-    /// so motion is zero.
+    /// Frame to render when it is shown. `cut`: the camera jumped.
+    pub fn pose(&mut self, position: u64, cut: bool) {
+        (self.position, self.cut) = (position, cut);
+    }
+
+    /// Foveates the uploaded frame around `gaze_px`, or renders the posed one foveated, and runs the methods. `again`:
+    /// the frame is that of the last call, so motion is zero.
     pub fn show(
         &mut self,
         gaze_px: [f32; 2],
         again: bool,
         state: &State,
+        renderer: Option<&mut RasterSource>,
         times: &mut PassTimes,
     ) -> Result<(), Failure> {
         let foveation = &self.desc.settings.foveation;
         let is_sparse = foveation.filter == Filter::Sparse;
-        let lattices = is_sparse.then(|| {
-            let lattices = self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index);
-            self.sparse_geometry.of(lattices)
-        });
+        let mut lattices =
+            is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
+        // Rendered frames are shown again only after a reset of the history, which needs no motion.
+        let is_rendered = renderer.is_some();
+        let again = again && !is_rendered;
+        if let Some(renderer) = renderer {
+            self.render(renderer, gaze_px, &mut lattices, state, times);
+        }
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
-            lattices,
+            lattices: lattices.map(|lattices| self.sparse_geometry.of(lattices)),
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
         let gpu = &self.gpu;
-        times.pass(gpu, Pass::Foveation, |encoder, timestamps| self.inputs.foveate(encoder, &views, timestamps))?;
+        if !(is_rendered && (is_sparse || self.quad_views.is_some())) {
+            times.pass(gpu, Pass::Foveation, |encoder, timestamps| self.inputs.foveate(encoder, &views, timestamps))?;
+        }
         // A cut resets the history once, not again each time its frame is shown.
         let cut = std::mem::take(&mut self.cut);
         let reset = if cut || self.index == 0 { Reset::All } else { Reset::None };
@@ -172,9 +200,62 @@ impl ViewPipeline {
         Ok(())
     }
 
+    /// Renders the posed frame: the samples of `lattices`, which get their places in the atlas, or quad views, or the
+    /// full-rate frame. That is rendered besides, untimed, where a side shows it.
+    fn render(
+        &mut self,
+        renderer: &mut RasterSource,
+        gaze_px: [f32; 2],
+        lattices: &mut Option<Lattices>,
+        state: &State,
+        times: &mut PassTimes,
+    ) {
+        let (position, inputs) = (self.position, &mut self.inputs);
+        let ([view, previous], _) = renderer.views(position);
+        self.previous_from_current = Some(view.previous_from_current(&previous));
+        let quad_views = self.quad_views;
+        let is_foveated = quad_views.is_some() || lattices.is_some();
+        let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
+        let needs_full = !is_foveated || !has_geometry;
+        self.has_full = needs_full || state.shows_reference();
+        let full_rate = |inputs: &mut DeviceInputs, renderer: &mut RasterSource, encoder: &mut CommandEncoder| {
+            renderer.record(encoder, position);
+            if let Some(frame) = renderer.device_frame() {
+                inputs.import(encoder, &frame);
+            }
+        };
+        if self.has_full && !needs_full {
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            full_rate(inputs, renderer, &mut encoder);
+            self.gpu.queue.submit([encoder.finish()]);
+            if self.gpu.is_software() {
+                self.gpu.wait();
+            }
+        }
+        times.span(&self.gpu, Pass::Render, |encoder| {
+            if needs_full {
+                full_rate(inputs, renderer, encoder);
+            }
+            if let Some(layout) = quad_views {
+                let views = layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px);
+                let frame = renderer.record_composed(encoder, position, &views, AtlasLayout::Compact);
+                inputs.take_composed(&frame, has_geometry);
+            } else if let Some(lattices) = lattices {
+                let frame = renderer.record_foveated(encoder, position, lattices, AtlasLayout::Compact);
+                inputs.import_atlas(encoder, &frame.atlas, has_geometry);
+                *lattices = frame.lattices;
+            }
+        });
+    }
+
     /// What is found about the inputs; nothing unless they are checked.
     pub fn findings(&self) -> Vec<Finding> {
         self.examiner.as_ref().map(Examiner::findings).unwrap_or_default()
+    }
+
+    /// Whether [`full`](Self::full) is the frame on screen at full rate.
+    pub fn has_full(&self) -> bool {
+        self.has_full
     }
 
     /// The full-rate frame.

@@ -11,6 +11,7 @@ use super::surface::Surface;
 use super::times::PassTimes;
 use crate::args::GeometryName;
 use crate::failure::Failure;
+use afterimage_lab::source::{RasterScene, RasterSource};
 use std::sync::Arc;
 use winit::window::Window;
 
@@ -22,6 +23,8 @@ pub struct DeviceResources {
     pub times: PassTimes,
     pub quality: Quality,
     pub screen: Screen,
+    /// Renders the input, if it is a scene that is rendered as it is shown.
+    pub renderer: Option<RasterSource>,
     /// An input frame has been uploaded.
     pub has_frame: bool,
     /// The uploaded frame has not been shown yet.
@@ -29,16 +32,26 @@ pub struct DeviceResources {
 }
 
 impl DeviceResources {
-    pub fn open(window: &Arc<Window>, setup: &Setup, state: &State, scale: f32) -> Result<Self, Failure> {
+    pub fn open(
+        window: &Arc<Window>,
+        setup: &Setup,
+        state: &State,
+        scale: f32,
+        scene: Option<&RasterScene>,
+    ) -> Result<Self, Failure> {
         let device = Device::open(window)?;
         let size = window.inner_size();
         let surface = Surface::new(&device, [size.width, size.height])?;
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
         let foveation = &setup.args.foveation;
-        let sparse = (foveation.geometry.unwrap_or(GeometryName::Full).geometry(), foveation.order.order());
+        let renderer = scene.map(|scene| scene.clone().with_geometry(geometry).on(gpu.clone())).transpose()?;
+        // Depth and motion of every pixel would take a full-rate pass.
+        let samples = if renderer.is_some() { GeometryName::Samples } else { GeometryName::Full };
+        let sparse = (foveation.geometry.unwrap_or(samples).geometry(), foveation.order.order());
         Ok(Self {
-            pipeline: ViewPipeline::new(gpu, geometry, state, sparse, &|shows| setup.settings(state, shows))?,
+            pipeline: ViewPipeline::new(gpu, geometry, state, sparse, setup)?,
+            renderer,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),
             screen: Screen::new(gpu, surface.format()),

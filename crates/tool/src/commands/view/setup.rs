@@ -2,11 +2,12 @@
 
 use super::ViewArgs;
 use super::state::{Shows, State};
-use crate::args::FilterName;
 use crate::args::gaze::GazeArgs;
 use crate::args::input;
+use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
 use afterimage::{Method, Settings, ViewGeometry};
+use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::SourceInfo;
 
 /// Options, and properties of the input.
@@ -29,6 +30,7 @@ impl Setup {
         if let Some(scale) = args.internal_scale.filter(|s| !(*s > 0.0 && *s <= 1.0)) {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
+        args.foveation.check(args.input.is_rasterised())?;
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
         let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
         let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
@@ -57,6 +59,7 @@ impl Setup {
             is_split: !args.split.is_empty(),
             divider: 0.5,
             filter: args.foveation.filter,
+            is_rasterised: args.input.is_rasterised(),
             fovea_deg: args.foveation.fovea,
             mid_deg: args.foveation.mid,
             debug: None,
@@ -71,10 +74,18 @@ impl Setup {
 
     /// Settings of the method, as in `run`.
     pub fn settings(&self, state: &State, shows: Shows) -> Settings {
-        let mut foveation = self.args.foveation.clone();
-        (foveation.filter, foveation.fovea) = (state.filter, state.fovea_deg);
         let method = shows.method().unwrap_or_default();
-        Settings { foveation: foveation.foveation(), ..self.args.wrs.settings(method, self.args.seed, false) }
+        let foveation = self.foveation(state).foveation();
+        Settings { foveation, ..self.args.wrs.settings(method, self.args.seed, false) }
+    }
+
+    /// Quad views of rendered frames, if they are composed of such.
+    pub fn quad_views(&self, state: &State) -> Option<QuadViewLayout> {
+        self.foveation(state).quad_views()
+    }
+
+    fn foveation(&self, state: &State) -> FoveationArgs {
+        FoveationArgs { filter: state.filter, fovea: state.fovea_deg, ..self.args.foveation.clone() }
     }
 
     /// View geometry at a factor on the input's resolution.

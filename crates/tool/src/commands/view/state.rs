@@ -64,6 +64,8 @@ pub enum Action {
     Next(Side),
     Split,
     Filter,
+    /// Switch between what is rendered of a scene: samples, quad views, full rate.
+    Render,
     /// Multiply the fovea's diameter.
     Fovea(f32),
     Debug,
@@ -111,6 +113,8 @@ pub struct State {
     /// Position of the divider, as a fraction of the picture's width.
     pub divider: f32,
     pub filter: FilterName,
+    /// Whether frames are rasterised as the foveation wants them.
+    pub is_rasterised: bool,
     pub fovea_deg: f32,
     /// Diameter of the middle region, degrees; upper limit of the fovea.
     pub mid_deg: f32,
@@ -150,6 +154,18 @@ impl State {
             }
             Action::Filter => {
                 self.filter = next(self.filter);
+                while self.filter.is_quad_views() && !self.is_rasterised {
+                    self.filter = next(self.filter);
+                }
+                return Effect::Update;
+            }
+            Action::Render if !self.is_rasterised => return Effect::Nothing,
+            Action::Render => {
+                self.filter = match self.filter {
+                    FilterName::Sparse => FilterName::Layers,
+                    FilterName::Layers => FilterName::Off,
+                    _ => FilterName::Sparse,
+                };
                 return Effect::Update;
             }
             Action::Fovea(factor) => {
@@ -183,6 +199,11 @@ impl State {
             Action::Quit => return Effect::Quit,
         }
         Effect::Nothing
+    }
+
+    /// Whether a side on screen shows the full-rate frame.
+    pub fn shows_reference(&self) -> bool {
+        self.shown_sides().iter().any(|&side| self.sides[side as usize] == Shows::Reference)
     }
 
     /// Sides that are on screen.
@@ -228,6 +249,7 @@ pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
         KeyCode::Digit9 => shown(side, 9)?,
         KeyCode::Tab => Action::Split,
         KeyCode::KeyF => Action::Filter,
+        KeyCode::KeyT => Action::Render,
         KeyCode::Minus | KeyCode::NumpadSubtract | KeyCode::ArrowDown => Action::Fovea(1.0 / FOVEA_STEP),
         KeyCode::Equal | KeyCode::NumpadAdd | KeyCode::ArrowUp => Action::Fovea(FOVEA_STEP),
         KeyCode::KeyV => Action::Debug,
@@ -255,6 +277,7 @@ pub(super) mod tests {
             is_split: false,
             divider: 0.5,
             filter: FilterName::Mip,
+            is_rasterised: false,
             fovea_deg: 5.0,
             mid_deg: 15.0,
             debug: None,
@@ -308,6 +331,19 @@ pub(super) mod tests {
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
         let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
         assert_eq!(filters, ["gauss", "block", "sparse", "off", "mip"]);
+    }
+
+    #[test]
+    fn scenes_are_rendered_as_samples_as_quad_views_or_at_full_rate() {
+        let mut state = state();
+        assert_eq!(press(&mut state, KeyCode::KeyT, false), Effect::Nothing, "nothing is rendered");
+        assert_eq!(state.filter, FilterName::Mip);
+        state.is_rasterised = true;
+        let rendered: Vec<_> =
+            (0..4).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
+        assert_eq!(rendered, ["sparse", "layers", "off", "sparse"]);
+        let filters: Vec<_> = (0..7).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
+        assert_eq!(filters, ["layers", "uniform", "off", "mip", "gauss", "block", "sparse"]);
     }
 
     #[test]

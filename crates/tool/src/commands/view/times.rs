@@ -11,6 +11,8 @@ use std::time::Instant;
 /// Passes that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
+    /// Rendering of a scene.
+    Render,
     Foveation,
     Left,
     Right,
@@ -19,7 +21,7 @@ pub enum Pass {
 
 impl Pass {
     /// All passes, in the order of a frame.
-    pub const ALL: [Self; 4] = [Self::Foveation, Self::Left, Self::Right, Self::Screen];
+    pub const ALL: [Self; 5] = [Self::Render, Self::Foveation, Self::Left, Self::Right, Self::Screen];
 }
 
 /// Size of the query buffers: two 64-bit timestamps per pass.
@@ -41,7 +43,10 @@ struct Clock {
 impl PassTimes {
     pub fn new(gpu: &Headless) -> Self {
         let device = if gpu.is_software() { None } else { DeviceClock::new(gpu, Pass::ALL.len() as u32) };
-        Self { ms: [None; 4], clock: device.map(|device| Clock { device, written: None, in_flight: None }) }
+        Self {
+            ms: [None; Pass::ALL.len()],
+            clock: device.map(|device| Clock { device, written: None, in_flight: None }),
+        }
     }
 
     /// Milliseconds of a pass, of the last frame whose times have been read back; `None` if that frame did not run the
@@ -53,7 +58,7 @@ impl PassTimes {
     /// Starts a frame: takes times that have been read back.
     pub fn begin(&mut self, gpu: &Headless) {
         let Some(clock) = &mut self.clock else {
-            self.ms = [None; 4];
+            self.ms = [None; Pass::ALL.len()];
             return;
         };
         // `Viewer::frame` handles a lost device.
@@ -62,7 +67,7 @@ impl PassTimes {
             && let Some((passes, _)) = clock.in_flight.take()
         {
             let ms = clock.device.take_ms();
-            self.ms = [None; 4];
+            self.ms = [None; Pass::ALL.len()];
             for pass in passes {
                 self.ms[pass as usize] = ms.get(pass as usize).copied();
             }
@@ -90,6 +95,26 @@ impl PassTimes {
             self.ms[pass as usize] = Some(begun.elapsed().as_secs_f64() * 1e3);
         }
         Ok(())
+    }
+
+    /// Records, submits and times passes that take no timestamps of their own: empty passes before and after take them.
+    pub fn span(&mut self, gpu: &Headless, pass: Pass, record: impl FnOnce(&mut CommandEncoder)) {
+        let timed = self.pass(gpu, pass, |encoder, timestamps| {
+            let mark = |encoder: &mut CommandEncoder, is_end: bool| {
+                let Some(Timestamps { queries, begin, end }) = timestamps else { return };
+                let timestamp_writes = Some(wgpu::ComputePassTimestampWrites {
+                    query_set: queries,
+                    beginning_of_pass_write_index: (!is_end).then_some(begin),
+                    end_of_pass_write_index: is_end.then_some(end),
+                });
+                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("time"), timestamp_writes });
+            };
+            mark(encoder, false);
+            record(encoder);
+            mark(encoder, true);
+            Ok::<(), std::convert::Infallible>(())
+        });
+        let Ok(()) = timed;
     }
 
     /// Ends a frame: starts to read its timestamps back.

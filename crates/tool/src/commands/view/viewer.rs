@@ -4,7 +4,7 @@ mod output;
 
 use super::auto_scale::AutoScale;
 use super::fly_camera::FlyCamera;
-use super::frame_loader::FrameLoader;
+use super::frames::{Frames, NextFrame};
 use super::layout::Layout;
 use super::panel;
 use super::panel_stats::PanelStats;
@@ -39,7 +39,7 @@ pub struct Viewer {
     pub state: State,
     pub fly_camera: FlyCamera,
     window: Arc<Window>,
-    loader: FrameLoader,
+    frames: Frames,
     resources: DeviceResources,
     /// Rendering resolution as a factor on the input's.
     scale: f32,
@@ -66,17 +66,17 @@ pub struct Viewer {
 
 impl Viewer {
     /// Opens a device for the window and requests the first frame.
-    pub fn new(setup: Setup, loader: FrameLoader, window: Arc<Window>) -> Result<Self, Failure> {
+    pub fn new(setup: Setup, frames: Frames, window: Arc<Window>) -> Result<Self, Failure> {
         let state = setup.state();
         let scale = setup.args.internal_scale.unwrap_or(1.0);
-        let resources = DeviceResources::open(&window, &setup, &state, scale)?;
+        let resources = DeviceResources::open(&window, &setup, &state, scale, frames.scene())?;
         let mut viewer = Self {
             gaze_px: resources.pipeline.geometry().size_px().map(|s| 0.5 * s as f32 - 0.5),
             setup,
             state,
             fly_camera: FlyCamera::default(),
             window,
-            loader,
+            frames,
             resources,
             scale,
             auto_scale: AutoScale::default(),
@@ -105,8 +105,7 @@ impl Viewer {
         match self.state.apply(action) {
             Effect::Nothing => {}
             Effect::Update => {
-                let (setup, state) = (&self.setup, &self.state);
-                self.resources.pipeline.adapt(state, &|shows| setup.settings(state, shows))?;
+                self.resources.pipeline.adapt(&self.state, &self.setup)?;
                 self.reset_history();
             }
             Effect::Restart => {
@@ -188,12 +187,8 @@ impl Viewer {
         // A frozen picture is computed again only after a history reset.
         if !self.state.is_frozen || self.resources.pipeline.index() == 0 {
             self.update_gaze();
-            self.resources.pipeline.show(
-                self.gaze_px,
-                !self.resources.is_new,
-                &self.state,
-                &mut self.resources.times,
-            )?;
+            let DeviceResources { pipeline, renderer, times, is_new, .. } = &mut self.resources;
+            pipeline.show(self.gaze_px, !*is_new, &self.state, renderer.as_mut(), times)?;
             self.record.push(self.gaze_px);
             self.advance();
         }
@@ -222,13 +217,21 @@ impl Viewer {
         if self.state.is_frozen && self.resources.has_frame {
             return Ok(());
         }
-        if let Some(loaded) = self.loader.take()? {
-            self.resources.pipeline.upload(&loaded.frame);
-            (self.resources.has_frame, self.resources.is_new) = (true, true);
-            self.stance = loaded.stance;
-            if self.state.is_flying.is_none() && self.stance.is_some() {
-                self.state.is_flying = Some(false);
+        let DeviceResources { pipeline, renderer, .. } = &mut self.resources;
+        self.stance = match self.frames.take(renderer.as_mut())? {
+            None => return Ok(()),
+            Some(NextFrame::Loaded(loaded)) => {
+                pipeline.upload(&loaded.frame);
+                loaded.stance
             }
+            Some(NextFrame::Posed { index, cut, stance }) => {
+                pipeline.pose(index, cut);
+                stance
+            }
+        };
+        (self.resources.has_frame, self.resources.is_new) = (true, true);
+        if self.state.is_flying.is_none() && self.stance.is_some() {
+            self.state.is_flying = Some(false);
         }
         Ok(())
     }
@@ -260,19 +263,20 @@ impl Viewer {
     }
 
     fn request_frame(&mut self) {
-        self.loader.request(self.position, self.resources.pipeline.geometry().size_px(), self.pose);
+        self.frames.request(self.position, self.resources.pipeline.geometry().size_px(), self.pose);
     }
 
     /// Discards input frames and requests the one at the playback position.
     fn refetch(&mut self) {
-        self.loader.cancel();
+        self.frames.cancel();
         (self.resources.has_frame, self.resources.is_new) = (false, false);
         self.request_frame();
     }
 
     /// Opens the device again, after a loss or with another resolution.
     fn reopen(&mut self) -> Result<(), Failure> {
-        self.resources = DeviceResources::open(&self.window, &self.setup, &self.state, self.scale)?;
+        self.resources =
+            DeviceResources::open(&self.window, &self.setup, &self.state, self.scale, self.frames.scene())?;
         self.reset_history();
         self.refetch();
         Ok(())

@@ -18,7 +18,7 @@ impl Viewer {
             if let Some(psnr_db) = resources.quality.take(&resources.device.gpu, side) {
                 self.stats.quality(side, psnr_db);
             }
-            if self.stats.is_due() && self.state.has_panel {
+            if self.stats.is_due() && self.state.has_panel && resources.pipeline.has_full() {
                 let viewing =
                     Viewing { geometry: resources.pipeline.geometry(), gaze_px: self.gaze_px, gain: self.setup.gain() };
                 resources.quality.measure(
@@ -42,6 +42,11 @@ impl Viewer {
                 format!("{w}x{h}, {:.2} of the input, {:.1} fps", self.scale, self.stats.fps()),
                 shortened(&self.resources.device.gpu.info.name),
             ];
+            let ms = |pass| self.resources.times.ms(pass);
+            if let (Some(render), Some(left)) = (ms(Pass::Render), ms(Pass::Left)) {
+                let post = left + ms(Pass::Right).unwrap_or(0.0);
+                lines.push(format!("render {render:.2} ms, post {post:.2} ms"));
+            }
             for finding in self.resources.pipeline.findings() {
                 let outcome = match finding.outcome {
                     Outcome::Fits => "fits",
@@ -95,6 +100,9 @@ impl Viewer {
 
     /// Saves the files due at the end.
     pub fn finish(&self) -> Result<(), Failure> {
+        if let Some(frames) = self.setup.args.frames {
+            say!("{frames} frames, {} read back", self.resources.device.gpu.readbacks());
+        }
         match (self.setup.args.frames, &self.setup.args.screenshot) {
             (Some(frames), Some(_)) if frames == self.record.len() as u64 => self.write_picture(),
             _ => self.write_record(),
