@@ -99,3 +99,27 @@ pub struct ComposedFrame {
     /// Level of detail, `R32Float`.
     pub lod: wgpu::Texture,
 }
+
+/// Each waits for all submitted work.
+#[cfg(feature = "full")]
+impl ComposedFrame {
+    /// Reads the color.
+    pub fn read_color(&self) -> Image<[f32; 3]> {
+        self.device.read_rgb(&self.color, 0)
+    }
+
+    /// Reads the distance in metres.
+    pub fn read_distance(&self) -> Image<f32> {
+        self.device.read(&self.distance, 0)
+    }
+
+    /// Reads the motion vectors in pixels.
+    pub fn read_motion(&self) -> Image<[f32; 2]> {
+        self.device.read(&self.motion, 0)
+    }
+
+    /// Reads the levels of detail.
+    pub fn read_lod(&self) -> Image<f32> {
+        self.device.read(&self.lod, 0)
+    }
+}

@@ -343,6 +343,51 @@ fn playback_shows_what_run_writes_on_both_sides_of_the_divider() {
     }
 }
 
+/// Scenes are rendered on the window's device, with their lattices below each other; `run` renders them in place, whose
+/// pixels differ by rounding.
+#[test]
+fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
+    let Some(display) = Display::open() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let tool = |words: &[&str]| {
+        let tool = Command::new(TOOL).args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
+        let out = tool.unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        String::from_utf8(out.stdout).unwrap()
+    };
+    let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
+    for (foveation, methods) in
+        [("sparse", "none,taau"), ("sparse", "wrs,smr"), ("layers", "none,smr"), ("mip", "none,smr")]
+    {
+        let scene = ["builtin:courtyard", "--size", "320x180", "--camera", "walk", "--frames", "8"];
+        let regions = ["--foveation", foveation, "--fovea", "12", "--mid", "30", "--rate-mid", "2", "--rate-far", "4"];
+        let common = [&scene[..], &regions].concat();
+        let view = ["view", "--internal-scale", "1", "--split", methods, "--screenshot", "shown.png"];
+        let said = tool(&[&view[..], &common, &["--gaze", "200,60"]].concat());
+        assert!(said.starts_with("8 frames, 0 read back\n"), "{said}");
+        let run = ["run", "--method", methods, "--source", "raster", "--backend", "gpu", "--no-flip", "--out", "run"];
+        let geometry = if foveation == "mip" { "full" } else { "samples" };
+        let psnr_db = |gaze: &str| {
+            tool(&[&run[..], &common, &["--geometry", geometry, "--gaze", gaze]].concat());
+            let (left, right) = methods.split_once(',').unwrap();
+            let (shown, sides) = (pixels("shown.png"), [left, right].map(|m| pixels(&format!("run/{m}/000007.png"))));
+            let error = |(x, y, p): (u32, u32, &image::Rgb<u8>)| {
+                let expected = sides[usize::from(x >= SIZE[0] / 2)].get_pixel(x, y);
+                (0..3).map(|i| (f64::from(p[i]) - f64::from(expected[i])).powi(2)).sum::<f64>() / 3.0
+            };
+            let mean = shown.enumerate_pixels().map(error).sum::<f64>() / f64::from(SIZE[0] * SIZE[1]);
+            10.0 * (255.0 * 255.0 / mean).log10()
+        };
+        // Planted: another gaze.
+        let (same, planted) = (psnr_db("200,60"), psnr_db("120,110"));
+        say(&format!(
+            "{foveation}, {methods}: {same:.1} dB of run's pictures, of those for another gaze {planted:.1} dB"
+        ));
+        assert!(same > 45.0 && planted < 45.0);
+        assert!(foveation != "mip" || same == f64::INFINITY, "full-rate frames are those of run");
+    }
+}
+
 #[test]
 fn without_a_display_it_says_so_in_one_line() {
     let folder = tempfile::tempdir().unwrap();

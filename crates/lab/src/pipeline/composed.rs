@@ -24,15 +24,13 @@ impl Pipeline {
     ) -> Result<Step, FrameError> {
         let watch = Stopwatch::start();
         let ecc_deg = self.geometry.eccentricity_map(gaze_px);
-        let from = &composed.device;
-        let lods = from.read::<f32>(&composed.lod, 0);
+        let lods = composed.read_lod();
         let view = self.view(frame, gaze_px);
         let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
-        let color = self.foveates_in_memory().then(|| from.read_rgb(&composed.color, 0));
+        let color = self.foveates_in_memory().then(|| composed.read_color());
         #[cfg(feature = "ablation")]
         let color = color.map(|color| super::poisoned(color, self.poison, index as u32));
-        let geometry = (color.is_some() && has_geometry)
-            .then(|| (from.read::<f32>(&composed.distance, 0), from.read::<[f32; 2]>(&composed.motion, 0)));
+        let geometry = (color.is_some() && has_geometry).then(|| (composed.read_distance(), composed.read_motion()));
         if let Some(device) = &mut self.device {
             let gpu = device.gpu.clone();
             let is_here = |frame: &&DeviceFrame| Arc::ptr_eq(&frame.device, &gpu);

@@ -29,7 +29,9 @@ use std::path::PathBuf;
 /// Foveate frames, run methods on them, score the results
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
+    after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n  \
+    afterimage run scene.glb --foveation layers --rate-mid 2 --rate-far 4 --frames 60 --method none,smr --out out/layers\n  \
+    afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
     frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
 )]

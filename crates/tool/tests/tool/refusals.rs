@@ -54,6 +54,29 @@ fn bad_usage_is_one_line_and_exit_code_2() {
 }
 
 #[test]
+fn quad_views_of_what_cannot_have_them_are_refused() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let refused = |input: &str, more: &[&str], words: &[&str]| {
+        let size = ["--size", "32x18", "--frames", "1"];
+        refuses(&run(input, &out, &[&size, more].concat()), words);
+    };
+    let cubes = "builtin:cubes";
+    refused("analytic:still", &["--foveation", "layers"], &["--foveation layers", "--source raster"]);
+    refused(cubes, &["--foveation", "uniform", "--source", "trace"], &["--foveation uniform", "--source raster"]);
+    refused(cubes, &["--foveation", "uniform", "--method", "taau"], &["taau", "moving samples", "--fovea 0"]);
+    refused(cubes, &["--foveation", "layers", "--method", "oracle"], &["oracle", "--foveation mip"]);
+    refused(cubes, &["--foveation", "layers", "--order", "sobol"], &["--order sobol", "--foveation sparse"]);
+    refused(cubes, &["--foveation", "uniform", "--scale", "0.5"], &["--scale", "1 to 256 pixels"]);
+    refused(cubes, &["--foveation", "uniform", "--scale", "NaN"], &["--scale", "1 to 256 pixels"]);
+    refused(cubes, &["--scale", "2"], &["--scale", "--foveation uniform"]);
+    assert!(!folder.path("out").exists(), "nothing was written");
+}
+
+#[test]
 fn bad_files_are_one_line_and_exit_code_2() {
     let folder = Folder::new();
     let out = folder.text("out");

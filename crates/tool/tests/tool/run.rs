@@ -172,6 +172,54 @@ fn both_backends_write_the_same_bytes_of_sparse_frames() {
 }
 
 #[test]
+fn both_backends_write_the_same_bytes_of_quad_views() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let scene = ["--method", "none,taa,wrs,smr", "--format", "exr", "--rate-mid", "2", "--rate-far", "4"];
+    let cases: [(&str, &[&str]); 2] =
+        [("layers", &["--geometry", "samples"]), ("uniform", &["--foveation", "uniform", "--scale", "1.5"])];
+    for (name, more) in cases {
+        for backend in ["cpu", "gpu"] {
+            let out = folder.text(&format!("{name}/{backend}"));
+            let layers: &[&str] = if name == "layers" { &["--foveation", "layers"] } else { &[] };
+            let words = [SMALL, &scene, &["--backend", backend], layers, more].concat();
+            succeeds(&run("builtin:cubes", &out, &words));
+        }
+        let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{name}/{b}/report.json"))));
+        assert_eq!(cpu["foveation"]["simulator"], name);
+        let uniform = (name == "uniform").then_some(1.5);
+        assert_eq!(cpu["foveation"]["scale"].as_f64(), uniform);
+        // 107 x 60 pixels a frame.
+        assert!(name == "layers" || cpu["samples"] == 4 * 107 * 60, "{}", cpu["samples"]);
+        if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+            return;
+        }
+        for method in ["none", "taa", "wrs", "smr"] {
+            for i in 0..4 {
+                let path = |b: &str| folder.path(&format!("{name}/{b}/{method}/{i:06}.exr"));
+                assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
+            }
+        }
+    }
+}
+
+/// Uniform frames with moving samples: one lattice.
+#[test]
+fn a_sparse_frame_without_a_fovea_is_one_lattice() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let one = ["--foveation", "sparse", "--fovea", "0", "--rate-mid", "2", "--rate-far", "2", "--method", "none,taau"];
+    // A gaze between pixels, where a region of 0 degrees has a pixel.
+    succeeds(&run("builtin:cubes", &out, &[SMALL, &one, &["--gaze", "80,45"]].concat()));
+    assert_eq!(read_json(&folder.path("out/report.json"))["samples"], 4 * 80 * 45);
+}
+
+#[test]
 fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     let folder = Folder::new();
     let out = folder.text("out");

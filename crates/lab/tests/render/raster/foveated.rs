@@ -26,7 +26,7 @@ const MOTION_PX: f32 = 1e-3;
 const DISTANCE: f32 = 2e-5;
 
 /// A floor and a wall of random texels, whose mean is gray: a wrong level of detail shows.
-fn noise() -> Scene {
+pub(super) fn noise() -> Scene {
     let mut triangles = Triangles::default();
     triangles.push_quad([vec3(-8.0, 0.0, 8.0), vec3(8.0, 0.0, 8.0), vec3(8.0, 0.0, -8.0), vec3(-8.0, 0.0, -8.0)], 0);
     triangles.push_quad([vec3(-8.0, 0.0, -8.0), vec3(8.0, 0.0, -8.0), vec3(8.0, 9.0, -4.0), vec3(-8.0, 9.0, -4.0)], 0);
@@ -46,20 +46,20 @@ fn noise() -> Scene {
 }
 
 /// A view of 70 degrees from 1.6 m above the floor, and the previous one: turned, moved and set back.
-fn views(geometry: ViewGeometry) -> [View; 2] {
+pub(super) fn views(geometry: ViewGeometry) -> [View; 2] {
     let now = DMat4::from_translation(DVec3::new(0.5, 1.6, 5.0)) * DMat4::from_rotation_y(0.2);
     let step = DMat4::from_translation(DVec3::new(0.05, -0.01, 0.03)) * DMat4::from_quat(DQuat::from_rotation_y(0.01));
     [now, now * step].map(|world_from_camera| View::new(geometry, world_from_camera))
 }
 
-fn flat(size: [u32; 2]) -> ViewGeometry {
+pub(super) fn flat(size: [u32; 2]) -> ViewGeometry {
     ViewGeometry::flat(size, 70.0).unwrap()
 }
 
 /// A scene on the device.
-struct Rig {
-    device: Arc<Headless>,
-    raster: Raster,
+pub(super) struct Rig {
+    pub device: Arc<Headless>,
+    pub raster: Raster,
 }
 
 /// The samples of a foveated frame.
@@ -69,12 +69,12 @@ struct Foveated {
 }
 
 impl Rig {
-    fn new(device: &Arc<Headless>, scene: &Scene, size: [u32; 2]) -> Self {
+    pub fn new(device: &Arc<Headless>, scene: &Scene, size: [u32; 2]) -> Self {
         let raster = Raster::new(&device.device, &device.queue, scene, size, FAST).unwrap();
         Self { device: device.clone(), raster }
     }
 
-    fn read(&self, targets: &Targets) -> Frame {
+    pub fn read(&self, targets: &Targets) -> Frame {
         Frame {
             color: targets.read_color(&self.device),
             distance: targets.read_distance(&self.device, self.raster.near()),
@@ -82,7 +82,7 @@ impl Rig {
         }
     }
 
-    fn full(&mut self, views: &[View; 2]) -> Frame {
+    pub fn full(&mut self, views: &[View; 2]) -> Frame {
         let gpu = self.device.clone();
         afterimage_testing::gpu::validated(&gpu.device, "a full-rate frame", || {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());

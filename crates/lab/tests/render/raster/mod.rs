@@ -3,5 +3,7 @@
 mod foveated;
 mod geometry;
 mod light;
+mod quad_views;
 mod real;
 mod rig;
+mod stereo;
