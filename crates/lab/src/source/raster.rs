@@ -4,7 +4,8 @@ use super::CameraPose;
 use super::open::{check_size, device_lost};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
-use crate::device::Headless;
+use crate::clock::{Elapsed, Stopwatch};
+use crate::device::{Headless, PassClock};
 use crate::error::InputError;
 use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
 use crate::raster::{AtlasLayout, FoveatedTargets, Raster, RasterSettings, Targets};
@@ -13,6 +14,7 @@ use crate::trace::view::View;
 use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
+use wgpu::CommandEncoder;
 
 /// Default width and height in pixels.
 pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
@@ -33,6 +35,9 @@ pub struct RasterSource {
     /// By layout of their atlases; none before the first such frame.
     foveated: [Option<FoveatedTargets>; 2],
     fps: f64,
+    clock: PassClock,
+    /// Of the last frame that was rendered for [`FrameSource`].
+    render_time: Option<Elapsed>,
 }
 
 impl RasterSource {
@@ -86,7 +91,8 @@ impl RasterSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], fps: f64::from(fps) })
+        let (clock, fps) = (PassClock::new(&device), f64::from(fps));
+        Ok(Self { info, device, scene, camera, raster, foveated: [const { None }; 2], fps, clock, render_time: None })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -108,11 +114,7 @@ impl RasterSource {
 
     /// Renders frame `index` without reading it back.
     pub fn render(&mut self, index: u64) -> &Raster {
-        let ([view, previous], times) = self.views(index);
-        self.raster.pose(&self.scene, times[0], times[1]);
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        self.raster.record(&self.device.device, &mut encoder, &view, &previous);
-        self.device.queue.submit([encoder.finish()]);
+        self.submit(|source, encoder| source.record(encoder, index));
         &self.raster
     }
 
@@ -124,16 +126,52 @@ impl RasterSource {
         lattices: &Lattices,
         layout: AtlasLayout,
     ) -> (&FoveatedTargets, Lattices) {
+        let placed = self.submit(|source, encoder| source.record_foveated(encoder, index, lattices, layout));
+        (self.foveated[layout as usize].as_ref().expect("was recorded"), placed)
+    }
+
+    fn record(&mut self, encoder: &mut CommandEncoder, index: u64) {
         let ([view, previous], times) = self.views(index);
-        let (lattices, size) = layout.place(lattices, self.info.size);
+        self.raster.pose(&self.scene, times[0], times[1]);
+        self.raster.record(&self.device.device, encoder, &view, &previous);
+    }
+
+    fn record_foveated(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        index: u64,
+        lattices: &Lattices,
+        layout: AtlasLayout,
+    ) -> Lattices {
+        let ([view, previous], times) = self.views(index);
+        let (placed, size) = layout.place(lattices, self.info.size);
         let device = &self.device.device;
         self.raster.pose(&self.scene, times[0], times[1]);
         let targets = self.foveated[layout as usize].get_or_insert_with(|| FoveatedTargets::new(device, size));
         targets.fit(device, size);
-        let mut encoder = device.create_command_encoder(&Default::default());
-        self.raster.record_foveated(device, &mut encoder, [&view, &previous], &lattices, targets);
+        self.raster.record_foveated(device, encoder, [&view, &previous], &placed, targets);
+        placed
+    }
+
+    fn submit<T>(&mut self, record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T) -> T {
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        let recorded = record(self, &mut encoder);
         self.device.queue.submit([encoder.finish()]);
-        (targets, lattices)
+        recorded
+    }
+
+    /// As [`submit`](Self::submit), and waits for the device: the time is that of this work alone.
+    fn submit_timed<T>(&mut self, record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T) -> T {
+        self.device.wait();
+        let watch = Stopwatch::start();
+        let recorded = self.submit(|source, encoder| {
+            source.clock.begin(encoder);
+            let recorded = record(source, encoder);
+            source.clock.end(encoder);
+            recorded
+        });
+        self.render_time = Some(self.clock.elapsed(&self.device, &watch));
+        recorded
     }
 }
 
@@ -144,7 +182,7 @@ impl FrameSource for RasterSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let ([view, previous], _) = self.views(index);
-        self.render(index);
+        self.submit_timed(|source, encoder| source.record(encoder, index));
         let targets = self.raster.targets();
         let mut nonfinite = 0;
         let color = targets.read_color(&self.device).map(|c| {
@@ -166,15 +204,24 @@ impl FrameSource for RasterSource {
         })
     }
 
-    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact.
+    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact. Depth and
+    /// motion at every pixel, if the lattices call for them, are drawn again: they are part of the time.
     fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
         let (device, near) = (self.device.clone(), self.raster.near());
-        let (targets, lattices) = self.render_foveated(index, lattices, AtlasLayout::InPlace);
-        let Targets { color, depth, motion, .. } = &targets.atlas;
+        let layout = AtlasLayout::InPlace;
+        let placed = self.submit_timed(|source, encoder| {
+            let placed = source.record_foveated(encoder, index, lattices, layout);
+            if !lattices.has_geometry_at_samples() {
+                let ([view, previous], _) = source.views(index);
+                source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
+            }
+            placed
+        });
+        let FoveatedTargets { atlas, .. } = self.foveated[layout as usize].as_ref().expect("was recorded");
+        let Targets { color, depth, motion, .. } = atlas;
         let (color, depth, motion) = (color.clone(), depth.clone(), motion.clone());
-        device.wait();
         device.check().map_err(|lost| device_lost(&self.info.name, &lost))?;
-        Ok(Some(SparseFrame { atlas: DeviceFrame { device, color, depth, motion, near }, lattices }))
+        Ok(Some(SparseFrame { atlas: DeviceFrame { device, color, depth, motion, near }, lattices: placed }))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {
@@ -186,6 +233,10 @@ impl FrameSource for RasterSource {
             motion: targets.motion.clone(),
             near: self.raster.near(),
         })
+    }
+
+    fn render_time(&self) -> Option<Elapsed> {
+        self.render_time
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -2,6 +2,7 @@
 
 mod effects;
 mod foveated;
+mod growth;
 mod papers;
 mod patterns;
 mod post;
@@ -66,9 +67,10 @@ pub struct BenchArgs {
     pub json: Option<PathBuf>,
 }
 
-/// Comparisons of errors instead of times.
+/// Comparisons with options of their own.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Compare {
+    Growth(growth::GrowthArgs),
     Patterns(Box<patterns::PatternsArgs>),
     Wrs(Box<wrs_table::WrsTableArgs>),
 }
@@ -101,6 +103,7 @@ pub enum Traces {
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     match &args.compare {
+        Some(Compare::Growth(args)) => return growth::bench(args),
         Some(Compare::Patterns(args)) => return patterns::bench(args),
         Some(Compare::Wrs(args)) => return wrs_table::bench(args),
         None => {}

@@ -215,13 +215,17 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
+    let ms = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.1}"));
     say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
-    say!("method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  ms/frame");
+    say!(
+        "method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  \
+         render +   post =  total ms"
+    );
     for (name, m) in &report.methods {
         let s = &m.scores;
         let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
         say!(
-            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>9}",
+            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>7} {:>8} {:>9}",
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
             s.whole.flip.map_or("-".into(), |v| format!("{v:.4}")),
@@ -232,13 +236,19 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             db(s.retained_psnr_db),
             db(s.flicker),
             m.share_of_oracle.and_then(|s| s.psnr).map_or("-".into(), |v| format!("{:.0} %", 100.0 * v)),
-            m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
+            ms(m.frame.render.cost_ms()),
+            ms(m.post_ms()),
+            ms(m.total_ms()),
         );
     }
     say!("weighted: PSNR with errors weighted by the density of retinal ganglion cells, docs/metrics.md");
     say!(
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
     );
+    say!("ms: median of a frame, CPU time of the process, or timestamps of a GPU; render: only of scenes");
+    if let Some(full) = report.full_rate.and_then(|full| full.cost_ms()) {
+        say!("rendering a frame at full rate: {full:.1} ms");
+    }
     say!("contact sheet: {}", args.out.join("sheet.png").display());
     say!("PSNR by frame: {}", args.out.join("psnr.png").display());
 }
