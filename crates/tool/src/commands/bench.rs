@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json\n  \
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
+    afterimage bench growth --of pixels,triangles --json growth.json\n  \
     afterimage bench papers --scene sponza.gltf --camera inside.json --json papers.json\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
 #[command(args_conflicts_with_subcommands = true)]

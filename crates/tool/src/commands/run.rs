@@ -29,7 +29,8 @@ use std::path::PathBuf;
 #[command(
     after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
-    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json. Of scenes, the latter two also have the time of rendering\n\
+    the frames and that of the whole frame, renderer and method."
 )]
 pub struct RunArgs {
     /// Output folder

@@ -19,9 +19,8 @@ use std::path::PathBuf;
 /// Sizes of the axis of pixels.
 const SIZES: [[u32; 2]; 7] =
     [[640, 360], [960, 540], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160], [7680, 4320]];
-/// Triangle counts of the axis of triangles, and of the other axes.
-const TRIANGLES: [u32; 4] = [2_600, 26_000, 260_000, 2_600_000];
-const MANY: u32 = 260_000;
+/// Triangle counts of the axis of triangles. The lanterns add 800 to each.
+const TRIANGLES: [u32; 4] = [1_800, 25_200, 259_200, 2_600_000];
 /// Lattices of the other axes.
 const USUAL_LATTICES: u32 = 3;
 /// Pixels from which on a frame counts as large.
@@ -54,6 +53,9 @@ pub struct GrowthArgs {
     /// Size of the frames whose pixels do not grow
     #[arg(long, default_value = "1280x720", value_parser = parse_size, value_name = "WxH")]
     size: [u32; 2],
+    /// Triangles of the scenes whose triangles do not grow, 1000 to 3 million
+    #[arg(long, default_value_t = 25_200, value_parser = clap::value_parser!(u32).range(1000..=3_000_000), value_name = "N")]
+    triangles: u32,
     /// Largest frame of the axis of pixels, megapixels; it ends at 33.2
     #[arg(long, default_value_t = 34.0, value_name = "N")]
     max_megapixels: f64,
@@ -132,7 +134,7 @@ impl Growing {
     }
 
     fn configs(self, renderer: Renderer, args: &GrowthArgs) -> Vec<Config> {
-        let base = Config { renderer, size: args.size, triangles: MANY, lattices: USUAL_LATTICES, eyes: 1 };
+        let base = Config { renderer, size: args.size, triangles: args.triangles, lattices: USUAL_LATTICES, eyes: 1 };
         match self {
             Self::Pixels => {
                 let fits = |config: &Config| config.pixels() as f64 <= args.max_megapixels * 1e6;
