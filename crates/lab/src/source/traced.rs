@@ -10,7 +10,7 @@ use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
 use crate::frame::SourceFrame;
 use crate::frame::{FoveatedFrame, Guide};
-use crate::pipeline::SampleOrder;
+use crate::lattices::SampleOrder;
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;

@@ -3,7 +3,7 @@
 use super::lattice::Lattice;
 use super::{Layers, Regions, Sampling};
 use crate::frame::FoveatedFrame;
-use crate::pipeline::{SampleOrder, levels};
+use crate::lattices::{SampleOrder, levels};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
 use crate::trace::view::View;
