@@ -130,7 +130,7 @@ impl Lattices {
     }
 
     /// Whether depth and motion vectors are given at the samples only.
-    pub(crate) fn has_geometry_at_samples(&self) -> bool {
+    pub fn has_geometry_at_samples(&self) -> bool {
         self.has_geometry_at_samples
     }
 

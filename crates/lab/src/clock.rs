@@ -23,6 +23,30 @@ impl Stopwatch {
     pub fn cpu_ms(&self) -> Option<f64> {
         Some(process_cpu_ms()? - self.cpu_ms?)
     }
+
+    /// Both, for work on the CPU.
+    pub fn elapsed(&self) -> Elapsed {
+        Elapsed { wall_ms: self.wall_ms(), cpu_ms: self.cpu_ms(), device_ms: None }
+    }
+}
+
+/// Time of a piece of work, by every clock that there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elapsed {
+    /// Wall time in milliseconds.
+    pub wall_ms: f64,
+    /// CPU time of the process in milliseconds; `None` if the system does not measure it.
+    pub cpu_ms: Option<f64>,
+    /// Time on the device by timestamp queries, in milliseconds; `None` on software devices and the CPU.
+    pub device_ms: Option<f64>,
+}
+
+impl Elapsed {
+    /// Cost of the work in milliseconds: timestamp queries if available, otherwise CPU time, which other processes
+    /// disturb less than wall time.
+    pub fn cost_ms(&self) -> f64 {
+        self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
+    }
 }
 
 #[cfg(unix)]

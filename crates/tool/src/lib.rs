@@ -18,6 +18,7 @@ mod progress;
 pub mod report;
 #[cfg(feature = "full")]
 pub mod sweep;
+pub mod times;
 
 use clap::{Parser, Subcommand};
 use commands::demo;

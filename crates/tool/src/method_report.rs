@@ -1,7 +1,8 @@
 //! Scores, times and counts of a method over a clip.
 
+use crate::times::{FrameTime, RenderTime, Times};
 use afterimage::Image;
-use afterimage_lab::clock::Quartiles;
+use afterimage_lab::clock::{Elapsed, Quartiles};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
 use afterimage_lab::pipeline::{MethodOutput, Step};
@@ -14,8 +15,11 @@ pub struct MethodReport {
     pub share_of_oracle: Option<Share>,
     /// Wall time of the pass per frame.
     pub ms: Option<Quartiles>,
-    /// Mean CPU time of the pass per frame.
+    /// Median CPU time of the pass per frame.
     pub cpu_ms: Option<f64>,
+    /// Time of the whole frame.
+    #[serde(flatten)]
+    pub frame: FrameTime,
     /// Quality of the frames.
     #[serde(flatten)]
     pub scores: Scores,
@@ -47,14 +51,24 @@ pub struct Share {
     pub ssim: Option<f64>,
 }
 
+impl MethodReport {
+    /// Cost of the pass: timestamp queries if available, otherwise CPU time, otherwise wall time.
+    pub fn post_ms(&self) -> Option<f64> {
+        self.frame.device_ms.or(self.cpu_ms).or(self.ms.map(|q| q.median))
+    }
+
+    /// Cost of the renderer and the pass, each by the clock of the device that it runs on.
+    pub fn total_ms(&self) -> Option<f64> {
+        Some(self.frame.render.cost_ms()? + self.post_ms()?)
+    }
+}
+
 /// Accumulates scores, times and counts of a method over the frames of a clip.
 #[derive(Default)]
 pub struct MethodAccumulator {
     scorer: Scorer,
     crops: Crops,
-    wall_ms: Vec<f64>,
-    cpu_ms: Vec<Option<f64>>,
-    cost_ms: Vec<f64>,
+    times: Times,
     nonfinite_in: u64,
     nonfinite_out: u64,
     pixels: u64,
@@ -84,9 +98,7 @@ impl MethodAccumulator {
             self.crops.push(reference.encoded(), encoded, foveated);
         }
         self.traffic = shown.traffic_bytes_per_pixel;
-        self.wall_ms.push(shown.wall_ms);
-        self.cpu_ms.push(shown.cpu_ms);
-        self.cost_ms.push(shown.cost_ms());
+        self.times.push(shown.elapsed());
         self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
         let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
         self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
@@ -103,9 +115,9 @@ impl MethodAccumulator {
         self.scorer.scores()
     }
 
-    /// Cost of the pass in each frame, [`MethodOutput::cost_ms`].
-    pub fn cost_ms(&self) -> &[f64] {
-        &self.cost_ms
+    /// Times of the pass.
+    pub fn times(&self) -> &Times {
+        &self.times
     }
 
     /// Mean squared error of each frame.
@@ -113,23 +125,29 @@ impl MethodAccumulator {
         self.frame_mse
     }
 
-    /// A row of `frames.csv` for the last frame.
-    pub fn row(&self, index: usize, name: &str) -> String {
+    /// A row of `frames.csv` for the last frame, which took `render` to render.
+    pub fn row(&self, index: usize, name: &str, render: Option<Elapsed>) -> String {
         let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
         let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
         let [fovea, mid, periphery] = self.last.map_or_else(Default::default, |e| e.band_mse.map(db));
-        let ms = self.wall_ms.last().copied().unwrap_or_default();
-        format!("{index},{name},{psnr},{retained},{ms:.3},{fovea},{mid},{periphery}")
+        let post = self.times.last();
+        let [ms, cpu_ms] = [post.map(|e| e.wall_ms), post.and_then(|e| e.cpu_ms)];
+        let [render_ms, render_cpu_ms] = [render.map(|e| e.wall_ms), render.and_then(|e| e.cpu_ms)];
+        let sum = |a: Option<f64>, b: Option<f64>| Some(a? + b?);
+        let times = [cpu_ms, render_ms, render_cpu_ms, sum(render_ms, ms), sum(render_cpu_ms, cpu_ms)];
+        let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
+        let (ms, times) = (number(ms), times.map(number).join(","));
+        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times}")
     }
 
-    /// The results of the method.
-    pub fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
+    /// The results of the method, for frames that took `render` to render.
+    pub fn report(&self, persistent_bytes_per_pixel: f64, render: RenderTime) -> MethodReport {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
-        let cpu: Option<f64> = self.cpu_ms.iter().copied().sum();
         MethodReport {
             share_of_oracle: None,
-            ms: Quartiles::of(&self.wall_ms),
-            cpu_ms: cpu.map(|sum| sum / self.cpu_ms.len() as f64),
+            ms: self.times.wall_ms(),
+            cpu_ms: self.times.cpu_ms(),
+            frame: FrameTime::of(render, &self.times),
             scores: self.scorer.scores(),
             psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
             worst_crop: self.crops.worst(),

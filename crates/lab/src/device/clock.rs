@@ -1,11 +1,12 @@
 //! Time of a pass: timestamp queries of the device, or CPU time of the process.
 
-use super::{DeviceClock, Headless};
-use crate::clock::Stopwatch;
+use super::{Backend, DeviceClock, Headless};
+use crate::clock::{Elapsed, Stopwatch};
 use afterimage::gpu::Timestamps;
+use std::sync::Arc;
 use wgpu::CommandEncoder;
 
-/// Clock that times one pass at a time.
+/// Clock that times one pass, or one span of passes, at a time.
 #[derive(Debug)]
 pub struct PassClock(Option<DeviceClock>);
 
@@ -33,6 +34,30 @@ impl PassClock {
         self.0.as_ref().map(|clock| clock.timestamps(0))
     }
 
+    /// Records the begin of a span of passes, for work without [`timestamps`](Self::timestamps) of its own.
+    pub fn begin(&self, encoder: &mut CommandEncoder) {
+        if let Some(clock) = &self.0 {
+            clock.mark(encoder, 0, false);
+        }
+    }
+
+    /// Records the end of the span, and resolves its queries. The encoder may be another one than that of
+    /// [`begin`](Self::begin).
+    pub fn end(&self, encoder: &mut CommandEncoder) {
+        if let Some(clock) = &self.0 {
+            clock.mark(encoder, 0, true);
+        }
+        self.resolve(encoder);
+    }
+
+    /// Waits for submitted work, and returns the time since `watch` was started and that of the span on the device. The
+    /// device was idle when the watch was started, or the times include earlier work.
+    pub fn elapsed(&self, gpu: &Headless, watch: &Stopwatch) -> Elapsed {
+        gpu.wait();
+        let elapsed = watch.elapsed();
+        Elapsed { device_ms: self.is_device().then(|| self.read_ms(gpu, watch)), ..elapsed }
+    }
+
     /// Resolves the timestamp queries. Record it after the pass.
     pub fn resolve(&self, encoder: &mut CommandEncoder) {
         if let Some(clock) = &self.0 {
@@ -46,5 +71,39 @@ impl PassClock {
             Some(clock) => clock.wait_ms(gpu).first().copied().unwrap_or_default(),
             None => watch.cpu_ms().unwrap_or_else(|| watch.wall_ms()),
         }
+    }
+}
+
+/// Clock of work that submits to a device by itself, or runs on the CPU.
+#[derive(Debug)]
+pub struct SpanClock(Option<(Arc<Headless>, PassClock)>);
+
+impl SpanClock {
+    /// A clock for work on `backend`.
+    pub fn new(backend: &Backend) -> Self {
+        Self(match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some((gpu.clone(), PassClock::new(gpu))),
+        })
+    }
+
+    /// Runs `work`, waits for what it submitted, and returns the time, too. The device's time is that from the first
+    /// submission to the last: waiting for the host in between is part of it.
+    pub fn time<T>(&self, work: impl FnOnce() -> T) -> (T, Elapsed) {
+        let Some((gpu, clock)) = &self.0 else {
+            let watch = Stopwatch::start();
+            return (work(), watch.elapsed());
+        };
+        let submit = |record: &dyn Fn(&mut CommandEncoder)| {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            record(&mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+        };
+        gpu.wait();
+        let watch = Stopwatch::start();
+        submit(&|encoder| clock.begin(encoder));
+        let result = work();
+        submit(&|encoder| clock.end(encoder));
+        (result, clock.elapsed(gpu, &watch))
     }
 }

@@ -14,7 +14,7 @@ mod timestamps;
 #[cfg(feature = "full")]
 pub use bandwidth::copy_ms_per_byte;
 #[cfg(feature = "full")]
-pub use clock::PassClock;
+pub use clock::{PassClock, SpanClock};
 #[cfg(feature = "full")]
 pub use headless::Headless;
 #[cfg(feature = "full")]

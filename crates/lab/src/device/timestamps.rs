@@ -5,7 +5,10 @@ use afterimage::gpu::Timestamps;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use wgpu::{Buffer, BufferUsages, BufferView, CommandEncoder, ComputePassTimestampWrites, Features, QuerySet};
+use wgpu::{
+    Buffer, BufferUsages, BufferView, CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, Features,
+    QuerySet,
+};
 
 /// Timestamp queries at the begin and the end of each span.
 #[derive(Debug)]
@@ -45,6 +48,18 @@ impl DeviceClock {
             beginning_of_pass_write_index: Some(2 * span),
             end_of_pass_write_index: Some(2 * span + 1),
         }
+    }
+
+    /// Writes the query at the begin of a span (`is_end` false) or at its end, after all work recorded before.
+    pub fn mark(&self, encoder: &mut CommandEncoder, span: u32, is_end: bool) {
+        let writes = self.writes(span);
+        let timestamp_writes = Some(if is_end {
+            ComputePassTimestampWrites { beginning_of_pass_write_index: None, ..writes }
+        } else {
+            ComputePassTimestampWrites { end_of_pass_write_index: None, ..writes }
+        });
+        // A pass without work: only passes write timestamps without a further feature of the device.
+        drop(encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("timestamp"), timestamp_writes }));
     }
 
     /// Resolves the queries of `spans`. Record it after their passes.

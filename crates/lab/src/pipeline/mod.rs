@@ -14,7 +14,7 @@ pub use crate::lattices::{SampleOrder, SparseGeometry, levels};
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
 
-use crate::clock::Stopwatch;
+use crate::clock::{Elapsed, Stopwatch};
 use crate::device::Backend;
 #[cfg(feature = "full")]
 use crate::device::{Headless, PassClock};
@@ -67,10 +67,9 @@ pub struct MethodOutput {
 }
 
 impl MethodOutput {
-    /// Cost of the pass in milliseconds: timestamp queries if available, otherwise CPU time, which other processes
-    /// disturb less than wall time.
-    pub fn cost_ms(&self) -> f64 {
-        self.device_ms.or(self.cpu_ms).unwrap_or(self.wall_ms)
+    /// Time of the pass.
+    pub fn elapsed(&self) -> Elapsed {
+        Elapsed { wall_ms: self.wall_ms, cpu_ms: self.cpu_ms, device_ms: self.device_ms }
     }
 }
 

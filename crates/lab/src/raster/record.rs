@@ -140,6 +140,14 @@ impl Raster {
         self.color_pass(encoder, target, point_depth, point_pipelines, points, &blended);
     }
 
+    /// Records depth and motion of a full-rate frame, without its color.
+    pub fn record_surfaces(&mut self, device: &Device, encoder: &mut CommandEncoder, view: &View, previous: &View) {
+        self.upload(device, encoder);
+        let section = self.section(device, [view, previous], Window::full(view.geometry().size_px()));
+        let Targets { views: [_, depth, motion], .. } = &self.targets;
+        self.surface_pass(encoder, [depth, motion], &[section]);
+    }
+
     /// Uniforms and draw calls of what a window shows.
     fn section(&self, device: &Device, [view, previous]: [&View; 2], window: Window) -> Section {
         let frame = FrameUniforms::new(view, previous, self.near, &window);

@@ -40,6 +40,7 @@ pub use still::StillSource;
 #[cfg(feature = "full")]
 pub use traced::{TracedSamples, TracedSource};
 
+use crate::clock::Elapsed;
 use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
@@ -129,6 +130,13 @@ pub trait FrameSource {
     /// The frame that [`frame`](Self::frame) gave last, where it was rendered on a device and still lies there.
     #[cfg(feature = "full")]
     fn device_frame(&self) -> Option<DeviceFrame> {
+        None
+    }
+
+    /// Time of rendering the frame that [`frame`](Self::frame), [`foveated`](Self::foveated) or `sparse` gave last,
+    /// until it was complete on its device: posing the scene, recording and drawing or tracing, without reading back.
+    /// `None` if the source renders nothing.
+    fn render_time(&self) -> Option<Elapsed> {
         None
     }
 

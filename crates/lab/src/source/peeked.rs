@@ -1,6 +1,7 @@
 //! A source whose first frame was read ahead.
 
 use super::{CameraPose, FrameSource, SourceInfo};
+use crate::clock::Elapsed;
 use crate::error::InputError;
 #[cfg(feature = "full")]
 use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
@@ -62,6 +63,10 @@ impl FrameSource for PeekedSource<'_> {
     #[cfg(feature = "full")]
     fn device_frame(&self) -> Option<DeviceFrame> {
         self.source.device_frame()
+    }
+
+    fn render_time(&self) -> Option<Elapsed> {
+        self.source.render_time()
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -4,7 +4,8 @@ use super::CameraPose;
 use super::open::{check_size, device_lost};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
-use crate::device::Headless;
+use crate::clock::{Elapsed, Stopwatch};
+use crate::device::{Headless, PassClock};
 use crate::error::InputError;
 use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame, SparseFrame};
 use crate::quad_views::QuadViews;
@@ -103,7 +104,15 @@ impl RasterScene {
 
     fn on_with(&self, device: Arc<Headless>, settings: RasterSettings) -> Result<RasterSource, InputError> {
         let raster = Raster::new(&device.device, &device.queue, &self.scene, self.info.size, settings)?;
-        Ok(RasterSource { of: self.clone(), device, raster, foveated: [const { None }; 2], composer: None })
+        Ok(RasterSource {
+            of: self.clone(),
+            clock: PassClock::new(&device),
+            device,
+            raster,
+            foveated: [const { None }; 2],
+            composer: None,
+            render_time: None,
+        })
     }
 }
 
@@ -120,6 +129,9 @@ pub struct RasterSource {
     foveated: [Option<FoveatedTargets>; 2],
     /// None before the first frame of quad views.
     composer: Option<Composer>,
+    clock: PassClock,
+    /// Of the last frame that was rendered for [`FrameSource`].
+    render_time: Option<Elapsed>,
 }
 
 impl RasterSource {
@@ -176,9 +188,7 @@ impl RasterSource {
 
     /// Renders frame `index` without reading it back.
     pub fn render(&mut self, index: u64) -> &Raster {
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        self.record(&mut encoder, index);
-        self.device.queue.submit([encoder.finish()]);
+        self.submit(|source, encoder| source.record(encoder, index));
         &self.raster
     }
 
@@ -203,10 +213,8 @@ impl RasterSource {
         lattices: &Lattices,
         layout: AtlasLayout,
     ) -> (&FoveatedTargets, Lattices) {
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        let lattices = self.record_foveated(&mut encoder, index, lattices, layout).lattices;
-        self.device.queue.submit([encoder.finish()]);
-        (self.foveated[layout as usize].as_ref().expect("they were drawn to"), lattices)
+        let frame = self.submit(|source, encoder| source.record_foveated(encoder, index, lattices, layout));
+        (self.foveated[layout as usize].as_ref().expect("they were drawn to"), frame.lattices)
     }
 
     /// Records the rendering of the samples of `lattices` of frame `index`.
@@ -244,11 +252,29 @@ impl RasterSource {
         ComposedFrame { device: self.device.clone(), color, distance, motion, lod }
     }
 
-    /// Submits what was recorded, and waits for it.
-    fn finish(&self, encoder: CommandEncoder) -> Result<(), InputError> {
+    fn submit<T>(&mut self, record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T) -> T {
+        let mut encoder = self.device.device.create_command_encoder(&Default::default());
+        let recorded = record(self, &mut encoder);
         self.device.queue.submit([encoder.finish()]);
+        recorded
+    }
+
+    /// As [`submit`](Self::submit), and waits for the device: the time is that of this work alone.
+    fn submit_timed<T>(
+        &mut self,
+        record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T,
+    ) -> Result<T, InputError> {
         self.device.wait();
-        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))
+        let watch = Stopwatch::start();
+        let recorded = self.submit(|source, encoder| {
+            source.clock.begin(encoder);
+            let recorded = record(source, encoder);
+            source.clock.end(encoder);
+            recorded
+        });
+        self.render_time = Some(self.clock.elapsed(&self.device, &watch));
+        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))?;
+        Ok(recorded)
     }
 }
 
@@ -272,7 +298,7 @@ impl FrameSource for RasterSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         let ([view, previous], _) = self.views(index);
-        self.render(index);
+        self.submit_timed(|source, encoder| source.record(encoder, index))?;
         let targets = self.raster.targets();
         let mut nonfinite = 0;
         let color = targets.read_color(&self.device).map(|c| {
@@ -294,24 +320,34 @@ impl FrameSource for RasterSource {
         })
     }
 
-    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact.
+    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact. Depth and
+    /// motion at every pixel, if the lattices call for them, are drawn again: they are part of the time.
     fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        let frame = self.record_foveated(&mut encoder, index, lattices, AtlasLayout::InPlace);
-        self.finish(encoder)?;
+        let frame = self.submit_timed(|source, encoder| {
+            let frame = source.record_foveated(encoder, index, lattices, AtlasLayout::InPlace);
+            if !lattices.has_geometry_at_samples() {
+                let ([view, previous], _) = source.views(index);
+                source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
+            }
+            frame
+        })?;
         Ok(Some(frame))
     }
 
     /// The full-rate view lies in place, as in [`sparse`](Self::sparse).
     fn composed(&mut self, index: u64, views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
-        let mut encoder = self.device.device.create_command_encoder(&Default::default());
-        let frame = self.record_composed(&mut encoder, index, views, AtlasLayout::InPlace);
-        self.finish(encoder)?;
-        Ok(Some(frame))
+        let record = |source: &mut Self, encoder: &mut CommandEncoder| {
+            source.record_composed(encoder, index, views, AtlasLayout::InPlace)
+        };
+        Ok(Some(self.submit_timed(record)?))
     }
 
     fn device_frame(&self) -> Option<DeviceFrame> {
         Some(on_device(&self.device, self.raster.targets(), self.raster.near()))
+    }
+
+    fn render_time(&self) -> Option<Elapsed> {
+        self.render_time
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -5,7 +5,8 @@ use super::open::{check_size, device_lost};
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
-use crate::device::Backend;
+use crate::clock::Elapsed;
+use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
 use crate::frame::SourceFrame;
 use crate::frame::{FoveatedFrame, Guide};
@@ -19,6 +20,7 @@ use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
+use afterimage::SettingsError;
 use glam::DMat4;
 
 /// Samples traced per call, which bounds the memory of their paths.
@@ -54,8 +56,11 @@ pub struct TracedSource {
     fps: f64,
     samples: TracedSamples,
     seed: u64,
-    /// Cached full-rate frame of a static scene.
-    still: Option<SourceFrame>,
+    /// Cached full-rate frame of a static scene, and its time.
+    still: Option<(SourceFrame, Elapsed)>,
+    clock: SpanClock,
+    /// Of the last frame.
+    render_time: Option<Elapsed>,
 }
 
 impl TracedSource {
@@ -96,7 +101,19 @@ impl TracedSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, seed: settings.seed, still: None })
+        Ok(Self {
+            info,
+            scene,
+            world,
+            tracer,
+            camera,
+            fps: f64::from(fps),
+            samples,
+            seed: settings.seed,
+            still: None,
+            clock: SpanClock::new(backend),
+            render_time: None,
+        })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -124,19 +141,22 @@ impl TracedSource {
         self.tracer.check().map_err(|lost| device_lost(&self.info.name, &lost))
     }
 
-    fn full_rate(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+    /// The full-rate frame, and the time of tracing its color.
+    fn full_rate(&mut self, index: u64) -> Result<(SourceFrame, Elapsed), InputError> {
         let [view, previous] = self.pose(index)?;
         let [width, height] = self.info.size;
         let mut film = Film::new(self.info.size);
         let samples = self.samples.full_rate_samples.max(1);
         let rows = (STEP / width.saturating_mul(samples).max(1)).max(1);
-        for first in (0..height).step_by(rows as usize) {
-            let spans = Spans::uniform(width, first..(first + rows).min(height), 0..samples);
-            self.tracer.trace(&self.world, &view, FULL_RATE_FRAMES + index, &spans, &mut film);
-        }
+        let ((), took) = self.clock.time(|| {
+            for first in (0..height).step_by(rows as usize) {
+                let spans = Spans::uniform(width, first..(first + rows).min(height), 0..samples);
+                self.tracer.trace(&self.world, &view, FULL_RATE_FRAMES + index, &spans, &mut film);
+            }
+        });
         self.check()?;
         let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
-        Ok(SourceFrame {
+        let frame = SourceFrame {
             color: film.color(),
             depth: Some(seen.depth),
             motion: Some(seen.motion),
@@ -144,7 +164,8 @@ impl TracedSource {
             previous_from_current: Some(view.previous_from_current(&previous)),
             cut: index == 0,
             nonfinite: film.nonfinite,
-        })
+        };
+        Ok((frame, took))
     }
 }
 
@@ -155,13 +176,16 @@ impl FrameSource for TracedSource {
 
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         if !self.info.still || self.camera.is_steered() {
-            return self.full_rate(index);
+            let (frame, took) = self.full_rate(index)?;
+            self.render_time = Some(took);
+            return Ok(frame);
         }
-        let frame = match self.still.take() {
-            Some(frame) => frame,
+        let (frame, took) = match self.still.take() {
+            Some(traced) => traced,
             None => self.full_rate(0)?,
         };
-        self.still = Some(frame.clone());
+        self.render_time = Some(took);
+        self.still = Some((frame.clone(), took));
         Ok(SourceFrame { cut: index == 0, ..frame })
     }
 
@@ -174,24 +198,32 @@ impl FrameSource for TracedSource {
         let Some(sampling) = self.samples.foveated else { return Ok(None) };
         let [view, _] = self.pose(index)?;
         let samples = self.samples.samples.max(1);
-        if let Some(order) = self.samples.sparse {
-            let plan = sampling.sparse_plan(view.geometry(), gaze_px, samples, index, order);
-            let frame = plan
-                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern"))?
-                .trace(&self.tracer, &self.world, &view, index);
-            self.check()?;
-            return Ok(Some(frame));
-        }
-        let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
-        let plan = match guide {
-            None => plan,
-            Some(guide) => plan
-                .guided(guide, index, self.seed)
-                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size"))?,
-        };
-        let frame = plan.trace(&self.tracer, &self.world, &view, index);
+        let wrong = |e: SettingsError, expected| InputError::request(&self.info.name, e.to_string(), expected);
+        let (frame, took) = self.clock.time(|| {
+            let (tracer, world, geometry) = (&self.tracer, &self.world, view.geometry());
+            if let Some(order) = self.samples.sparse {
+                let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, order);
+                return Ok(plan
+                    .map_err(|e| wrong(e, "choose another sampling pattern"))?
+                    .trace(tracer, world, &view, index));
+            }
+            let plan = sampling.plan(geometry, gaze_px, samples, index);
+            let plan = match guide {
+                None => plan,
+                Some(guide) => {
+                    plan.guided(guide, index, self.seed).map_err(|e| wrong(e, "give a guide of the frame's size"))?
+                }
+            };
+            Ok(plan.trace(tracer, world, &view, index))
+        });
+        let frame: FoveatedFrame = frame?;
         self.check()?;
+        self.render_time = Some(took);
         Ok(Some(frame))
+    }
+
+    fn render_time(&self) -> Option<Elapsed> {
+        self.render_time
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -4,5 +4,6 @@ mod analytic;
 mod fixtures;
 mod metric;
 mod real_data;
+mod render_time;
 mod scanpath;
 mod source_files;

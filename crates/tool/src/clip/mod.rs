@@ -9,8 +9,9 @@ use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::output::Output;
 use crate::progress;
 use crate::report::sheet::{Column, Sheet};
+use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Foveation, Image, Method, ViewGeometry};
-use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage_lab::clock::{Elapsed, Quartiles};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric;
@@ -66,9 +67,10 @@ pub struct FrameResult<'a> {
     pub step: &'a Step,
     /// Camera samples of the frame; `None` unless the source renders foveated frames.
     pub samples: Option<u64>,
-    /// CPU time of tracing those samples, milliseconds.
-    #[cfg_attr(not(feature = "full"), expect(dead_code, reason = "sweeps read it"))]
-    pub render_ms: Option<f64>,
+    /// Time of rendering the frame that the methods got; `None` unless it was rendered.
+    pub render: Option<Elapsed>,
+    /// Time of rendering the full-rate frame with as many samples a pixel, if it was.
+    pub full_rate: Option<Elapsed>,
 }
 
 /// Results of a clip.
@@ -76,6 +78,8 @@ pub struct FrameResult<'a> {
 pub struct ClipReport {
     pub methods: Vec<(&'static str, MethodReport)>,
     pub foveation_ms: Option<Quartiles>,
+    /// Time of rendering the full-rate frames, if they were rendered.
+    pub full_rate: Option<RenderTime>,
     /// Camera samples of all frames; 0 unless the source renders foveated frames.
     pub samples: u64,
     /// Device that ran the methods, for messages.
@@ -87,7 +91,7 @@ pub struct ClipReport {
 }
 
 /// Gives a frame to the pipeline, from the device where it was rendered, if it was. Sparse frames are rendered with
-/// their samples alone, if the source can: the number of samples, the milliseconds of rendering them, and the result.
+/// their samples alone, if the source can: the number of samples, and the result.
 fn step(
     pipeline: &mut Pipeline,
     index: u64,
@@ -95,21 +99,19 @@ fn step(
     gaze_px: [f32; 2],
     #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "renders nothing"))]
     source: &mut dyn FrameSource,
-) -> Result<(Option<u64>, Option<f64>, Step), Failure> {
+) -> Result<(Option<u64>, Step), Failure> {
     #[cfg(feature = "full")]
     {
         let rendered = source.device_frame();
-        let watch = Stopwatch::start();
         let sparse = match pipeline.lattices(gaze_px, index) {
             Some(lattices) => source.sparse(index, &lattices)?,
             None => None,
         };
         if let Some(sparse) = sparse {
-            let render_ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
             let samples =
                 sparse.lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
             let step = pipeline.step_sparse(index, frame, gaze_px, rendered.as_ref(), &sparse)?;
-            return Ok((Some(samples.sum()), Some(render_ms), step));
+            return Ok((Some(samples.sum()), step));
         }
         if let Some(views) = pipeline.quad_views(gaze_px) {
             let composed = source.composed(index, &views)?.ok_or_else(|| no_quad_views(source))?;
@@ -118,10 +120,10 @@ fn step(
             return Ok((Some(views.pixels()), Some(render_ms), step));
         }
         if let Some(rendered) = rendered {
-            return Ok((None, None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));
+            return Ok((None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));
         }
     }
-    Ok((None, None, pipeline.step(index, frame, Some(gaze_px))?))
+    Ok((None, pipeline.step(index, frame, Some(gaze_px))?))
 }
 
 /// The plan refuses quad views of other sources.
@@ -148,17 +150,21 @@ impl Clip {
             self.methods.iter().map(|_| MethodAccumulator::default()).collect();
         let mut report = ClipReport { backend: self.backend_name(), ..ClipReport::default() };
         let mut foveation_ms = vec![];
+        let (mut render, mut full_rate) = (Times::default(), Times::default());
         let bar = progress::bar(self.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
-            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db",
+            "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
+             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms",
         )?;
         let pipeline = self.play(source, &mut |result| {
             let encoded = self.score_and_write(result, &mut accumulators, out)?;
             for ((name, _), accumulator) in self.methods.iter().zip(&accumulators) {
-                table.row(&accumulator.row(result.index, name))?;
+                table.row(&accumulator.row(result.index, name, result.render))?;
             }
             report.samples += result.samples.unwrap_or(0);
+            result.render.into_iter().for_each(|elapsed| render.push(elapsed));
+            result.full_rate.into_iter().for_each(|elapsed| full_rate.push(elapsed));
             foveation_ms.push(result.step.foveation_ms);
             report.gaze_px.push(result.step.gaze_px);
             if result.index + 1 == self.gaze.len() {
@@ -172,11 +178,13 @@ impl Clip {
         out.gaze("gaze.csv", &report.gaze_px)?;
         let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
         let of = |(i, accumulator): (usize, &MethodAccumulator)| {
-            (self.methods[i].0, accumulator.report(pipeline.memory_bytes(i) as f64 / pixels))
+            let bytes_per_pixel = pipeline.memory_bytes(i) as f64 / pixels;
+            (self.methods[i].0, accumulator.report(bytes_per_pixel, RenderTime::of(&render)))
         };
         report.methods = accumulators.iter().enumerate().map(of).collect();
         compare_with_oracle(&mut report.methods);
         report.frame_mse = accumulators.into_iter().map(MethodAccumulator::into_frame_mse).collect();
+        report.full_rate = full_rate.last().map(|_| RenderTime::of(&full_rate));
         report.foveation_ms = Quartiles::of(&foveation_ms);
         Ok(report)
     }
@@ -205,21 +213,31 @@ impl Clip {
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
+            let full_rate = source.render_time();
             let full = metric::encode(&frame.color, self.exposure_ev);
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
-            let watch = Stopwatch::start();
-            let foveated = source.foveated(index as u64, at, guide.as_ref())?;
-            let render_ms = |watch: &Stopwatch| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
-            let (samples, render_ms, step) = match foveated {
+            let (samples, full_rate, step) = match source.foveated(index as u64, at, guide.as_ref())? {
                 Some(foveated) => {
-                    let (samples, render_ms) = (foveated.samples.iter().sum(), render_ms(&watch));
-                    (Some(samples), Some(render_ms), pipeline.step_foveated(index as u64, &frame, at, foveated)?)
+                    let samples = foveated.samples.iter().sum();
+                    // The reference has other samples a pixel: its time says nothing about foveation.
+                    (Some(samples), None, pipeline.step_foveated(index as u64, &frame, at, foveated)?)
                 }
-                None => step(&mut pipeline, index as u64, &frame, at, source)?,
+                None => {
+                    let (samples, step) = step(&mut pipeline, index as u64, &frame, at, source)?;
+                    (samples, full_rate, step)
+                }
             };
-            let reference = references.next(&full, &step.tracked);
-            each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
+            let (reference, render) = (references.next(&full, &step.tracked), source.render_time());
+            each(&FrameResult {
+                index,
+                frame: &frame,
+                reference: &reference,
+                step: &step,
+                samples,
+                render,
+                full_rate,
+            })?;
         }
         Ok(pipeline)
     }

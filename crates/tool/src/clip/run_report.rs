@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::method_report::MethodReport;
 use crate::output::Output;
 use crate::report::backend::BackendReport;
+use crate::times::RenderTime;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 
@@ -46,6 +47,9 @@ struct RunReport<'a> {
     start_s: f64,
     /// FLIP's viewing distance, in pixels per degree of visual angle; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
+    /// Time of rendering the frames at full rate, which foveation saves; null if they were not rendered, or with other
+    /// samples a pixel.
+    full_rate: Option<RenderTime>,
     methods: Methods<'a>,
 }
 
@@ -107,6 +111,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         gaze_map: facts.gaze_map,
         start_s: facts.start_s,
         flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
+        full_rate: report.full_rate,
         methods: Methods(&report.methods),
     };
     let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;

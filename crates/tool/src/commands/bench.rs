@@ -2,6 +2,7 @@
 
 mod effects;
 mod foveated;
+mod growth;
 mod papers;
 mod patterns;
 mod post;
@@ -21,6 +22,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage bench post --size 3840x2160 --frames 60 --json bench.json\n  \
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
+    afterimage bench growth --of pixels,triangles --json growth.json\n  \
     afterimage bench papers --scene sponza.gltf --camera inside.json --json papers.json\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
 #[command(args_conflicts_with_subcommands = true)]
@@ -66,9 +68,10 @@ pub struct BenchArgs {
     pub json: Option<PathBuf>,
 }
 
-/// Comparisons of errors instead of times.
+/// Comparisons with options of their own.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Compare {
+    Growth(growth::GrowthArgs),
     Patterns(Box<patterns::PatternsArgs>),
     Wrs(Box<wrs_table::WrsTableArgs>),
 }
@@ -101,6 +104,7 @@ pub enum Traces {
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     match &args.compare {
+        Some(Compare::Growth(args)) => return growth::bench(args),
         Some(Compare::Patterns(args)) => return patterns::bench(args),
         Some(Compare::Wrs(args)) => return wrs_table::bench(args),
         None => {}

@@ -33,7 +33,8 @@ use std::path::PathBuf;
     afterimage run scene.glb --foveation layers --rate-mid 2 --rate-far 4 --frames 60 --method none,smr --out out/layers\n  \
     afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
-    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json."
+    frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json. Of scenes, the latter two also have the time of rendering\n\
+    the frames and that of the whole frame, renderer and method."
 )]
 pub struct RunArgs {
     /// Output folder
@@ -226,13 +227,17 @@ fn folders(args: &RunArgs) -> Vec<String> {
 
 fn print_summary(args: &RunArgs, report: &ClipReport) {
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2}"));
+    let ms = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.1}"));
     say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
-    say!("method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  ms/frame");
+    say!(
+        "method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  \
+         render +   post =  total ms"
+    );
     for (name, m) in &report.methods {
         let s = &m.scores;
         let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
         say!(
-            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>9}",
+            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>7} {:>8} {:>9}",
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
             s.whole.flip.map_or("-".into(), |v| format!("{v:.4}")),
@@ -243,13 +248,19 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             db(s.retained_psnr_db),
             db(s.flicker),
             m.share_of_oracle.and_then(|s| s.psnr).map_or("-".into(), |v| format!("{:.0} %", 100.0 * v)),
-            m.ms.map_or("-".into(), |q| format!("{:.1}", q.median)),
+            ms(m.frame.render.cost_ms()),
+            ms(m.post_ms()),
+            ms(m.total_ms()),
         );
     }
     say!("weighted: PSNR with errors weighted by the density of retinal ganglion cells, docs/metrics.md");
     say!(
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"
     );
+    say!("ms: median of a frame, CPU time of the process, or timestamps of a GPU; render: only of scenes");
+    if let Some(full) = report.full_rate.and_then(|full| full.cost_ms()) {
+        say!("rendering a frame at full rate: {full:.1} ms");
+    }
     say!("contact sheet: {}", args.out.join("sheet.png").display());
     say!("PSNR by frame: {}", args.out.join("psnr.png").display());
 }

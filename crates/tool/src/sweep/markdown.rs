@@ -36,17 +36,19 @@ fn machines(table: &Table) -> String {
 }
 
 fn points(table: &Table, input: &str, text: &mut String) -> std::fmt::Result {
-    writeln!(text, "| point | ms | B/px | samples | {} |", titles().join(" | "))?;
-    writeln!(text, "|---|---|---|---|{}", "---|".repeat(KEYS.len()))?;
+    writeln!(text, "| point | ms | render | post | B/px | samples | {} |", titles().join(" | "))?;
+    writeln!(text, "|---|---|---|---|---|---|{}", "---|".repeat(KEYS.len()))?;
     for row in table.rows.iter().filter(|r| r.point.input == input) {
         let bytes = row.bytes_per_pixel.map_or("-".into(), |b| b.to_string());
         let figures: Vec<String> = KEYS.iter().map(|key| figure(row, key)).collect();
+        let render = row.render_ms.map_or("-".into(), |ms| format!("{ms:.2}"));
         let samples = 100.0 * row.samples_share;
         writeln!(
             text,
-            "| {} | {:.2} | {bytes} | {samples:.1} % | {} |",
+            "| {} | {:.2} | {render} | {:.2} | {bytes} | {samples:.1} % | {} |",
             cell(&row.label),
             row.cost_ms,
+            row.post_ms,
             figures.join(" | ")
         )?;
     }

@@ -21,14 +21,19 @@ pub struct Measurement {
     pub machine: Machine,
     /// Time of the pass per frame in milliseconds, without the warm-up frames.
     pub pass_ms: Quartiles,
+    /// Median CPU time of the pass, if the system measures it.
+    pub pass_cpu_ms: Option<f64>,
     /// Time of the pass in each timed frame, milliseconds. Comparable frame by frame with points of the same round.
     pub frame_ms: Vec<f64>,
     /// Name of the round (batch).
     pub round: String,
     /// Time of the control method (`taa` with its defaults) in the same frames: shows the drift of the machine's speed.
     pub control_ms: Quartiles,
-    /// Time of tracing the foveated frame; `None` if a simulator foveates, whose time is not a renderer's.
+    /// Time of rendering the frame that the method gets: foveated where the renderer foveates, at full rate where a
+    /// simulator does. `None` for frames that are not rendered.
     pub render_ms: Option<Quartiles>,
+    /// Median CPU time of rendering it.
+    pub render_cpu_ms: Option<f64>,
     /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,
     /// Mean camera samples per pixel; `None` if a simulator foveates.

@@ -30,11 +30,21 @@ pub struct Row {
     pub frames: (String, Vec<f64>),
     /// Mean factor of the drift correction.
     pub drift: f64,
-    /// Time of rendering the foveated frame, milliseconds: measured if traced, else `renderer_ms` times the share of
-    /// the samples.
+    /// Time of rendering the frame that the method gets, milliseconds: measured on scenes. `renderer_ms`, if given,
+    /// times the share of the samples.
     pub render_ms: Option<f64>,
-    /// Time of the pass and of rendering, milliseconds.
+    /// Time of the pass and, where it is known, of rendering, milliseconds.
     pub cost_ms: f64,
+    /// Time of the pass, the post-process, milliseconds: the median of `pass_ms`.
+    pub post_ms: f64,
+    /// Time of the whole frame, `render_ms` and `post_ms`; `None` where the renderer's time is not known.
+    pub total_ms: Option<f64>,
+    /// CPU time of rendering, if it was measured, corrected for drift as the others.
+    pub render_cpu_ms: Option<f64>,
+    /// CPU time of the pass.
+    pub post_cpu_ms: Option<f64>,
+    /// Both together.
+    pub total_cpu_ms: Option<f64>,
     /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,
     /// Mean camera samples per pixel, of traced frames.
@@ -127,7 +137,8 @@ impl Table {
         let metrics = METRICS.iter().map(|m| m.key).collect::<Vec<_>>().join(",");
         let mut text = format!(
             "input,label,method,seeds,cost_ms,pass_ms,pass_p25_ms,pass_p75_ms,render_ms,copy_ms,drift,samples_share,\
-             bytes_per_pixel,memory_bytes_per_pixel,{metrics},frontier,command\n"
+             bytes_per_pixel,memory_bytes_per_pixel,{metrics},frontier,command,\
+             post_ms,total_ms,render_cpu_ms,post_cpu_ms,total_cpu_ms\n"
         );
         for row in &self.rows {
             let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
@@ -139,6 +150,8 @@ impl Table {
             cells.extend([number(row.bytes_per_pixel.map(f64::from)), row.memory_bytes_per_pixel.to_string()]);
             cells.extend(METRICS.iter().map(|m| number(row.values.get(m.key).copied().flatten())));
             cells.extend([row.frontier.join(" "), quoted(&row.command)]);
+            let whole = [Some(row.post_ms), row.total_ms, row.render_cpu_ms, row.post_cpu_ms, row.total_cpu_ms];
+            cells.extend(whole.map(number));
             text += &(cells.join(",") + "\n");
         }
         text
@@ -178,17 +191,22 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
         p75: mean(&|m| drift(m) * m.pass_ms.p75),
     };
     let samples_share = mean(&|m| m.samples_share);
-    let traced = first.render_ms.map(|_| mean(&|m| m.render_ms.map_or(0.0, |q| drift(m) * q.median)));
-    let render_ms = traced.or(renderer_ms.map(|ms| ms * samples_share));
+    let of_seeds = |of: &dyn Fn(&Measurement) -> Option<f64>| -> Option<f64> {
+        group.iter().map(|m| Some(drift(m) * of(m)?)).sum::<Option<f64>>().map(|sum| sum / count)
+    };
+    let measured_ms = of_seeds(&|m| m.render_ms.map(|q| q.median));
+    // What the user says of the renderer counts, even where ours was measured.
+    let render_ms = renderer_ms.map(|ms| ms * samples_share).or(measured_ms);
+    let (render_cpu_ms, post_cpu_ms) = (of_seeds(&|m| m.render_cpu_ms), of_seeds(&|m| m.pass_cpu_ms));
     let mut values = BTreeMap::new();
     let mut spread = BTreeMap::new();
     for metric in METRICS {
-        let of_seeds: Option<Vec<f64>> = group.iter().map(|m| (metric.of)(&m.figures.scores)).collect();
-        if let Some(seeds) = of_seeds.as_ref().filter(|seeds| seeds.len() > 1) {
+        let values_of: Option<Vec<f64>> = group.iter().map(|m| (metric.of)(&m.figures.scores)).collect();
+        if let Some(seeds) = values_of.as_ref().filter(|seeds| seeds.len() > 1) {
             let most = |a: [f64; 2], &v: &f64| [a[0].min(v), a[1].max(v)];
             spread.insert(metric.key, seeds.iter().fold([f64::INFINITY, f64::NEG_INFINITY], most));
         }
-        values.insert(metric.key, of_seeds.map(|seeds| seeds.iter().sum::<f64>() / count));
+        values.insert(metric.key, values_of.map(|seeds| seeds.iter().sum::<f64>() / count));
     }
     let options = first.point.options.iter().filter(|(name, value)| shared.get(*name) != Some(*value));
     let words = options.map(|(name, value)| if value.is_empty() { name.clone() } else { format!("{name} {value}") });
@@ -201,6 +219,11 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
         drift: mean(&drift),
         render_ms,
         cost_ms: pass_ms.median + render_ms.unwrap_or(0.0),
+        post_ms: pass_ms.median,
+        total_ms: render_ms.map(|ms| ms + pass_ms.median),
+        render_cpu_ms,
+        post_cpu_ms,
+        total_cpu_ms: render_cpu_ms.zip(post_cpu_ms).map(|(render, post)| render + post),
         samples_share,
         samples_per_pixel: first.samples_per_pixel.map(|_| mean(&|m| m.samples_per_pixel.unwrap_or(0.0))),
         copy_ms: mean(&|m| drift(m) * m.copy_ms),

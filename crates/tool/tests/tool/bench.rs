@@ -142,3 +142,39 @@ fn bench_compares_patterns_at_equal_numbers_of_samples() {
         refuses(&[&base[..], &more].concat(), &[more[0].trim_start_matches("--camera")]);
     }
 }
+
+#[test]
+fn bench_measures_how_time_grows() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let json = folder.text("growth.json");
+    let small = ["--size", "160x90", "--frames", "1", "--max-megapixels", "0.6", "--triangles", "2000"];
+    let text = succeeds(&[&["bench", "growth", "--of", "pixels,eyes", "--json", &json], &small[..]].concat());
+    assert!(text.contains("| megapixels | triangles | lattices | eyes | samples | render ms | smr ms | total ms |"));
+    let report = read_json(Path::new(&json));
+    let series = report["series"].as_array().unwrap();
+    assert_eq!(series.len(), 4, "two axes, two renderers");
+    for s in series {
+        let points = s["points"].as_array().unwrap();
+        assert_eq!(points.len(), 2, "{}", s["of"]);
+        for p in points {
+            let of = |key: &str| p[key].as_f64().unwrap();
+            assert!(of("render_ms") > 0.0 && of("post_ms") > 0.0);
+            assert!((of("render_ms") + of("post_ms") - of("total_ms")).abs() < 1e-9 * of("total_ms"));
+        }
+        // Twice the eyes: twice the samples.
+        if s["of"] == "eyes" {
+            assert_eq!(points[1]["samples"].as_u64(), points[0]["samples"].as_u64().map(|n| 2 * n));
+        }
+        assert!(
+            s["total"]["slope"].is_number() && s["total"]["standard_error"].is_null(),
+            "two points: {}",
+            s["total"]
+        );
+        assert!(s["last_over_first"].as_f64().unwrap() > 0.0);
+    }
+    refuses(&["bench", "growth", "--of", "time"], &["pixels"]);
+    refuses(&["bench", "growth", "--frames", "0"], &["1..=1000"]);
+}

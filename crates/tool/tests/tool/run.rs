@@ -337,3 +337,91 @@ fn traced_samples_go_through_every_method_and_both_backends_agree() {
         }
     }
 }
+
+/// Renderer and post-process, in every file that has times, add up to the whole frame.
+#[test]
+fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
+    let folder = Folder::new();
+    let kinds = [
+        ("sparse", &["--foveation", "sparse", "--geometry", "samples"][..]),
+        ("full", &["--foveation", "sparse", "--geometry", "full"]),
+        ("mip", &["--foveation", "mip"]),
+        ("traced", &["--source", "trace", "--sampling", "regions", "--region-spp", "1,1,1", "--reference-spp", "2"]),
+    ];
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let mut render_ms = vec![];
+    for (name, more) in kinds {
+        let out = folder.text(name);
+        let source = if name == "traced" { &[][..] } else { &["--source", "raster"] };
+        let small = ["--size", "320x180", "--frames", "5", "--method", "none,smr", "--backend", "cpu", "--no-flip"];
+        let said = succeeds(&run("builtin:cubes", &out, &[source, more, &small].concat()));
+        assert!(said.contains("render +   post =  total ms"), "{said}");
+        let report = read_json(&folder.path(name).join("report.json"));
+        for method in ["none", "smr"] {
+            let of = |key: &str| report["methods"][method][key].as_f64();
+            let adds = |a: Option<f64>, b: Option<f64>, total: Option<f64>, what: &str| {
+                let (a, b, total) = (a.expect(what), b.expect(what), total.expect(what));
+                assert!(a > 0.0 && b > 0.0 && (a + b - total).abs() < 1e-9 * total, "{name}, {method}, {what}");
+            };
+            let post_ms = report["methods"][method]["ms"]["median"].as_f64();
+            adds(of("render_ms"), post_ms, of("total_ms"), "total_ms");
+            if cfg!(unix) {
+                adds(of("render_cpu_ms"), of("cpu_ms"), of("total_cpu_ms"), "total_cpu_ms");
+            }
+            for key in ["device_ms", "render_device_ms", "total_device_ms"] {
+                assert!(report["methods"][method].get(key).is_some(), "{key}");
+            }
+        }
+        assert_eq!(report["methods"]["none"]["render_ms"], report["methods"]["smr"]["render_ms"], "one renderer");
+        let full_rate = &report["full_rate"];
+        match name {
+            // The reference has other samples a pixel.
+            "traced" => assert!(full_rate.is_null(), "{full_rate}"),
+            "mip" => assert_eq!(full_rate["render_ms"], report["methods"]["smr"]["render_ms"]),
+            _ => assert!(full_rate["render_ms"].as_f64().unwrap() > 0.0),
+        }
+        let clock = if cfg!(unix) { "render_cpu_ms" } else { "render_ms" };
+        render_ms.push((report["methods"]["smr"][clock].as_f64().unwrap(), full_rate[clock].as_f64()));
+        frames_add_up(&fs::read_to_string(folder.path(name).join("frames.csv")).unwrap());
+    }
+    // Reading back, references and metrics are not part of the renderer's time, or foveated frames would take longer
+    // than full-rate frames. A device's frame may be too short for that to show.
+    let [sparse, full, ..] = render_ms[..] else { panic!() };
+    println!("foveated and full rate, ms: {sparse:?}, with depth and motion everywhere {full:?}");
+    assert!(sparse.0 < sparse.1.unwrap() && full.0 < full.1.unwrap(), "{render_ms:?}");
+
+    // Frames that are read have no renderer.
+    let out = folder.text("given");
+    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "smr", "--no-flip"]].concat()));
+    let report = read_json(&folder.path("given").join("report.json"));
+    for key in ["render_ms", "render_cpu_ms", "total_ms", "total_cpu_ms"] {
+        assert!(report["methods"]["smr"].get(key).is_some_and(Value::is_null), "{key}");
+    }
+    assert!(report["full_rate"].is_null());
+    let csv = fs::read_to_string(folder.path("given").join("frames.csv")).unwrap();
+    assert!(csv.lines().nth(1).unwrap().ends_with(",,,,"), "{csv}");
+}
+
+/// Checks the times in the rows of a `frames.csv`.
+#[track_caller]
+fn frames_add_up(csv: &str) {
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(&header[..5], ["frame", "method", "psnr_db", "retained_psnr_db", "ms"], "old columns stay");
+    assert_eq!(&header[8..], ["cpu_ms", "render_ms", "render_cpu_ms", "total_ms", "total_cpu_ms"]);
+    let mut rows = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), header.len(), "{line}");
+        let of = |name: &str| cells[header.iter().position(|h| *h == name).unwrap()].parse::<f64>().ok();
+        let adds = |a: f64, b: f64, total: f64| assert!((a + b - total).abs() < 0.002, "{line}");
+        adds(of("ms").unwrap(), of("render_ms").unwrap(), of("total_ms").unwrap());
+        if cfg!(unix) {
+            adds(of("cpu_ms").unwrap(), of("render_cpu_ms").unwrap(), of("total_cpu_ms").unwrap());
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 10, "five frames of two methods");
+}

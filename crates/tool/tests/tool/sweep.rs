@@ -312,6 +312,52 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     assert_eq!(figures(&out).len(), 1);
 }
 
+/// On scenes, time is that of the whole frame: measured for sparse frames and for full-rate ones under a simulator.
+#[test]
+fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let axes = ["--axis", "method=none,smr", "--axis", "foveation+geometry=sparse+samples,mip+-"];
+    let small = ["--source", "raster", "--size", "320x180", "--frames", "38", "--backend", "gpu", "--set", "no-flip"];
+    let text = out.to_str().unwrap();
+    let said = succeeds(&[&["sweep", "builtin:cubes", "--out", text][..], &axes, &small].concat());
+    assert!(said.contains("whole frame, render + post"), "{said}");
+    let table = table(&out);
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 4);
+    let mut render_ms = BTreeMap::new();
+    for row in rows {
+        let of = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"));
+        let adds = |a: &str, b: &str, total: &str| {
+            assert!((of(a) + of(b) - of(total)).abs() < 1e-9 * of(total), "{total} of {}", row["label"]);
+        };
+        adds("render_ms", "post_ms", "total_ms");
+        adds("render_ms", "post_ms", "cost_ms");
+        if cfg!(unix) {
+            adds("render_cpu_ms", "post_cpu_ms", "total_cpu_ms");
+        }
+        assert_eq!(row["post_ms"], row["pass_ms"]["median"]);
+        render_ms.insert(row["options"]["foveation"].as_str().unwrap(), of("render_ms"));
+    }
+    println!("{render_ms:?}");
+    assert!(render_ms["sparse"] < render_ms["mip"], "a simulator needs the full-rate frame: {render_ms:?}");
+    let csv = fs::read_to_string(out.join("sweep.csv")).unwrap();
+    let header = csv.lines().next().unwrap();
+    assert!(header.starts_with("input,label,method,seeds,cost_ms,pass_ms,pass_p25_ms,pass_p75_ms,render_ms,"));
+    assert!(header.ends_with(",frontier,command,post_ms,total_ms,render_cpu_ms,post_cpu_ms,total_cpu_ms"), "{header}");
+    assert!(fs::read_to_string(out.join("pareto.svg")).unwrap().contains("whole frame: renderer and pass"));
+    // The user's renderer replaces ours.
+    succeeds(&["sweep", "--out", text, "--renderer-ms", "1000"]);
+    let rows = self::table(&out)["rows"].clone();
+    for row in rows.as_array().unwrap() {
+        let expected = 1000.0 * row["samples_share"].as_f64().unwrap();
+        assert!((row["render_ms"].as_f64().unwrap() - expected).abs() < 1e-9 * expected);
+    }
+}
+
 /// `bench wrs`: the rows contain the sweep's results and the paper's.
 #[test]
 fn the_papers_table_is_written_beside_ours() {

@@ -101,7 +101,8 @@ impl Sampling {
 }
 
 impl SparsePlan {
-    fn new(lattices: Lattices, samples: Vec<u32>, size_px: [u32; 2]) -> Self {
+    /// Plan for lattices that cover a frame of `size_px` pixels, with `samples` a point of each.
+    pub fn new(lattices: Lattices, samples: Vec<u32>, size_px: [u32; 2]) -> Self {
         let stack = lattices.as_slice();
         let points = |(i, lattice): (usize, &afterimage::Lattice)| {
             let is_read = |px: [u32; 2]| {

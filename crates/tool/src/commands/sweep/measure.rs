@@ -12,6 +12,7 @@ use crate::sweep::measurement::{ClipFacts, Machine};
 use crate::sweep::rust_source::as_rust;
 use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
+use crate::times::{RenderTime, Times};
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Filter, Image, Method, Settings};
 use afterimage_lab::clock::Quartiles;
@@ -35,7 +36,7 @@ const PICTURE_WIDTH: u32 = 960;
 struct BatchAccumulator {
     subjects: Vec<MethodAccumulator>,
     control_ms: Vec<f64>,
-    render_ms: Vec<f64>,
+    render: Times,
     samples_share: f64,
     samples: Option<u64>,
     frames: usize,
@@ -87,7 +88,8 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     let round = format!("{} and {} more", id(&batch.subjects[0].point), batch.subjects.len() - 1);
     let pixels = facts.size.iter().map(|&s| f64::from(s)).product::<f64>();
     for (i, (subject, accumulator)) in batch.subjects.iter().zip(&sums.subjects).enumerate() {
-        let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
+        let figures = accumulator.report(memory_bytes[i] as f64 / pixels, RenderTime::of(&sums.render));
+        let (pass, render) = (accumulator.times().after(WARM_UP), sums.render.after(WARM_UP));
         let rust = match clip.methods[i + 1].1 {
             RunKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
             #[cfg(feature = "ablation")]
@@ -100,11 +102,13 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             common: common.clone(),
             clip: facts.clone(),
             machine: machine.clone(),
-            pass_ms: timed(&accumulator.cost_ms()[WARM_UP..]),
-            frame_ms: accumulator.cost_ms()[WARM_UP..].iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
+            pass_ms: timed(&pass.cost_ms()),
+            pass_cpu_ms: pass.cpu_ms(),
+            frame_ms: pass.cost_ms().iter().map(|ms| (ms * 1e4).round() / 1e4).collect(),
             round: round.clone(),
             control_ms: timed(&sums.control_ms[WARM_UP..]),
-            render_ms: Quartiles::of(sums.render_ms.get(WARM_UP..).unwrap_or_default()),
+            render_ms: Quartiles::of(&render.cost_ms()),
+            render_cpu_ms: render.cpu_ms(),
             samples_share: sums.samples_share / sums.frames as f64,
             samples_per_pixel: sums.samples.map(|all| all as f64 / (sums.frames as f64 * pixels)),
             copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
@@ -137,7 +141,7 @@ fn play(
     let mut sums = BatchAccumulator {
         subjects: batch.subjects.iter().map(|_| MethodAccumulator::default()).collect(),
         control_ms: vec![],
-        render_ms: vec![],
+        render: Times::default(),
         samples_share: 0.0,
         samples: None,
         frames: 0,
@@ -145,8 +149,8 @@ fn play(
     let flip = Flip::for_view(&clip.geometry);
     let pipeline = clip.play(source, &mut |result| {
         let is_last = result.index + 1 == clip.gaze.len();
-        sums.control_ms.push(result.step.outputs[0].cost_ms());
-        sums.render_ms.extend(result.render_ms);
+        sums.control_ms.push(result.step.outputs[0].elapsed().cost_ms());
+        result.render.into_iter().for_each(|elapsed| sums.render.push(elapsed));
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
         sums.samples = result.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;

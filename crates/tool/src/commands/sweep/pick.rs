@@ -12,7 +12,8 @@ pub struct PickArgs {
     #[arg(long, default_value = "flip", value_name = "NAME", value_parser = parse_metric)]
     pub by: &'static Metric,
     /// Time of your renderer for a frame at full rate, milliseconds; foveated frames are assumed to take their share of
-    /// the samples. Default: unknown, and costs are those of the pass alone
+    /// the samples. Default: the measured time of scenes; unknown for other inputs, whose costs are those of the pass
+    /// alone
     #[arg(long, value_name = "MS")]
     pub renderer_ms: Option<f64>,
     /// Print the best settings within this time per frame, milliseconds

@@ -15,6 +15,8 @@ pub enum PresetName {
     Full,
     /// Scenes: sampling patterns, samples, path depth
     Traced,
+    /// Rasterised scenes: foveation, sizes of the fovea, rates and lattices, against the time of the whole frame
+    Raster,
     /// Sizes of the fovea and methods of the paper, three seeds
     Paper,
     /// Scenes: error against samples and time
@@ -30,6 +32,7 @@ impl PresetName {
             Self::Quick => include_str!("presets/quick.toml"),
             Self::Full => include_str!("presets/full.toml"),
             Self::Traced => include_str!("presets/traced.toml"),
+            Self::Raster => include_str!("presets/raster.toml"),
             Self::Paper => include_str!("presets/paper.toml"),
             #[cfg(feature = "ablation")]
             Self::Safeguards => include_str!("presets/safeguards.toml"),

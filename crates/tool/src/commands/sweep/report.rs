@@ -47,6 +47,8 @@ fn command() -> String {
 pub fn print_summary(args: &SweepArgs, table: &Table) {
     let by = args.pick.by;
     say!("{} points; best {} for its cost:", table.rows.len(), by.title);
+    let is_whole = table.rows.iter().all(|r| r.total_ms.is_some());
+    say!("ms: {}", if is_whole { "whole frame, render + post" } else { "the pass alone where nothing is rendered" });
     say!("  ms/frame  {:>10}  point", by.key);
     for row in table.rows.iter().filter(|r| r.frontier.contains(&by.key)) {
         let value = row.values.get(by.key).copied().flatten().map_or("-".into(), |v| format!("{v:.*}", by.digits));

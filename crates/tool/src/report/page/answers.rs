@@ -144,7 +144,10 @@ pub fn facts(table: &Table) -> String {
         (Some(ms), _) => {
             format!("{ms} ms for a full-rate frame (--renderer-ms); foveated frames take their share of the samples")
         }
-        (None, true) => "path tracer, timed in every frame".into(),
+        (None, true) => {
+            "timed in every frame: costs, budgets and the frontier are those of the whole frame, renderer and pass"
+                .into()
+        }
         (None, false) => {
             "time unknown: costs are those of the pass alone, and points are compared at equal shares of the samples"
                 .into()

@@ -4,11 +4,12 @@ function showEqual() {
   const sections = equal[chosen.input][metric.key];
   const most = Math.max(...sections.map((s) => s.points));
   const parts = sections.map((section) => {
-    const time = lines(section, section.equal_time, "Budget, ms", (line) => `≤ ${threeDigits(line.bound)}`,
+    const of = section.samples_share == null ? "whole frame" : "pass alone";
+    const time = lines(section, section.equal_time, `Budget, ms (${of})`, (line) => `≤ ${threeDigits(line.bound)}`,
       (cell) => withUnit(metric, cell.value), (a, b) => metric.more_is_better ? b.value - a.value : a.value - b.value,
       `The best ${metric.title} within a budget (${direction(metric)})`);
     const quality = lines(section, section.equal_quality, headed(metric), (line) => `${metric.more_is_better ? "≥" : "≤"} ${fixed(line.bound, metric.digits)}`,
-      (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The shortest time for a given ${metric.title}`);
+      (cell) => `${ms(cell.cost_ms)} ms`, (a, b) => a.cost_ms - b.cost_ms, `The shortest time (${of}) for a given ${metric.title}`);
     const both = el("div", { class: "beside" }, time, quality);
     if (section.samples_share == null) return both;
     const share = `${percent(section.samples_share)} of the samples (${section.points} points)`;

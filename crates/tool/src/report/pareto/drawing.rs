@@ -73,7 +73,7 @@ fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
 
 /// Names of the axes.
 fn names(metric: &Metric, renders_known: bool) -> [String; 2] {
-    let cost = if renders_known { "renderer and pass" } else { "pass alone, renderer's time unknown" };
+    let cost = if renders_known { "whole frame: renderer and pass" } else { "pass alone, renderer's time unknown" };
     let unit = if metric.unit.is_empty() { String::new() } else { format!(", {}", metric.unit) };
     let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
     [format!("milliseconds a frame ({cost}); left is cheaper"), format!("{}{unit}; {better}", metric.title)]
