@@ -10,7 +10,7 @@ mod guide;
 #[cfg(feature = "full")]
 mod sparse;
 
-pub use crate::lattices::{SampleOrder, SparseGeometry, levels};
+use crate::lattices::{SampleOrder, SparseGeometry, levels};
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
 

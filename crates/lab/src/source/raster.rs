@@ -260,10 +260,7 @@ impl RasterSource {
     }
 
     /// As [`submit`](Self::submit), and waits for the device: the time is that of this work alone.
-    fn submit_timed<T>(
-        &mut self,
-        record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T,
-    ) -> Result<T, InputError> {
+    fn submit_timed<T>(&mut self, record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T) -> Result<T, InputError> {
         self.device.wait();
         let watch = Stopwatch::start();
         let recorded = self.submit(|source, encoder| {

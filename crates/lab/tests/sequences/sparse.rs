@@ -3,7 +3,8 @@
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, Step, levels};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry, levels};
+use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;
 

@@ -3,7 +3,7 @@
 use super::number::parse_scale;
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
-use afterimage_lab::pipeline::{SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use clap::{Args, ValueEnum};
 

@@ -6,7 +6,7 @@ use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::SampleOrder;
+use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::source;
 use afterimage_lab::source::{
     FrameSource, RasterScene, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,

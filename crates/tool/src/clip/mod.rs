@@ -14,10 +14,11 @@ use afterimage::{DebugView, Foveation, Image, Method, ViewGeometry};
 use afterimage_lab::clock::{Elapsed, Quartiles};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::metric;
 use afterimage_lab::metric::{Flip, Reference, References};
 use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry, Step};
+use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
@@ -115,9 +116,8 @@ fn step(
         }
         if let Some(views) = pipeline.quad_views(gaze_px) {
             let composed = source.composed(index, &views)?.ok_or_else(|| no_quad_views(source))?;
-            let render_ms = watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
             let step = pipeline.step_composed(index, frame, gaze_px, rendered.as_ref(), &composed)?;
-            return Ok((Some(views.pixels()), Some(render_ms), step));
+            return Ok((Some(views.pixels()), step));
         }
         if let Some(rendered) = rendered {
             return Ok((None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));

@@ -3,7 +3,8 @@
 use super::rig::{FAST, Frame, device};
 use afterimage::{Filter, Foveation, Image, Lattice, Lattices, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::{Pipeline, RunKind, SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, Raster, Targets};
 use afterimage_lab::scene::{
     Environment, Material, Pose, Scene, SceneLimits, Texture, TextureRef, Triangles, Wrap, builtin,
