@@ -4,7 +4,7 @@
 use super::wait_mapped;
 use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
 /// A device without a window.
@@ -17,6 +17,7 @@ pub struct Headless {
     /// Adapter name, driver, driver version and device type.
     pub info: wgpu::AdapterInfo,
     is_lost: Arc<AtomicBool>,
+    readbacks: AtomicU64,
 }
 
 impl Headless {
@@ -70,7 +71,7 @@ impl Headless {
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost_flag = is_lost.clone();
         device.set_device_lost_callback(move |_, _| lost_flag.store(true, Ordering::Relaxed));
-        Ok(Arc::new(Self { device, queue, info: adapter.get_info(), is_lost }))
+        Ok(Arc::new(Self { device, queue, info: adapter.get_info(), is_lost, readbacks: AtomicU64::new(0) }))
     }
 
     /// Whether the device is a software renderer on the CPU.
@@ -90,6 +91,11 @@ impl Headless {
     pub fn wait(&self) {
         // A lost device is reported by the next map.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
+    /// Number of textures and buffers that were read back so far.
+    pub fn readbacks(&self) -> u64 {
+        self.readbacks.load(Ordering::Relaxed)
     }
 
     /// A 2D texture of `size` pixels with `layers` array layers and one mip level.
@@ -179,6 +185,7 @@ impl Headless {
     }
 
     fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {
+        self.readbacks.fetch_add(1, Ordering::Relaxed);
         // On a lost device the buffer is invalid, and mapping it would be an uncaptured error, which panics.
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let buffer = self.buffer(size, BufferUsages::COPY_DST | BufferUsages::MAP_READ);

@@ -3,7 +3,7 @@
 
 use super::needs_lod;
 use crate::device::Headless;
-use crate::frame::{DeviceFrame, SourceFrame};
+use crate::frame::{DeviceFrame, DeviceSamples, SourceFrame};
 use crate::shader::SHADERS;
 use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps, array_view, filled};
@@ -52,12 +52,14 @@ pub struct DeviceInputs {
     given: Given,
 }
 
-/// Color, depth and motion of samples.
+/// Color, depth and motion of samples, in an atlas or at their pixels.
 #[derive(Debug)]
 struct Atlas {
     color: Texture,
     depth: Texture,
     motion: Texture,
+    /// Of samples at their pixels.
+    noise: Option<Texture>,
 }
 
 /// Inputs that the current frame has.
@@ -129,16 +131,26 @@ impl DeviceInputs {
     /// motion, instead of those of the full-rate frame that was imported or uploaded last. Records into `encoder`.
     pub fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame, has_geometry: bool) {
         let size = [atlas.color.width(), atlas.color.height()];
-        let fits = |held: &Atlas| [held.color.width(), held.color.height()] == size;
+        // Textures with noise are the source's.
+        let fits = |held: &Atlas| [held.color.width(), held.color.height()] == size && held.noise.is_none();
         let held = self.atlas.take().filter(fits).unwrap_or_else(|| {
             let texture = |format| self.gpu.texture(size, 1, format, WRITTEN | TextureUsages::COPY_DST);
             let [color, depth] = [self.formats.color, TextureFormat::R32Float].map(texture);
-            Atlas { color, depth, motion: atlas.motion.clone() }
+            Atlas { color, depth, motion: atlas.motion.clone(), noise: None }
         });
         self.import_to(encoder, atlas, [&held.color, &held.depth]);
         self.atlas = Some(Atlas { motion: atlas.motion.clone(), ..held });
         (self.given.atlas, self.given.atlas_geometry) = (true, has_geometry);
         (self.given.lod, self.given.noise) = (false, false);
+    }
+
+    /// Makes samples at their pixels on this device the foveated frame, without a copy. `has_geometry`: with their
+    /// depth and motion, instead of those of the full-rate frame that was imported or uploaded last.
+    pub fn set_samples(&mut self, samples: &DeviceSamples, has_geometry: bool) {
+        let DeviceSamples { color, noise, depth, motion, .. } = samples.clone();
+        self.atlas = Some(Atlas { color, depth, motion, noise: Some(noise) });
+        (self.given.atlas, self.given.atlas_geometry) = (true, has_geometry);
+        (self.given.lod, self.given.noise) = (false, true);
     }
 
     /// Replaces the color of the atlas.
@@ -190,7 +202,7 @@ impl DeviceInputs {
     }
 
     /// Uploads what a frame has besides its color.
-    fn upload_others(&mut self, frame: &SourceFrame) {
+    pub(super) fn upload_others(&mut self, frame: &SourceFrame) {
         if let Some(depth) = &frame.depth {
             self.gpu.write(&self.depth, 0, depth);
         }
@@ -239,6 +251,7 @@ impl DeviceInputs {
         let given = self.given;
         let atlas = self.atlas.as_ref().filter(|_| given.atlas);
         let geometry = atlas.filter(|_| given.atlas_geometry);
+        let noise = atlas.and_then(|atlas| atlas.noise.as_ref()).unwrap_or(&self.noise);
         let [depth, motion] = match geometry {
             Some(atlas) => [Some(&atlas.depth), Some(&atlas.motion)],
             None => [given.depth.then_some(&self.depth), given.motion.then_some(&self.motion)],
@@ -248,7 +261,7 @@ impl DeviceInputs {
             motion: motion.map(Into::into),
             trust: (given.trust && use_trust).then_some((&self.trust).into()),
             lod: given.lod.then_some((&self.lod).into()),
-            noise: given.noise.then_some((&self.noise).into()),
+            noise: given.noise.then_some(noise.into()),
             reset,
             ..Frame::new(atlas.map_or(&self.foveated, |atlas| &atlas.color), views, index)
         }

@@ -5,11 +5,14 @@ use super::{Candidate, Pipeline, Step};
 #[cfg(feature = "full")]
 use crate::clock::Stopwatch;
 #[cfg(feature = "full")]
-use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
+use crate::device::Headless;
+#[cfg(feature = "full")]
+use crate::frame::{DeviceFrame, DeviceSamples, SourceFrame, SparseFrame};
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
 #[cfg(feature = "full")]
 use afterimage::{FrameError, ViewFrame};
+use rayon::prelude::*;
 #[cfg(feature = "full")]
 use std::sync::Arc;
 
@@ -89,7 +92,18 @@ impl SampleOrder {
 
 /// Level of detail of every pixel: log2 of the step of its lattice.
 pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
-    Image::from_fn_parallel(size_px, |px| lattices.at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32))
+    let mut levels = Image::filled(size_px, 0.0);
+    let width = size_px[0] as usize;
+    levels.pixels_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+        // A finer lattice replaces coarser ones.
+        for lattice in lattices.as_slice().iter().rev() {
+            let [[left, top], [right, bottom]] = lattice.covered_px().map(|px| px.map(|v| v as usize));
+            if (top..bottom).contains(&y) {
+                row[left.min(width)..right.min(width)].fill(lattice.step.ilog2() as f32);
+            }
+        }
+    });
+    levels
 }
 
 #[cfg(feature = "full")]
@@ -149,6 +163,47 @@ impl Pipeline {
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
         let outputs = self.run(index, frame, &view, candidate.as_ref(), None)?;
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
+    }
+
+    /// The device that all runs work on, if frames are foveated nowhere else: where
+    /// [`step_samples`](Self::step_samples) takes samples.
+    pub fn samples_device(&self) -> Option<Arc<Headless>> {
+        self.device.as_ref().filter(|_| !self.foveates_in_memory()).map(|device| device.gpu.clone())
+    }
+
+    /// As [`step_foveated`](Self::step_foveated), for a sparse frame whose samples its source left on the
+    /// [`samples_device`](Self::samples_device). `frame` is the full-rate frame, for the metrics and, with
+    /// [`SparseGeometry::Full`], for depth and motion.
+    ///
+    /// # Errors
+    /// As for `step`.
+    pub fn step_samples(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze_px: [f32; 2],
+        samples: &DeviceSamples,
+    ) -> Result<Step, FrameError> {
+        let size = self.geometry.size_px();
+        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
+        let lattices = self.sparse_geometry.of(samples.lattices);
+        let lods = levels(&lattices, size);
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+        let view = ViewFrame { lattices: Some(lattices), ..self.view(frame, gaze_px) };
+        let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
+        if let Some(device) = &mut self.device {
+            if !has_geometry {
+                device.inputs.upload_others(frame);
+            }
+            device.inputs.set_samples(samples, has_geometry);
+        }
+        let outputs = self.run(index, frame, &view, None, None)?;
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms: 0.0 })
+    }
+
+    /// Depth and motion of sparse frames.
+    pub fn sparse_geometry(&self) -> SparseGeometry {
+        self.sparse_geometry
     }
 }
 

@@ -5,21 +5,23 @@ use super::open::{check_size, device_lost};
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
-use crate::device::Backend;
+use crate::device::{Backend, Headless};
 use crate::error::InputError;
 use crate::frame::SourceFrame;
-use crate::frame::{FoveatedFrame, Guide};
-use crate::pipeline::SampleOrder;
+use crate::frame::{DeviceSamples, FoveatedFrame, Guide};
+use crate::pipeline::{SampleOrder, SparseGeometry};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, SparsePlan};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
+use afterimage::SettingsError;
 use glam::DMat4;
+use std::sync::Arc;
 
 /// Samples traced per call, which bounds the memory of their paths.
 const STEP: u32 = 1 << 20;
@@ -56,6 +58,8 @@ pub struct TracedSource {
     seed: u64,
     /// Cached full-rate frame of a static scene.
     still: Option<SourceFrame>,
+    /// Samples of the last sparse frame on the tracer's device.
+    on_device: Option<DeviceSamples>,
 }
 
 impl TracedSource {
@@ -96,7 +100,18 @@ impl TracedSource {
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
         };
-        Ok(Self { info, scene, world, tracer, camera, fps: f64::from(fps), samples, seed: settings.seed, still: None })
+        Ok(Self {
+            info,
+            scene,
+            world,
+            tracer,
+            camera,
+            fps: f64::from(fps),
+            samples,
+            seed: settings.seed,
+            still: None,
+            on_device: None,
+        })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -117,6 +132,15 @@ impl TracedSource {
                 .map_err(|e| InputError::device(&self.info.name, e.to_string(), "trace it on the CPU"))?;
         }
         Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
+    }
+
+    /// Plan of a sparse frame; `None` if frames are filled between their samples, or not foveated.
+    fn sparse_plan(&self, view: &View, index: u64, gaze_px: [f32; 2]) -> Result<Option<SparsePlan>, InputError> {
+        let Some((sampling, order)) = self.samples.foveated.zip(self.samples.sparse) else { return Ok(None) };
+        let plan = sampling.sparse_plan(view.geometry(), gaze_px, self.samples.samples.max(1), index, order);
+        let refused =
+            |e: SettingsError| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern");
+        plan.map(Some).map_err(refused)
     }
 
     /// An error if the device was lost, which makes the traced samples invalid.
@@ -174,11 +198,8 @@ impl FrameSource for TracedSource {
         let Some(sampling) = self.samples.foveated else { return Ok(None) };
         let [view, _] = self.pose(index)?;
         let samples = self.samples.samples.max(1);
-        if let Some(order) = self.samples.sparse {
-            let plan = sampling.sparse_plan(view.geometry(), gaze_px, samples, index, order);
-            let frame = plan
-                .map_err(|e| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern"))?
-                .trace(&self.tracer, &self.world, &view, index);
+        if let Some(plan) = self.sparse_plan(&view, index, gaze_px)? {
+            let frame = plan.trace(&self.tracer, &self.world, &view, index);
             self.check()?;
             return Ok(Some(frame));
         }
@@ -192,6 +213,28 @@ impl FrameSource for TracedSource {
         let frame = plan.trace(&self.tracer, &self.world, &view, index);
         self.check()?;
         Ok(Some(frame))
+    }
+
+    fn foveated_on(
+        &mut self,
+        device: &Arc<Headless>,
+        index: u64,
+        gaze_px: [f32; 2],
+        geometry: SparseGeometry,
+    ) -> Result<Option<DeviceSamples>, InputError> {
+        if !matches!(&self.tracer, Tracer::Gpu(tracer) if Arc::ptr_eq(tracer.device(), device)) {
+            return Ok(None);
+        }
+        let [view, previous] = self.pose(index)?;
+        let Some(plan) = self.sparse_plan(&view, index, gaze_px)? else { return Ok(None) };
+        let mut on_device = self.on_device.take().unwrap_or_else(|| DeviceSamples::new(device, self.info.size));
+        if let Tracer::Gpu(tracer) = &self.tracer {
+            plan.trace_in_place(tracer, &self.world, [&view, &previous], index, geometry, &mut on_device);
+        }
+        device.wait();
+        self.check()?;
+        self.on_device = Some(on_device.clone());
+        Ok(Some(on_device))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

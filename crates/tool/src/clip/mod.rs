@@ -183,6 +183,7 @@ impl Clip {
         }
         #[cfg(feature = "ablation")]
         let mut pipeline = pipeline.with_poison(self.poison);
+        let render_ms = |watch: &Stopwatch| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
         let mut references = self.flip().map_or_else(References::default, References::with_flip);
         for (index, &gaze) in self.gaze.iter().enumerate() {
             let frame = source.frame(index as u64)?;
@@ -190,8 +191,17 @@ impl Clip {
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
             let watch = Stopwatch::start();
+            #[cfg(feature = "full")]
+            if let Some(device) = pipeline.samples_device()
+                && let Some(on_device) = source.foveated_on(&device, index as u64, at, pipeline.sparse_geometry())?
+            {
+                let (samples, render_ms) = (Some(on_device.samples.iter().sum()), Some(render_ms(&watch)));
+                let step = pipeline.step_samples(index as u64, &frame, at, &on_device)?;
+                let reference = references.next(&full, &step.tracked);
+                each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, samples, render_ms })?;
+                continue;
+            }
             let foveated = source.foveated(index as u64, at, guide.as_ref())?;
-            let render_ms = |watch: &Stopwatch| watch.cpu_ms().unwrap_or_else(|| watch.wall_ms());
             let (samples, render_ms, step) = match foveated {
                 Some(foveated) => {
                     let (samples, render_ms) = (foveated.samples.iter().sum(), render_ms(&watch));
