@@ -86,7 +86,7 @@ pub struct DeviceSamples {
     /// Noise, as in [`FoveatedFrame::noise`]; `Rg32Float`.
     pub noise: wgpu::Texture,
     /// Distance along the view axis in metres, infinity for the background; `R32Float`. Defined for
-    /// [`SparseGeometry::Samples`](crate::pipeline::SparseGeometry::Samples).
+    /// [`SparseGeometry::Samples`](crate::lattices::SparseGeometry::Samples).
     pub depth: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`. Defined where depth is.
     pub motion: wgpu::Texture,

@@ -5,6 +5,7 @@
 //!   full rate.
 //! - [`scanpath`]: recorded and synthetic gaze.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
+//! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
 // The name `wgpu` for the chosen version.
@@ -18,6 +19,7 @@ pub mod device;
 pub mod error;
 pub mod frame;
 pub mod kernel;
+pub mod lattices;
 pub mod metric;
 pub mod picture;
 pub mod pipeline;

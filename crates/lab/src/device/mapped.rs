@@ -4,7 +4,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 use wgpu::{Buffer, BufferView, Device};
 
-/// Time in which the callback of a mapping must arrive once all work is complete. Only a device that fails takes longer.
+/// Time in which the callback of a mapping must arrive once all work is complete; exceeded only by a failing device.
 const CALLBACK_LIMIT: Duration = Duration::from_secs(60);
 
 /// Contents of a buffer after `map_async` has reported success. `None` if it is not mapped; wgpu 29 panics then.

@@ -5,11 +5,12 @@ pub mod ablation;
 #[cfg(feature = "full")]
 mod device;
 mod guide;
+#[cfg(feature = "full")]
 mod sparse;
 
+pub use crate::lattices::{SampleOrder, SparseGeometry, levels};
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
-pub use sparse::{SampleOrder, SparseGeometry, levels};
 
 use crate::clock::Stopwatch;
 use crate::device::Backend;

@@ -47,7 +47,7 @@ use crate::error::InputError;
 use crate::frame::{DeviceFrame, DeviceSamples, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
 #[cfg(feature = "full")]
-use crate::pipeline::SparseGeometry;
+use crate::lattices::SparseGeometry;
 #[cfg(feature = "full")]
 use afterimage::Lattices;
 use glam::DMat4;

@@ -9,7 +9,7 @@ use crate::device::{Backend, Headless};
 use crate::error::InputError;
 use crate::frame::SourceFrame;
 use crate::frame::{DeviceSamples, FoveatedFrame, Guide};
-use crate::pipeline::{SampleOrder, SparseGeometry};
+use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;

@@ -3,7 +3,7 @@
 use super::lattice::Lattice;
 use super::{Layers, Regions, Sampling};
 use crate::frame::{DeviceSamples, FoveatedFrame};
-use crate::pipeline::{SampleOrder, SparseGeometry, levels};
+use crate::lattices::{SampleOrder, SparseGeometry, levels};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
 use crate::trace::gpu::{GpuTracer, SampledPoint};
