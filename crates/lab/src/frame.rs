@@ -74,6 +74,47 @@ pub struct DeviceFrame {
     pub near: f32,
 }
 
+/// The samples of a sparse frame at their pixels on a device, as the path tracer leaves them until it traces the next
+/// frame. Nothing is defined between them.
+#[cfg(feature = "full")]
+#[derive(Clone, Debug)]
+pub struct DeviceSamples {
+    /// The device.
+    pub device: std::sync::Arc<crate::device::Headless>,
+    /// Linear radiance; `Rgba32Float`.
+    pub color: wgpu::Texture,
+    /// Noise, as in [`FoveatedFrame::noise`]; `Rg32Float`.
+    pub noise: wgpu::Texture,
+    /// Distance along the view axis in metres, infinity for the background; `R32Float`. Defined for
+    /// [`SparseGeometry::Samples`](crate::lattices::SparseGeometry::Samples).
+    pub depth: wgpu::Texture,
+    /// Pixels, y down, previous minus current; `Rg32Float`. Defined where depth is.
+    pub motion: wgpu::Texture,
+    /// Where the samples lie.
+    pub lattices: Lattices,
+    /// Number of samples of each lattice.
+    pub samples: Vec<u64>,
+}
+
+#[cfg(feature = "full")]
+impl DeviceSamples {
+    /// Textures for frames of `size` pixels.
+    pub fn new(device: &std::sync::Arc<crate::device::Headless>, size: [u32; 2]) -> Self {
+        use wgpu::{TextureFormat, TextureUsages};
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+        let texture = |format| device.texture(size, 1, format, usage | TextureUsages::COPY_DST);
+        Self {
+            color: texture(TextureFormat::Rgba32Float),
+            noise: texture(TextureFormat::Rg32Float),
+            depth: texture(TextureFormat::R32Float),
+            motion: texture(TextureFormat::Rg32Float),
+            lattices: Lattices::default(),
+            samples: vec![],
+            device: device.clone(),
+        }
+    }
+}
+
 /// The samples of a sparse frame, rendered alone: each lattice as a small view of its own.
 #[cfg(feature = "full")]
 #[derive(Clone, Debug)]

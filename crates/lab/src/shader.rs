@@ -38,6 +38,7 @@ static MODULES: &[Module] = &[
     module!("trace", "hit"),
     module!("trace", "hits_pass"),
     module!("trace", "lights"),
+    module!("trace", "place_pass"),
     module!("trace", "plan"),
     module!("trace", "records"),
     module!("trace", "resolve_pass"),

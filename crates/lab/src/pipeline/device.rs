@@ -3,7 +3,7 @@
 
 use super::needs_lod;
 use crate::device::Headless;
-use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, DeviceSamples, SourceFrame};
 use crate::shader::SHADERS;
 use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps, array_view, filled};
@@ -54,12 +54,14 @@ pub struct DeviceInputs {
     given: Given,
 }
 
-/// Color, depth and motion of samples.
+/// Color, depth and motion of samples, in an atlas or at their pixels.
 #[derive(Debug)]
 struct Atlas {
     color: Texture,
     depth: Texture,
     motion: Texture,
+    /// Of samples at their pixels.
+    noise: Option<Texture>,
 }
 
 /// Inputs that the current frame has.
@@ -139,11 +141,12 @@ impl DeviceInputs {
     /// motion, instead of those of the full-rate frame that was imported or uploaded last. Records into `encoder`.
     pub fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame, has_geometry: bool) {
         let size = [atlas.color.width(), atlas.color.height()];
-        let fits = |held: &Atlas| [held.color.width(), held.color.height()] == size;
+        // Textures with noise are the source's.
+        let fits = |held: &Atlas| [held.color.width(), held.color.height()] == size && held.noise.is_none();
         let held = self.atlas.take().filter(fits).unwrap_or_else(|| {
             let texture = |format| self.gpu.texture(size, 1, format, WRITTEN | TextureUsages::COPY_DST);
             let [color, depth] = [self.formats.color, TextureFormat::R32Float].map(texture);
-            Atlas { color, depth, motion: atlas.motion.clone() }
+            Atlas { color, depth, motion: atlas.motion.clone(), noise: None }
         });
         self.import_to(encoder, atlas, [&held.color, &held.depth]);
         self.atlas = Some(Atlas { motion: atlas.motion.clone(), ..held });
@@ -157,6 +160,15 @@ impl DeviceInputs {
         self.composed = Some(frame.clone());
         (self.given.rendered, self.given.rendered_geometry) = (Some(RenderedAs::Composed), has_geometry);
         (self.given.lod, self.given.noise) = (true, false);
+    }
+
+    /// Makes samples at their pixels on this device the foveated frame, without a copy. `has_geometry`: with their
+    /// depth and motion, instead of those of the full-rate frame that was imported or uploaded last.
+    pub fn set_samples(&mut self, samples: &DeviceSamples, has_geometry: bool) {
+        let DeviceSamples { color, noise, depth, motion, .. } = samples.clone();
+        self.atlas = Some(Atlas { color, depth, motion, noise: Some(noise) });
+        (self.given.rendered, self.given.rendered_geometry) = (Some(RenderedAs::Atlas), has_geometry);
+        (self.given.lod, self.given.noise) = (false, true);
     }
 
     /// Replaces the color of the atlas.
@@ -208,7 +220,7 @@ impl DeviceInputs {
     }
 
     /// Uploads what a frame has besides its color.
-    fn upload_others(&mut self, frame: &SourceFrame) {
+    pub(super) fn upload_others(&mut self, frame: &SourceFrame) {
         if let Some(depth) = &frame.depth {
             self.gpu.write(&self.depth, 0, depth);
         }
@@ -257,6 +269,7 @@ impl DeviceInputs {
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
         let given = self.given;
         let atlas = self.atlas.as_ref().filter(|_| given.rendered == Some(RenderedAs::Atlas));
+        let noise = atlas.and_then(|atlas| atlas.noise.as_ref()).unwrap_or(&self.noise);
         let composed = self.composed.as_ref().filter(|_| given.rendered == Some(RenderedAs::Composed));
         let rendered = atlas.map(|atlas| [&atlas.color, &atlas.depth, &atlas.motion]);
         let rendered = rendered.or(composed.map(|frame| [&frame.color, &frame.distance, &frame.motion]));
@@ -269,7 +282,7 @@ impl DeviceInputs {
             motion: motion.map(Into::into),
             trust: (given.trust && use_trust).then_some((&self.trust).into()),
             lod: given.lod.then_some(composed.map_or(&self.lod, |frame| &frame.lod).into()),
-            noise: given.noise.then_some((&self.noise).into()),
+            noise: given.noise.then_some(noise.into()),
             reset,
             ..Frame::new(rendered.map_or(&self.foveated, |[color, ..]| color), views, index)
         }

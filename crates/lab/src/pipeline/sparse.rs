@@ -2,7 +2,8 @@
 
 use super::{Candidate, Pipeline, Step};
 use crate::clock::Stopwatch;
-use crate::frame::{DeviceFrame, SourceFrame, SparseFrame};
+use crate::device::Headless;
+use crate::frame::{DeviceFrame, DeviceSamples, SourceFrame, SparseFrame};
 use crate::lattices::{SparseGeometry, levels};
 use afterimage::{FrameError, Image, ViewFrame};
 use std::sync::Arc;
@@ -63,6 +64,47 @@ impl Pipeline {
         let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
         let outputs = self.run(index, frame, &view, candidate.as_ref(), None)?;
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
+    }
+
+    /// The device that all runs work on, if frames are foveated nowhere else: where
+    /// [`step_samples`](Self::step_samples) takes samples.
+    pub fn samples_device(&self) -> Option<Arc<Headless>> {
+        self.device.as_ref().filter(|_| !self.foveates_in_memory()).map(|device| device.gpu.clone())
+    }
+
+    /// As [`step_foveated`](Self::step_foveated), for a sparse frame whose samples its source left on the
+    /// [`samples_device`](Self::samples_device). `frame` is the full-rate frame, for the metrics and, with
+    /// [`SparseGeometry::Full`], for depth and motion.
+    ///
+    /// # Errors
+    /// As for `step`.
+    pub fn step_samples(
+        &mut self,
+        index: u64,
+        frame: &SourceFrame,
+        gaze_px: [f32; 2],
+        samples: &DeviceSamples,
+    ) -> Result<Step, FrameError> {
+        let size = self.geometry.size_px();
+        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
+        let lattices = self.sparse_geometry.of(samples.lattices);
+        let lods = levels(&lattices, size);
+        let tracked = self.tracker.advance(frame, &self.geometry, &ecc_deg, &lods);
+        let view = ViewFrame { lattices: Some(lattices), ..self.view(frame, gaze_px) };
+        let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
+        if let Some(device) = &mut self.device {
+            if !has_geometry {
+                device.inputs.upload_others(frame);
+            }
+            device.inputs.set_samples(samples, has_geometry);
+        }
+        let outputs = self.run(index, frame, &view, None, None)?;
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms: 0.0 })
+    }
+
+    /// Depth and motion of sparse frames.
+    pub fn sparse_geometry(&self) -> SparseGeometry {
+        self.sparse_geometry
     }
 }
 

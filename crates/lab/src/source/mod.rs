@@ -41,15 +41,21 @@ pub use still::StillSource;
 pub use traced::{TracedSamples, TracedSource};
 
 use crate::clock::Elapsed;
+#[cfg(feature = "full")]
+use crate::device::Headless;
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, DeviceSamples, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use crate::lattices::SparseGeometry;
 #[cfg(feature = "full")]
 use crate::quad_views::QuadViews;
 #[cfg(feature = "full")]
 use afterimage::Lattices;
 use glam::DMat4;
+#[cfg(feature = "full")]
+use std::sync::Arc;
 
 /// Properties of a source that are known before its first frame is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +111,22 @@ pub trait FrameSource {
         _gaze_px: [f32; 2],
         _guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
+        Ok(None)
+    }
+
+    /// As [`foveated`](Self::foveated), with the samples of a sparse frame left on `device`, and with their depth and
+    /// motion if `geometry` asks for them. `None` unless the source makes sparse frames on that device.
+    ///
+    /// # Errors
+    /// As for [`frame`](Self::frame).
+    #[cfg(feature = "full")]
+    fn foveated_on(
+        &mut self,
+        _device: &Arc<Headless>,
+        _index: u64,
+        _gaze_px: [f32; 2],
+        _geometry: SparseGeometry,
+    ) -> Result<Option<DeviceSamples>, InputError> {
         Ok(None)
     }
 

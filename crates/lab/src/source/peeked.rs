@@ -2,15 +2,21 @@
 
 use super::{CameraPose, FrameSource, SourceInfo};
 use crate::clock::Elapsed;
+#[cfg(feature = "full")]
+use crate::device::Headless;
 use crate::error::InputError;
 #[cfg(feature = "full")]
-use crate::frame::{ComposedFrame, DeviceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, DeviceSamples, SparseFrame};
 use crate::frame::{FoveatedFrame, Guide, SourceFrame};
+#[cfg(feature = "full")]
+use crate::lattices::SparseGeometry;
 #[cfg(feature = "full")]
 use crate::quad_views::QuadViews;
 #[cfg(feature = "full")]
 use afterimage::Lattices;
 use glam::DMat4;
+#[cfg(feature = "full")]
+use std::sync::Arc;
 
 /// Reads frame 0 when it is made, as a check that the input can be read, and hands that out when it is asked for first.
 pub struct PeekedSource<'a> {
@@ -48,6 +54,17 @@ impl FrameSource for PeekedSource<'_> {
         guide: Option<&Guide>,
     ) -> Result<Option<FoveatedFrame>, InputError> {
         self.source.foveated(index, gaze_px, guide)
+    }
+
+    #[cfg(feature = "full")]
+    fn foveated_on(
+        &mut self,
+        device: &Arc<Headless>,
+        index: u64,
+        gaze_px: [f32; 2],
+        geometry: SparseGeometry,
+    ) -> Result<Option<DeviceSamples>, InputError> {
+        self.source.foveated_on(device, index, gaze_px, geometry)
     }
 
     #[cfg(feature = "full")]

@@ -6,15 +6,15 @@ use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
 use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
-use crate::device::{Backend, SpanClock};
+use crate::device::{Backend, Headless, SpanClock};
 use crate::error::InputError;
 use crate::frame::SourceFrame;
-use crate::frame::{FoveatedFrame, Guide};
-use crate::lattices::SampleOrder;
+use crate::frame::{DeviceSamples, FoveatedFrame, Guide};
+use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, SparsePlan};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
@@ -22,6 +22,7 @@ use crate::trace::work::Spans;
 use crate::trace::world::{World, light_if_dark};
 use afterimage::SettingsError;
 use glam::DMat4;
+use std::sync::Arc;
 
 /// Samples traced per call, which bounds the memory of their paths.
 const STEP: u32 = 1 << 20;
@@ -61,6 +62,8 @@ pub struct TracedSource {
     clock: SpanClock,
     /// Of the last frame.
     render_time: Option<Elapsed>,
+    /// Samples of the last sparse frame on the tracer's device.
+    on_device: Option<DeviceSamples>,
 }
 
 impl TracedSource {
@@ -113,6 +116,7 @@ impl TracedSource {
             still: None,
             clock: SpanClock::new(backend),
             render_time: None,
+            on_device: None,
         })
     }
 
@@ -134,6 +138,15 @@ impl TracedSource {
                 .map_err(|e| InputError::device(&self.info.name, e.to_string(), "trace it on the CPU"))?;
         }
         Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
+    }
+
+    /// Plan of a sparse frame; `None` if frames are filled between their samples, or not foveated.
+    fn sparse_plan(&self, view: &View, index: u64, gaze_px: [f32; 2]) -> Result<Option<SparsePlan>, InputError> {
+        let Some((sampling, order)) = self.samples.foveated.zip(self.samples.sparse) else { return Ok(None) };
+        let plan = sampling.sparse_plan(view.geometry(), gaze_px, self.samples.samples.max(1), index, order);
+        let refused =
+            |e: SettingsError| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern");
+        plan.map(Some).map_err(refused)
     }
 
     /// An error if the device was lost, which makes the traced samples invalid.
@@ -198,23 +211,18 @@ impl FrameSource for TracedSource {
         let Some(sampling) = self.samples.foveated else { return Ok(None) };
         let [view, _] = self.pose(index)?;
         let samples = self.samples.samples.max(1);
-        let wrong = |e: SettingsError, expected| InputError::request(&self.info.name, e.to_string(), expected);
         let (frame, took) = self.clock.time(|| {
-            let (tracer, world, geometry) = (&self.tracer, &self.world, view.geometry());
-            if let Some(order) = self.samples.sparse {
-                let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, order);
-                return Ok(plan
-                    .map_err(|e| wrong(e, "choose another sampling pattern"))?
-                    .trace(tracer, world, &view, index));
+            if let Some(plan) = self.sparse_plan(&view, index, gaze_px)? {
+                return Ok(plan.trace(&self.tracer, &self.world, &view, index));
             }
-            let plan = sampling.plan(geometry, gaze_px, samples, index);
+            let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
             let plan = match guide {
                 None => plan,
-                Some(guide) => {
-                    plan.guided(guide, index, self.seed).map_err(|e| wrong(e, "give a guide of the frame's size"))?
-                }
+                Some(guide) => plan.guided(guide, index, self.seed).map_err(|e| {
+                    InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size")
+                })?,
             };
-            Ok(plan.trace(tracer, world, &view, index))
+            Ok(plan.trace(&self.tracer, &self.world, &view, index))
         });
         let frame: FoveatedFrame = frame?;
         self.check()?;
@@ -224,6 +232,34 @@ impl FrameSource for TracedSource {
 
     fn render_time(&self) -> Option<Elapsed> {
         self.render_time
+    }
+
+    fn foveated_on(
+        &mut self,
+        device: &Arc<Headless>,
+        index: u64,
+        gaze_px: [f32; 2],
+        geometry: SparseGeometry,
+    ) -> Result<Option<DeviceSamples>, InputError> {
+        if !matches!(&self.tracer, Tracer::Gpu(tracer) if Arc::ptr_eq(tracer.device(), device)) {
+            return Ok(None);
+        }
+        let [view, previous] = self.pose(index)?;
+        let mut on_device = self.on_device.take().unwrap_or_else(|| DeviceSamples::new(device, self.info.size));
+        let (traced, took) = self.clock.time(|| {
+            let Some(plan) = self.sparse_plan(&view, index, gaze_px)? else { return Ok(false) };
+            if let Tracer::Gpu(tracer) = &self.tracer {
+                plan.trace_in_place(tracer, &self.world, [&view, &previous], index, geometry, &mut on_device);
+            }
+            Ok(true)
+        });
+        if !traced? {
+            return Ok(None);
+        }
+        self.check()?;
+        self.render_time = Some(took);
+        self.on_device = Some(on_device.clone());
+        Ok(Some(on_device))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

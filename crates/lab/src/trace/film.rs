@@ -61,16 +61,27 @@ impl Film {
 
     /// Statistics of an image pixel; empty outside the window.
     #[inline]
-    pub fn at(&self, [x, y]: [u32; 2]) -> Moments {
+    pub fn at(&self, pixel: [u32; 2]) -> Moments {
+        self.of_window(&self.moments, pixel)
+    }
+
+    /// Value at an image pixel of `values`, which has the window's size; the default outside the window.
+    #[inline]
+    pub(super) fn of_window<T: Copy + Default>(&self, values: &Image<T>, [x, y]: [u32; 2]) -> T {
         // Coordinates left of or above the window wrap to large numbers, which lie outside it.
         let [x, y] = [x.wrapping_sub(self.first[0]), y.wrapping_sub(self.first[1])];
-        let [width, height] = self.moments.size();
-        if x < width && y < height { self.moments.at(x as usize, y as usize) } else { Moments::default() }
+        let [width, height] = values.size();
+        if x < width && y < height { values.at(x as usize, y as usize) } else { T::default() }
     }
 
     /// Offset to subtract from y * width + x to index `moments` by image pixel.
     pub(super) fn base(&self) -> u32 {
-        self.first[1] * self.moments.size()[0] + self.first[0]
+        Self::base_of(self.first, self.moments.size())
+    }
+
+    /// [`base`](Self::base) of a window.
+    pub(super) fn base_of(first: [u32; 2], size: [u32; 2]) -> u32 {
+        first[1] * size[0] + first[0]
     }
 
     /// Mean radiance; black where there are no samples.
@@ -94,6 +105,12 @@ impl Film {
             _ => luma(own.variance_of_mean().map(f32::sqrt)),
         };
         [error, own.count as f32]
+    }
+
+    /// [`noise_at`](Self::noise_at) of every pixel of the window.
+    pub(super) fn noise(&self) -> Image<[f32; 2]> {
+        let [left, top] = self.first;
+        Image::from_fn_parallel(self.moments.size(), |[x, y]| self.noise_at([left + x, top + y]))
     }
 
     /// Standard deviation of luma over the 3x3 neighbourhood.

@@ -27,8 +27,20 @@ impl Surfaces {
     /// [`World::pose`].
     pub fn trace(world: &World, view: &View, previous: &View, effects: Effects) -> Self {
         let size = view.geometry().size_px();
+        let at = Self::at_pixels(world, view, previous, effects);
+        let pixels = Image::from_fn_parallel(size, at);
+        Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
+    }
+
+    /// Distance and motion at a pixel, as a function: what [`trace`](Self::trace) computes for all pixels.
+    pub fn at_pixels(
+        world: &World,
+        view: &View,
+        previous: &View,
+        effects: Effects,
+    ) -> impl Fn([u32; 2]) -> (f32, [f32; 2]) + Sync {
         let rays = view.rays();
-        let pixels = Image::from_fn_parallel(size, |[x, y]| {
+        move |[x, y]| {
             let px = [x as f32, y as f32];
             let direction = unit(rays.corner + rays.right * px[0] + rays.down * px[1]);
             let Some(seen) = first_surface(world, rays.origin, direction, effects) else {
@@ -37,8 +49,7 @@ impl Surfaces {
             };
             let depth = view.project(seen.current).map_or(f32::INFINITY, |(_, depth)| depth as f32);
             (depth, motion(px, previous.project(seen.previous).map(|(px, _)| px)))
-        });
-        Self { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) }
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::trace::sampling::{Regions, Sampling};
 use clap::{Args, ValueEnum};
 
 /// Foveation simulator, and the resolution by eccentricity.
@@ -43,6 +44,18 @@ pub struct FoveationArgs {
 }
 
 impl FoveationArgs {
+    /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
+    pub fn regions(&self, spp: u32) -> Result<Sampling, Failure> {
+        let blocks = [self.rate_mid, self.rate_far];
+        let regions =
+            Regions { samples: [spp; 3], blocks, diameters_deg: [self.fovea, self.mid], ..Regions::default() };
+        let sampling = Sampling::Regions(regions);
+        sampling.check_sparse().map_err(|e| {
+            Failure::Input(format!("--foveation sparse: {e}; choose --rate-mid above 1 and --rate-far above that"))
+        })?;
+        Ok(sampling)
+    }
+
     /// Converts the options to the library's settings.
     pub fn foveation(&self) -> Foveation {
         if self.filter == FilterName::Uniform {

@@ -70,8 +70,8 @@ pub struct Rendering {
 pub struct FoveatedSampling {
     /// Their pattern.
     pub pattern: Sampling,
-    /// Whether they are given as samples, not filled in between.
-    pub sparse: bool,
+    /// Order in which their lattices move, if they are given as samples, not filled in between.
+    pub sparse: Option<SampleOrder>,
     /// Samples per pixel of their full-rate references.
     pub reference_spp: u32,
 }
@@ -126,7 +126,7 @@ impl InputArgs {
         let foveated = rendering.foveated;
         let samples = TracedSamples {
             foveated: foveated.map(|f| f.pattern),
-            sparse: foveated.filter(|f| f.sparse).map(|_| SampleOrder::default()),
+            sparse: foveated.and_then(|f| f.sparse),
             samples: self.spp,
             full_rate_samples: foveated.map_or(self.spp, |f| f.reference_spp),
         };

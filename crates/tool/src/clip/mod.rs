@@ -126,6 +126,34 @@ fn step(
     Ok((None, pipeline.step(index, frame, Some(gaze_px))?))
 }
 
+/// As [`step`], for samples that the source leaves on the pipeline's device; `None` if it cannot.
+#[cfg(feature = "full")]
+fn step_samples(
+    pipeline: &mut Pipeline,
+    index: u64,
+    frame: &SourceFrame,
+    gaze_px: [f32; 2],
+    source: &mut dyn FrameSource,
+) -> Result<Option<(u64, Step)>, Failure> {
+    let Some(device) = pipeline.samples_device() else { return Ok(None) };
+    let Some(on_device) = source.foveated_on(&device, index, gaze_px, pipeline.sparse_geometry())? else {
+        return Ok(None);
+    };
+    let step = pipeline.step_samples(index, frame, gaze_px, &on_device)?;
+    Ok(Some((on_device.samples.iter().sum(), step)))
+}
+
+#[cfg(not(feature = "full"))]
+fn step_samples(
+    _: &mut Pipeline,
+    _: u64,
+    _: &SourceFrame,
+    _: [f32; 2],
+    _: &mut dyn FrameSource,
+) -> Result<Option<(u64, Step)>, Failure> {
+    Ok(None)
+}
+
 /// The plan refuses quad views of other sources.
 #[cfg(feature = "full")]
 fn no_quad_views(source: &dyn FrameSource) -> Failure {
@@ -217,17 +245,17 @@ impl Clip {
             let full = metric::encode(&frame.color, self.exposure_ev);
             let at = pipeline.look(gaze);
             let guide = pipeline.guide(&frame);
-            let (samples, full_rate, step) = match source.foveated(index as u64, at, guide.as_ref())? {
-                Some(foveated) => {
+            // The reference of a traced frame has other samples a pixel: its time says nothing about foveation.
+            let (samples, full_rate, step) =
+                if let Some((samples, step)) = step_samples(&mut pipeline, index as u64, &frame, at, source)? {
+                    (Some(samples), None, step)
+                } else if let Some(foveated) = source.foveated(index as u64, at, guide.as_ref())? {
                     let samples = foveated.samples.iter().sum();
-                    // The reference has other samples a pixel: its time says nothing about foveation.
                     (Some(samples), None, pipeline.step_foveated(index as u64, &frame, at, foveated)?)
-                }
-                None => {
+                } else {
                     let (samples, step) = step(&mut pipeline, index as u64, &frame, at, source)?;
                     (samples, full_rate, step)
-                }
-            };
+                };
             let (reference, render) = (references.next(&full, &step.tracked), source.render_time());
             each(&FrameResult {
                 index,

@@ -7,6 +7,7 @@ mod papers;
 mod patterns;
 mod post;
 mod rays;
+mod savings;
 mod subject;
 mod wrs_table;
 
@@ -24,6 +25,7 @@ use std::path::{Path, PathBuf};
     afterimage bench trace --scene builtin:courtyard --foveated\n  \
     afterimage bench growth --of pixels,triangles --json growth.json\n  \
     afterimage bench papers --scene sponza.gltf --camera inside.json --json papers.json\n  \
+    afterimage bench foveated --scene builtin:courtyard --backend cpu\n  \
     MESA_SHADER_CACHE_DISABLE=true afterimage bench effects --out docs/effects.md")]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct BenchArgs {
@@ -33,25 +35,25 @@ pub struct BenchArgs {
     #[arg(value_enum, default_value = "post")]
     pub what: What,
     /// Size of a frame, pixels; default: 1920x1080 for post, 640x360 for trace, 1920x1080 for papers (the second
-    /// paper's frames are as wide as this height), 192x108 for effects
+    /// paper's frames are as wide as this height), 960x540 for foveated, 192x108 for effects
     #[arg(long, value_parser = parse_size, value_name = "WxH")]
     pub size: Option<[u32; 2]>,
-    /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; for papers per pattern, at
-    /// least 1, default: 3
+    /// Frames after warm-up, at least 30; default: 60 for post, 30 for trace and effects; for papers and
+    /// foveated per pattern, at least 1, default: 3
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, papers (first paper), effects: scenes, separated by commas; default: builtin:courtyard, for effects four
+    /// trace, papers (first paper), foveated, effects: scenes, separated by commas; default: builtin:courtyard, for effects four
     /// built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, papers (first paper): camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
+    /// trace, papers (first paper), foveated: camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
     /// lateral, orbit, walk, or a file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
-    /// trace, papers, effects: device that traces; papers use the adapter if there is one
+    /// trace, papers, foveated, effects: device that traces; papers use the adapter if there is one
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Traces,
     /// effects: write the tables between the markers of this Markdown file, or to a new file
@@ -86,6 +88,9 @@ pub enum What {
     Trace,
     /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results and ours
     Papers,
+    /// What of the samples that foveated path tracing saves becomes saved time: one path a lattice point, regions
+    /// 8,4,2 and 32,16,8
+    Foveated,
     /// The path tracer with and without each effect that a scene does not need
     Effects,
 }
@@ -113,10 +118,11 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
         What::Post => ([1920, 1080], 60),
         What::Trace => ([640, 360], 30),
         What::Papers => ([1920, 1080], foveated::ROUNDS),
+        What::Foveated => ([960, 540], foveated::ROUNDS),
         What::Effects => ([192, 108], 30),
     };
     let (size, frames) = (args.size.unwrap_or(size), args.frames.unwrap_or(frames));
-    let least = if args.what == What::Papers { 1 } else { 30 };
+    let least = if matches!(args.what, What::Papers | What::Foveated) { 1 } else { 30 };
     if !(least..=100_000).contains(&frames) {
         return Err(Failure::Input(format!("--frames {frames}: expected {least} to 100000")));
     }
@@ -124,6 +130,7 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
         What::Post => post::bench(args, size, frames),
         What::Trace => rays::bench(args, size, frames),
         What::Papers => papers::bench(args, size, frames),
+        What::Foveated => savings::bench(args, size, frames),
         What::Effects => effects::bench(args, size, frames),
     }
 }

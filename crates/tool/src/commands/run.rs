@@ -109,7 +109,7 @@ impl RunArgs {
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
-            sparse: self.is_sparse(),
+            sparse: self.is_sparse().then(|| self.foveation.order.order()),
             reference_spp: self.reference_spp,
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
@@ -119,6 +119,9 @@ impl RunArgs {
     pub fn sampling(&self) -> Result<Option<Sampling>, Failure> {
         let is_traced = self.input.source == Some(SourceName::Trace);
         if self.sampling.sampling == SamplingName::Uniform {
+            if is_traced && self.is_sparse() {
+                return self.foveation.regions(self.input.spp).map(Some);
+            }
             // Frames without foveation: their error is noise alone.
             return Ok((is_traced && self.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
         }

@@ -6,6 +6,7 @@ mod compute;
 mod expand;
 mod passes;
 mod paths;
+mod place;
 pub mod ray_lists;
 pub mod scene_buffer;
 
@@ -14,16 +15,19 @@ use super::film::{Film, Moments};
 use super::scene_buffer::{SceneBuffer, SceneBufferBuilder, SceneBufferError, Section};
 use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
-use super::work::Work;
+use super::work::{Spans, Work};
 use super::world::World;
 use crate::device::{DeviceClock, Headless};
-use afterimage::{FrameError, Image};
+use crate::frame::DeviceSamples;
+use afterimage::{FrameError, Image, Lattice};
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
-use paths::{FrameUniforms, Paths};
+use paths::{FrameUniforms, Paths, Run};
+use place::Place;
+pub use place::SampledPoint;
 use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Number of paths in flight.
@@ -43,6 +47,8 @@ pub struct GpuTracer {
     on_device: GpuSceneBuffer,
     passes: Passes,
     expand: Expand,
+    /// Compiled at its first use.
+    place: OnceLock<Place>,
     paths: Paths,
     /// Time spent compiling kernels, as far as the driver compiles them at creation.
     pub compile_time: Duration,
@@ -100,7 +106,18 @@ impl GpuTracer {
         let expand = Expand::new(&device.device);
         let compile_time = started.elapsed();
         let paths = Paths::new(&device.device, &passes, BATCH);
-        Ok(Self { device, settings, effects, scene_buffer, on_device, passes, expand, paths, compile_time })
+        Ok(Self {
+            device,
+            settings,
+            effects,
+            scene_buffer,
+            on_device,
+            passes,
+            expand,
+            place: OnceLock::new(),
+            paths,
+            compile_time,
+        })
     }
 
     /// Effects that are compiled in.
@@ -172,8 +189,55 @@ impl GpuTracer {
         if batches(work).is_empty() {
             return;
         }
-        let rays = view.rays();
         let size = film.moments.size();
+        let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();
+        let run = self.submit_batches(world, view, frame, work, (size[0], film.base(), &before), clock);
+        let (rows, counters) = run.read(&self.device);
+        let moments = rows.as_chunks::<2>().0.iter().map(moments_of).collect();
+        film.moments = Image::from_pixels(size, moments).expect("as many pixels as before");
+        film.rays += counters.rays;
+        film.nonfinite += counters.nonfinite;
+    }
+
+    /// Device that traces.
+    pub fn device(&self) -> &Arc<Headless> {
+        &self.device
+    }
+
+    /// Traces samples `work` of points of a lattice and leaves them on the device: writes them to their pixels in
+    /// `samples`, with the distances and motion vectors of `points`. Nothing is read back. `view` is the view on the
+    /// lattice, and `points` are the points of `work`.
+    pub fn trace_in_place(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        work: &Spans,
+        (lattice, points): (&Lattice, &[SampledPoint]),
+        samples: &DeviceSamples,
+    ) {
+        if work.is_empty() {
+            return;
+        }
+        let (first, size) = Spans::window(std::slice::from_ref(work));
+        let film = vec![[0.0; 4]; 2 * size[0] as usize * size[1] as usize];
+        let base = Film::base_of(first, size);
+        let run = self.submit_batches(world, view, frame, work.into(), (size[0], base, &film), None);
+        let place = self.place.get_or_init(|| Place::new(&self.device.device));
+        place.submit(&self.device, lattice, points, run.film(), [first, size], samples);
+    }
+
+    /// Traces `work` into a film on the device. The film: its width in pixels, its base, and what it holds before.
+    fn submit_batches(
+        &self,
+        world: &World,
+        view: &View,
+        frame: u64,
+        work: Work,
+        (width, film_base, before): (u32, u32, &[[f32; 4]]),
+        clock: Option<&DeviceClock>,
+    ) -> Run<'_> {
+        let rays = view.rays();
         let mut uniforms = FrameUniforms {
             origin: rays.origin.to_array(),
             key: super::cpu::path_key(self.settings.seed, frame),
@@ -182,20 +246,19 @@ impl GpuTracer {
             right: rays.right.to_array(),
             sky_probability: world.sky_probability,
             down: rays.down.to_array(),
-            width: size[0],
+            width,
             sky: world.sky.to_array(),
             first_item: 0,
             map_size: world.map_size,
             items: 0,
             capacity: BATCH,
             jitter: rays.jitter,
-            film_base: film.base(),
+            film_base,
             unused: [0; 2],
         };
         let device = &self.device.device;
-        let before: Vec<[f32; 4]> = film.moments.pixels().iter().flat_map(rows_of).collect();
         let (list, expansion) = self.expand.list(device, work);
-        let run = self.paths.run(device, &self.passes, &self.on_device, &list, &before);
+        let run = self.paths.run(device, &self.passes, &self.on_device, &list, before);
         for (batch, index) in batches(work).into_iter().zip(0..) {
             uniforms.first_item = batch.first_item;
             uniforms.items = batch.items;
@@ -207,11 +270,7 @@ impl GpuTracer {
             // Without waiting, a software device holds the memory of all batches at once.
             self.device.wait();
         }
-        let (rows, counters) = run.read(&self.device);
-        let moments = rows.as_chunks::<2>().0.iter().map(moments_of).collect();
-        film.moments = Image::from_pixels(size, moments).expect("as many pixels as before");
-        film.rays += counters.rays;
-        film.nonfinite += counters.nonfinite;
+        run
     }
 }
 

@@ -29,20 +29,37 @@ impl Filter {
     }
 }
 
+/// Lattice points around a pixel along one axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    /// Indices of the two points on either side; 1 and 2 are the nearest.
+    points: [u32; 4],
+    /// Position between points 1 and 2, in steps.
+    part: f32,
+    /// Index of the nearest point.
+    pub nearest: u32,
+}
+
+impl Around {
+    pub fn new(lattice: &Lattice, axis: usize, px: u32) -> Self {
+        let at = lattice.coordinate([px as f32; 2])[axis];
+        let base = at.floor();
+        let last = lattice.points[axis] as i32 - 1;
+        Self {
+            points: [-1, 0, 1, 2].map(|d| (base as i32 + d).clamp(0, last) as u32),
+            part: at - base,
+            nearest: (at.round().max(0.0) as u32).min(lattice.points[axis].saturating_sub(1)),
+        }
+    }
+}
+
 /// Value of the film at a pixel. Points without samples are skipped; the bicubic filter falls back to bilinear if it
 /// lacks one.
-pub(super) fn value_at(film: &Film, lattice: &Lattice, px: [f32; 2], filter: Filter) -> Vec3 {
-    let at = lattice.coordinate(px);
-    let base = at.map(|v| v.floor());
-    let part = [at[0] - base[0], at[1] - base[1]];
-    // Columns and rows of the surrounding points; indices 1 and 2 are the nearest.
-    let around = |axis: usize| {
-        let last = lattice.points[axis] as i32 - 1;
-        [-1, 0, 1, 2].map(|d| (base[axis] as i32 + d).clamp(0, last) as u32)
-    };
-    let (xs, ys) = (around(0), around(1));
+#[inline]
+pub(super) fn value_at(film: &Film, filter: Filter, x: &Around, y: &Around) -> Vec3 {
+    let part = [x.part, y.part];
     let tap = |i: usize, j: usize| {
-        let moments = film.at([xs[i], ys[j]]);
+        let moments = film.at([x.points[i], y.points[j]]);
         (moments.count > 0).then_some(moments.mean)
     };
     // A pixel on a point takes that point's value, whether or not its neighbours have samples.

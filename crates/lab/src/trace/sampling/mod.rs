@@ -26,7 +26,7 @@ use super::work::Spans;
 use super::world::World;
 use crate::frame::FoveatedFrame;
 use afterimage::{Filter, Foveation, Image, ViewGeometry};
-use rings::Ring;
+use rings::{Blended, Ring};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -176,26 +176,17 @@ impl Plan {
 
     /// Traces the plan and reconstructs the full frame.
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
-        let mut done = FoveatedFrame {
-            color: Image::filled(self.size_px, [0.0; 3]),
-            lod: Image::filled(self.size_px, 0.0),
-            noise: Image::filled(self.size_px, [0.0; 2]),
-            lattices: None,
-            samples: vec![],
-            rays: 0,
-            nonfinite: 0,
-        };
         let work = self.work();
+        let (mut samples, mut rays, mut nonfinite) = (vec![], 0, 0);
         let mut add = |view: &View, mut film: Film, work: &[Spans]| {
             for spans in work {
                 tracer.trace(world, view, frame, spans, &mut film);
             }
-            done.samples.push(work.iter().map(Spans::len).sum());
-            done.rays += film.rays;
-            done.nonfinite += film.nonfinite;
+            samples.push(work.iter().map(Spans::len).sum());
+            (rays, nonfinite) = (rays + film.rays, nonfinite + film.nonfinite);
             film
         };
-        match &self.kind {
+        let Blended { color, lod, noise } = match &self.kind {
             Kind::Rings(rings) => {
                 let films: Vec<Film> = rings
                     .iter()
@@ -205,17 +196,14 @@ impl Plan {
                         add(&view.on_lattice(&ring.lattice), Film::window(first, size), work)
                     })
                     .collect();
-                (done.color, done.lod) = rings::blend(rings, &films, self.size_px, self.gaze_px);
-                done.noise = rings::noise(rings, &films, self.size_px, self.gaze_px);
+                rings::blend(rings, &films, self.size_px, self.gaze_px)
             }
             Kind::Scattered { lod, .. } => {
                 let film = add(view, Film::new(self.size_px), &work[0]);
-                done.color = fill::pull_push(&film);
-                done.noise = fill::noise_between(&film);
-                done.lod = lod.clone();
+                Blended { color: fill::pull_push(&film), lod: lod.clone(), noise: fill::noise_between(&film) }
             }
-        }
-        done
+        };
+        FoveatedFrame { color, lod, noise, lattices: None, samples, rays, nonfinite }
     }
 }
 

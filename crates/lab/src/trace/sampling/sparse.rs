@@ -2,14 +2,17 @@
 
 use super::lattice::Lattice;
 use super::{Layers, Regions, Sampling};
-use crate::frame::FoveatedFrame;
-use crate::lattices::{SampleOrder, levels};
+use crate::frame::{DeviceSamples, FoveatedFrame};
+use crate::lattices::{SampleOrder, SparseGeometry, levels};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
+use crate::trace::gpu::{GpuTracer, SampledPoint};
+use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::World;
 use afterimage::{Filter, Foveation, Image, Lattices, SettingsError, ViewGeometry};
+use rayon::prelude::*;
 
 /// Samples of a sparse frame: lattices of the post-process, and the number of samples a point.
 ///
@@ -145,50 +148,131 @@ impl SparsePlan {
     /// Their noise is that of the nearest sample of their lattice.
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
         let mut color = Image::filled(self.size_px, [f32::NAN; 3]);
-        let mut noise = Image::filled(self.size_px, [0.0; 2]);
+        let mut noise: Vec<Image<[f32; 2]>> = vec![];
         let (mut rays, mut nonfinite) = (0, 0);
         let width = self.size_px[0] as usize;
-        for (lattice, (points, &samples)) in self.lattices.as_slice().iter().zip(self.points.iter().zip(&self.samples))
-        {
-            let grid = Lattice {
-                step: lattice.step,
-                first_px: lattice.first_px.map(|v| v as f32),
-                points: lattice.points,
-                footprint_px: 1.0,
-            };
-            let work = Spans::new(points.iter().copied(), 0..samples);
-            let (first, size) = Spans::window(std::slice::from_ref(&work));
-            let mut film = Film::window(first, size);
-            tracer.trace(world, &view.on_lattice(&grid), frame, &work, &mut film);
+        for (i, lattice) in self.lattices.as_slice().iter().enumerate() {
+            let film = self.film(i, tracer, world, view, frame);
             (rays, nonfinite) = (rays + film.rays, nonfinite + film.nonfinite);
-            for &point in points {
-                let [x, y] = px_of(lattice, point).map(|v| v as usize);
-                color.pixels_mut()[y * width + x] = film.at(point).mean.to_array();
-                noise.pixels_mut()[y * width + x] = film.noise_at(point);
+            let mut of_points = self.finer_noise(i, &noise);
+            for &[x, y] in &self.points[i] {
+                let px = px_of(lattice, [x, y]).map(|v| v as usize);
+                color.pixels_mut()[px[1] * width + px[0]] = film.at([x, y]).mean.to_array();
+                of_points.pixels_mut()[(y * lattice.points[0] + x) as usize] = film.noise_at([x, y]);
             }
+            noise.push(of_points);
         }
-        let nearest = |px: [u32; 2]| {
-            let Some(lattice) = self.lattices.at(px) else { return px };
-            [0, 1].map(|i| {
-                let inside = (self.size_px[i] - 1).saturating_sub(lattice.first_px[i]) / lattice.step;
-                let steps = (px[i] as f32 - lattice.first_px[i] as f32) / lattice.step as f32;
-                let point = (steps.round().max(0.0) as u32).min(inside).min(lattice.points[i] - 1);
-                (lattice.first_px[i] + point * lattice.step).min(self.size_px[i] - 1)
-            })
-        };
         FoveatedFrame {
             color,
             lod: levels(&self.lattices, self.size_px),
-            noise: Image::from_fn_parallel(self.size_px, |px| {
-                let [x, y] = nearest(px);
-                noise.at(x as usize, y as usize)
-            }),
+            noise: self.spread(&noise),
             lattices: Some(self.lattices),
             samples: self.samples(),
             rays,
             nonfinite,
         }
     }
+
+    /// As [`trace`](Self::trace), with the samples left on the tracer's device: nothing is read back. `views`: this
+    /// frame's and the previous one's. Depth and motion at the samples come from rays on the CPU, in 64 bits, if
+    /// `geometry` asks for them.
+    pub fn trace_in_place(
+        &self,
+        tracer: &GpuTracer,
+        world: &World,
+        [view, previous]: [&View; 2],
+        frame: u64,
+        geometry: SparseGeometry,
+        samples: &mut DeviceSamples,
+    ) {
+        let surface_at = Surfaces::at_pixels(world, view, previous, tracer.effects());
+        for (i, lattice) in self.lattices.as_slice().iter().enumerate() {
+            let sampled = |&[x, y]: &[u32; 2]| {
+                let (depth, motion) = match geometry {
+                    SparseGeometry::Full => (0.0, [0.0; 2]),
+                    SparseGeometry::Samples => surface_at(px_of(lattice, [x, y])),
+                };
+                SampledPoint { point: x | y << 16, depth, motion }
+            };
+            let points: Vec<SampledPoint> = self.points[i].par_iter().map(sampled).collect();
+            let view = view.on_lattice(&grid(lattice));
+            tracer.trace_in_place(world, &view, frame, &self.work(i), (lattice, &points), samples);
+        }
+        (samples.lattices, samples.samples) = (self.lattices, self.samples());
+    }
+
+    /// Traces the points of a lattice.
+    fn film(&self, index: usize, tracer: &Tracer, world: &World, view: &View, frame: u64) -> Film {
+        let work = self.work(index);
+        let (first, size) = Spans::window(std::slice::from_ref(&work));
+        let mut film = Film::window(first, size);
+        let view = view.on_lattice(&grid(&self.lattices.as_slice()[index]));
+        tracer.trace(world, &view, frame, &work, &mut film);
+        film
+    }
+
+    /// Samples of the points of a lattice.
+    fn work(&self, index: usize) -> Spans {
+        Spans::new(self.points[index].iter().copied(), 0..self.samples[index])
+    }
+
+    /// Noise of the points of a lattice at which a finer one has a sample, in `finer`; 0 at the others.
+    fn finer_noise(&self, index: usize, finer: &[Image<[f32; 2]>]) -> Image<[f32; 2]> {
+        let stack = self.lattices.as_slice();
+        let mut of_points = Image::filled(stack[index].points, [0.0; 2]);
+        let columns = stack[index].points[0];
+        for (lattice, noise) in stack.iter().zip(finer).rev() {
+            // Only points within the finer lattice's rectangle are samples of it.
+            let [low, high] = lattice.covered_px();
+            let range = |i: usize| {
+                let of = |px: u32| px.saturating_sub(stack[index].first_px[i]).div_ceil(stack[index].step);
+                of(low[i])..of(high[i]).min(stack[index].points[i])
+            };
+            for (x, y) in range(1).flat_map(|y| range(0).map(move |x| (x, y))) {
+                let px = px_of(&stack[index], [x, y]);
+                if lattice.samples(px) {
+                    let [x2, y2] = [0, 1].map(|i| ((px[i] - lattice.first_px[i]) / lattice.step) as usize);
+                    of_points.pixels_mut()[(y * columns + x) as usize] = noise.at(x2, y2);
+                }
+            }
+        }
+        of_points
+    }
+
+    /// Value of the nearest point of its lattice for each pixel. `of_points`: values of the points of each lattice.
+    fn spread(&self, of_points: &[Image<[f32; 2]>]) -> Image<[f32; 2]> {
+        let stack = self.lattices.as_slice();
+        let columns: Vec<Vec<u32>> = stack.iter().map(|lattice| self.nearest(lattice, 0)).collect();
+        let rows: Vec<Vec<u32>> = stack.iter().map(|lattice| self.nearest(lattice, 1)).collect();
+        let mut spread = Image::filled(self.size_px, [0.0; 2]);
+        let width = self.size_px[0].max(1) as usize;
+        spread.pixels_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for (i, lattice) in stack.iter().enumerate().rev() {
+                let [left, top] = lattice.covered_px()[0].map(|v| v as usize);
+                let Some(&point) = y.checked_sub(top).and_then(|y| rows[i].get(y)) else { continue };
+                let values = of_points[i].row(point as usize);
+                for (pixel, &x) in row[left..].iter_mut().zip(&columns[i]) {
+                    *pixel = values[x as usize];
+                }
+            }
+        });
+        spread
+    }
+
+    /// Index of the nearest point inside the view along an axis, for each pixel that a lattice covers.
+    fn nearest(&self, lattice: &afterimage::Lattice, axis: usize) -> Vec<u32> {
+        let [low, high] = lattice.covered_px().map(|v| v[axis]);
+        let first = lattice.first_px[axis];
+        let last = ((self.size_px[axis] - 1).saturating_sub(first) / lattice.step).min(lattice.points[axis] - 1);
+        let of = |px: u32| (((px as f32 - first as f32) / lattice.step as f32).round().max(0.0) as u32).min(last);
+        (low..high.min(self.size_px[axis])).map(of).collect()
+    }
+}
+
+/// The lattice as the tracer sees it: samples are spread over one pixel.
+fn grid(lattice: &afterimage::Lattice) -> Lattice {
+    let first_px = lattice.first_px.map(|v| v as f32);
+    Lattice { step: lattice.step, first_px, points: lattice.points, footprint_px: 1.0 }
 }
 
 /// Pixel of a point.

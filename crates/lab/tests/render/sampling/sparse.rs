@@ -5,9 +5,10 @@ use super::fills::view;
 use afterimage::{Filter, Foveation, Lattices, Method, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::lattices::{SampleOrder, levels};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry, levels};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scene::builtin;
+use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
@@ -215,6 +216,54 @@ fn the_device_traces_the_same_samples() {
         let bits = |image: &afterimage::Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
         assert_eq!((&a.samples, a.rays), (&b.samples, b.rays), "{sampling:?}");
         assert!(bits(&a.color) == bits(&b.color) && a.noise == b.noise, "{sampling:?}");
+    }
+}
+
+#[test]
+fn samples_that_stay_on_the_device_are_those_of_the_memory() {
+    if afterimage_testing::gpu::device().is_none() {
+        return;
+    }
+    let device = Headless::find_roomy(true).expect("there is an adapter");
+    let backend = Backend::Gpu(device.clone());
+    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
+    for (sampling, geometry) in patterns().into_iter().zip([SparseGeometry::Samples, SparseGeometry::Full]) {
+        let order = SampleOrder::Sobol;
+        let samples = TracedSamples { foveated: Some(sampling), sparse: Some(order), samples: 2, full_rate_samples: 1 };
+        let options = SceneOptions { size: Some(SIZE), ..SceneOptions::default() };
+        let (limits, settings) = (ReadLimits::default(), TraceSettings::default());
+        let camera = Some("lateral");
+        let mut source =
+            TracedSource::open("builtin:courtyard", &limits, &options, camera, &backend, settings, samples).unwrap();
+        let view = view(&builtin::courtyard_of(2000), SIZE);
+        let foveation = Foveation { filter: Filter::Sparse, ..sampling.foveation() };
+        let pipeline = || {
+            let pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &backend).unwrap();
+            pipeline.with_sparse(geometry, order)
+        };
+        let (mut memory, mut on_device) = (pipeline(), pipeline());
+        let on = on_device.samples_device().expect("the runs work on the device");
+        for index in 0..4 {
+            let gaze = [40.0 + 20.0 * index as f32, 45.0];
+            let frame = source.frame(index).unwrap();
+            let made = source.foveated(index, gaze, None).unwrap().expect("the source foveates");
+            let before = device.readbacks();
+            let samples = source.foveated_on(&on, index, gaze, geometry).unwrap().expect("it is the source's device");
+            assert_eq!(device.readbacks(), before, "samples stay on the device");
+            assert_eq!((&made.lattices, &made.samples), (&Some(samples.lattices), &samples.samples));
+            let a = memory.step_foveated(index, &frame, gaze, made).unwrap();
+            let before = device.readbacks();
+            let b = on_device.step_samples(index, &frame, gaze, &samples).unwrap();
+            // The outputs, which the metrics need, and the counters.
+            assert_eq!(device.readbacks() - before, 2 * methods.len() as u64);
+            assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));
+            for (method, (a, b)) in methods.iter().zip(a.outputs.iter().zip(&b.outputs)) {
+                let bits = |image: &afterimage::Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
+                assert!(bits(&a.image) == bits(&b.image), "{method:?}, {sampling:?}, {geometry:?}, frame {index}");
+                assert_eq!(a.stats, b.stats, "{method:?}, frame {index}");
+            }
+        }
     }
 }
 

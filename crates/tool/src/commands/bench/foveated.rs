@@ -1,10 +1,12 @@
 //! Time and sample reduction of foveated against uniform path tracing.
 
 use super::subject::{FrameTime, Subject};
+use crate::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Rounds. Each round times every pattern once, so that drift affects all patterns alike.
 pub const ROUNDS: u64 = 3;
@@ -23,6 +25,8 @@ pub struct Pattern {
     /// Samples per pixel where the pattern is densest.
     pub samples: u32,
     pub gaze_px: [f32; 2],
+    /// Samples in their places instead of filled frames.
+    pub is_sparse: bool,
 }
 
 /// Results of a pattern in a scene.
@@ -42,6 +46,10 @@ pub struct PatternReport {
     pub time_reduction: Option<f64>,
     /// Time reduction over ideal reduction.
     pub share_of_ideal: Option<f64>,
+    /// Share of the uniform frame's time that is saved over the share of its samples that is.
+    pub share_of_saved: Option<f64>,
+    /// Time reduction over sample reduction.
+    pub share_of_reduction: Option<f64>,
     pub cpu_ms: Option<Quartiles>,
     pub uniform_cpu_ms: Option<Quartiles>,
     pub wall_ms: Option<Quartiles>,
@@ -65,6 +73,19 @@ pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f3
         sampling: Sampling::Regions(Regions { samples, radius_scale, ..Regions::default() }),
         samples: samples[0],
         gaze_px,
+        is_sparse: false,
+    }
+}
+
+/// One path a point of the lattices of `run --foveation sparse --rate-mid 4 --rate-far 8`, against one a pixel.
+pub fn one_path(gaze_px: [f32; 2]) -> Pattern {
+    let regions = Regions { samples: [1; 3], blocks: [4, 8], diameters_deg: [5.0, 15.0], ..Regions::default() };
+    Pattern {
+        name: "lattices of steps 1, 4, 8, one path a point".into(),
+        sampling: Sampling::Regions(regions),
+        samples: 1,
+        gaze_px,
+        is_sparse: true,
     }
 }
 
@@ -80,31 +101,38 @@ pub fn patterns(subject: &Subject) -> Vec<Pattern> {
             sampling: Sampling::Layers(Layers::default()),
             samples: 4,
             gaze_px: middle,
+            is_sparse: false,
         },
     ]
 }
 
-/// Times every pattern and a uniform frame, `rounds` times each.
+/// Times every pattern and uniform frames, `rounds` times each.
+///
+/// # Errors
+/// If the samples of a sparse pattern cannot lie on lattices.
 pub fn measure(
     subject: &Subject,
     tracer: &Tracer,
     patterns: &[Pattern],
     rounds: u64,
     by_wall: bool,
-) -> Vec<PatternReport> {
+) -> Result<Vec<PatternReport>, Failure> {
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
-    let mut uniform: Vec<FrameTime> = vec![];
+    let uniform_samples = |p: &Pattern| p.samples.min(UNIFORM_SAMPLES);
+    let mut uniform: BTreeMap<u32, Vec<FrameTime>> = patterns.iter().map(|p| (uniform_samples(p), vec![])).collect();
     let mut took: Vec<Vec<FrameTime>> = vec![vec![]; patterns.len()];
     let mut traced = vec![0; patterns.len()];
     // Drivers compile at the first dispatch.
     subject.few(tracer);
     let every = if by_wall { 1 } else { UNIFORM_EVERY };
     for round in 0..rounds {
-        uniform.push(subject.uniform(tracer, UNIFORM_SAMPLES, every, round));
+        for (&samples, took) in &mut uniform {
+            took.push(subject.uniform(tracer, samples, every, round));
+        }
         for (i, p) in patterns.iter().enumerate() {
-            let (frame, time) = subject.foveated(tracer, &p.sampling, p.gaze_px, p.samples, round);
+            let (frame, time) = subject.foveated(tracer, p, round)?;
             traced[i] = frame.samples.iter().sum::<u64>();
             took[i].push(time);
         }
@@ -115,7 +143,8 @@ pub fn measure(
             Sampling::Regions(regions) => Some(all / regions.ideal_samples(&geometry)),
             _ => None,
         };
-        let more = f64::from(p.samples) / f64::from(UNIFORM_SAMPLES);
+        let uniform = &uniform[&uniform_samples(p)];
+        let more = f64::from(p.samples) / f64::from(uniform_samples(p));
         let of = |took: &[FrameTime], ms: fn(&FrameTime) -> f64, factor: f64| {
             Quartiles::of(&took.iter().map(|t| ms(t) * factor).collect::<Vec<_>>())
         };
@@ -127,16 +156,21 @@ pub fn measure(
             sample_reduction: all / traced[i] as f64,
             time_reduction: None,
             share_of_ideal: None,
+            share_of_saved: None,
+            share_of_reduction: None,
             cpu_ms: of(&took[i], |t| t.cpu_ms, 1.0),
-            uniform_cpu_ms: of(&uniform, |t| t.cpu_ms, more),
+            uniform_cpu_ms: of(uniform, |t| t.cpu_ms, more),
             wall_ms: of(&took[i], |t| t.wall_ms, 1.0),
-            uniform_wall_ms: of(&uniform, |t| t.wall_ms, more),
+            uniform_wall_ms: of(uniform, |t| t.wall_ms, more),
         };
         report.time_reduction = report.times().map(|(uniform, foveated)| uniform.median / foveated.median);
         report.share_of_ideal = report.time_reduction.zip(ideal_reduction).map(|(time, ideal)| time / ideal);
+        let saved = |reduction: f64| 1.0 - reduction.recip();
+        report.share_of_saved = report.time_reduction.map(|time| saved(time) / saved(report.sample_reduction));
+        report.share_of_reduction = report.time_reduction.map(|time| time / report.sample_reduction);
         report
     };
-    patterns.iter().enumerate().map(report).collect()
+    Ok(patterns.iter().enumerate().map(report).collect())
 }
 
 /// Prints a table.

@@ -165,7 +165,7 @@ fn regions_of_a_scene(
         paper_time_reduction: Some(time),
         paper_share_of_ideal: Some(time / ideal),
     };
-    let measured = measure(&subject, &tracer, &patterns, frames, by_wall);
+    let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
     Ok(scene_report(&subject, settings, measured.into_iter().zip(papers).map(compare).collect()))
 }
 
@@ -194,9 +194,10 @@ fn layers_of(
         sampling: Sampling::Layers(Layers { lens_deg: Some(lens_deg), ..Layers::default() }),
         samples: THESIS_SAMPLES,
         gaze_px,
+        is_sparse: false,
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
-    let measured = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend));
+    let measured = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend))?;
     let compare = |(i, ours): (usize, PatternReport)| Compared {
         ours,
         paper_time_reduction: paper.map(|p| p[i]),

@@ -73,7 +73,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
             let device = is_real_gpu(backend) && took.iter().all(|t| t.device_ms.is_some());
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
             let rate = |ms: &dyn Fn(&FrameTime) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
-            TracerReport {
+            Ok::<_, Failure>(TracerReport {
                 backend: BackendReport::of(backend),
                 rays_per_frame: took.first().map_or(0, |t| t.rays),
                 cpu_ms: of(&|t| t.cpu_ms),
@@ -83,14 +83,14 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
                 foveated: if args.foveated {
                     let patterns = foveated::patterns(&subject);
-                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))
+                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))?
                 } else {
                     vec![]
                 },
                 scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
-            }
+            })
         });
-        scenes.push(SceneReport { scene: name.clone(), triangles, tracers: reports.collect() });
+        scenes.push(SceneReport { scene: name.clone(), triangles, tracers: reports.collect::<Result<_, _>>()? });
     }
     let report = Report {
         tool: "afterimage",

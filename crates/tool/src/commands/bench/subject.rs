@@ -1,5 +1,6 @@
 //! A scene to benchmark, and the backends that trace it.
 
+use super::foveated::Pattern;
 use super::{BenchArgs, Traces};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
@@ -7,12 +8,12 @@ use afterimage::ViewGeometry;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::FoveatedFrame;
+use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::SceneCamera;
 use afterimage_lab::source::raster::DEFAULT_FPS;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
-use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
@@ -84,20 +85,26 @@ impl Subject {
     }
 
     /// Traces a foveated frame. Its time includes planning and interpolation.
+    ///
+    /// # Errors
+    /// If the samples of a sparse pattern cannot lie on lattices.
     pub fn foveated(
         &self,
         tracer: &Tracer,
-        sampling: &Sampling,
-        gaze_px: [f32; 2],
-        samples: u32,
+        pattern: &Pattern,
         index: u64,
-    ) -> (FoveatedFrame, FrameTime) {
-        let view = self.view(index);
+    ) -> Result<(FoveatedFrame, FrameTime), Failure> {
+        let &Pattern { sampling, samples, gaze_px, is_sparse, .. } = pattern;
+        let (geometry, view) = (self.geometry(), self.view(index));
         let watch = Stopwatch::start();
-        let plan = sampling.plan(self.geometry(), gaze_px, samples, index);
-        let frame = plan.trace(tracer, &self.world, &view, index);
+        let frame = if is_sparse {
+            let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
+            plan.trace(tracer, &self.world, &view, index)
+        } else {
+            sampling.plan(geometry, gaze_px, samples, index).trace(tracer, &self.world, &view, index)
+        };
         let took = FrameTime::by(&watch, None, frame.rays);
-        (frame, took)
+        Ok((frame, took))
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the
@@ -115,6 +122,7 @@ impl Subject {
             rows += band.len();
             tracer.trace(&self.world, &view, index, &Spans::uniform(width, band, 0..samples), &mut film);
             rays += film.rays;
+            std::hint::black_box(film.color());
         }
         let took = FrameTime::by(&watch, None, rays);
         let more = f64::from(height) / rows.max(1) as f64;

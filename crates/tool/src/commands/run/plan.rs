@@ -76,6 +76,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
 /// Foveation of the frames: the simulator's, or the equivalent of the sampling pattern.
 pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
     let simulated = args.foveation.foveation();
+    simulated.validate()?;
     let foveation = match args.sampling()? {
         None => simulated,
         Some(pattern) if args.is_sparse() => Foveation { filter: simulated.filter, ..pattern.foveation() },

@@ -1,0 +1,96 @@
+//! `afterimage bench foveated`: what of the samples that foveated path tracing saves becomes saved time.
+
+use super::foveated::{PatternReport, measure, one_path, regions};
+use super::subject::{Subject, backends, is_real_gpu};
+use super::{BenchArgs, write_json};
+use crate::failure::Failure;
+use crate::report::backend::BackendReport;
+use afterimage_lab::trace::settings::TraceSettings;
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Report {
+    tool: &'static str,
+    version: &'static str,
+    size: [u32; 2],
+    frames: u64,
+    max_depth: u32,
+    scenes: Vec<SceneReport>,
+}
+
+#[derive(Serialize)]
+struct SceneReport {
+    scene: String,
+    triangles: u32,
+    tracers: Vec<TracerReport>,
+}
+
+#[derive(Serialize)]
+struct TracerReport {
+    backend: BackendReport,
+    patterns: Vec<PatternReport>,
+}
+
+/// Times the patterns for `size` in each scene on each device, `frames` times.
+pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let settings = TraceSettings::default();
+    let backends = backends(args)?;
+    let default = ["builtin:courtyard".to_owned()];
+    let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
+    let mut scenes = vec![];
+    for name in names {
+        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
+        let middle = subject.middle_px();
+        let regions = |samples| regions(samples, false, 1.0, middle);
+        let patterns = [one_path(middle), regions([8, 4, 2]), regions([32, 16, 8])];
+        let mut tracers = vec![];
+        for backend in &backends {
+            let tracer = subject.tracer(backend, settings)?;
+            let patterns = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend))?;
+            tracers.push(TracerReport { backend: BackendReport::of(backend), patterns });
+        }
+        scenes.push(SceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });
+    }
+    let report = Report {
+        tool: "afterimage",
+        version: env!("CARGO_PKG_VERSION"),
+        size,
+        frames,
+        max_depth: settings.max_depth,
+        scenes,
+    };
+    print(&report);
+    write_json(args, &report)
+}
+
+/// Markdown.
+fn print(report: &Report) {
+    let [w, h] = report.size;
+    say!(
+        "{w}x{h}, depth {}, {} frames, medians. Uniform frames have the fovea's samples.\n",
+        report.max_depth,
+        report.frames
+    );
+    say!(
+        "| scene | device | pattern | ms, uniform to foveated | of samples | of time | share of saved | share of reduction |"
+    );
+    say!("|---|---|---|---|---|---|---|---|");
+    for scene in &report.scenes {
+        let name = scene.scene.rsplit('/').next().unwrap_or(&scene.scene);
+        for tracer in &scene.tracers {
+            for p in &tracer.patterns {
+                let percent = |share: Option<f64>| share.map_or("-".into(), |s| format!("{:.1} %", s * 100.0));
+                say!(
+                    "| {name} | {} | {} | {} | {:.1}x | {} | {} | {} |",
+                    tracer.backend.kind,
+                    p.pattern,
+                    p.times().map_or("-".into(), |(u, f)| format!("{:.0} to {:.1} {}", u.median, f.median, p.clock)),
+                    p.sample_reduction,
+                    p.time_reduction.map_or("-".into(), |t| format!("{t:.1}x")),
+                    percent(p.share_of_saved),
+                    percent(p.share_of_reduction),
+                );
+            }
+        }
+    }
+}
