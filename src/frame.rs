@@ -304,7 +304,7 @@ pub struct Frame<'a, E: Executor> {
     pub lod: Option<E::Scalars<'a>>,
     /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at
     /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
-    /// otherwise `None`. Of sparse frames smr reads it at the samples' pixels.
+    /// otherwise `None`. Of sparse frames it is read at the samples' pixels.
     pub noise: Option<E::Vectors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],

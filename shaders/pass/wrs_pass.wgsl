@@ -9,7 +9,7 @@ fn main(
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {
         // View index from the workgroup id, which is uniform: the view's constants are loaded once.
-        pixel(id.xy, frame.first_view + group.z, 1.0);
+        pixel(id.xy, frame.first_view + group.z, Place(id.xy, 1.0));
     }
     add_counts(invocation);
 }

@@ -60,8 +60,13 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     return History(VERDICT_VALID, past, stored.age);
 }
 
-// `place`: weight of the place of the pixel's sample.
-fn pixel(px: vec2<u32>, view: u32, place: f32) {
+// Pixel of a pixel's sample, and the weight of a sample there.
+struct Place {
+    px: vec2<u32>,
+    weight: f32,
+}
+
+fn pixel(px: vec2<u32>, view: u32, place: Place) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     let motion = motion_at(px, view);
@@ -71,11 +76,11 @@ fn pixel(px: vec2<u32>, view: u32, place: f32) {
     if candidate.usable {
         let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
         candidate_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
-        candidate_w *= place;
+        candidate_w *= place.weight;
     }
     var gate_offset = frame.gate_offset;
     if NOISY != 0u {
-        let noise = noise_at(px, view);
+        let noise = noise_at(place.px, view);
         candidate_w *= noise.samples;
         gate_offset += sample_difference(noise, luma(candidate.color));
     }

@@ -3,11 +3,11 @@
 // Weighted reservoirs over sparse frames: candidates count by the place of their sample. One invocation a pixel; z
 // is the view.
 
-// Weight of the place of the sample nearest to a pixel; 1 without samples in the frame.
-fn weight_of_place(px: vec2<u32>, view: u32) -> f32 {
+// Place of the sample nearest to a pixel: the pixel itself, and weight 1, without samples in the frame.
+fn place_of(px: vec2<u32>, view: u32) -> Place {
     let lattice = lattice_at(px, view);
     if any(lattice.points == vec2<u32>(0u)) {
-        return 1.0;
+        return Place(px, 1.0);
     }
     let first = lattice.first_px;
     let level = lattice.level;
@@ -15,7 +15,7 @@ fn weight_of_place(px: vec2<u32>, view: u32) -> f32 {
     let point = clamp(nearest, vec2<i32>(0), vec2<i32>(lattice.points) - 1);
     let x = point_offset_px(px.x, first.x, level, point.x);
     let y = point_offset_px(px.y, first.y, level, point.y);
-    return place_weight(vec2<f32>(x, y));
+    return Place(first + (vec2<u32>(point) << vec2<u32>(level)), place_weight(vec2<f32>(x, y)));
 }
 
 @compute @workgroup_size(64, 1)
@@ -27,7 +27,7 @@ fn main(
     if id.x < frame.size.x && id.y < frame.size.y {
         // View index from the workgroup id, which is uniform: the view's constants are loaded once.
         let view = frame.first_view + group.z;
-        pixel(id.xy, view, weight_of_place(id.xy, view));
+        pixel(id.xy, view, place_of(id.xy, view));
     }
     add_counts(invocation);
 }

@@ -112,11 +112,14 @@ impl ViewPass<'_> {
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
         let mut weight = if usable { self.weight(ray) } else { 0.0 };
+        let mut noise_px = [x, y];
         if self.weighs_places {
-            weight *= self.place_weight([x, y]);
+            let (sample_px, place) = self.place([x, y]);
+            noise_px = sample_px;
+            weight *= place;
         }
         let mut params = self.params;
-        if let Some(noise) = inputs.noise(x, y) {
+        if let Some(noise) = inputs.noise(noise_px[0], noise_px[1]) {
             weight *= noise.samples;
             params.gate_offset += sample_difference(noise, color::luma(candidate));
         }
@@ -156,19 +159,18 @@ impl ViewPass<'_> {
         acuity::candidate_weight(self.inputs.eccentricity_deg(ray), self.fovea_radius_deg, self.inv_density_at_fovea)
     }
 
-    /// Weight of the place of the sample nearest to a pixel; 1 without samples in the frame.
+    /// Pixel of the sample nearest to a pixel, and the weight of its place. The pixel itself, and 1, without samples in
+    /// the frame.
     #[inline(always)]
-    fn place_weight(&self, px: [u32; 2]) -> f32 {
+    fn place(&self, px: [u32; 2]) -> ([u32; 2], f32) {
         let lattice = &self.inputs.lattices[LatticeUniforms::index_at(&self.inputs.lattices, px)];
         if lattice.points.contains(&0) {
-            return 1.0;
+            return (px, 1.0);
         }
-        let offset_px = [0, 1].map(|i| {
-            let (first, level) = (lattice.first_px[i], lattice.level);
-            let point = nearest_point(px[i], first, level).clamp(0, lattice.points[i] as i32 - 1);
-            point_offset_px(px[i], first, level, point)
-        });
-        place_weight(offset_px.into())
+        let point = [0, 1]
+            .map(|i| nearest_point(px[i], lattice.first_px[i], lattice.level).clamp(0, lattice.points[i] as i32 - 1));
+        let offset_px = [0, 1].map(|i| point_offset_px(px[i], lattice.first_px[i], lattice.level, point[i]));
+        (lattice.px_of(point.map(|v| v as u32)), place_weight(offset_px.into()))
     }
 
     /// Reservoir of the pixel's surface in the previous frame and age of its sample, or the verdict that rejects it.

@@ -16,6 +16,9 @@ struct Placement {
     step: u32,
     // Number of points.
     count: u32,
+    // NaN, which WGSL cannot write: color of points without samples.
+    missing: u32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> placement: Placement;
@@ -81,7 +84,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let words = points[index];
     let point = vec2<u32>(words.x & 0xffffu, words.x >> 16u);
     let px = placement.first_px + point * placement.step;
-    textureStore(color_out, px, 0, vec4<f32>(film_row(point, 0u).xyz, 1.0));
+    let own = film_row(point, 0u);
+    textureStore(color_out, px, 0, select(vec4<f32>(bitcast<f32>(placement.missing)), vec4<f32>(own.xyz, 1.0), own.w > 0.0));
     textureStore(noise_out, px, 0, vec4<f32>(noise_at(point), 0.0, 0.0));
     textureStore(depth_out, px, 0, vec4<f32>(bitcast<f32>(words.y)));
     textureStore(motion_out, px, 0, vec4<f32>(bitcast<vec2<f32>>(words.zw), 0.0, 0.0));

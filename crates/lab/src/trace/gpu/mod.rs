@@ -19,6 +19,7 @@ use super::work::{Spans, Work};
 use super::world::World;
 use crate::device::{DeviceClock, Headless};
 use crate::frame::DeviceSamples;
+use afterimage::gpu::filled;
 use afterimage::{FrameError, Image, Lattice};
 use expand::{Expand, batches};
 use glam::Vec3;
@@ -29,6 +30,7 @@ pub use place::SampledPoint;
 use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
+use wgpu::BufferUsages;
 
 /// Number of paths in flight.
 pub const BATCH: u32 = 1 << 17;
@@ -204,9 +206,8 @@ impl GpuTracer {
         &self.device
     }
 
-    /// Traces samples `work` of points of a lattice and leaves them on the device: writes them to their pixels in
-    /// `samples`, with the distances and motion vectors of `points`. Nothing is read back. `view` is the view on the
-    /// lattice, and `points` are the points of `work`.
+    /// Traces samples `work` of points of a lattice and leaves them on the device: writes `points` to their pixels in
+    /// `samples`, with NaN for those without work. Nothing is read back. `view` is the view on the lattice.
     pub fn trace_in_place(
         &self,
         world: &World,
@@ -216,14 +217,16 @@ impl GpuTracer {
         (lattice, points): (&Lattice, &[SampledPoint]),
         samples: &DeviceSamples,
     ) {
+        let place = self.place.get_or_init(|| Place::new(&self.device.device));
         if work.is_empty() {
+            let film = filled(&self.device.device, "film", &[0; 32], BufferUsages::STORAGE);
+            place.submit(&self.device, lattice, points, &film, [[0; 2]; 2], samples);
             return;
         }
         let (first, size) = Spans::window(std::slice::from_ref(work));
         let film = vec![[0.0; 4]; 2 * size[0] as usize * size[1] as usize];
         let base = Film::base_of(first, size);
         let run = self.submit_batches(world, view, frame, work.into(), (size[0], base, &film), None);
-        let place = self.place.get_or_init(|| Place::new(&self.device.device));
         place.submit(&self.device, lattice, points, run.film(), [first, size], samples);
     }
 

@@ -33,6 +33,8 @@ struct Placement {
     first_px: [u32; 2],
     step: u32,
     count: u32,
+    missing: u32,
+    unused: u32,
 }
 
 /// The kernel that writes samples to their pixels.
@@ -49,7 +51,8 @@ impl Place {
         Self { shader: ComputeShader::new(device, "place", SHADERS.compose("place_pass").source, &types) }
     }
 
-    /// Writes `points` of a lattice to `samples`. `film`: their film, whose window is `film_first` and `film_size`.
+    /// Writes `points` of a lattice to `samples`. `film`: their film, whose window is `film_first` and `film_size`;
+    /// points without samples there are NaN.
     pub fn submit(
         &self,
         gpu: &Headless,
@@ -61,7 +64,12 @@ impl Place {
     ) {
         let device = &gpu.device;
         let count = points.len() as u32;
-        let placement = Placement { film_first, film_size, first_px: lattice.first_px, step: lattice.step, count };
+        if count == 0 {
+            return;
+        }
+        let missing = f32::NAN.to_bits();
+        let (first_px, step) = (lattice.first_px, lattice.step);
+        let placement = Placement { film_first, film_size, first_px, step, count, missing, unused: 0 };
         let placement = filled(device, "placement", bytemuck::bytes_of(&placement), BufferUsages::UNIFORM);
         let points = filled(device, "points", bytemuck::cast_slice(points), BufferUsages::STORAGE);
         let DeviceSamples { color, noise, depth, motion, .. } = samples;

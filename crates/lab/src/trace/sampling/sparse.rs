@@ -165,7 +165,7 @@ impl SparsePlan {
         FoveatedFrame {
             color,
             lod: levels(&self.lattices, self.size_px),
-            noise: self.spread(&noise),
+            noise: self.noise(&noise),
             lattices: Some(self.lattices),
             samples: self.samples(),
             rays,
@@ -173,8 +173,8 @@ impl SparsePlan {
         }
     }
 
-    /// As [`trace`](Self::trace), with the samples left on the tracer's device: nothing is read back. `views`: this
-    /// frame's and the previous one's. Depth and motion at the samples come from rays on the CPU, in 64 bits, if
+    /// As [`trace`](Self::trace), with the samples left on the tracer's device: nothing is read back, and points of the
+    /// lattices that are not traced are NaN. `views`: this frame's and the previous one's. Depth and motion at the samples come from rays on the CPU, in 64 bits, if
     /// `geometry` asks for them.
     pub fn trace_in_place(
         &self,
@@ -186,15 +186,21 @@ impl SparsePlan {
         samples: &mut DeviceSamples,
     ) {
         let surface_at = Surfaces::at_pixels(world, view, previous, tracer.effects());
-        for (i, lattice) in self.lattices.as_slice().iter().enumerate() {
-            let sampled = |&[x, y]: &[u32; 2]| {
+        // Finer samples replace points of coarser lattices that are not traced.
+        for (i, lattice) in self.lattices.as_slice().iter().enumerate().rev() {
+            let sampled = |[x, y]: [u32; 2]| {
                 let (depth, motion) = match geometry {
                     SparseGeometry::Full => (0.0, [0.0; 2]),
                     SparseGeometry::Samples => surface_at(px_of(lattice, [x, y])),
                 };
                 SampledPoint { point: x | y << 16, depth, motion }
             };
-            let points: Vec<SampledPoint> = self.points[i].par_iter().map(sampled).collect();
+            let [columns, rows] = [0, 1].map(|i| {
+                let in_view = self.size_px[i].saturating_sub(lattice.first_px[i]).div_ceil(lattice.step);
+                lattice.points[i].min(in_view)
+            });
+            let all = (0..rows).into_par_iter().flat_map_iter(|y| (0..columns).map(move |x| [x, y]));
+            let points: Vec<SampledPoint> = all.map(sampled).collect();
             let view = view.on_lattice(&grid(lattice));
             tracer.trace_in_place(world, &view, frame, &self.work(i), (lattice, &points), samples);
         }
@@ -237,6 +243,20 @@ impl SparsePlan {
             }
         }
         of_points
+    }
+
+    /// Noise of every pixel: its own where it was traced, else that of the nearest point of its lattice. `of_points`:
+    /// noise of the points of each lattice.
+    fn noise(&self, of_points: &[Image<[f32; 2]>]) -> Image<[f32; 2]> {
+        let mut noise = self.spread(of_points);
+        let width = self.size_px[0] as usize;
+        for (lattice, (points, values)) in self.lattices.as_slice().iter().zip(self.points.iter().zip(of_points)) {
+            for &[x, y] in points {
+                let px = px_of(lattice, [x, y]).map(|v| v as usize);
+                noise.pixels_mut()[px[1] * width + px[0]] = values.at(x as usize, y as usize);
+            }
+        }
+        noise
     }
 
     /// Value of the nearest point of its lattice for each pixel. `of_points`: values of the points of each lattice.
