@@ -1,6 +1,6 @@
 //#use color
-// The samples of a lattice from their film to their pixels. Twin of SparsePlan::trace and Film::noise_at. One invocation
-// a point.
+// The samples of a lattice from their film to their pixels. Twin of SparsePlan::trace and Film::noise_at. One
+// invocation a point.
 //
 // Reads 16 bytes and the film, and writes 16 + 8 + 4 + 8 bytes a point.
 
@@ -85,7 +85,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let point = vec2<u32>(words.x & 0xffffu, words.x >> 16u);
     let px = placement.first_px + point * placement.step;
     let own = film_row(point, 0u);
-    textureStore(color_out, px, 0, select(vec4<f32>(bitcast<f32>(placement.missing)), vec4<f32>(own.xyz, 1.0), own.w > 0.0));
+    let missing = vec4<f32>(bitcast<f32>(placement.missing));
+    textureStore(color_out, px, 0, select(missing, vec4<f32>(own.xyz, 1.0), own.w > 0.0));
     textureStore(noise_out, px, 0, vec4<f32>(noise_at(point), 0.0, 0.0));
     textureStore(depth_out, px, 0, vec4<f32>(bitcast<f32>(words.y)));
     textureStore(motion_out, px, 0, vec4<f32>(bitcast<vec2<f32>>(words.zw), 0.0, 0.0));
