@@ -429,22 +429,26 @@ fn wrong_weights_of_places_are_caught() {
         ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
         ("vec2<i32>(lattice.points) - 1)", "vec2<i32>(lattice.points))"),
         ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
-        ("pixel(id.xy, view, weight_of_place(id.xy, view))", "pixel(id.xy, view, 1.0)"),
+        ("pixel(id.xy, view, place_of(id.xy, view))", "pixel(id.xy, view, Place(id.xy, 1.0))"),
     ];
-    let settings = settings(Method::Wrs);
-    let differs = |source: &str| {
+    let [exact, noisy] = [settings(Method::Wrs), Settings { method: Method::Wrs, ..traced() }];
+    let differs = |settings: Settings, source: &str| {
         let mut rig = Rig::with_shader(desc(), settings, source)?;
         Some((0..4).any(|index| {
-            let views = sparse_views(index, &settings);
+            let views = match settings.noisy {
+                true => vec![noisy_view(index, 0, &settings), noisy_view(index, 1, &settings)],
+                false => sparse_views(index, &settings),
+            };
             rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
         }))
     };
-    let Some(without) = differs(&right) else { return };
-    assert!(!without, "without an error");
-    for (text, instead) in planted {
+    let Some(without) = differs(exact, &right) else { return };
+    assert!(!without && differs(noisy, &right) == Some(false), "without an error");
+    let noise_of_pixels = ("noise_at(place.px, view)", "noise_at(px, view)");
+    for (settings, (text, instead)) in planted.map(|p| (exact, p)).into_iter().chain([(noisy, noise_of_pixels)]) {
         let wrong = right.replace(text, instead);
         assert_ne!(wrong, right, "{text}");
-        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+        assert_eq!(differs(settings, &wrong), Some(true), "{text} -> {instead}");
     }
 }
 

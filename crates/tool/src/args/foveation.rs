@@ -11,11 +11,11 @@ use clap::{Args, ValueEnum};
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. mip, gauss and block simulate it on full-rate frames; sparse, too, but rasterised
-    /// scenes render its samples alone, and with --sampling regions or layers it gives the traced samples to the
-    /// methods in their places; layers and uniform render views of rasterised scenes
-    #[arg(long = "foveation", value_enum, default_value = "mip")]
-    pub filter: FilterName,
+    /// How frames are foveated. sparse: one moving sample a block, which scenes render alone; given frames simulate it.
+    /// mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of rasterised scenes.
+    /// Default: sparse for scenes without --sampling, else mip
+    #[arg(long = "foveation", value_enum)]
+    pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
     #[arg(long, default_value_t = 5.0, value_name = "DEG")]
     pub fovea: f32,
@@ -35,8 +35,8 @@ pub struct FoveationArgs {
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
     pub scale: Option<f32>,
-    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:
-    /// full, in a view of a rasterised scene samples
+    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default: of
+    /// the nearest sample in scenes, full in given frames
     #[arg(long = "geometry", alias = "sparse-geometry", value_enum)]
     pub geometry: Option<GeometryName>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
@@ -45,6 +45,29 @@ pub struct FoveationArgs {
 }
 
 impl FoveationArgs {
+    /// Fills in defaults that depend on the input. `is_sparse`: whether frames are sparse by default. `is_rendered`:
+    /// whether samples are rendered, not taken from given frames.
+    #[must_use]
+    pub fn with_defaults(self, is_sparse: bool, is_rendered: bool) -> Self {
+        let filter = if is_sparse { FilterName::Sparse } else { FilterName::Mip };
+        let named = Self { filter: Some(self.filter.unwrap_or(filter)), ..self };
+        let geometry = match named.may_lack_geometry() && is_rendered {
+            true => GeometryName::Samples,
+            false => GeometryName::Full,
+        };
+        Self { geometry: Some(named.geometry.unwrap_or(geometry)), ..named }
+    }
+
+    /// How frames are foveated.
+    pub fn filter(&self) -> FilterName {
+        self.filter.unwrap_or(FilterName::Mip)
+    }
+
+    /// Depth and motion of frames.
+    pub fn geometry(&self) -> GeometryName {
+        self.geometry.unwrap_or(GeometryName::Full)
+    }
+
     /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
     pub fn regions(&self, spp: u32) -> Result<Sampling, Failure> {
         let blocks = [self.rate_mid, self.rate_far];
@@ -59,14 +82,14 @@ impl FoveationArgs {
 
     /// Converts the options to the library's settings.
     pub fn foveation(&self) -> Foveation {
-        if self.filter == FilterName::Uniform {
+        if self.filter() == FilterName::Uniform {
             // Levels of detail are an input; a method reads here how coarse they may be.
             let rate = (self.scale().ceil() as u32).next_power_of_two();
             let no_region = Foveation { fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
             return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
         }
         Foveation {
-            filter: match self.filter {
+            filter: match self.filter() {
                 // Of quad views, levels of detail are an input.
                 FilterName::Mip | FilterName::Layers | FilterName::Uniform => Filter::Mip,
                 FilterName::Gauss => Filter::Gauss,
@@ -89,7 +112,7 @@ impl FoveationArgs {
 
     /// Quad views of the frames, if they are composed of such.
     pub fn quad_views(&self) -> Option<QuadViewLayout> {
-        match self.filter {
+        match self.filter() {
             FilterName::Layers => Some(QuadViewLayout::Regions),
             FilterName::Uniform => Some(QuadViewLayout::Uniform { step: self.scale() }),
             _ => None,
@@ -98,20 +121,20 @@ impl FoveationArgs {
 
     /// Whether frames may have depth and motion at their samples alone.
     pub fn may_lack_geometry(&self) -> bool {
-        self.filter == FilterName::Sparse || self.filter.is_quad_views()
+        self.filter() == FilterName::Sparse || self.filter().is_quad_views()
     }
 
     /// Refuses options that do not apply to this foveation. `is_rasterised`: frames are those of a rasterised scene.
     pub fn check(&self, is_rasterised: bool) -> Result<(), Failure> {
-        let name = self.filter.name();
+        let name = self.filter().name();
         let refuse = |text: String| Err(Failure::Input(text));
-        if self.filter.is_quad_views() && !is_rasterised {
+        if self.filter().is_quad_views() && !is_rasterised {
             return refuse(format!(
                 "--foveation {name}: renders views of a scene; give a scene (.gltf, .glb, builtin:NAME) with --source raster, \
                  or use another --foveation"
             ));
         }
-        if self.scale.is_some() && self.filter != FilterName::Uniform {
+        if self.scale.is_some() && self.filter() != FilterName::Uniform {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
         }
         if self.geometry == Some(GeometryName::Samples) && !self.may_lack_geometry() {
@@ -119,7 +142,7 @@ impl FoveationArgs {
                 "--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into(),
             );
         }
-        if self.order != OrderName::Bayer && self.filter != FilterName::Sparse {
+        if self.order != OrderName::Bayer && self.filter() != FilterName::Sparse {
             let order = self.order.name();
             return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
         }

@@ -77,9 +77,14 @@ pub struct FoveatedSampling {
 }
 
 impl InputArgs {
+    /// Whether frames are rendered.
+    pub fn is_scene(&self) -> bool {
+        source::is_scene(&self.name)
+    }
+
     /// Whether the frames are those of a rasterised scene.
     pub fn is_rasterised(&self) -> bool {
-        source::is_scene(&self.name) && self.source != Some(SourceName::Trace)
+        self.is_scene() && self.source != Some(SourceName::Trace)
     }
 
     /// Opens files directly, and scenes with a renderer.

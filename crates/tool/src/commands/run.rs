@@ -8,8 +8,7 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
-    DebugName, FilterName, FormatName, FoveationArgs, GeometryName, MethodName, WrsArgs, parse_exposure, parse_frames,
-    parse_samples,
+    DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -102,7 +101,15 @@ impl RunArgs {
             #[command(flatten)]
             args: RunArgs,
         }
-        Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args)
+        Ok(Run::try_parse_from(words).map_err(|e| Failure::usage(&e))?.args.with_defaults())
+    }
+
+    /// Fills in defaults that depend on other options.
+    #[must_use]
+    pub fn with_defaults(self) -> Self {
+        let is_scene = self.input.is_scene();
+        let is_sparse = is_scene && self.sampling.sampling == SamplingName::Uniform;
+        Self { foveation: self.foveation.with_defaults(is_sparse, is_scene), ..self }
     }
 
     /// Settings for rendering a scene on `backend`.
@@ -123,7 +130,7 @@ impl RunArgs {
                 return self.foveation.regions(self.input.spp).map(Some);
             }
             // Frames without foveation: their error is noise alone.
-            return Ok((is_traced && self.foveation.filter == FilterName::Off).then_some(Sampling::Uniform));
+            return Ok((is_traced && self.foveation.filter() == FilterName::Off).then_some(Sampling::Uniform));
         }
         if !is_traced {
             return Err(Failure::Input(format!(
@@ -145,7 +152,7 @@ impl RunArgs {
 
     /// Whether frames are given as samples: of a simulator, or of a sampling pattern.
     pub fn is_sparse(&self) -> bool {
-        self.foveation.filter == FilterName::Sparse
+        self.foveation.filter() == FilterName::Sparse
     }
 }
 
@@ -171,13 +178,14 @@ fn parse_part(name: &str) -> Result<&'static Part, String> {
 
 /// The subcommand.
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
-    let report = execute(args)?;
-    print_summary(args, &report);
+    let args = args.clone().with_defaults();
+    let report = execute(&args)?;
+    print_summary(&args, &report);
     Ok(())
 }
 
 /// Runs the clip and writes its files; prints nothing.
-pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
+fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let backend = args.backend.open_for(&args.input.name)?;
     let mut source = args.input.open(&args.rendering(&backend)?)?;
     let plan = plan::plan(args, source.info(), backend)?;
@@ -191,10 +199,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         fps: plan.fps,
         seed: args.seed,
         simulator: simulator(args),
-        geometry: args
-            .foveation
-            .may_lack_geometry()
-            .then(|| args.foveation.geometry.unwrap_or(GeometryName::Full).name()),
+        geometry: args.foveation.may_lack_geometry().then(|| args.foveation.geometry().name()),
         scale: match args.foveation.quad_views() {
             Some(QuadViewLayout::Uniform { step }) => Some(step),
             _ => None,
@@ -211,7 +216,7 @@ pub fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
 /// Name of the simulator's filter or of the sampling pattern that foveates the frames.
 fn simulator(args: &RunArgs) -> &'static str {
     match args.sampling.sampling {
-        SamplingName::Uniform => args.foveation.filter.name(),
+        SamplingName::Uniform => args.foveation.filter().name(),
         pattern => pattern.name(),
     }
 }

@@ -100,6 +100,11 @@ pub struct ViewArgs {
 
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
+    let is_rendered = args.input.is_rasterised();
+    let foveation = args.foveation.clone().with_defaults(is_rendered, is_rendered);
+    // A key switches to other foveations, whose geometry may have another default.
+    let foveation = FoveationArgs { geometry: args.foveation.geometry, ..foveation };
+    let args = &ViewArgs { foveation, ..args.clone() };
     let (setup, frames) = if args.input.is_rasterised() {
         let scene = args.input.scene()?;
         (Setup::new(args, scene.info())?, Frames::of_scene(scene))

@@ -1,10 +1,10 @@
 //! Plan of a run, checked before its first frame.
 
 use super::{RunArgs, simulator};
+use crate::args::MethodName;
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
-use crate::args::{GeometryName, MethodName};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
@@ -50,7 +50,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             title: title(&info.name, info.size, track.px.len(), fps, &words(args, &foveation)),
             geometry,
             foveation,
-            sparse_geometry: args.foveation.geometry.unwrap_or(GeometryName::Full).geometry(),
+            sparse_geometry: args.foveation.geometry().geometry(),
             quad_views: args.foveation.quad_views(),
             sample_order: args.foveation.order.order(),
             methods,
@@ -99,14 +99,14 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     let sampling = args.sampling()?;
     let foveation = foveation(args)?;
     let method = match method {
-        MethodName::Post(Method::Taau) if args.foveation.filter.is_quad_views() => {
-            let name = args.foveation.filter.name();
+        MethodName::Post(Method::Taau) if args.foveation.filter().is_quad_views() => {
+            let name = args.foveation.filter().name();
             return Err(Failure::Input(format!(
                 "--method taau: needs moving samples, which --foveation {name} has not; use --foveation sparse, for a \
                  uniform frame with --fovea 0 --mid 0 and equal rates, or leave it out"
             )));
         }
-        MethodName::Oracle if args.foveation.filter.is_quad_views() => {
+        MethodName::Oracle if args.foveation.filter().is_quad_views() => {
             let text =
                 "--method oracle: is defined for simulated levels of detail; use --foveation mip, or leave it out";
             return Err(Failure::Input(text.into()));

@@ -84,7 +84,7 @@ impl Subject {
     /// Samples per pixel of a full-rate frame with the fovea's quality; 1 if a simulator foveates.
     pub fn full_rate_samples(&self) -> u32 {
         match self.args.sampling.sampling {
-            SamplingName::Uniform if self.args.foveation.filter != FilterName::Off => 1,
+            SamplingName::Uniform if self.args.foveation.filter() != FilterName::Off => 1,
             _ => self.args.sampling.most_samples(self.args.input.spp),
         }
     }

@@ -58,7 +58,7 @@ impl Setup {
             },
             is_split: !args.split.is_empty(),
             divider: 0.5,
-            filter: args.foveation.filter,
+            filter: args.foveation.filter(),
             is_rasterised: args.input.is_rasterised(),
             fovea_deg: args.foveation.fovea,
             mid_deg: args.foveation.mid,
@@ -85,7 +85,7 @@ impl Setup {
     }
 
     fn foveation(&self, state: &State) -> FoveationArgs {
-        FoveationArgs { filter: state.filter, fovea: state.fovea_deg, ..self.args.foveation.clone() }
+        FoveationArgs { filter: Some(state.filter), fovea: state.fovea_deg, ..self.args.foveation.clone() }
     }
 
     /// View geometry at a factor on the input's resolution.
