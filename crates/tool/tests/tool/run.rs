@@ -205,6 +205,31 @@ fn both_backends_write_the_same_bytes_of_quad_views() {
     }
 }
 
+/// Scenes render samples, and given frames simulate blur, unless the command line says otherwise.
+#[test]
+fn scenes_are_sparse_by_default_and_given_frames_are_blurred() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let traced = ["--source", "trace", "--spp", "1", "--reference-spp", "1"];
+    let cases: [(&str, &[&str], [&str; 2]); 5] = [
+        ("builtin:cubes", &[], ["sparse", "samples"]),
+        ("builtin:cubes", &traced, ["sparse", "samples"]),
+        ("builtin:cubes", &["--geometry", "full"], ["sparse", "full"]),
+        ("builtin:cubes", &["--foveation", "mip"], ["mip", ""]),
+        ("analytic:still", &[], ["mip", ""]),
+    ];
+    for (i, (input, more, expected)) in cases.into_iter().enumerate() {
+        let out = folder.text(&i.to_string());
+        let small = ["--size", "64x36", "--frames", "2", "--method", "none", "--no-flip"];
+        succeeds(&run(input, &out, &[&small, more].concat()));
+        let foveation = &read_json(&folder.path(&format!("{i}/report.json")))["foveation"];
+        let found = ["simulator", "geometry"].map(|key| foveation[key].as_str().unwrap_or_default());
+        assert_eq!(found, expected, "{input}, {more:?}");
+    }
+}
+
 /// Uniform frames with moving samples: one lattice.
 #[test]
 fn a_sparse_frame_without_a_fovea_is_one_lattice() {
@@ -324,7 +349,7 @@ fn traced_samples_go_through_every_method_and_both_backends_agree() {
         succeeds(&run("builtin:cubes", &out, &[&pattern[..], &rest, &view].concat()));
     }
     let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{b}/report.json"))));
-    assert_eq!((&cpu["foveation"]["simulator"], &cpu["foveation"]["geometry"]), (&"regions".into(), &"full".into()));
+    assert_eq!((&cpu["foveation"]["simulator"], &cpu["foveation"]["geometry"]), (&"regions".into(), &"samples".into()));
     // Kept samples and their noise, of two frames.
     assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
     if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
