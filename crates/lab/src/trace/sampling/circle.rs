@@ -16,12 +16,17 @@ impl Circle {
 
     /// The circle enlarged by `by_px`, plus the rounding error of single precision at its edge.
     pub fn grown(self, by_px: f32) -> Self {
-        Self { radius_px: self.radius_px + by_px + 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
+        Self { radius_px: self.radius_px + by_px + self.rounding_px(), ..self }
     }
 
     /// The circle reduced by `by_px`, plus the rounding error of single precision at its edge.
     pub fn shrunk(self, by_px: f32) -> Self {
-        Self { radius_px: self.radius_px - by_px - 4.0 * f32::EPSILON * self.radius_px.abs(), ..self }
+        Self { radius_px: self.radius_px - by_px - self.rounding_px(), ..self }
+    }
+
+    /// Rounding error of single precision at the edge, in pixels. Infinite radii stay infinite.
+    fn rounding_px(&self) -> f32 {
+        if self.radius_px.is_finite() { 4.0 * f32::EPSILON * self.radius_px.abs() } else { 0.0 }
     }
 
     /// Distance of a pixel from the centre, in pixels.
