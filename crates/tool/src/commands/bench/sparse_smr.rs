@@ -109,7 +109,7 @@ impl<'a> Comparer<'a> {
                 }
                 Foveated::InMemory(frame) => {
                     let source = self.subject.source_frame(self.tracer, index, true);
-                    pipeline.step_foveated(index, &source, gaze_px, frame)?
+                    pipeline.step_foveated(index, &source, gaze_px, *frame)?
                 }
             };
             if index + TIMED_FRAMES >= CLIP_FRAMES {

@@ -40,15 +40,18 @@ pub struct Subject {
 /// A foveated frame, where its tracer leaves it.
 pub enum Foveated {
     /// Filled between the samples; or samples in their places, from the CPU.
-    InMemory(FoveatedFrame),
+    InMemory(Box<FoveatedFrame>),
     /// Samples in their places.
-    OnDevice(DeviceSamples),
+    OnDevice(Box<DeviceSamples>),
 }
 
 impl Foveated {
     /// Number of samples.
     pub fn samples(&self) -> u64 {
-        let (Self::InMemory(FoveatedFrame { samples, .. }) | Self::OnDevice(DeviceSamples { samples, .. })) = self;
+        let samples = match self {
+            Self::InMemory(frame) => &frame.samples,
+            Self::OnDevice(frame) => &frame.samples,
+        };
         samples.iter().sum()
     }
 }
@@ -156,7 +159,7 @@ impl Subject {
         let Some(placed) = sparse else {
             let frame = sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index);
             let took = FrameTime::by(&watch, None, frame.rays);
-            return Ok((Foveated::InMemory(frame), took));
+            return Ok((Foveated::InMemory(Box::new(frame)), took));
         };
         let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
         Ok(match (tracer, held) {
@@ -164,12 +167,12 @@ impl Subject {
                 let before = self.view(index.saturating_sub(1));
                 plan.trace_in_place(tracer, world, [&view, &before], index, placed, &mut held);
                 tracer.device().wait();
-                (Foveated::OnDevice(held), FrameTime::by(&watch, None, 0))
+                (Foveated::OnDevice(Box::new(held)), FrameTime::by(&watch, None, 0))
             }
             _ => {
                 let frame = plan.trace(tracer, world, &view, index);
                 let took = FrameTime::by(&watch, None, frame.rays);
-                (Foveated::InMemory(frame), took)
+                (Foveated::InMemory(Box::new(frame)), took)
             }
         })
     }
