@@ -46,12 +46,12 @@ pub struct BenchArgs {
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, papers (first paper), foveated, effects: scenes, separated by commas; default: builtin:courtyard, for effects four
-    /// built-in ones
+    /// trace, papers (first paper), foveated, effects: scenes, separated by commas; default: builtin:courtyard, for
+    /// effects four built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, papers (first paper), foveated: camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
-    /// lateral, orbit, walk, or a file; default: still
+    /// trace, papers (first paper), foveated: camera of the scenes, as for `afterimage trace`: a camera by name,
+    /// still, framing, lateral, orbit, walk, or a file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// trace, papers, foveated, effects: device that traces; papers use the adapter if there is one
@@ -87,8 +87,8 @@ pub enum What {
     Post,
     /// The path tracer: rays per second, depth 3, multiple importance sampling
     Trace,
-    /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and those
-    /// of sparse frames with smr
+    /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and
+    /// those of sparse frames with smr
     Papers,
     /// What of the samples that foveated path tracing saves becomes saved time: one path a lattice point, regions
     /// 8,4,2 and 32,16,8

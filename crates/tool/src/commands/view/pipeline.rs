@@ -1,5 +1,5 @@
-//! GPU passes of the viewer: render a scene or foveate the full-rate frame, then run the method of each side. Nothing is
-//! read back.
+//! GPU passes of the viewer: render a scene or foveate the full-rate frame, then run the method of each side.
+//! Nothing is read back.
 
 use super::examiner::Examiner;
 use super::setup::Setup;
