@@ -192,9 +192,8 @@ impl Foveation {
     /// counter.
     ///
     /// Regions outside the view, and of 0 degrees, are left out. So are those whose samples would all lie beyond
-    /// the view's edge: regions
-    /// that reach only its last blocks, in frames that sample the part of them beyond the edge. Steps larger than the
-    /// view have their sample inside it.
+    /// the view's edge: regions that reach only its last blocks, in frames that sample the part of them beyond the
+    /// edge. Steps larger than the view have their sample inside it.
     pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
         let size = geometry.size_px();
         let covering = |step, low, high| {

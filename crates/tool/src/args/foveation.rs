@@ -12,8 +12,8 @@ use clap::{Args, ValueEnum};
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
     /// How frames are foveated. mip, gauss and block simulate it on full-rate frames; sparse, too, but rasterised
-    /// scenes render its samples alone, and with --sampling regions or layers it gives the traced samples to the methods in
-    /// their places; layers and uniform render views of rasterised scenes
+    /// scenes render its samples alone, and with --sampling regions or layers it gives the traced samples to the
+    /// methods in their places; layers and uniform render views of rasterised scenes
     #[arg(long = "foveation", value_enum, default_value = "mip")]
     pub filter: FilterName,
     /// Diameter of the full-rate region, degrees
