@@ -83,7 +83,7 @@ pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
     let mut levels = Image::filled(size_px, 0.0);
     let rows = levels.pixels_mut().par_chunks_mut(size_px[0].max(1) as usize);
     rows.zip(0..size_px[1]).for_each(|(row, y)| {
-        // Finer lattices hide coarser ones. Looking for each pixel's lattice takes ten times as long.
+        // Finer lattices hide coarser ones.
         for lattice in lattices.as_slice().iter().rev() {
             let [low, high] = lattice.covered_px();
             if (low[1]..high[1]).contains(&y) {
