@@ -2,6 +2,7 @@
 
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
+use rayon::prelude::*;
 
 /// Depth and motion of a sparse frame. Default: [`Full`](Self::Full).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,7 +78,19 @@ impl SampleOrder {
     }
 }
 
-/// Level of detail of every pixel: log2 of the step of its lattice.
+/// Level of detail of every pixel: log2 of the step of its lattice, 0 where there is none.
 pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
-    Image::from_fn_parallel(size_px, |px| lattices.at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32))
+    let mut levels = Image::filled(size_px, 0.0);
+    let rows = levels.pixels_mut().par_chunks_mut(size_px[0].max(1) as usize);
+    rows.zip(0..size_px[1]).for_each(|(row, y)| {
+        // Finer lattices hide coarser ones.
+        for lattice in lattices.as_slice().iter().rev() {
+            let [low, high] = lattice.covered_px();
+            if (low[1]..high[1]).contains(&y) {
+                let [left, right] = [low, high].map(|corner| corner[0].min(size_px[0]) as usize);
+                row[left..right].fill(lattice.step.ilog2() as f32);
+            }
+        }
+    });
+    levels
 }

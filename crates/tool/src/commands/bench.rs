@@ -8,6 +8,7 @@ mod patterns;
 mod post;
 mod rays;
 mod savings;
+mod sparse_smr;
 mod subject;
 mod wrs_table;
 
@@ -86,7 +87,8 @@ pub enum What {
     Post,
     /// The path tracer: rays per second, depth 3, multiple importance sampling
     Trace,
-    /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results and ours
+    /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and
+    /// those of sparse frames with smr
     Papers,
     /// What of the samples that foveated path tracing saves becomes saved time: one path a lattice point, regions
     /// 8,4,2 and 32,16,8

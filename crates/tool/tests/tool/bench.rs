@@ -50,6 +50,33 @@ fn bench_counts_the_rays_of_the_tracer() {
 }
 
 #[test]
+fn bench_tells_how_much_of_the_saved_samples_is_saved_time() {
+    let folder = Folder::new();
+    let json = folder.text("foveated.json");
+    let text =
+        succeeds(&["bench", "foveated", "--backend", "cpu", "--size", "96x54", "--frames", "1", "--json", &json]);
+    assert!(text.contains("| share of saved | share of reduction |"), "{text}");
+    let report = read_json(Path::new(&json));
+    let tracer = &report["scenes"][0]["tracers"][0];
+    assert_eq!((&report["max_depth"], &tracer["backend"]["kind"]), (&3.into(), &"cpu".into()));
+    let patterns = tracer["patterns"].as_array().unwrap();
+    let samples: Vec<_> = patterns.iter().map(|p| p["samples_per_pixel"].as_u64().unwrap()).collect();
+    assert_eq!(samples, [1, 8, 32], "one path a point, regions 8,4,2 and 32,16,8");
+    for p in patterns {
+        let of = |key: &str| p[key].as_f64().unwrap_or_else(|| panic!("{key} of {p}"));
+        let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9 * expected.abs(), "{p}");
+        let median = |key: &str| p[key]["median"].as_f64().unwrap();
+        is(of("sample_reduction") * of("samples"), 96.0 * 54.0 * of("samples_per_pixel"));
+        is(of("time_reduction"), median("uniform_cpu_ms") / median("cpu_ms"));
+        let saved = |reduction: f64| 1.0 - 1.0 / reduction;
+        is(of("share_of_saved"), saved(of("time_reduction")) / saved(of("sample_reduction")));
+        is(of("share_of_reduction"), of("time_reduction") / of("sample_reduction"));
+        assert!(of("sample_reduction") > 4.0, "{p}");
+    }
+    refuses(&["bench", "foveated", "--frames", "0"], &["1 to"]);
+}
+
+#[test]
 fn bench_puts_the_papers_figures_beside_ours() {
     let folder = Folder::new();
     let json = folder.text("papers.json");
@@ -67,6 +94,18 @@ fn bench_puts_the_papers_figures_beside_ours() {
     assert_eq!(layers.len(), 5);
     assert!(layers.iter().all(|scene| scene["size"] == serde_json::json!([36, 40]) && scene["max_depth"] == 8));
     assert!(layers.iter().all(|scene| scene["patterns"].as_array().unwrap().len() == 2));
+    // Sparse frames with smr beside all of them, with about as many samples.
+    let of_layers = layers.iter().flat_map(|scene| scene["patterns"].as_array().unwrap());
+    for p in regions.iter().chain(of_layers) {
+        for kind in ["filled", "sparse_smr"] {
+            let of = |key: &str| p[kind][key].as_f64().unwrap_or_else(|| panic!("{kind}.{key} of {p}"));
+            // No error at all has no PSNR.
+            let psnr_db = p[kind]["psnr_db"].as_f64().unwrap_or(f64::INFINITY);
+            assert!(psnr_db > 5.0 && (0.0..1.0).contains(&of("flip")) && of("samples") > 0.0, "{p}");
+            assert!((of("render_ms") + of("post_ms") - of("total_ms")).abs() < 1e-9 && of("render_ms") > 0.0, "{p}");
+            assert_eq!(of("post_ms") > 0.0, kind == "sparse_smr");
+        }
+    }
     refuses(&["bench", "papers", "--frames", "0"], &["1 to"]);
     refuses(&["bench", "papers", "--camera", "no/such.json"], &["no/such.json"]);
 }

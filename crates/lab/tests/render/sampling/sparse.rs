@@ -2,10 +2,10 @@
 //! nothing else is traced.
 
 use super::fills::view;
-use afterimage::{Filter, Foveation, Lattices, Method, Settings};
+use afterimage::{Filter, Foveation, Image, Lattices, Method, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry, levels};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scene::builtin;
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
@@ -96,7 +96,8 @@ fn samples_have_the_colors_traced_at_their_places() {
         let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, 7, SampleOrder::Bayer).unwrap();
         let made = plan.trace(&tracer, &world, &view, 7);
         assert_eq!(made.lattices, Some(*plan.lattices()));
-        assert_eq!(made.lod, levels(plan.lattices(), SIZE));
+        let level = |px| plan.lattices().at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32);
+        assert_eq!(made.lod, Image::from_fn(SIZE, level));
         let traced: HashMap<[u32; 2], u32> = plan.pixels().collect();
         for (i, color) in made.color.pixels().iter().enumerate() {
             let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];

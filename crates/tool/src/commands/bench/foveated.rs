@@ -3,6 +3,7 @@
 use super::subject::{FrameTime, Subject};
 use crate::failure::Failure;
 use afterimage_lab::clock::Quartiles;
+use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use serde::Serialize;
@@ -14,7 +15,8 @@ pub const ROUNDS: u64 = 3;
 /// Samples per pixel of the uniform frame. Its time is scaled in proportion to the pattern's samples.
 pub const UNIFORM_SAMPLES: u32 = 4;
 
-/// Without a GPU, the uniform frame is traced in every eighth band of rows only, and its time is scaled.
+/// Without a GPU, uniform frames with several samples a pixel are traced in every eighth band of rows only, and their
+/// times are scaled.
 pub const UNIFORM_EVERY: u32 = 8;
 
 /// A sampling pattern and gaze.
@@ -25,8 +27,8 @@ pub struct Pattern {
     /// Samples per pixel where the pattern is densest.
     pub samples: u32,
     pub gaze_px: [f32; 2],
-    /// Samples in their places instead of filled frames.
-    pub is_sparse: bool,
+    /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
+    pub sparse: Option<SparseGeometry>,
 }
 
 /// Results of a pattern in a scene.
@@ -40,6 +42,8 @@ pub struct PatternReport {
     /// Samples of the uniform frame divided by those of the pattern without overlaps for blending and partial blocks at
     /// borders.
     pub ideal_reduction: Option<f64>,
+    /// Samples of a foveated frame, the last one.
+    pub samples: u64,
     /// Samples of the uniform frame divided by those traced.
     pub sample_reduction: f64,
     /// Time of the uniform frame divided by that of the foveated one, including planning and interpolation.
@@ -73,7 +77,7 @@ pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f3
         sampling: Sampling::Regions(Regions { samples, radius_scale, ..Regions::default() }),
         samples: samples[0],
         gaze_px,
-        is_sparse: false,
+        sparse: None,
     }
 }
 
@@ -85,7 +89,7 @@ pub fn one_path(gaze_px: [f32; 2]) -> Pattern {
         sampling: Sampling::Regions(regions),
         samples: 1,
         gaze_px,
-        is_sparse: true,
+        sparse: Some(SparseGeometry::Full),
     }
 }
 
@@ -101,7 +105,7 @@ pub fn patterns(subject: &Subject) -> Vec<Pattern> {
             sampling: Sampling::Layers(Layers::default()),
             samples: 4,
             gaze_px: middle,
-            is_sparse: false,
+            sparse: None,
         },
     ]
 }
@@ -126,14 +130,15 @@ pub fn measure(
     let mut traced = vec![0; patterns.len()];
     // Drivers compile at the first dispatch.
     subject.few(tracer);
-    let every = if by_wall { 1 } else { UNIFORM_EVERY };
+    // A frame with one sample a pixel is soon traced, and bands of so few would mostly start kernels.
+    let every = |samples| if by_wall || samples == 1 { 1 } else { UNIFORM_EVERY };
     for round in 0..rounds {
         for (&samples, took) in &mut uniform {
-            took.push(subject.uniform(tracer, samples, every, round));
+            took.push(subject.uniform(tracer, samples, every(samples), round));
         }
         for (i, p) in patterns.iter().enumerate() {
             let (frame, time) = subject.foveated(tracer, p, round)?;
-            traced[i] = frame.samples.iter().sum::<u64>();
+            traced[i] = frame.samples();
             took[i].push(time);
         }
     }
@@ -153,6 +158,7 @@ pub fn measure(
             clock: if by_wall { "wall" } else { "CPU" },
             samples_per_pixel: p.samples,
             ideal_reduction,
+            samples: traced[i],
             sample_reduction: all / traced[i] as f64,
             time_reduction: None,
             share_of_ideal: None,

@@ -1,6 +1,7 @@
 //! `afterimage bench papers`: savings of foveated path tracing, compared with the results of two papers.
 
 use super::foveated::{Pattern, PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
+use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
 use super::subject::{Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
@@ -43,6 +44,8 @@ const SCENES: [(&str, Option<[f64; 2]>); 5] = [
 ];
 const THESIS_DEPTH: u32 = 8;
 const THESIS_SAMPLES: u32 = 4;
+/// Steps of the layers' lattices in sparse frames, which allow neither 3 nor a lens.
+const LATTICE_STEPS: [u32; 4] = [1, 2, 4, 8];
 
 struct Triple {
     samples: [u32; 3],
@@ -89,6 +92,9 @@ struct Compared {
     paper_time_reduction: Option<f64>,
     /// The paper's time reduction divided by the ideal reduction on its display.
     paper_share_of_ideal: Option<f64>,
+    /// The pattern's frames beside sparse frames with smr. Layers: without a lens.
+    #[serde(flatten)]
+    comparison: Comparison,
 }
 
 /// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200
@@ -160,13 +166,18 @@ fn regions_of_a_scene(
     let uniform = DISPLAY_PX.map(f64::from).iter().product::<f64>() * 32.0;
     let halved = uniform / with_its_radii(TRIPLES[0].samples, 0.5).ideal_samples(&display);
     let papers = TRIPLES.iter().map(|t| (t.time, UNIFORM_MILLIONS / t.millions)).chain([(HALVED_TIME, halved)]);
-    let compare = |(ours, (time, ideal)): (PatternReport, (f64, f64))| Compared {
-        ours,
-        paper_time_reduction: Some(time),
-        paper_share_of_ideal: Some(time / ideal),
-    };
     let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
-    Ok(scene_report(&subject, settings, measured.into_iter().zip(papers).map(compare).collect()))
+    let mut comparer = Comparer::new(&subject, &tracer, backend, by_wall);
+    let compare = |((ours, pattern), (time, ideal)): ((PatternReport, &Pattern), (f64, f64))| {
+        Ok(Compared {
+            ours,
+            paper_time_reduction: Some(time),
+            paper_share_of_ideal: Some(time / ideal),
+            comparison: comparer.compare(pattern, pattern.sampling)?,
+        })
+    };
+    let compared = measured.into_iter().zip(&patterns).zip(papers).map(compare).collect::<Result<_, Failure>>()?;
+    Ok(scene_report(&subject, settings, compared))
 }
 
 /// Two rows of the second table.
@@ -194,16 +205,24 @@ fn layers_of(
         sampling: Sampling::Layers(Layers { lens_deg: Some(lens_deg), ..Layers::default() }),
         samples: THESIS_SAMPLES,
         gaze_px,
-        is_sparse: false,
+        sparse: None,
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
-    let measured = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend))?;
-    let compare = |(i, ours): (usize, PatternReport)| Compared {
-        ours,
-        paper_time_reduction: paper.map(|p| p[i]),
-        paper_share_of_ideal: None,
+    let by_wall = is_real_gpu(backend);
+    let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
+    let mut comparer = Comparer::new(&subject, &tracer, backend, by_wall);
+    let compare = |(i, (ours, pattern)): (usize, (PatternReport, &Pattern))| {
+        let filled = Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
+        let lattices = Sampling::Layers(Layers { steps: LATTICE_STEPS, ..Layers::default() });
+        Ok(Compared {
+            ours,
+            paper_time_reduction: paper.map(|p| p[i]),
+            paper_share_of_ideal: None,
+            comparison: comparer.compare(&filled, lattices)?,
+        })
     };
-    Ok(scene_report(&subject, settings, measured.into_iter().enumerate().map(compare).collect()))
+    let compared = measured.into_iter().zip(&patterns).enumerate().map(compare).collect::<Result<_, Failure>>()?;
+    Ok(scene_report(&subject, settings, compared))
 }
 
 fn scene_report(subject: &Subject, settings: TraceSettings, patterns: Vec<Compared>) -> SceneReport {
@@ -233,19 +252,21 @@ fn print(report: &Report) {
     if clock == "CPU" {
         say!("Uniform frames: {UNIFORM_SAMPLES} samples a pixel of every {UNIFORM_EVERY}th band of rows.");
     }
+    say!("Quality is that of frame {CLIP_FRAMES} against a full-rate frame with as many samples a pixel as the fovea.");
 }
 
 fn print_regions(scene: &SceneReport) {
     let ([w, h], hfov_deg, depth) = (scene.size, scene.hfov_deg, scene.max_depth);
     say!("\n{}, {} triangles, {w}x{h}, {hfov_deg:.1} degrees wide, depth {depth}:\n", scene.scene, scene.triangles);
     say!(
-        "| pattern | ideal | of samples | of time | share of ideal | the paper's time | its share | frames a second |"
+        "| pattern | ideal | of samples | of time | share of ideal | the paper's time | its share | frames a second \
+         {COMPARED_HEAD}"
     );
-    say!("|---|---|---|---|---|---|---|---|");
-    for Compared { ours, paper_time_reduction, paper_share_of_ideal } in &scene.patterns {
+    say!("|---|---|---|---|---|---|---|---|---|---|");
+    for Compared { ours, paper_time_reduction, paper_share_of_ideal, comparison } in &scene.patterns {
         let rates = ours.times().filter(|_| ours.clock == "wall");
         say!(
-            "| {} | {} | {:.1}x | {} | {} | {} | {} | {} |",
+            "| {} | {} | {:.1}x | {} | {} | {} | {} | {} {}",
             ours.pattern,
             factor(ours.ideal_reduction, 1),
             ours.sample_reduction,
@@ -254,6 +275,7 @@ fn print_regions(scene: &SceneReport) {
             factor(*paper_time_reduction, 2),
             percent(*paper_share_of_ideal),
             rates.map_or("-".into(), |(u, f)| format!("{:.2} to {:.2}", 1e3 / u.median, 1e3 / f.median)),
+            compared(comparison),
         );
     }
 }
@@ -263,12 +285,12 @@ fn print_layers(scenes: &[SceneReport]) {
     say!(
         "\nLayers, an eye of {w}x{h} pixels, {hfov_deg:.0} degrees wide, {THESIS_SAMPLES} samples, depth {max_depth}:\n"
     );
-    say!("| scene | triangles | gaze | of samples | of time | the thesis' | ms, uniform to foveated |");
-    say!("|---|---|---|---|---|---|---|");
+    say!("| scene | triangles | gaze | of samples | of time | the thesis' | ms, uniform to foveated {COMPARED_HEAD}");
+    say!("|---|---|---|---|---|---|---|---|---|");
     for scene in scenes {
-        for Compared { ours, paper_time_reduction, .. } in &scene.patterns {
+        for Compared { ours, paper_time_reduction, comparison, .. } in &scene.patterns {
             say!(
-                "| {} | {} | {} | {:.1}x | {} | {} | {} |",
+                "| {} | {} | {} | {:.1}x | {} | {} | {} {}",
                 scene.scene,
                 scene.triangles,
                 ours.pattern,
@@ -276,9 +298,25 @@ fn print_layers(scenes: &[SceneReport]) {
                 factor(ours.time_reduction, 1),
                 factor(*paper_time_reduction, 2),
                 ours.times().map_or("-".into(), |(u, f)| format!("{:.0} to {:.0}", u.median, f.median)),
+                compared(comparison),
             );
         }
     }
+    say!("\nThe last two columns are without the lens; sparse lattices have the steps {LATTICE_STEPS:?}.");
+}
+
+/// Header of [`compared`].
+const COMPARED_HEAD: &str = "| filled: dB, FLIP, ms | sparse + smr: dB, FLIP, ms |";
+
+/// The two last columns of both tables.
+fn compared(comparison: &Comparison) -> String {
+    let Comparison { filled, sparse_smr, .. } = comparison;
+    let quality = |shown: &Shown| {
+        let psnr_db = shown.psnr_db.map_or("-".into(), |db| format!("{db:.2}"));
+        format!("{psnr_db}, {:.4}", shown.flip)
+    };
+    let Shown { render_ms, post_ms, .. } = sparse_smr;
+    format!("| {}, {:.0} | {}, {render_ms:.0} + {post_ms:.0} |", quality(filled), filled.total_ms, quality(sparse_smr))
 }
 
 fn factor(value: Option<f64>, digits: usize) -> String {

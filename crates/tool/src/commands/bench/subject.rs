@@ -4,10 +4,10 @@ use super::foveated::Pattern;
 use super::{BenchArgs, Traces};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::ViewGeometry;
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::FoveatedFrame;
+use afterimage_lab::frame::{DeviceSamples, FoveatedFrame, SourceFrame};
 use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::SceneCamera;
@@ -15,10 +15,15 @@ use afterimage_lab::source::raster::DEFAULT_FPS;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
 use afterimage_lab::trace::world::{World, light_if_dark};
+use std::cell::OnceCell;
 use std::time::Duration;
+
+/// Offset of the frame numbers that seed full-rate frames.
+const FULL_RATE_FRAMES: u64 = 1 << 31;
 
 /// A still scene and its camera, traced at one sample per pixel.
 pub struct Subject {
@@ -28,6 +33,27 @@ pub struct Subject {
     camera: SceneCamera,
     items: Vec<WorkItem>,
     size: [u32; 2],
+    /// Where a tracer on a device leaves the samples of sparse frames.
+    on_device: OnceCell<DeviceSamples>,
+}
+
+/// A foveated frame, where its tracer leaves it.
+pub enum Foveated {
+    /// Filled between the samples; or samples in their places, from the CPU.
+    InMemory(Box<FoveatedFrame>),
+    /// Samples in their places.
+    OnDevice(Box<DeviceSamples>),
+}
+
+impl Foveated {
+    /// Number of samples.
+    pub fn samples(&self) -> u64 {
+        let samples = match self {
+            Self::InMemory(frame) => &frame.samples,
+            Self::OnDevice(frame) => &frame.samples,
+        };
+        samples.iter().sum()
+    }
 }
 
 /// Times and rays of one frame.
@@ -38,6 +64,7 @@ pub struct FrameTime {
     pub wall_ms: f64,
     /// Time of the kernels by timestamp queries, on a hardware GPU.
     pub device_ms: Option<f64>,
+    /// 0 where the rays stay uncounted on a device.
     pub rays: u64,
 }
 
@@ -52,7 +79,15 @@ impl Subject {
         light_if_dark(&mut scene);
         let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
         let items = uniform(size[0], 0..size[1], 0..1);
-        Ok(Self { name: name.to_owned(), world: World::new(&scene), scene, camera, items, size })
+        Ok(Self {
+            name: name.to_owned(),
+            world: World::new(&scene),
+            scene,
+            camera,
+            items,
+            size,
+            on_device: OnceCell::new(),
+        })
     }
 
     /// View geometry.
@@ -74,6 +109,32 @@ impl Subject {
         self.trace(tracer, index, &self.items)
     }
 
+    /// The full-rate frame: `samples` of every pixel, with other random draws than [`foveated`](Self::foveated) frames.
+    pub fn full_rate(&self, tracer: &Tracer, samples: u32, index: u64) -> Image<[f32; 3]> {
+        let [width, height] = self.size;
+        let mut film = Film::new(self.size);
+        let spans = Spans::uniform(width, 0..height, 0..samples);
+        tracer.trace(&self.world, &self.view(index), FULL_RATE_FRAMES + index, &spans, &mut film);
+        film.color()
+    }
+
+    /// What a post-process needs to know of a frame besides its color, which is black here. `has_geometry`: depth and
+    /// motion at every pixel, if they are not left on a device with the samples.
+    pub fn source_frame(&self, tracer: &Tracer, index: u64, has_geometry: bool) -> SourceFrame {
+        let [view, before] = [index, index.saturating_sub(1)].map(|index| self.view(index));
+        let seen = has_geometry.then(|| Surfaces::trace(&self.world, &view, &before, tracer.effects(&self.world)));
+        let (depth, motion) = seen.map(|seen| (seen.depth, seen.motion)).unzip();
+        SourceFrame {
+            color: Image::filled(self.size, [0.0; 3]),
+            depth,
+            motion,
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&before)),
+            cut: index == 0,
+            nonfinite: 0,
+        }
+    }
+
     /// Traces a few samples, which is enough to run every kernel.
     pub fn few(&self, tracer: &Tracer) -> FrameTime {
         self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
@@ -84,27 +145,36 @@ impl Subject {
         self.size.map(|s| 0.5 * (s as f32 - 1.0))
     }
 
-    /// Traces a foveated frame. Its time includes planning and interpolation.
+    /// Traces a foveated frame. Its time includes planning and interpolation, and for samples on a device that ask for
+    /// them depth and motion.
     ///
     /// # Errors
     /// If the samples of a sparse pattern cannot lie on lattices.
-    pub fn foveated(
-        &self,
-        tracer: &Tracer,
-        pattern: &Pattern,
-        index: u64,
-    ) -> Result<(FoveatedFrame, FrameTime), Failure> {
-        let &Pattern { sampling, samples, gaze_px, is_sparse, .. } = pattern;
-        let (geometry, view) = (self.geometry(), self.view(index));
+    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<(Foveated, FrameTime), Failure> {
+        let &Pattern { sampling, samples, gaze_px, sparse, .. } = pattern;
+        let (world, geometry, view) = (&self.world, self.geometry(), self.view(index));
+        let on_device = |device| self.on_device.get_or_init(|| DeviceSamples::new(device, self.size)).clone();
+        let held = if let Tracer::Gpu(tracer) = tracer { Some(on_device(tracer.device())) } else { None };
         let watch = Stopwatch::start();
-        let frame = if is_sparse {
-            let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
-            plan.trace(tracer, &self.world, &view, index)
-        } else {
-            sampling.plan(geometry, gaze_px, samples, index).trace(tracer, &self.world, &view, index)
+        let Some(placed) = sparse else {
+            let frame = sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index);
+            let took = FrameTime::by(&watch, None, frame.rays);
+            return Ok((Foveated::InMemory(Box::new(frame)), took));
         };
-        let took = FrameTime::by(&watch, None, frame.rays);
-        Ok((frame, took))
+        let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
+        Ok(match (tracer, held) {
+            (Tracer::Gpu(tracer), Some(mut held)) => {
+                let before = self.view(index.saturating_sub(1));
+                plan.trace_in_place(tracer, world, [&view, &before], index, placed, &mut held);
+                tracer.device().wait();
+                (Foveated::OnDevice(Box::new(held)), FrameTime::by(&watch, None, 0))
+            }
+            _ => {
+                let frame = plan.trace(tracer, world, &view, index);
+                let took = FrameTime::by(&watch, None, frame.rays);
+                (Foveated::InMemory(Box::new(frame)), took)
+            }
+        })
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the
