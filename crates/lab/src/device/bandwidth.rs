@@ -11,7 +11,7 @@ const BYTES: usize = 1 << 26;
 const COPIES: usize = 7;
 
 /// Milliseconds per byte that a copy reads or writes. CPU time of the process on CPUs and software devices, as in
-/// [`MethodOutput::cost_ms`](crate::pipeline::MethodOutput::cost_ms); wall time on hardware GPUs, where a copy of 64
+/// [`Elapsed::cost_ms`](crate::clock::Elapsed::cost_ms); wall time on hardware GPUs, where a copy of 64
 /// MiB takes much longer than its submission.
 pub fn copy_ms_per_byte(backend: &Backend) -> f64 {
     let mut times = vec![];

@@ -35,8 +35,8 @@ pub struct FoveationArgs {
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
     pub scale: Option<f32>,
-    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default: of
-    /// the nearest sample in scenes, full in given frames
+    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:
+    /// of the nearest sample in scenes, full in given frames
     #[arg(long = "geometry", alias = "sparse-geometry", value_enum)]
     pub geometry: Option<GeometryName>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
