@@ -9,6 +9,7 @@ mod post;
 mod rays;
 mod savings;
 mod subject;
+mod wrs_readings;
 mod wrs_table;
 
 use crate::args::parse_size;
