@@ -267,7 +267,7 @@ impl Settings {
         Self {
             sampler: Sampler::AChaoMean,
             weight_exponent: 8,
-            gate: Some(Gate { scale: GateScale::Candidate, divisor: 30.0, offset: 2.0, ..Gate::default() }),
+            gate: Some(Gate { scale: GateScale::Candidate, divisor: 10.0, offset: 3.0, ..Gate::default() }),
             ..Self::paper()
         }
     }

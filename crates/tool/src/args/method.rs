@@ -61,10 +61,10 @@ pub struct WrsArgs {
     #[arg(long, value_enum)]
     pub gate_scale: Option<GateScaleName>,
     /// Color difference above the offset at which the gate closes, Delta E 94; default: 100, for --wrs-preset weighted
-    /// 30
+    /// 10
     #[arg(long, value_name = "X")]
     pub gate_divisor: Option<f32>,
-    /// Color difference that the gate ignores, Delta E 94; default: 0, for --wrs-preset weighted 2
+    /// Color difference that the gate ignores, Delta E 94; default: 0, for --wrs-preset weighted 3
     #[arg(long, value_name = "X")]
     pub gate_offset: Option<f32>,
     /// Color difference of the gate: of the whole color, or of lightness alone
@@ -109,7 +109,7 @@ impl WrsArgs {
                 None => wrs.sampler,
                 Some(SamplerName::AChao) => Sampler::AChao,
                 Some(SamplerName::AEs) => Sampler::AEs,
-                Some(SamplerName::AChaoMean) => Sampler::AChaoMean,
+                Some(SamplerName::Mean) => Sampler::AChaoMean,
             },
             weight_exponent: self.wrs_exponent.unwrap_or(wrs.weight_exponent),
             bias: self.wrs_bias,
@@ -165,7 +165,8 @@ pub enum SamplerName {
     /// A-ES: keep the sample with the larger key
     AEs,
     /// The expectation of A-Chao: keep the mean
-    AChaoMean,
+    #[value(name = "a-chao-mean")]
+    Mean,
 }
 
 /// Values of `--gate-metric`.
