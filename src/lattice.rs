@@ -191,7 +191,8 @@ impl Foveation {
     /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
     /// counter.
     ///
-    /// Regions outside the view, and of 0 degrees, are left out. So are those whose samples would all lie beyond the view's edge: regions
+    /// Regions outside the view, and of 0 degrees, are left out. So are those whose samples would all lie beyond the
+    /// view's edge: regions
     /// that reach only its last blocks, in frames that sample the part of them beyond the edge. Steps larger than the
     /// view have their sample inside it.
     pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {

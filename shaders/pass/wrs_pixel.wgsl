@@ -111,7 +111,8 @@ struct Place {
     weight: f32,
 }
 
-// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a candidate is
+// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a
+// candidate is
 // a full-rate one, and all others are interpolated.
 fn level_of(e_deg: f32, sampled: bool) -> u32 {
     if FILTER == FILTER_SPARSE {

@@ -119,6 +119,8 @@ fn the_candidates_gate_sees_changes_and_no_detail() {
 }
 
 proptest! {
+    #![proptest_config(afterimage_testing::property("references of the gate", 2000))]
+
     #[test]
     fn references_are_packed_closely_and_stay(
         color in prop::array::uniform3(0.0_f32..=65504.0), shrink in -40_i32..=0, level in 0_u32..64

@@ -17,7 +17,8 @@
 //!
 //! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
 //! of its own in an atlas. [`record_quad_views`](Raster::record_quad_views) draws regions as views without moving
-//! samples, and a [`Composer`] enlarges them into a frame. Triangles outside a view are left out in groups, at full rate as well.
+//! samples, and a [`Composer`] enlarges them into a frame. Triangles outside a view are left out in groups, at full
+//! rate as well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without

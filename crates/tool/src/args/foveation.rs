@@ -11,7 +11,8 @@ use clap::{Args, ValueEnum};
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. mip, gauss and block simulate it on full-rate frames; sparse, too, but rasterised scenes
+    /// How frames are foveated. mip, gauss and block simulate it on full-rate frames; sparse, too, but rasterised
+    /// scenes
     /// render its samples alone, and with --sampling regions or layers it gives the traced samples to the methods in
     /// their places; layers and uniform render views of rasterised scenes
     #[arg(long = "foveation", value_enum, default_value = "mip")]
@@ -31,7 +32,8 @@ pub struct FoveationArgs {
     /// Block edge beyond the middle region, pixels, a power of two
     #[arg(long, default_value_t = 16, value_name = "N")]
     pub rate_far: u32,
-    /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole; default: 2
+    /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
+    /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
     pub scale: Option<f32>,
     /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:

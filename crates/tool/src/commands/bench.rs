@@ -46,11 +46,13 @@ pub struct BenchArgs {
     /// post: passes besides the copy, separated by commas; default: all
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub only: Vec<String>,
-    /// trace, papers (first paper), foveated, effects: scenes, separated by commas; default: builtin:courtyard, for effects four
+    /// trace, papers (first paper), foveated, effects: scenes, separated by commas; default: builtin:courtyard, for
+    /// effects four
     /// built-in ones
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub scene: Vec<String>,
-    /// trace, papers (first paper), foveated: camera of the scenes, as for `afterimage trace`: a camera by name, still, framing,
+    /// trace, papers (first paper), foveated: camera of the scenes, as for `afterimage trace`: a camera by name,
+    /// still, framing,
     /// lateral, orbit, walk, or a file; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,

@@ -174,7 +174,8 @@ impl SparsePlan {
     }
 
     /// As [`trace`](Self::trace), with the samples left on the tracer's device: nothing is read back, and points of the
-    /// lattices that are not traced are NaN. `views`: this frame's and the previous one's. Depth and motion at the samples come from rays on the CPU, in 64 bits, if
+    /// lattices that are not traced are NaN. `views`: this frame's and the previous one's. Depth and motion at the
+    /// samples come from rays on the CPU, in 64 bits, if
     /// `geometry` asks for them.
     pub fn trace_in_place(
         &self,

@@ -1,4 +1,5 @@
-//! Readings of the weighted reservoir method on a still: gain over the foveated frame, in the mean and in the last frame.
+//! Readings of the weighted reservoir method on a still: gain over the foveated frame, in the mean and in the last
+//! frame.
 
 use super::wrs_table::WrsTableArgs;
 use crate::failure::Failure;

@@ -1,4 +1,5 @@
-//! GPU passes of the viewer: render a scene or foveate the full-rate frame, then run the method of each side. Nothing is
+//! GPU passes of the viewer: render a scene or foveate the full-rate frame, then run the method of each side. Nothing
+//! is
 //! read back.
 
 use super::examiner::Examiner;
