@@ -42,8 +42,12 @@ pub enum Sampler {
     #[default]
     AChao,
     /// A-ES, for comparison: each candidate draws a key once. Needs 8 more bytes of memory and of memory traffic a
-    /// pixel.
+    /// pixel, and the place of the references of [`GateScale::Candidate`].
     AEs,
+    /// The expectation of A-Chao: keeps and shows the mean of history and candidate by the probabilities of A-Chao
+    /// instead of drawing, so that nothing speckles. Means may be interpolated, so history is read between pixels by
+    /// Catmull-Rom weights; samples are read from the nearest pixel.
+    AChaoMean,
 }
 
 /// Bias of [`Method::Wrs`]: decay of history's weight, without which new candidates would hardly ever be taken.
@@ -76,6 +80,21 @@ pub enum GateMetric {
     Lightness,
 }
 
+/// Scale at which a [`Gate`] compares colors. Default: [`Sample`](Self::Sample). Example: [`Gate`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum GateScale {
+    /// The stored sample with the candidate, as in the paper: a sharp sample differs from the blurred candidate of the
+    /// same surface, so that the gate also closes on detail.
+    #[default]
+    Sample,
+    /// The candidate with the reference that is stored beside the sample: the first candidate of the same level of
+    /// detail since the sample was taken. Closes only where something changed. Needs 8 more bytes of memory and of
+    /// memory traffic a pixel.
+    Candidate,
+}
+
 /// Color gate of [`Method::Wrs`] (eq. 7 of the paper): history loses weight in proportion to its color difference from
 /// the candidate.
 ///
@@ -92,6 +111,8 @@ pub enum GateMetric {
 pub struct Gate {
     /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
+    /// What is compared with the candidate. Default [`GateScale::Sample`].
+    pub scale: GateScale,
     /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. Less follows changes of
     /// light sooner and keeps less detail, because a sharp sample differs from the blurred candidate of the same
     /// surface. Default 100.
@@ -102,7 +123,7 @@ pub struct Gate {
 
 impl Default for Gate {
     fn default() -> Self {
-        Self { metric: GateMetric::DeltaE94, divisor: 100.0, offset: 0.0 }
+        Self { metric: GateMetric::DeltaE94, scale: GateScale::Sample, divisor: 100.0, offset: 0.0 }
     }
 }
 
@@ -168,7 +189,7 @@ impl Default for Smr {
 /// executor).
 ///
 /// The default is [`Settings::steady`], which measures best on real frames. Other presets are
-/// [`responsive`](Self::responsive), [`traced`](Self::traced) and [`paper`](Self::paper).
+/// [`responsive`](Self::responsive), [`traced`](Self::traced), [`weighted`](Self::weighted) and [`paper`](Self::paper).
 ///
 /// ```
 /// use afterimage::{Bias, ContextDesc, Sampler, Settings};
@@ -193,6 +214,10 @@ pub struct Settings {
     pub smr: Smr,
     /// Sampler of [`Method::Wrs`]. Default [`Sampler::AChao`].
     pub sampler: Sampler,
+    /// Exponent of the candidate weights of [`Method::Wrs`], 1 to 8: a candidate outside the fovea weighs
+    /// `(d(e) / d(r_f))^k`, with the density of retinal ganglion cells `d` (eq. 4 of the paper). More protects samples
+    /// of the fovea longer from coarser candidates, and lets the fovea replace coarse samples sooner. Default 1.
+    pub weight_exponent: u32,
     /// Decay of history's weight in [`Method::Wrs`]. Default [`Bias::Bernoulli`].
     pub bias: Bias,
     /// Color gate of [`Method::Wrs`]; `None` compares no colors, which keeps more detail and ghosts under changing
@@ -217,6 +242,7 @@ impl Default for Settings {
             foveation: Foveation::default(),
             smr: Smr::default(),
             sampler: Sampler::default(),
+            weight_exponent: 1,
             bias: Bias::default(),
             gate: Some(Gate::default()),
             depth_test: Some(DepthTest::default()),
@@ -232,6 +258,18 @@ impl Settings {
     /// stayed. The cheapest preset.
     pub fn paper() -> Self {
         Self { method: Method::Wrs, ..Self::default() }
+    }
+
+    /// Weighted reservoirs that reach the paper's gains: the gate compares at the candidate's scale, weights fall with
+    /// the eighth power of the density, and reservoirs keep means. Keeps most of the detail that
+    /// [`steady`](Self::steady) keeps of a still view, and less of it in motion.
+    pub fn weighted() -> Self {
+        Self {
+            sampler: Sampler::AChaoMean,
+            weight_exponent: 8,
+            gate: Some(Gate { scale: GateScale::Candidate, divisor: 10.0, offset: 3.0, ..Gate::default() }),
+            ..Self::paper()
+        }
     }
 
     /// smr for a steady image: sharp where the eye has been, coarse regions averaged over time, so that they do not
@@ -264,7 +302,15 @@ impl Settings {
         if let Bias::Exponential { lambda } = self.bias {
             check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
         }
+        check("weight_exponent", self.weight_exponent as f32, 1.0..=8.0, "")?;
         if let Some(gate) = self.gate {
+            if gate.scale == GateScale::Candidate && self.sampler == Sampler::AEs {
+                return Err(SettingsError {
+                    setting: "gate scale",
+                    found: "the candidate's with the sampler A-ES".into(),
+                    expected: "the sample's, or another sampler: keys are stored in the place of references".into(),
+                });
+            }
             check("gate divisor", gate.divisor, 1e-3..=1e6, "Delta E")?;
             check("gate offset", gate.offset, 0.0..=1e6, "Delta E")?;
         }

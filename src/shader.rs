@@ -64,6 +64,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "fill_geometry_pass"),
     module!("pass", "fill_pass"),
     module!("pass", "mip_chain_pass"),
+    module!("pass", "foveation_lod"),
     module!("pass", "inputs"),
     module!("pass", "kept_history"),
     module!("pass", "kept_noise"),

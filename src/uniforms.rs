@@ -81,7 +81,7 @@ impl ViewUniforms {
         let (ray_scale, offset) = view.geometry.scale_offset();
         let settings = &desc.settings;
         let purpose = match settings.sampler {
-            Sampler::AChao => Purpose::Select,
+            Sampler::AChao | Sampler::AChaoMean => Purpose::Select,
             Sampler::AEs => Purpose::Key,
         };
         let [x, y, z] = view.geometry.ray(view.gaze.resolve(held.gaze_px, &view.geometry));

@@ -3,6 +3,7 @@
 
 const MAX_W_SUM: f32 = 0x1p100;
 const MAX_AGE: u32 = 255u;
+const EMPTY_WORDS: vec3<u32> = vec3<u32>(0x7c00u, 0xffff0000u, 0u);
 
 struct Stored {
     color: vec3<f32>,
@@ -76,20 +77,28 @@ fn half_is_infinite(bits: u32) -> bool {
     return (bits & 0x7c00u) == 0x7c00u;
 }
 
-// pack::unpack
-fn unpack(words: vec3<u32>) -> Stored {
+struct StoredColor {
+    color: vec3<f32>,
+    disparity: f32,
+    valid: bool,
+}
+
+// pack::unpack_sample
+fn unpack_sample(words: vec2<u32>) -> StoredColor {
     let r = words.x;
     let g = words.x >> 16u;
     let b = words.y;
     let corrupt = half_is_infinite(r) || half_is_infinite(g) || half_is_infinite(b);
+    let stored_color = vec3<f32>(half_value(r), half_value(g), half_value(b));
+    return StoredColor(stored_color, disparity_value(words.y >> 16u), !corrupt);
+}
+
+// pack::unpack
+fn unpack(words: vec3<u32>) -> Stored {
+    let stored = unpack_sample(words.xy);
     let w_sum = weight(bitcast<f32>(words.z & 0xffffff00u));
-    if corrupt || w_sum > MAX_W_SUM {
+    if !stored.valid || w_sum > MAX_W_SUM {
         return Stored(vec3<f32>(0.0), -1.0, 0.0, 0u);
     }
-    return Stored(
-        vec3<f32>(half_value(r), half_value(g), half_value(b)),
-        disparity_value(words.y >> 16u),
-        w_sum,
-        words.z & 0xffu,
-    );
+    return Stored(stored.color, stored.disparity, w_sum, words.z & 0xffu);
 }

@@ -1,11 +1,12 @@
 //#use color
 //#use reservoir
 //#use sanitize
-// Twin of src/kernel/wrs.rs: gate, bias, combine.
+// Twin of src/kernel/wrs.rs: gate, bias, combine; references of the gate.
 
 // wrs::SamplerCode
 const SAMPLER_A_CHAO: u32 = 0u;
 const SAMPLER_A_ES: u32 = 1u;
+const SAMPLER_A_CHAO_MEAN: u32 = 2u;
 
 // wrs::BiasCode
 const BIAS_NONE: u32 = 0u;
@@ -16,6 +17,60 @@ const BIAS_BERNOULLI: u32 = 2u;
 const GATE_OFF: u32 = 0u;
 const GATE_DELTA_E94: u32 = 1u;
 const GATE_LIGHTNESS: u32 = 2u;
+
+const NO_LEVEL: u32 = 63u;
+const LEAST_EXPONENT: u32 = 112u;
+const CHANNEL_BITS: u32 = 7u;
+
+struct Reference {
+    color: vec3<f32>,
+    level: u32,
+}
+
+// wrs::level_code
+fn level_code(lod: f32) -> u32 {
+    return u32(lod * 4.0 + 0.5);
+}
+
+// wrs::pack_reference
+fn pack_reference(r: Reference) -> u32 {
+    let c = clamp(r.color, vec3<f32>(0.0), vec3<f32>(MAX_HALF));
+    let largest = bitcast<u32>(max(max(c.x, c.y), c.z)) + (1u << (23u - CHANNEL_BITS));
+    let exponent = max(largest >> 23u, LEAST_EXPONENT);
+    let scale = bitcast<f32>((2u * 127u + CHANNEL_BITS - 1u - exponent) << 23u);
+    let m = vec3<u32>(c * scale + 0.5);
+    return m.x | (m.y << 7u) | (m.z << 14u) | ((exponent - LEAST_EXPONENT) << 21u) | (r.level << 26u);
+}
+
+// wrs::unpack_reference
+fn unpack_reference(word: u32) -> Reference {
+    let exponent = ((word >> 21u) & 31u) + LEAST_EXPONENT;
+    let scale = bitcast<f32>((exponent + 1u - CHANNEL_BITS) << 23u);
+    let channels = vec3<u32>(word & 127u, (word >> 7u) & 127u, (word >> 14u) & 127u);
+    return Reference(vec3<f32>(channels) * scale, word >> 26u);
+}
+
+// wrs::compared
+fn compared(candidate: vec3<f32>, level: u32, reference: Reference) -> vec3<f32> {
+    return select(candidate, reference.color, level != NO_LEVEL && reference.level == level);
+}
+
+// wrs::next_reference
+fn next_reference(candidate: vec3<f32>, level: u32, take: bool, reference: Reference) -> Reference {
+    if take || (level != NO_LEVEL && reference.level != level) {
+        return Reference(candidate, level);
+    }
+    return reference;
+}
+
+// wrs::sharpen
+fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
+    var w = candidate_w;
+    for (var i = 1u; i < exponent; i++) {
+        w *= candidate_w;
+    }
+    return w;
+}
 
 struct WrsParams {
     sampler_code: u32,
@@ -94,8 +149,25 @@ fn step(candidate: vec3<f32>, candidate_w: f32, past: Past, params: WrsParams, d
     if params.sampler_code == SAMPLER_A_CHAO {
         return Decision(kept == 0.0 || draw * w_sum < candidate_w, w_sum, 0.0, gate_value, survival);
     }
+    if params.sampler_code == SAMPLER_A_CHAO_MEAN {
+        return Decision(kept == 0.0 || kept < candidate_w, w_sum, 0.0, gate_value, survival);
+    }
     let old_key = a_es_decay(past.log_key, survival);
     let new_key = a_es_log_key(draw, candidate_w);
     let take = kept == 0.0 || new_key > old_key;
     return Decision(take, w_sum, select(old_key, new_key, take), gate_value, survival);
+}
+
+// wrs::combined
+fn combined(
+    candidate: vec3<f32>,
+    candidate_w: f32,
+    past_color: vec3<f32>,
+    decision: Decision,
+    sampler_code: u32,
+) -> vec3<f32> {
+    if sampler_code != SAMPLER_A_CHAO_MEAN || candidate_w == decision.w_sum {
+        return select(past_color, candidate, decision.take);
+    }
+    return past_color + (candidate - past_color) * (candidate_w / decision.w_sum);
 }

@@ -2,14 +2,14 @@
 // Reservoirs of history moved to another size: the nearest one, because samples are never mixed. CPU twin:
 // src/cpu/resize.rs. One invocation a pixel; z is the view.
 
-override HAS_KEYS: u32 = 0u;
+override HAS_EXTRAS: u32 = 0u;
 
 @group(0) @binding(1) var past_colors: texture_2d_array<u32>;
 @group(0) @binding(2) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(3) var past_keys: texture_2d_array<f32>;
+@group(0) @binding(3) var past_extras: texture_2d_array<u32>;
 @group(0) @binding(4) var next_colors: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(5) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(6) var next_keys: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(6) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let at = nearest_to(old_position_of(id.xy));
     textureStore(next_colors, id.xy, group.z, textureLoad(past_colors, at, group.z, 0));
     textureStore(next_weights, id.xy, group.z, textureLoad(past_weights, at, group.z, 0));
-    if HAS_KEYS != 0u {
-        textureStore(next_keys, id.xy, group.z, textureLoad(past_keys, at, group.z, 0));
+    if HAS_EXTRAS != 0u {
+        textureStore(next_extras, id.xy, group.z, textureLoad(past_extras, at, group.z, 0));
     }
 }

@@ -1,4 +1,4 @@
-//#use foveate
+//#use foveation_lod
 //#use matched
 //#use output
 //#use surface_history
@@ -6,14 +6,7 @@
 // equations. One invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is
 // the view.
 
-// Filters of the foveation: src/foveation.rs. FILTER_OFF is full rate everywhere.
-const FILTER_MIP: u32 = 0u;
-const FILTER_GAUSS: u32 = 1u;
-const FILTER_BLOCK: u32 = 2u;
-const FILTER_OFF: u32 = 3u;
-
 override HAS_LOD: u32 = 0u;
-override FILTER: u32 = 0u;
 override RELIGHT_ON: u32 = 1u;
 
 // Level of detail of the candidate.
@@ -23,21 +16,7 @@ fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
         // By bits: NaN is 0.
         return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
     }
-    if FILTER == FILTER_OFF {
-        return 0.0;
-    }
-    let e_deg = eccentricity_deg(ray, frame.views[view].gaze_ray.xyz);
-    if FILTER == FILTER_GAUSS {
-        return blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.coarse_mid, frame.coarse_far);
-    }
-    return region_lod(
-        e_deg,
-        frame.fovea_radius_deg,
-        frame.mid_radius_deg,
-        frame.blend_deg,
-        frame.coarse_mid,
-        frame.coarse_far,
-    );
+    return foveation_lod(eccentricity_deg(ray, frame.views[view].gaze_ray.xyz));
 }
 
 // Four texels of a level around a position, and the position's fractions between them.

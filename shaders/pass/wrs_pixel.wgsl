@@ -1,6 +1,8 @@
+//#use foveation_lod
 //#use inputs
 //#use output
 //#use pack
+//#use resample
 //#use rng
 //#use wrs
 // Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU
@@ -10,23 +12,57 @@
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
+override WEIGHT_EXPONENT: u32 = 1u;
+override HAS_REFERENCES: u32 = 0u;
 
+// Extras are the bits of log keys with A-ES, packed references with HAS_REFERENCES.
 @group(0) @binding(8) var past_colors: texture_2d_array<u32>;
 @group(0) @binding(9) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(10) var past_keys: texture_2d_array<f32>;
+@group(0) @binding(10) var past_extras: texture_2d_array<u32>;
 @group(0) @binding(11) var next_colors: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(12) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(13) var next_keys: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(13) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 // History of a pixel. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct History {
     verdict: u32,
     past: Past,
     age: u32,
+    reference: Reference,
 }
 
 fn no_history(verdict: u32) -> History {
-    return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u);
+    return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u, Reference(vec3<f32>(0.0), NO_LEVEL));
+}
+
+fn component(v: vec4<f32>, i: u32) -> f32 {
+    return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
+}
+
+// Mean of history at a position, by Catmull-Rom weights. Exactly that of `nearest_color` at the centre of a pixel.
+fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) -> vec3<f32> {
+    let whole = floor(at);
+    let fraction = at - whole;
+    let sharp_x = catmull_rom(fraction.x);
+    let sharp_y = catmull_rom(fraction.y);
+    let smooth_x = linear_weights(fraction.x);
+    let smooth_y = linear_weights(fraction.y);
+    var gathered = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
+    let taps = select(TAPS, 0u, fraction.x == 0.0 && fraction.y == 0.0);
+    for (var tap = 0u; tap < taps; tap++) {
+        let k = tap_at(tap);
+        let texel = clamp(vec2<i32>(whole) + vec2<i32>(k) - 1, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+        let stored = unpack_sample(textureLoad(past_colors, texel, view, 0).xy);
+        var same = stored.valid;
+        if DEPTH_TEST != 0u {
+            same = same && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0);
+        }
+        let sharp = component(sharp_x, k.x) * component(sharp_y, k.y);
+        let smooth_w = component(smooth_x, k.x) * component(smooth_y, k.y);
+        gathered = gather(gathered, Surface(stored.color, 0.0, stored.disparity), same, sharp, smooth_w);
+    }
+    // Without taps this is the nearest reservoir's.
+    return resolve(gathered, Surface(nearest_color, 0.0, expected)).sharp;
 }
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
@@ -45,7 +81,7 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     }
     var past = Past(stored.color, stored.w_sum, LOWEST);
     if SAMPLER == SAMPLER_A_ES {
-        past.log_key = textureLoad(past_keys, source.at, view, 0).x;
+        past.log_key = bitcast<f32>(textureLoad(past_extras, source.at, view, 0).x);
     }
     if HAS_TRUST != 0u {
         past = scale_by_trust(past, trust_at(px, view), SAMPLER);
@@ -53,17 +89,36 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
             return no_history(VERDICT_DISTRUSTED);
         }
     }
-    if !is_same_surface(px, view, disparity_now, expected_disparity(view, ray, disparity_now), stored.disparity) {
+    let expected = expected_disparity(view, ray, disparity_now);
+    if !is_same_surface(px, view, disparity_now, expected, stored.disparity) {
         return no_history(VERDICT_DISOCCLUDED);
     }
+    if SAMPLER == SAMPLER_A_CHAO_MEAN && HAS_MOTION != 0u {
+        past.color = resampled(vec2<f32>(px) + motion, view, expected, stored.color);
+    }
     past.color = expose(past.color, frame.exposure);
-    return History(VERDICT_VALID, past, stored.age);
+    var reference = Reference(vec3<f32>(0.0), NO_LEVEL);
+    if HAS_REFERENCES != 0u {
+        reference = unpack_reference(textureLoad(past_extras, source.at, view, 0).x);
+        reference.color = expose(reference.color, frame.exposure);
+    }
+    return History(VERDICT_VALID, past, stored.age, reference);
 }
 
 // Pixel of a pixel's sample, and the weight of a sample there.
 struct Place {
     px: vec2<u32>,
     weight: f32,
+}
+
+// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a
+// candidate is
+// a full-rate one, and all others are interpolated.
+fn level_of(e_deg: f32, sampled: bool) -> u32 {
+    if FILTER == FILTER_SPARSE {
+        return select(NO_LEVEL, 0u, sampled);
+    }
+    return level_code(foveation_lod(e_deg));
 }
 
 fn pixel(px: vec2<u32>, view: u32, place: Place) {
@@ -73,10 +128,10 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     let constants = frame.views[view];
     let ray = ray_at(px, view);
     var candidate_w = 0.0;
+    let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
     if candidate.usable {
-        let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
-        candidate_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
-        candidate_w *= place.weight;
+        let acuity_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
+        candidate_w = sharpen(acuity_w, WEIGHT_EXPONENT) * place.weight;
     }
     var gate_offset = frame.gate_offset;
     if NOISY != 0u {
@@ -89,11 +144,16 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     let valid = history.verdict == VERDICT_VALID;
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
-    let decision = step(candidate.color, candidate_w, history.past, params, draw);
+    let level = level_of(e_deg, all(place.px == px));
+    var past = history.past;
+    if HAS_REFERENCES != 0u {
+        past.color = compared(candidate.color, level, history.reference);
+    }
+    let decision = step(candidate.color, candidate_w, past, params, draw);
     count_pixel(px, view, candidate.usable, disparity_now, history.verdict);
     count_if(valid && decision.take, COUNT_REPLACED);
 
-    let shown = select(history.past.color, candidate.color, decision.take);
+    let shown = combined(candidate.color, candidate_w, history.past.color, decision, SAMPLER);
     let age = select(min(history.age + 1u, MAX_AGE), 0u, decision.take);
     let survival = select(0.0, decision.survival, valid);
     let quality = decision.w_sum * (1.0 / 16.0);
@@ -102,10 +162,20 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     if VIEW != 0u {
         return;
     }
-    let words = pack(Stored(shown, disparity_now, decision.w_sum, age));
+    var words = pack(Stored(shown, disparity_now, decision.w_sum, age));
+    if SAMPLER == SAMPLER_A_CHAO_MEAN && decision.w_sum == 0.0 {
+        words = EMPTY_WORDS;
+    }
     textureStore(next_colors, px, view, vec4<u32>(words.xy, 0u, 0u));
     textureStore(next_weights, px, view, vec4<u32>(words.z, 0u, 0u, 0u));
     if SAMPLER == SAMPLER_A_ES {
-        textureStore(next_keys, px, view, vec4<f32>(decision.log_key, 0.0, 0.0, 0.0));
+        textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key), 0u, 0u, 0u));
+    }
+    if HAS_REFERENCES != 0u {
+        var reference = history.reference;
+        if candidate.usable {
+            reference = next_reference(candidate.color, level, decision.take, reference);
+        }
+        textureStore(next_extras, px, view, vec4<u32>(pack_reference(reference), 0u, 0u, 0u));
     }
 }

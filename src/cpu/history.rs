@@ -25,6 +25,7 @@ pub struct History {
 struct Plane {
     reservoirs: Vec<[u32; 3]>,
     log_keys: Vec<f32>,
+    references: Vec<u32>,
     surfaces: Vec<[u32; 2]>,
     noise: Vec<u32>,
     mip_chains: Vec<MipChain>,
@@ -34,12 +35,14 @@ impl Plane {
     fn new(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Self {
         let len = size_px[0] as usize * size_px[1] as usize * view_count as usize;
         let when = |used: bool| if used { len } else { 0 };
-        let keyed = layout == HistoryLayout::Reservoirs { keys: true };
+        let keyed = matches!(layout, HistoryLayout::Reservoirs { keys: true, .. });
+        let referenced = matches!(layout, HistoryLayout::Reservoirs { references: true, .. });
         let noisy = matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Kept { noisy: true });
         let is_stored = matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. });
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
             log_keys: vec![0.0; when(keyed)],
+            references: vec![0; when(referenced)],
             surfaces: vec![[0; 2]; when(is_stored)],
             noise: vec![0; when(noisy)],
             mip_chains: mip_chains(size_px, view_count, layout),
@@ -49,6 +52,7 @@ impl Plane {
     fn memory_bytes(&self) -> usize {
         size_of_val(&self.reservoirs[..])
             + size_of_val(&self.log_keys[..])
+            + size_of_val(&self.references[..])
             + size_of_val(&self.surfaces[..])
             + size_of_val(&self.noise[..])
             + self.mip_chains.iter().map(MipChain::memory_bytes).sum::<usize>()
@@ -91,6 +95,7 @@ impl History {
         let len = self.view_len;
         next.previous.reservoirs = past.reservoirs.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.previous.references = past.references.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         let is_kept = matches!(self.layout, HistoryLayout::Kept { .. });
         let surfaces = |v| if is_kept { resize.kept(v) } else { resize.surfaces(v) };
@@ -140,15 +145,22 @@ impl History {
         if is_kept { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
     }
 
-    /// Previous reservoirs of `view`, and the current ones and their log keys to write.
-    pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, &mut [[u32; 3]], &mut [f32]) {
+    /// Previous reservoirs of `view`, and the current ones to write.
+    pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, NextView<'_>) {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let keys = if self.previous.log_keys.is_empty() { 0..0 } else { range.clone() };
+        let references = if self.previous.references.is_empty() { 0..0 } else { range.clone() };
         let past = PastView {
             words: &self.previous.reservoirs[range.clone()],
             log_keys: &self.previous.log_keys[keys.clone()],
+            references: &self.previous.references[references.clone()],
         };
-        (past, &mut self.current.reservoirs[range], &mut self.current.log_keys[keys])
+        let next = NextView {
+            words: &mut self.current.reservoirs[range],
+            log_keys: &mut self.current.log_keys[keys],
+            references: &mut self.current.references[references],
+        };
+        (past, next)
     }
 
     /// Previous surfaces of `view`, and the current ones and their noise (empty without noise) to write.
@@ -214,7 +226,17 @@ impl History {
 #[derive(Clone, Copy)]
 pub(super) struct PastView<'a> {
     pub words: &'a [[u32; 3]],
+    /// Empty without A-ES.
     pub log_keys: &'a [f32],
+    /// Empty unless the gate compares at the candidate's scale.
+    pub references: &'a [u32],
+}
+
+/// This frame's reservoirs of one view, with the same parts as [`PastView`].
+pub(super) struct NextView<'a> {
+    pub words: &'a mut [[u32; 3]],
+    pub log_keys: &'a mut [f32],
+    pub references: &'a mut [u32],
 }
 
 /// Previous frame's surfaces of one view with their mip chain, and the mip chain of this frame's candidates to compare

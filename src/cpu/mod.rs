@@ -120,8 +120,8 @@ impl CpuAfterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the
-    /// [`foveation`](Settings::foveation).
+    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
+    /// `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.

@@ -3,24 +3,30 @@
 //!
 //! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test needs the
 //! slope), and writes one reservoir and one color. Memory traffic: 48 bytes a pixel with color and motion as halves.
+//! Means (`Sampler::AChaoMean`) are read from twelve reservoirs where history lies between pixels, and the gate's
+//! references (`GateScale::Candidate`) are 8 bytes more.
 
 use super::Pass;
-use super::history::PastView;
+use super::history::{NextView, PastView};
 use super::inputs::Inputs;
-use crate::foveation::Filter;
+use crate::foveation::{Filter, Foveation};
 use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::depth;
 use crate::kernel::lattice::{nearest_point, place_weight, point_offset_px};
 use crate::kernel::noise::sample_difference;
 use crate::kernel::pack;
 use crate::kernel::pack::Stored;
 use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
+use crate::kernel::resample;
+use crate::kernel::resample::{Gathered, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
 use crate::kernel::rng;
+use crate::kernel::surface::Surface;
 use crate::kernel::wrs;
-use crate::kernel::wrs::{Past, WrsParams};
-use crate::method::{inv_density_at_fovea, wrs_params};
+use crate::kernel::wrs::{Past, Reference, SamplerCode, WrsParams};
+use crate::method::{has_references, inv_density_at_fovea, wrs_params};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::Vec3;
@@ -31,17 +37,34 @@ struct ViewPass<'a> {
     inputs: Inputs<'a>,
     past: PastView<'a>,
     params: WrsParams,
-    fovea_radius_deg: f32,
+    weight_exponent: u32,
+    /// Whether the gate compares at the candidate's scale.
+    has_references: bool,
+    foveation: Foveation,
     inv_density_at_fovea: f32,
     frame_low: u32,
     /// Whether candidates count by the place of their sample, as in sparse frames.
     weighs_places: bool,
 }
 
+/// History of a pixel.
+#[derive(Clone, Copy)]
+struct History {
+    past: Past,
+    /// Age of the sample, in frames.
+    age: u32,
+    reference: Reference,
+}
+
+impl History {
+    const EMPTY: Self = Self { past: Past::EMPTY, age: 0, reference: Reference::NONE };
+}
+
 struct Row<'a> {
     words: &'a mut [[u32; 3]],
     out: &'a mut [[f32; 3]],
     log_keys: Option<&'a mut [f32]>,
+    references: Option<&'a mut [u32]>,
     trace: Option<&'a mut [PixelTrace]>,
 }
 
@@ -52,18 +75,20 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
         let held = history.hold(i, &frame.views[i]);
-        let (past, words, log_keys) = history.split(i);
+        let (past, next) = history.split(i);
         let pass = ViewPass {
             inputs: Inputs::new(desc, frame, i, &held, has_history),
             past,
             params: wrs_params(settings),
-            fovea_radius_deg: settings.foveation.fovea_radius_deg(),
+            weight_exponent: settings.weight_exponent,
+            has_references: has_references(settings),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,
             weighs_places: settings.foveation.filter == Filter::Sparse,
+            foveation: settings.foveation,
         };
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
-        let mut rows = split_rows(desc.size_px, words, output[i].pixels_mut(), log_keys, trace);
+        let mut rows = split_rows(desc.size_px, next, output[i].pixels_mut(), trace);
         stats = stats.add(
             rows.par_iter_mut()
                 .enumerate()
@@ -76,21 +101,22 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
 
 fn split_rows<'a>(
     size: [u32; 2],
-    words: &'a mut [[u32; 3]],
+    next: NextView<'a>,
     out: &'a mut [[f32; 3]],
-    log_keys: &'a mut [f32],
     trace: Option<&'a mut [PixelTrace]>,
 ) -> Vec<Row<'a>> {
     let width = size[0] as usize;
-    let mut log_keys = log_keys.chunks_mut(width);
+    let mut log_keys = next.log_keys.chunks_mut(width);
+    let mut references = next.references.chunks_mut(width);
     let mut trace = trace.map(|t| t.chunks_mut(width));
-    words
+    next.words
         .chunks_mut(width)
         .zip(out.chunks_mut(width))
         .map(|(words, out)| Row {
             words,
             out,
             log_keys: log_keys.next(),
+            references: references.next(),
             trace: trace.as_mut().and_then(Iterator::next),
         })
         .collect()
@@ -111,32 +137,44 @@ impl ViewPass<'_> {
         let inputs = &self.inputs;
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
-        let mut weight = if usable { self.weight(ray) } else { 0.0 };
-        let mut noise_px = [x, y];
+        let e_deg = inputs.eccentricity_deg(ray);
+        let mut weight = if usable { self.weight(e_deg) } else { 0.0 };
+        let mut sample_px = [x, y];
         if self.weighs_places {
-            let (sample_px, place) = self.place([x, y]);
-            noise_px = sample_px;
+            let (px, place) = self.place([x, y]);
+            sample_px = px;
             weight *= place;
         }
         let mut params = self.params;
-        if let Some(noise) = inputs.noise(noise_px[0], noise_px[1]) {
+        if let Some(noise) = inputs.noise(sample_px[0], sample_px[1]) {
             weight *= noise.samples;
             params.gate_offset += sample_difference(noise, color::luma(candidate));
         }
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let (verdict, past, past_age) = match self.history(x, y, ray, motion, disparity) {
-            Ok((past, age)) => (Verdict::Valid, past, age),
-            Err(verdict) => (verdict, Past::EMPTY, 0),
+        let (verdict, history) = match self.history(x, y, ray, motion, disparity) {
+            Ok(history) => (Verdict::Valid, history),
+            Err(verdict) => (verdict, History::EMPTY),
         };
+        let History { past, reference, .. } = history;
+        let level = self.level(e_deg, sample_px == [x, y]);
+        let compared = if self.has_references { wrs::compared(candidate, level, reference) } else { past.color };
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
-        let decision = wrs::step(candidate, weight, past, &params, draw);
+        let decision = wrs::step(candidate, weight, Past { color: compared, ..past }, &params, draw);
 
-        let (color, age) = if decision.take { (candidate, 0) } else { (past.color, (past_age + 1).min(pack::MAX_AGE)) };
+        let color = wrs::combined(candidate, weight, past.color, &decision, params.sampler);
+        let age = if decision.take { 0 } else { (history.age + 1).min(pack::MAX_AGE) };
         row.out[i] = color.to_array();
         row.words[i] = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
+        if self.params.sampler == SamplerCode::AChaoMean && decision.w_sum == 0.0 {
+            row.words[i] = pack::EMPTY_WORDS;
+        }
         if let Some(keys) = &mut row.log_keys {
             keys[i] = decision.log_key;
+        }
+        if let Some(references) = &mut row.references {
+            let next = if usable { wrs::next_reference(candidate, level, decision.take, reference) } else { reference };
+            references[i] = wrs::pack_reference(next);
         }
         if let Some(trace) = &mut row.trace {
             trace[i] = PixelTrace {
@@ -155,8 +193,21 @@ impl ViewPass<'_> {
     }
 
     #[inline(always)]
-    fn weight(&self, ray: Vec3) -> f32 {
-        acuity::candidate_weight(self.inputs.eccentricity_deg(ray), self.fovea_radius_deg, self.inv_density_at_fovea)
+    fn weight(&self, e_deg: f32) -> f32 {
+        let weight = acuity::candidate_weight(e_deg, self.foveation.fovea_radius_deg(), self.inv_density_at_fovea);
+        wrs::sharpen(weight, self.weight_exponent)
+    }
+
+    /// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a
+    /// candidate is a full-rate one, and all others are interpolated.
+    #[inline(always)]
+    fn level(&self, e_deg: f32, sampled: bool) -> u32 {
+        match self.foveation.filter {
+            _ if !self.has_references => wrs::NO_LEVEL,
+            Filter::Sparse if sampled => 0,
+            Filter::Sparse => wrs::NO_LEVEL,
+            _ => wrs::level_code(self.foveation.lod(e_deg)),
+        }
     }
 
     /// Pixel of the sample nearest to a pixel, and the weight of its place. The pixel itself, and 1, without samples in
@@ -173,9 +224,9 @@ impl ViewPass<'_> {
         (lattice.px_of(point.map(|v| v as u32)), place_weight(offset_px.into()))
     }
 
-    /// Reservoir of the pixel's surface in the previous frame and age of its sample, or the verdict that rejects it.
+    /// History of the pixel's surface, or the verdict that rejects it.
     #[inline(always)]
-    fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<(Past, u32), Verdict> {
+    fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<History, Verdict> {
         let inputs = &self.inputs;
         if inputs.reset {
             return Err(Verdict::Reset);
@@ -194,13 +245,43 @@ impl ViewPass<'_> {
                 return Err(Verdict::Distrusted);
             }
         }
-        if inputs.tests_depth() {
-            let expected = inputs.previous_disparity(ray, disparity);
-            if !inputs.same_surface(x, y, expected, stored.disparity) {
-                return Err(Verdict::Disoccluded);
-            }
+        let expected = inputs.previous_disparity(ray, disparity);
+        if inputs.tests_depth() && !inputs.same_surface(x, y, expected, stored.disparity) {
+            return Err(Verdict::Disoccluded);
+        }
+        if self.params.sampler == SamplerCode::AChaoMean {
+            past.color = self.resampled([x as f32 + motion[0], y as f32 + motion[1]], expected, stored.color);
         }
         past.color = wrs::expose(past.color, inputs.exposure);
-        Ok((past, stored.age))
+        let stored_reference = self.past.references.get(at).copied().map_or(Reference::NONE, wrs::unpack_reference);
+        let reference = Reference { color: wrs::expose(stored_reference.color, inputs.exposure), ..stored_reference };
+        Ok(History { past, age: stored.age, reference })
+    }
+
+    /// Mean of history at a position, by Catmull-Rom weights. Exactly that of `nearest` at the centre of a pixel.
+    #[inline(always)]
+    fn resampled(&self, at: [f32; 2], expected: f32, nearest: Vec3) -> Vec3 {
+        let whole = at.map(f32::floor);
+        let [fx, fy] = [at[0] - whole[0], at[1] - whole[1]];
+        if fx == 0.0 && fy == 0.0 {
+            return nearest;
+        }
+        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear_weights(fx), linear_weights(fy)]);
+        let mut gathered = Gathered::default();
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        for tap in 0..TAPS {
+            let [i, j] = tap_at(tap).map(|k| k as usize);
+            let x = (whole[0] as i32 + i as i32 - 1).clamp(0, width - 1);
+            let y = (whole[1] as i32 + j as i32 - 1).clamp(0, height - 1);
+            let [colors, more, _] = self.past.words[(y * width + x) as usize];
+            let (color, disparity, valid) = pack::unpack_sample([colors, more]);
+            let same =
+                valid && (!self.inputs.tests_depth() || depth::same_surface(expected, disparity, TAP_RELATIVE, 0.0));
+            let surface = Surface { color, lod: 0.0, disparity };
+            gathered =
+                resample::gather(gathered, surface, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
+        }
+        let nearest = Surface { color: nearest, lod: 0.0, disparity: expected };
+        resample::resolve(gathered, nearest).sharp
     }
 }

@@ -114,9 +114,9 @@ fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
     let full = |format| Plan { format, size_px: desc.size_px, levels: 1 };
     match layout {
         HistoryLayout::Nothing => vec![],
-        HistoryLayout::Reservoirs { keys } => {
-            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float];
-            formats.into_iter().take(if keys { 3 } else { 2 }).map(full).collect()
+        HistoryLayout::Reservoirs { keys, references } => {
+            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Uint];
+            formats.into_iter().take(if keys || references { 3 } else { 2 }).map(full).collect()
         }
         HistoryLayout::Kept { noisy } => {
             let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint];

@@ -164,7 +164,7 @@ impl MethodPass {
             HistoryLayout::Reservoirs { .. } => vec![
                 past_or(0, &self.absent.word),
                 past_or(1, &self.absent.word),
-                past_or(2, &self.absent.float),
+                past_or(2, &self.absent.word),
                 next_or(0),
                 next_or(1),
                 next_or(2),
@@ -245,7 +245,7 @@ pub(super) fn written(history: HistoryLayout) -> [TextureFormat; 3] {
         HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. } => {
             [TextureFormat::Rg32Uint, TextureFormat::Rgba16Float, TextureFormat::R32Uint]
         }
-        _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Float],
+        _ => [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Uint],
     }
 }
 
@@ -269,7 +269,7 @@ fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> 
     let mut types = vec![uniform(), float, float, float, float, storage_texture(output), storage_buffer(false), float];
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
-        HistoryLayout::Reservoirs { .. } => vec![words, words, float, first, second, third],
+        HistoryLayout::Reservoirs { .. } => vec![words, words, words, first, second, third],
         HistoryLayout::Kept { .. } => vec![words, first, words, words, third],
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });

@@ -205,8 +205,8 @@ impl Afterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), and for smr with `rate_far` and `filter` of the
-    /// [`foveation`](Settings::foveation).
+    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
+    /// `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -362,7 +362,8 @@ impl Afterimage {
     /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
-    /// and with A-ES the keys (`R32Float`). For taa and smr the packed surfaces ([`surface`](crate::kernel::surface),
+    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
+    /// ([`surface`](crate::kernel::surface),
     /// `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy candidates the packed noise
     /// ([`noise`](crate::kernel::noise), `R32Uint`).
     #[doc(hidden)]

@@ -1,7 +1,7 @@
 //! Passes that resample history to another size.
 
 use super::buffer::filled;
-use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
+use super::compute::{ComputeShader, storage_texture, uint_texture, uniform};
 use super::history::Planes;
 use super::method_pass::{Placeholders, written};
 use crate::method::{HistoryLayout, Overrides};
@@ -49,11 +49,11 @@ impl ResizePass {
                 1,
                 vec![("NOISY", u32::from(noisy))],
             ),
-            HistoryLayout::Reservoirs { keys } => (
+            HistoryLayout::Reservoirs { keys, references } => (
                 "resize_reservoirs_pass",
-                vec![uniform(), uint_texture(), uint_texture(), float_texture(), first, second, third],
+                vec![uniform(), uint_texture(), uint_texture(), uint_texture(), first, second, third],
                 1,
-                vec![("HAS_KEYS", u32::from(keys))],
+                vec![("HAS_EXTRAS", u32::from(keys || references))],
             ),
             HistoryLayout::Surfaces { levels, noisy } => (
                 "resize_surfaces_pass",
@@ -99,7 +99,7 @@ impl ResizePass {
         let read = match self.layout {
             HistoryLayout::Surfaces { .. } => vec![&past[0], past.get(2).unwrap_or(&self.absent.word)],
             HistoryLayout::Kept { .. } => vec![&past[0], past.get(1).unwrap_or(&self.absent.word)],
-            _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&self.absent.float)],
+            _ => vec![&past[0], &past[1], past.get(2).unwrap_or(&self.absent.word)],
         };
         let written = match self.layout {
             HistoryLayout::Kept { .. } => vec![next_or(0), next.get(1).unwrap_or(&self.absent.out[2])],

@@ -103,20 +103,25 @@ pub fn pack(s: Stored) -> [u32; 3] {
     ]
 }
 
+/// Words of an empty reservoir whose color says so, too: an infinite half. For passes that read colors alone.
+pub const EMPTY_WORDS: [u32; 3] = [0x7c00, 0xffff_0000, 0];
+
+/// Color and disparity from the first two words of a reservoir, and whether the color is valid.
+#[inline]
+pub fn unpack_sample(words: [u32; 2]) -> (Vec3, f32, bool) {
+    let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;
+    let (r, g, b) = (words[0], words[0] >> 16, words[1]);
+    let color = Vec3::new(half_value(r), half_value(g), half_value(b));
+    (color, disparity_value(words[1] >> 16), !(infinite(r) || infinite(g) || infinite(b)))
+}
+
 /// Unpacks a reservoir. The result is finite for any words; a corrupt color or weight sum gives an empty reservoir.
 #[inline]
 pub fn unpack(words: [u32; 3]) -> Stored {
-    let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;
-    let (r, g, b) = (words[0], words[0] >> 16, words[1]);
-    let corrupt = infinite(r) || infinite(g) || infinite(b);
+    let (color, disparity, valid) = unpack_sample([words[0], words[1]]);
     let w_sum = sanitize::weight(f32::from_bits(words[2] & 0xffff_ff00));
-    if corrupt || w_sum > MAX_W_SUM {
+    if !valid || w_sum > MAX_W_SUM {
         return Stored { color: Vec3::ZERO, disparity: -1.0, w_sum: 0.0, age: 0 };
     }
-    Stored {
-        color: Vec3::new(half_value(r), half_value(g), half_value(b)),
-        disparity: disparity_value(words[1] >> 16),
-        w_sum,
-        age: words[2] & 0xff,
-    }
+    Stored { color, disparity, w_sum, age: words[2] & 0xff }
 }

@@ -12,6 +12,8 @@ pub enum SamplerCode {
     AChao = 0,
     /// A-ES: by the larger key.
     AEs = 1,
+    /// The expectation of A-Chao: keeps the mean of both by their probabilities.
+    AChaoMean = 2,
 }
 
 /// Bias: decay of the history's weight sum. Code of `Bias` in shaders.
@@ -55,6 +57,82 @@ pub struct WrsParams {
     pub inv_gate_divisor: f32,
 }
 
+/// Code of a level of detail that equals no candidate's: of interpolated candidates and of reservoirs without
+/// reference.
+pub const NO_LEVEL: u32 = 63;
+
+/// Exponent, as in the bits of a float, below which all channels of a packed color share one.
+const LEAST_EXPONENT: u32 = 127 - 15;
+/// Mantissa bits of a packed channel.
+const CHANNEL_BITS: u32 = 7;
+
+/// Reference of the gate: the first candidate of the present level of detail since the sample was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Its color, at least 0.
+    pub color: Vec3,
+    /// Code of its level of detail, or [`NO_LEVEL`].
+    pub level: u32,
+}
+
+impl Reference {
+    /// No reference.
+    pub const NONE: Self = Self { color: Vec3::ZERO, level: NO_LEVEL };
+}
+
+/// Code of a level of detail from 0 to 8: the nearest quarter.
+#[inline]
+pub fn level_code(lod: f32) -> u32 {
+    (lod * 4.0 + 0.5) as u32
+}
+
+/// Packs a reference into a word: 7 bits a channel, 5 of their common exponent, 6 of the level. Negative channels
+/// become 0. The error of a channel is at most 1/127 of the largest one, and packing what was unpacked changes nothing.
+#[inline]
+pub fn pack_reference(r: Reference) -> u32 {
+    let c = r.color.clamp(Vec3::ZERO, Vec3::splat(MAX_HALF));
+    // Adding half a step first: a mantissa that would be rounded up to 128 needs the next exponent.
+    let largest = c.x.max(c.y).max(c.z).to_bits() + (1 << (23 - CHANNEL_BITS));
+    let exponent = (largest >> 23).max(LEAST_EXPONENT);
+    let scale = f32::from_bits((2 * 127 + CHANNEL_BITS - 1 - exponent) << 23);
+    let (x, y, z) = ((c.x * scale + 0.5) as u32, (c.y * scale + 0.5) as u32, (c.z * scale + 0.5) as u32);
+    x | y << 7 | z << 14 | (exponent - LEAST_EXPONENT) << 21 | r.level << 26
+}
+
+/// Unpacks a reference. Finite for any word.
+#[inline]
+pub fn unpack_reference(word: u32) -> Reference {
+    let exponent = ((word >> 21) & 31) + LEAST_EXPONENT;
+    let scale = f32::from_bits((exponent + 1 - CHANNEL_BITS) << 23);
+    let channel = |shift: u32| ((word >> shift) & 127) as f32 * scale;
+    Reference { color: Vec3::new(channel(0), channel(7), channel(14)), level: word >> 26 }
+}
+
+/// Color that the gate compares with a candidate of level `level`: the reference if that has the same level. Otherwise
+/// nothing can be said of a change, and it is the candidate itself.
+#[inline]
+pub fn compared(candidate: Vec3, level: u32, reference: Reference) -> Vec3 {
+    if level != NO_LEVEL && reference.level == level { reference.color } else { candidate }
+}
+
+/// Reference after a frame with a candidate of level `level`. `take`: whether the candidate became the sample.
+#[inline]
+pub fn next_reference(candidate: Vec3, level: u32, take: bool, reference: Reference) -> Reference {
+    let is_other_level = level != NO_LEVEL && reference.level != level;
+    if take || is_other_level { Reference { color: candidate, level } } else { reference }
+}
+
+/// Weight of a candidate of eccentricity `weight` (eq. 4), sharpened: its power with a whole exponent from 1 on, by
+/// products.
+#[inline]
+pub fn sharpen(weight: f32, exponent: u32) -> f32 {
+    let mut w = weight;
+    for _ in 1..exponent {
+        w *= weight;
+    }
+    w
+}
+
 /// Reservoir of a pixel's history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past {
@@ -74,7 +152,7 @@ impl Past {
 /// Result of [`step`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// Whether the candidate becomes the sample.
+    /// Whether the candidate becomes the sample; for means, whether it has more than half of the weight.
     pub take: bool,
     /// Weight sum after the frame.
     pub w_sum: f32,
@@ -92,7 +170,7 @@ pub struct Decision {
 pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     let share = sanitize::trust(trust);
     let log_key = match sampler {
-        SamplerCode::AChao => past.log_key,
+        SamplerCode::AChao | SamplerCode::AChaoMean => past.log_key,
         SamplerCode::AEs => reservoir::a_es_decay(past.log_key, share),
     };
     Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
@@ -123,8 +201,20 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
-/// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. A `weight` of 0
-/// marks an unusable candidate; it says nothing about a change of color either, so the gate value is 1.
+/// Color that is kept and shown after [`step`]: the candidate or history's sample, or the mean of both by the
+/// probabilities of A-Chao. Equal colors, and a candidate that has all the weight, are kept bit for bit.
+#[inline]
+pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, sampler: SamplerCode) -> Vec3 {
+    if sampler != SamplerCode::AChaoMean || weight == decision.w_sum {
+        return if decision.take { candidate } else { past };
+    }
+    past + (candidate - past) * (weight / decision.w_sum)
+}
+
+/// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. The gate compares
+/// the candidate with `past.color`: the sample, or what [`compared`] gives. A `weight` of 0 marks an unusable
+/// candidate;
+/// it says nothing about a change of color either, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;
@@ -144,6 +234,7 @@ pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: 
     let w_sum = kept + weight;
     let (take, log_key) = match params.sampler {
         SamplerCode::AChao => (kept == 0.0 || draw * w_sum < weight, 0.0),
+        SamplerCode::AChaoMean => (kept == 0.0 || kept < weight, 0.0),
         SamplerCode::AEs => {
             let old = reservoir::a_es_decay(past.log_key, survival);
             let new = reservoir::a_es_log_key(draw, weight);

@@ -10,7 +10,7 @@ mod taau;
 mod wrs;
 
 pub(crate) use smr::{smr_params, smr_relights};
-pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
+pub(crate) use wrs::{has_references, inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
 use crate::settings::{Method, Settings};
@@ -87,6 +87,8 @@ pub(crate) enum HistoryLayout {
     Reservoirs {
         /// Whether there are keys.
         keys: bool,
+        /// Whether there are references of the gate ([`pack_reference`](crate::kernel::wrs::pack_reference)).
+        references: bool,
     },
     /// Packed samples that keep their places ([`kept`](crate::kernel::kept)).
     Kept {

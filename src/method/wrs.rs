@@ -8,14 +8,15 @@ use crate::foveation::Filter;
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
 use crate::kernel::wrs::{BiasCode, GateCode, SamplerCode, WrsParams};
-use crate::settings::{Bias, GateMetric, Sampler, Settings};
+use crate::settings::{Bias, GateMetric, GateScale, Sampler, Settings};
 
 pub(super) static ENTRY: Entry = Entry {
     name: "wrs",
     summary: "weighted reservoirs: A-Chao with Bernoulli bias",
-    history: |settings| HistoryLayout::Reservoirs { keys: has_keys(settings) },
+    history: |settings| HistoryLayout::Reservoirs { keys: has_keys(settings), references: has_references(settings) },
     history_traffic_bytes: |settings| {
-        let reservoir = if has_keys(settings) { 16 } else { 12 };
+        let extra = u32::from(has_keys(settings)) + u32::from(has_references(settings));
+        let reservoir = 12 + 4 * extra;
         let noise = if settings.noisy { 4 } else { 0 };
         2 * reservoir + noise
     },
@@ -27,13 +28,25 @@ pub(super) static ENTRY: Entry = Entry {
     #[cfg(feature = "gpu")]
     overrides: |settings, _| {
         let params = wrs_params(settings);
-        vec![("SAMPLER", params.sampler as u32), ("BIAS", params.bias as u32), ("GATE", params.gate as u32)]
+        vec![
+            ("SAMPLER", params.sampler as u32),
+            ("BIAS", params.bias as u32),
+            ("GATE", params.gate as u32),
+            ("WEIGHT_EXPONENT", settings.weight_exponent),
+            ("HAS_REFERENCES", u32::from(has_references(settings))),
+            ("FILTER", settings.foveation.filter as u32),
+        ]
     },
 };
 
 /// Whether reservoirs have keys.
 fn has_keys(settings: &Settings) -> bool {
     settings.sampler == Sampler::AEs
+}
+
+/// Whether reservoirs have references of the gate.
+pub(crate) fn has_references(settings: &Settings) -> bool {
+    settings.gate.is_some_and(|gate| gate.scale == GateScale::Candidate)
 }
 
 /// Scale of candidate weights outside the fovea: `1 / cell_density(fovea radius)`.
@@ -53,6 +66,7 @@ pub(crate) fn wrs_params(settings: &Settings) -> WrsParams {
         sampler: match settings.sampler {
             Sampler::AChao => SamplerCode::AChao,
             Sampler::AEs => SamplerCode::AEs,
+            Sampler::AChaoMean => SamplerCode::AChaoMean,
         },
         bias,
         exponential_survival,

@@ -24,6 +24,7 @@ pub fn all_settings() -> Vec<Settings> {
     vec![
         of(Method::None),
         of(Method::Wrs),
+        Settings::weighted(),
         Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..of(Method::Wrs) },
         of(Method::Taa),
         of(Method::Taau),

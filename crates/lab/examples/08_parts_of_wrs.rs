@@ -1,4 +1,4 @@
-//! Ablation of the reservoir method on one clip: the gate, the bias and the sampler, one by one.
+//! Ablation of the reservoir method on one clip: the gate, the bias, the weights and the sampler, one by one.
 //!
 //! `cargo run --release -p afterimage-lab --example 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
 //!
@@ -28,6 +28,10 @@ fn variants() -> Vec<(&'static str, RunKind)> {
         ("no gate, exponential 0.02", Settings { bias: Bias::Exponential { lambda: 0.02 }, ..ungated }),
         ("no gate, exponential 0.005", Settings { bias: Bias::Exponential { lambda: 0.005 }, ..ungated }),
         ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
+        ("weights to the third power", Settings { weight_exponent: 3, ..paper }),
+        ("no gate, weights to the third power", Settings { weight_exponent: 3, ..ungated }),
+        ("no gate, weights to the eighth power", Settings { weight_exponent: 8, ..ungated }),
+        ("weighted", Settings::weighted()),
         ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
     ];
     let mut runs: Vec<_> = list.map(|(name, s)| (name, RunKind::PostProcess(s))).into();

@@ -15,6 +15,7 @@ mod sparse_planted;
 mod trust;
 mod upsampling;
 mod views;
+mod weighted;
 
 use crate::images::{Images, OneView};
 use afterimage::cpu::{CpuAfterimage, Frame};

@@ -65,6 +65,8 @@ proptest! {
                     prop_assert!(c.iter().all(|v| v.abs() <= 65504.0), "{:?}: {:?}", settings.method, c);
                     let t = trace[0].pixels()[i];
                     match settings.method {
+                        // Means invent colors, within those presented.
+                        Method::Wrs if settings.sampler == Sampler::AChaoMean => {}
                         Method::None | Method::Wrs => prop_assert!(known.contains(&c.map(f32::to_bits)), "an invented color: {:?}", c),
                         Method::Smr if t.motion.iter().all(|m| m.fract() == 0.0) && !settings.noisy => {
                             // Between the candidate and the history at a gain of 1/5 to 5.

@@ -29,6 +29,7 @@ fn h27_stereo_is_one_dispatch_without_a_leak() {
     agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::paper(), 12);
     let settings = Settings { sampler: Sampler::AEs, ..Settings::paper() };
     agree(ContextDesc { view_count: 4, ..ContextDesc::new([33, 17]) }, settings, 12);
+    agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::weighted(), 12);
     // Planted error: the other eye's history. Swapped layers of history must make a difference.
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };

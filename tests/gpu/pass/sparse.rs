@@ -429,7 +429,7 @@ fn wrong_weights_of_places_are_caught() {
         ("nearest_point(px.y, first.y, level)", "nearest_point(px.y, first.x, level)"),
         ("vec2<i32>(lattice.points) - 1)", "vec2<i32>(lattice.points))"),
         ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
-        ("pixel(id.xy, view, place_of(id.xy, view))", "pixel(id.xy, view, Place(id.xy, 1.0))"),
+        ("place_weight(vec2<f32>(x, y)))", "1.0)"),
     ];
     let [exact, noisy] = [settings(Method::Wrs), Settings { method: Method::Wrs, ..traced() }];
     let differs = |settings: Settings, source: &str| {

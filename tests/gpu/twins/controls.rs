@@ -1,7 +1,9 @@
 //! Planted errors in the shaders: the comparison of the function with its Rust twin must find each.
 
 use super::probe::caught;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
+use super::{
+    decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling, weighted,
+};
 
 #[test]
 fn a_lax_comparison_is_caught() {
@@ -24,6 +26,15 @@ fn a_weight_one_percent_off_is_caught() {
 fn a_flipped_motion_sign_is_caught() {
     caught(state::PROBES, "nearest", "f32(x) + motion.x", "f32(x) - motion.x");
     caught(state::PROBES, "nearest", "f32(y) + motion.y", "f32(y) - motion.y");
+}
+
+#[test]
+fn sloppy_means_and_references_are_caught() {
+    caught(weighted::PROBES, "sharpen", "w *= candidate_w;", "w *= w;");
+    caught(weighted::PROBES, "combined", "|| candidate_w == decision.w_sum", "");
+    caught(weighted::PROBES, "compared", "reference.color, level != NO_LEVEL && ", "reference.color, ");
+    caught(weighted::PROBES, "next_reference", "take || ", "");
+    caught(weighted::PROBES, "pack_reference", "c * scale + 0.5", "c * scale");
 }
 
 #[test]

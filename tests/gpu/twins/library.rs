@@ -1,7 +1,9 @@
 //! The library under test: the drop-in's.
 
 use super::probe::Probe;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
+use super::{
+    decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling, weighted,
+};
 pub use afterimage::shader::SHADERS;
 
 /// Where `shaders/lib` and `src/kernel` are.
@@ -34,6 +36,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         state::PROBES,
         surfaces::PROBES,
         upsampling::PROBES,
+        weighted::PROBES,
     ];
     lists.into_iter().flatten()
 }

@@ -22,3 +22,4 @@ mod state;
 mod surfaces;
 mod upsampling;
 mod values;
+mod weighted;

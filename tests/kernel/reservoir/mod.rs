@@ -5,6 +5,7 @@ mod growth;
 mod law;
 mod properties;
 mod storage;
+mod weighted;
 
 use afterimage::kernel::pack;
 use afterimage::kernel::pack::Stored;

@@ -114,13 +114,15 @@ fn taa_and_smr_agree_bit_for_bit() {
 fn every_variant_agrees_bit_for_bit() {
     let base = Settings::paper();
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
-    let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0 };
+    let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0, ..Gate::default() };
     for settings in [
         Settings { gate: None, seed: 9, ..base },
         Settings { gate: Some(lightness), ..base },
         Settings { bias: Bias::Exponential { lambda: 0.05 }, ..base },
         Settings { bias: Bias::None, gate: None, ..base },
         Settings { sampler: Sampler::AEs, ..base },
+        Settings::weighted(),
+        Settings { sampler: Sampler::AChao, ..Settings::weighted() },
         Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..base },
         Settings { depth_test: None, ..base },
         Settings { foveation: fovea(0.0), ..base },

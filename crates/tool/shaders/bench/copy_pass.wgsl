@@ -7,6 +7,9 @@
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
+override WEIGHT_EXPONENT: u32 = 1u;
+override HAS_REFERENCES: u32 = 0u;
+override FILTER: u32 = 0u;
 
 @group(0) @binding(8) var past_colors: texture_2d_array<u32>;
 @group(0) @binding(9) var past_weights: texture_2d_array<u32>;

@@ -1,6 +1,6 @@
 //! Methods and their settings.
 
-use afterimage::{Bias, DepthTest, Gate, GateMetric, Method, Sampler, Settings, Smr};
+use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::sync::LazyLock;
@@ -43,18 +43,30 @@ impl ValueEnum for MethodName {
 /// Settings and ablations of the methods.
 #[derive(Args, Clone, Debug)]
 pub struct WrsArgs {
-    /// Sampling algorithm of the reservoir
-    #[arg(long, value_enum, default_value = "a-chao")]
-    pub wrs_sampler: SamplerName,
+    /// wrs: the paper literally, or with a gate at the candidate's scale, sharper weights and means; the options below
+    /// replace its parts
+    #[arg(long, value_enum, default_value = "paper")]
+    pub wrs_preset: WrsPresetName,
+    /// Sampling algorithm of the reservoir; default: a-chao, for --wrs-preset weighted a-chao-mean
+    #[arg(long, value_enum)]
+    pub wrs_sampler: Option<SamplerName>,
+    /// Exponent of the density in candidate weights, 1 to 8; default: 1, for --wrs-preset weighted 8
+    #[arg(long, value_name = "N")]
+    pub wrs_exponent: Option<u32>,
     /// Decay of the history's weight: bernoulli, exponential:LAMBDA (per frame), or none
     #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS")]
     pub wrs_bias: Bias,
-    /// Color difference above the offset at which the gate closes, Delta E 94
-    #[arg(long, default_value_t = 100.0, value_name = "X")]
-    pub gate_divisor: f32,
-    /// Color difference that the gate ignores, Delta E 94
-    #[arg(long, default_value_t = 0.0, value_name = "X")]
-    pub gate_offset: f32,
+    /// What the color gate compares with the candidate: the stored sample, or the first candidate of the same level of
+    /// detail since; default: sample, for --wrs-preset weighted candidate
+    #[arg(long, value_enum)]
+    pub gate_scale: Option<GateScaleName>,
+    /// Color difference above the offset at which the gate closes, Delta E 94; default: 100, for --wrs-preset weighted
+    /// 10
+    #[arg(long, value_name = "X")]
+    pub gate_divisor: Option<f32>,
+    /// Color difference that the gate ignores, Delta E 94; default: 0, for --wrs-preset weighted 3
+    #[arg(long, value_name = "X")]
+    pub gate_offset: Option<f32>,
     /// Color difference of the gate: of the whole color, or of lightness alone
     #[arg(long, value_enum, default_value = "delta-e94")]
     pub gate_metric: GateMetricName,
@@ -86,19 +98,32 @@ impl WrsArgs {
     /// The library's settings for a method. `noisy`: the input is path traced.
     pub fn settings(&self, method: Method, seed: u64, noisy: bool) -> Settings {
         let preset = if noisy { Settings::traced() } else { Settings::default() };
+        let wrs = match self.wrs_preset {
+            WrsPresetName::Paper => Settings::paper(),
+            WrsPresetName::Weighted => Settings::weighted(),
+        };
+        let gate = wrs.gate.unwrap_or_default();
         Settings {
             method,
             sampler: match self.wrs_sampler {
-                SamplerName::AChao => Sampler::AChao,
-                SamplerName::AEs => Sampler::AEs,
+                None => wrs.sampler,
+                Some(SamplerName::AChao) => Sampler::AChao,
+                Some(SamplerName::AEs) => Sampler::AEs,
+                Some(SamplerName::Mean) => Sampler::AChaoMean,
             },
+            weight_exponent: self.wrs_exponent.unwrap_or(wrs.weight_exponent),
             bias: self.wrs_bias,
             gate: (!self.no_gate).then_some(Gate {
-                divisor: self.gate_divisor,
-                offset: self.gate_offset,
+                divisor: self.gate_divisor.unwrap_or(gate.divisor),
+                offset: self.gate_offset.unwrap_or(gate.offset),
                 metric: match self.gate_metric {
                     GateMetricName::DeltaE94 => GateMetric::DeltaE94,
                     GateMetricName::Lightness => GateMetric::Lightness,
+                },
+                scale: match self.gate_scale {
+                    None => gate.scale,
+                    Some(GateScaleName::Sample) => GateScale::Sample,
+                    Some(GateScaleName::Candidate) => GateScale::Candidate,
                 },
             }),
             depth_test: (!self.no_flush)
@@ -114,6 +139,24 @@ impl WrsArgs {
     }
 }
 
+/// Values of `--wrs-preset`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WrsPresetName {
+    /// As published
+    Paper,
+    /// With what it needs to reach the published gains
+    Weighted,
+}
+
+/// Values of `--gate-scale`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GateScaleName {
+    /// The stored sample, as published
+    Sample,
+    /// A candidate of the same level of detail
+    Candidate,
+}
+
 /// Values of `--wrs-sampler`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SamplerName {
@@ -121,6 +164,9 @@ pub enum SamplerName {
     AChao,
     /// A-ES: keep the sample with the larger key
     AEs,
+    /// The expectation of A-Chao: keep the mean
+    #[value(name = "a-chao-mean")]
+    Mean,
 }
 
 /// Values of `--gate-metric`.

@@ -10,6 +10,7 @@ mod rays;
 mod savings;
 mod sparse_smr;
 mod subject;
+mod wrs_readings;
 mod wrs_table;
 
 use crate::args::parse_size;

@@ -9,6 +9,7 @@ pub fn as_rust(settings: &Settings) -> String {
         .field("foveation", |s| foveation(&s.foveation))
         .field("smr", |s| smr(&s.smr))
         .field("sampler", |s| format!("Sampler::{:?}", s.sampler))
+        .field("weight_exponent", |s| s.weight_exponent.to_string())
         .field("bias", |s| match s.bias {
             Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
             other => format!("Bias::{other:?}"),
@@ -16,8 +17,8 @@ pub fn as_rust(settings: &Settings) -> String {
         .field("gate", |s| match s.gate {
             None => "None".into(),
             Some(g) => format!(
-                "Some(Gate {{ metric: GateMetric::{:?}, divisor: {:?}, offset: {:?} }})",
-                g.metric, g.divisor, g.offset
+                "Some(Gate {{ metric: GateMetric::{:?}, scale: GateScale::{:?}, divisor: {:?}, offset: {:?} }})",
+                g.metric, g.scale, g.divisor, g.offset
             ),
         })
         .field("depth_test", |s| match s.depth_test {
@@ -82,7 +83,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::{DepthTest, Filter, Gate, GateMetric, Method, Sampler};
+    use afterimage::{DepthTest, Filter, Gate, GateMetric, GateScale, Method, Sampler};
 
     /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {
@@ -101,8 +102,9 @@ mod tests {
             foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
             smr: Smr { accumulate: 0.7, relight: false, ..Smr::default() },
             sampler: Sampler::AEs,
+            weight_exponent: 3,
             bias: Bias::Exponential { lambda: 0.25 },
-            gate: Some(Gate { metric: GateMetric::Lightness, divisor: 50.0, offset: 2.0 }),
+            gate: Some(Gate { metric: GateMetric::Lightness, scale: GateScale::Sample, divisor: 50.0, offset: 2.0 }),
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),
             noisy: true,
             ..Settings::default()

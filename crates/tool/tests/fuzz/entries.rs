@@ -6,8 +6,8 @@ mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
-    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method,
-    Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
+    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, GateScale, Gaze,
+    Image, Method, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
 };
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
@@ -213,7 +213,12 @@ impl Bits<'_> {
                 tolerance: self.around(0.1, 10.0),
                 relight: pick >> 9 & 1 == 1,
             },
-            sampler: if pick >> 10 & 1 == 1 { Sampler::AEs } else { Sampler::AChao },
+            sampler: match (pick >> 10 & 1, pick >> 17 & 1) {
+                (1, _) => Sampler::AEs,
+                (_, 1) => Sampler::AChaoMean,
+                _ => Sampler::AChao,
+            },
+            weight_exponent: pick >> 18 & 15,
             bias: match pick >> 11 & 3 {
                 0 => Bias::None,
                 1 => Bias::Exponential { lambda: self.around(0.0, 80.0) },
@@ -221,6 +226,7 @@ impl Bits<'_> {
             },
             gate: (pick >> 13 & 1 == 1).then(|| Gate {
                 metric: if pick >> 14 & 1 == 1 { GateMetric::Lightness } else { GateMetric::DeltaE94 },
+                scale: if pick >> 22 & 1 == 1 { GateScale::Candidate } else { GateScale::Sample },
                 divisor: self.around(1e-3, 200.0),
                 offset: self.around(0.0, 50.0),
             }),

@@ -383,12 +383,14 @@ fn the_papers_table_is_written_beside_ours() {
     for row in table["rows"].as_array().unwrap() {
         let (method, fovea) = (row["method"].as_str().unwrap(), row["options"]["fovea"].as_str().unwrap());
         let psnr_db = row["values"]["psnr_db"].as_f64().unwrap();
-        let line = format!("| {method} | {fovea} | {psnr_db:.2} | ");
+        let preset = if row["options"]["wrs-preset"] == "weighted" { " weighted" } else { "" };
+        let line = format!("| {method}{preset} | {fovea} | {psnr_db:.2} | ");
         let ours = if row["input"] == still.as_str() { of_still } else { of_moving };
         assert!(ours.contains(&line), "'{line}' is missing: {ours}");
         rows += 1;
     }
-    assert_eq!(rows, 2 * 3 * 4, "two clips, three foveae, four methods");
+    assert_eq!(rows, 2 * 3 * 5, "two clips, three foveae, four methods, two presets of wrs");
+    assert!(text.contains("\n| `Settings::weighted()` | "), "{text}");
     // Table 1 of Cantory et al.: stills are compared with none, moving cameras with taa.
     assert!(of_still.contains("| paper, Sponza: wrs | 5 | 26.52 | 0.720 |"), "{of_still}");
     assert!(of_moving.contains("| paper, Corridor: taa | 5 | 22.27 | 0.736 |"), "{of_moving}");

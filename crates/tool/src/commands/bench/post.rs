@@ -63,7 +63,7 @@ struct PassSpec {
 #[derive(Clone, Copy)]
 enum PassKind {
     Copy,
-    Post(Method),
+    Post(Settings),
     /// A method on sparse frames.
     Sparse(Method),
     Foveate(Filter),
@@ -77,10 +77,9 @@ fn sparse_settings(method: Method) -> Settings {
 }
 
 impl PassSpec {
-    fn of_method(method: Method) -> Self {
-        let settings = Settings { method, ..Settings::paper() };
+    fn new(name: &'static str, settings: Settings) -> Self {
         let bytes_per_pixel = settings.traffic_bytes_per_pixel([true, true, false]);
-        Self { name: method.name(), bytes_per_pixel, kind: PassKind::Post(method) }
+        Self { name, bytes_per_pixel, kind: PassKind::Post(settings) }
     }
 
     fn sparse(name: &'static str, method: Method) -> Self {
@@ -104,7 +103,8 @@ impl PassSpec {
 /// The passes, in the order in which each frame times them. The others are compared with the first.
 fn all_passes() -> Vec<PassSpec> {
     let mut passes = vec![PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy }];
-    passes.extend(Method::ALL.map(PassSpec::of_method));
+    passes.extend(Method::ALL.map(|m| PassSpec::new(m.name(), Settings { method: m, ..Settings::paper() })));
+    passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
     passes.push(PassSpec::sparse("smr-sparse", Method::Smr));
     passes.extend([
         PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
@@ -128,8 +128,8 @@ impl CreatedPass {
                 let source = SHADERS.compose("copy_pass").source;
                 Self::Post(Box::new(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?))
             }
-            PassKind::Post(method) => {
-                desc.settings.method = method;
+            PassKind::Post(settings) => {
+                desc.settings = settings;
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Sparse(method) => {
@@ -236,7 +236,7 @@ fn print(report: &Report) {
             continue;
         };
         say!(
-            "{:10} {:>9.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
+            "{:12} {:>7.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
             pass.name,
             q.median,
             q.p25,

@@ -1,5 +1,6 @@
 //! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our results and theirs.
 
+use super::wrs_readings;
 use crate::commands::sweep::{SweepArgs, execute};
 use crate::failure::Failure;
 use crate::sweep::{Metric, Row, Table};
@@ -27,8 +28,21 @@ pub struct WrsTableArgs {
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
     /// Number of frames of each point
-    #[arg(long, default_value_t = 120, value_name = "N")]
+    #[arg(long, default_value_t = 300, value_name = "N")]
     pub frames: u64,
+    /// Block edge in the middle region, pixels. With 4 and 8 a frame of 1920x1080 has the block angles of the paper's
+    /// 3840x2160 with 8 and 16
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    pub rate_mid: u32,
+    /// Block edge in the periphery, pixels
+    #[arg(long, default_value_t = 8, value_name = "N")]
+    pub rate_far: u32,
+    /// Another scanpath for the readings, stretched over the picture
+    #[arg(long, value_name = "FILE.csv")]
+    pub second_gaze: Option<String>,
+    /// Write the table of readings alone, which needs no sweep
+    #[arg(long)]
+    pub readings_only: bool,
     /// Repetitions of randomized methods, each with another seed
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub seeds: u64,
@@ -88,7 +102,12 @@ struct Sweep {
 /// Runs the sweep and writes the tables.
 pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
     let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
+    let readings = wrs_readings::table(args)?;
+    if args.readings_only {
+        return write(args, &readings);
+    }
     let out = args.out.to_string_lossy();
+    let (rate_mid, rate_far) = (format!("rate-mid={}", args.rate_mid), format!("rate-far={}", args.rate_far));
     let words = [
         "sweep",
         &args.still,
@@ -105,12 +124,19 @@ pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
         &seeds,
         "--backend",
         &args.backend,
+        "--set",
+        &rate_mid,
+        "--set",
+        &rate_far,
         "--out",
         &out,
     ];
     let sweep = Sweep::try_parse_from(words).map_err(|e| Failure::usage(&e))?;
     let Some(table) = execute(&sweep.args)? else { return Ok(()) };
-    let text = markdown(args, &table);
+    write(args, &format!("{}\n{readings}", markdown(args, &table)))
+}
+
+fn write(args: &WrsTableArgs, text: &str) -> Result<(), Failure> {
     match &args.markdown {
         Some(path) => write_whole(path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(path, e)),
         None => {
@@ -130,9 +156,9 @@ fn markdown(args: &WrsTableArgs, table: &Table) -> String {
         lines.push("| | fovea, degrees | PSNR dB | SSIM | FLIP | retained dB | ms per frame |".into());
         lines.push("|---|---|---|---|---|---|---|".into());
         for fovea in FOVEAE_DEG {
-            for method in ["none", "taa", "wrs", "smr"] {
-                if let Some(row) = find(table, input, method, fovea) {
-                    lines.push(line(row, fovea));
+            for label in ["none", "taa", "wrs", WEIGHTED, "smr"] {
+                if let Some(row) = find(table, input, label, fovea) {
+                    lines.push(line(row, label, fovea));
                 }
             }
         }
@@ -150,40 +176,52 @@ fn markdown(args: &WrsTableArgs, table: &Table) -> String {
         "Run time, milliseconds per frame ({machine}). The paper's times are for a 4K frame on an \
          RTX 4070 Ti Super and\ninclude rendering: the cost of a method is the difference from the first column.\n"
     ));
-    lines.push("| | foveated | + taa | + wrs | + smr |".into());
-    lines.push("|---|---|---|---|---|".into());
+    lines.push("| | foveated | + taa | + wrs | + wrs weighted | + smr |".into());
+    lines.push("|---|---|---|---|---|---|".into());
     for input in [&args.still, &args.moving] {
-        let ms = |method| find(table, input, method, "5").map_or("-".into(), |r| format!("{:.2}", r.pass_ms.median));
-        lines.push(format!("| `{input}` | {} | {} | {} | {} |", ms("none"), ms("taa"), ms("wrs"), ms("smr")));
+        let ms = |label| find(table, input, label, "5").map_or("-".into(), |r| format!("{:.2}", r.pass_ms.median));
+        let all = ["none", "taa", "wrs", WEIGHTED, "smr"].map(ms);
+        lines.push(format!("| `{input}` | {} |", all.join(" | ")));
     }
     for published in &PUBLISHED {
         let [foveated, taa, wrs] = published.ms;
-        lines.push(format!("| paper, {} | {foveated:.2} | {taa:.2} | {wrs:.2} | - |", published.scene));
+        lines.push(format!("| paper, {} | {foveated:.2} | {taa:.2} | {wrs:.2} | - | - |", published.scene));
     }
     lines.push(String::new());
     lines.join("\n")
 }
 
-fn find<'a>(table: &'a Table, input: &str, method: &str, fovea: &str) -> Option<&'a Row> {
+/// Label of wrs with `--wrs-preset weighted`.
+const WEIGHTED: &str = "wrs weighted";
+
+/// Row of a method, or of [`WEIGHTED`].
+fn find<'a>(table: &'a Table, input: &str, label: &str, fovea: &str) -> Option<&'a Row> {
+    let method = label.split(' ').next().unwrap_or(label);
+    let has = |r: &&Row, option: &str, value: &str| r.point.options.get(option).is_some_and(|v| v == value);
     let fits = |r: &&Row| {
-        r.point.input == input && r.point.method == method && r.point.options.get("fovea").is_some_and(|f| f == fovea)
+        r.point.input == input
+            && r.point.method == method
+            && has(r, "fovea", fovea)
+            && has(r, "wrs-preset", "weighted") == (label == WEIGHTED)
     };
     table.rows.iter().find(fits)
 }
 
-fn line(row: &Row, fovea: &str) -> String {
+fn line(row: &Row, label: &str, fovea: &str) -> String {
     let value = |key: &str| {
         let digits = Metric::find(key).map_or(2, |m| m.digits);
         row.values.get(key).copied().flatten().map_or("-".into(), |v| format!("{v:.digits$}"))
     };
     let [psnr, ssim, flip, retained] = ["psnr_db", "ssim", "flip", "retained_psnr_db"].map(value);
-    format!("| {} | {fovea} | {psnr} | {ssim} | {flip} | {retained} | {:.2} |", row.point.method, row.pass_ms.median)
+    format!("| {label} | {fovea} | {psnr} | {ssim} | {flip} | {retained} | {:.2} |", row.pass_ms.median)
 }
 
 /// Gain in PSNR of wrs and smr over the paper's baseline, and the paper's gain.
 fn gain(table: &Table, input: &str, baseline: &str) -> String {
     let psnr = |method| find(table, input, method, "5").and_then(|r| r.values.get("psnr_db").copied().flatten());
-    let (Some(before), Some(wrs), Some(smr)) = (psnr(baseline), psnr("wrs"), psnr("smr")) else {
+    let (Some(before), Some(wrs), Some(weighted), Some(smr)) =
+        (psnr(baseline), psnr("wrs"), psnr(WEIGHTED), psnr("smr"))
+    else {
         return String::new();
     };
     let theirs: Vec<f64> = PUBLISHED
@@ -193,9 +231,10 @@ fn gain(table: &Table, input: &str, baseline: &str) -> String {
         .collect();
     let (least, most) = theirs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &v| (l.min(v), m.max(v)));
     format!(
-        "\nPSNR gain over {baseline}, 5 degrees: wrs {:+.2} dB, smr {:+.2} dB. The paper reports {least:+.2} \
-         to {most:+.2} dB for wrs on its scenes.\n",
+        "\nPSNR gain over {baseline}, 5 degrees: wrs {:+.2} dB, weighted {:+.2} dB, smr {:+.2} dB. The paper \
+         reports {least:+.2} to {most:+.2} dB for wrs on its scenes.\n",
         wrs - before,
+        weighted - before,
         smr - before
     )
 }

@@ -16,7 +16,10 @@ const MAX_PIXELS: u64 = 24_000_000;
 
 /// Options that affect only some methods, and not the input frames.
 const OF_METHODS: &[(&str, &[Method])] = &[
+    ("wrs-preset", &[Method::Wrs]),
     ("wrs-sampler", &[Method::Wrs]),
+    ("wrs-exponent", &[Method::Wrs]),
+    ("gate-scale", &[Method::Wrs]),
     ("wrs-bias", &[Method::Wrs]),
     ("gate-divisor", &[Method::Wrs]),
     ("gate-offset", &[Method::Wrs]),
