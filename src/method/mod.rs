@@ -10,7 +10,9 @@ mod taau;
 mod wrs;
 
 pub(crate) use smr::{smr_params, smr_relights};
-pub(crate) use wrs::{has_references, inv_density_at_fovea, wrs_params};
+#[cfg(feature = "cpu")]
+pub(crate) use wrs::has_references;
+pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
 use crate::settings::{Method, Settings};
