@@ -43,10 +43,10 @@ fn every_planted_error_in_the_pass_is_caught() {
     for (right, wrong) in [
         // Candidate and history swapped.
         (
-            "select(history.past.color, candidate.color, decision.take)",
-            "select(candidate.color, history.past.color, decision.take)",
+            "combined(candidate.color, candidate_w, history.past.color, decision, SAMPLER)",
+            "combined(history.past.color, candidate_w, candidate.color, decision, SAMPLER)",
         ),
-        ("step(candidate.color, candidate_w, history.past,", "step(history.past.color, candidate_w, history.past,"),
+        ("step(candidate.color, candidate_w, past, params,", "step(history.past.color, candidate_w, past, params,"),
         // Motion with the opposite sign.
         ("f32(x) + motion.x", "f32(x) - motion.x"),
         ("f32(y) + motion.y", "f32(y) - motion.y"),
@@ -75,8 +75,8 @@ fn every_planted_error_in_the_pass_is_caught() {
     let caught = first_difference(
         keys,
         &mutated(
-            "textureStore(next_keys, px, view, vec4<f32>(decision.log_key,",
-            "textureStore(next_keys, px, view, vec4<f32>(0.0,",
+            "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
+            "textureStore(next_extras, px, view, vec4<u32>(0u,",
         ),
     );
     assert!(caught.is_some());
