@@ -42,7 +42,7 @@ pub enum Sampler {
     #[default]
     AChao,
     /// A-ES, for comparison: each candidate draws a key once. Needs 8 more bytes of memory and of memory traffic a
-    /// pixel, and the place of the references of [`GateScale::Candidate`].
+    /// pixel. Not with [`GateScale::Candidate`].
     AEs,
     /// The expectation of A-Chao: keeps and shows the mean of history and candidate by the probabilities of A-Chao
     /// instead of drawing, so that nothing speckles. Means may be interpolated, so history is read between pixels by
@@ -90,8 +90,9 @@ pub enum GateScale {
     #[default]
     Sample,
     /// The candidate with the reference that is stored beside the sample: the first candidate of the same level of
-    /// detail since the sample was taken. Closes only where something changed. Needs 8 more bytes of memory and of
-    /// memory traffic a pixel.
+    /// detail since the sample was taken. Closes only where something changed. The level is that of
+    /// [`Settings::foveation`] at the pixel, or of the lattices; the frame's input `lod` is not read. Needs 8
+    /// more bytes of memory and of memory traffic a pixel.
     Candidate,
 }
 

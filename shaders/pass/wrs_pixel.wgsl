@@ -111,9 +111,8 @@ struct Place {
     weight: f32,
 }
 
-// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a
-// candidate is
-// a full-rate one, and all others are interpolated.
+// Code of the candidate's level of detail, from its eccentricity. `sampled`: whether the pixel has a sample of its own.
+// On sparse frames such a candidate is a full-rate one, and all others are interpolated.
 fn level_of(e_deg: f32, sampled: bool) -> u32 {
     if FILTER == FILTER_SPARSE {
         return select(NO_LEVEL, 0u, sampled);

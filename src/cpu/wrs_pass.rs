@@ -198,8 +198,8 @@ impl ViewPass<'_> {
         wrs::sharpen(weight, self.weight_exponent)
     }
 
-    /// Code of the candidate's level of detail. `sampled`: the pixel's sample lies on it. On sparse frames such a
-    /// candidate is a full-rate one, and all others are interpolated.
+    /// Code of the candidate's level of detail, from its eccentricity. `sampled`: whether the pixel has a sample of its
+    /// own. On sparse frames such a candidate is a full-rate one, and all others are interpolated.
     #[inline(always)]
     fn level(&self, e_deg: f32, sampled: bool) -> u32 {
         match self.foveation.filter {

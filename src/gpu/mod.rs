@@ -363,9 +363,8 @@ impl Afterimage {
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
     /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
-    /// ([`surface`](crate::kernel::surface),
-    /// `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy candidates the packed noise
-    /// ([`noise`](crate::kernel::noise), `R32Uint`).
+    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
+    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
     #[doc(hidden)]
     pub fn history_textures(&self) -> &[Texture] {
         &self.history.split().0.textures

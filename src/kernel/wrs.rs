@@ -213,8 +213,7 @@ pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, s
 
 /// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. The gate compares
 /// the candidate with `past.color`: the sample, or what [`compared`] gives. A `weight` of 0 marks an unusable
-/// candidate;
-/// it says nothing about a change of color either, so the gate value is 1.
+/// candidate; it says nothing about a change of color either, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;

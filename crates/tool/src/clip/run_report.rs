@@ -56,8 +56,7 @@ struct RunReport<'a> {
 #[derive(Serialize)]
 struct FoveationReport {
     simulator: &'static str,
-    /// Where depth and motion are known, full or samples; null unless frames are sparse or composed of
-    /// quad views.
+    /// Where depth and motion are known, full or samples; null unless frames are sparse or composed of quad views.
     geometry: Option<&'static str>,
     /// Order in which the pixels of a block are sampled; null unless frames are sparse.
     order: Option<&'static str>,
