@@ -4,7 +4,6 @@ use super::{Candidate, Pipeline, SparseGeometry, Step};
 use crate::clock::Stopwatch;
 use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame};
 use afterimage::FrameError;
-use std::sync::Arc;
 
 impl Pipeline {
     /// As [`step`](Self::step), for a frame that its source composed of [`quad_views`](Self::quad_views) for the gaze
@@ -33,12 +32,9 @@ impl Pipeline {
         let geometry = (color.is_some() && has_geometry).then(|| (composed.read_distance(), composed.read_motion()));
         if let Some(device) = &mut self.device {
             let gpu = device.gpu.clone();
-            let is_here = |frame: &&DeviceFrame| Arc::ptr_eq(&frame.device, &gpu);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            match rendered.filter(is_here) {
-                _ if has_geometry => {}
-                Some(rendered) => device.inputs.import(&mut encoder, rendered),
-                None => device.inputs.upload(frame),
+            if !has_geometry {
+                device.inputs.import_or_upload(&mut encoder, frame, rendered);
             }
             gpu.queue.submit([encoder.finish()]);
             device.inputs.take_composed(composed, has_geometry);

@@ -137,6 +137,20 @@ impl DeviceInputs {
         self.given = Given { depth: true, motion: true, ..Given::default() };
     }
 
+    /// Imports `rendered`, the full-rate frame on a device, if that is this device; else uploads `frame`. Records into
+    /// `encoder`.
+    pub(super) fn import_or_upload(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        frame: &SourceFrame,
+        rendered: Option<&DeviceFrame>,
+    ) {
+        match rendered.filter(|rendered| Arc::ptr_eq(&rendered.device, &self.gpu)) {
+            Some(rendered) => self.import(encoder, rendered),
+            None => self.upload(frame),
+        }
+    }
+
     /// Imports the samples of a sparse frame that was rendered on this device. `has_geometry`: with their depth and
     /// motion, instead of those of the full-rate frame that was imported or uploaded last. Records into `encoder`.
     pub fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame, has_geometry: bool) {

@@ -38,12 +38,9 @@ impl Pipeline {
         let geometry = (color.is_some() && has_geometry).then(|| geometry_of(atlas));
         if let Some(device) = &mut self.device {
             let gpu = device.gpu.clone();
-            let is_here = |frame: &&DeviceFrame| Arc::ptr_eq(&frame.device, &gpu);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            match rendered.filter(is_here) {
-                _ if has_geometry => {}
-                Some(rendered) => device.inputs.import(&mut encoder, rendered),
-                None => device.inputs.upload(frame),
+            if !has_geometry {
+                device.inputs.import_or_upload(&mut encoder, frame, rendered);
             }
             device.inputs.import_atlas(&mut encoder, atlas, has_geometry);
             gpu.queue.submit([encoder.finish()]);
