@@ -91,8 +91,8 @@ pub enum GateScale {
     Sample,
     /// The candidate with the reference that is stored beside the sample: the first candidate of the same level of
     /// detail since the sample was taken. Closes only where something changed. The level is that of
-    /// [`Settings::foveation`] at the pixel, or of the lattices; the frame's input `lod` is not read. Needs 8
-    /// more bytes of memory and of memory traffic a pixel.
+    /// the frame's input `lod`, of [`Settings::foveation`] without that, or of the lattices. Needs 8 more bytes of
+    /// memory and of memory traffic a pixel.
     Candidate,
 }
 

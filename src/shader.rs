@@ -58,6 +58,7 @@ pub static MODULES: &[Module] = &[
     module!("lib", "taa"),
     module!("lib", "taau"),
     module!("lib", "wrs"),
+    module!("pass", "candidate_lod"),
     module!("pass", "candidate_pass"),
     module!("pass", "doctor_light_pass"),
     module!("pass", "doctor_pass"),

@@ -1,4 +1,4 @@
-//#use foveation_lod
+//#use candidate_lod
 //#use matched
 //#use output
 //#use surface_history
@@ -6,18 +6,7 @@
 // equations. One invocation a block of 2x2 pixels, which also writes their mean, the first level of the mip chain; z is
 // the view.
 
-override HAS_LOD: u32 = 0u;
 override RELIGHT_ON: u32 = 1u;
-
-// Level of detail of the candidate.
-fn candidate_lod(px: vec2<u32>, view: u32, ray: vec3<f32>) -> f32 {
-    if HAS_LOD != 0u {
-        let given = textureLoad(lod_in, texel_of(px, frame.views[view].lod_origin), layer_of(view), 0).x;
-        // By bits: NaN is 0.
-        return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
-    }
-    return foveation_lod(eccentricity_deg(ray, frame.views[view].gaze_ray.xyz));
-}
 
 // Four texels of a level around a position, and the position's fractions between them.
 struct Texels {
@@ -255,7 +244,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let ray = ray_at(px, view);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
-    let lod = candidate_lod(px, view, ray);
+    let lod = candidate_lod(px, view, eccentricity_deg(ray, frame.views[view].gaze_ray.xyz));
     let coherent_motion = is_coherent(px, view, motion);
     var source = source_of(px, view, motion, disparity_now);
     if source.previous.verdict == VERDICT_VALID && !coherent_motion {

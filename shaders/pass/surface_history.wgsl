@@ -4,7 +4,6 @@
 // Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
 // CPU twin: src/cpu/surface_history.rs.
 
-@group(0) @binding(8) var lod_in: texture_2d_array<f32>;
 @group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
 @group(0) @binding(10) var past_mips: texture_2d_array<f32>;
 @group(0) @binding(11) var next_surfaces: texture_storage_2d_array<rg32uint, write>;

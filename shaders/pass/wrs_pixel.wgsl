@@ -1,4 +1,4 @@
-//#use foveation_lod
+//#use candidate_lod
 //#use inputs
 //#use output
 //#use pack
@@ -16,12 +16,12 @@ override WEIGHT_EXPONENT: u32 = 1u;
 override HAS_REFERENCES: u32 = 0u;
 
 // Extras are the bits of log keys with A-ES, packed references with HAS_REFERENCES.
-@group(0) @binding(8) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(9) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(10) var past_extras: texture_2d_array<u32>;
-@group(0) @binding(11) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(12) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(13) var next_extras: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(9) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(10) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(11) var past_extras: texture_2d_array<u32>;
+@group(0) @binding(12) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(13) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(14) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 // History of a pixel. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct History {
@@ -111,13 +111,13 @@ struct Place {
     weight: f32,
 }
 
-// Code of the candidate's level of detail, from its eccentricity. `sampled`: whether the pixel has a sample of its own.
-// On sparse frames such a candidate is a full-rate one, and all others are interpolated.
-fn level_of(e_deg: f32, sampled: bool) -> u32 {
+// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames such
+// a candidate is a full-rate one, and all others are interpolated.
+fn level_of(px: vec2<u32>, view: u32, e_deg: f32, sampled: bool) -> u32 {
     if FILTER == FILTER_SPARSE {
         return select(NO_LEVEL, 0u, sampled);
     }
-    return level_code(foveation_lod(e_deg));
+    return level_code(candidate_lod(px, view, e_deg));
 }
 
 fn pixel(px: vec2<u32>, view: u32, place: Place) {
@@ -143,7 +143,7 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     let valid = history.verdict == VERDICT_VALID;
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
-    let level = level_of(e_deg, all(place.px == px));
+    let level = level_of(px, view, e_deg, all(place.px == px));
     var past = history.past;
     if HAS_REFERENCES != 0u {
         past.color = compared(candidate.color, level, history.reference);

@@ -1,6 +1,7 @@
 //! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
 use super::Frame;
+use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
 use crate::kernel::depth;
@@ -8,6 +9,7 @@ use crate::kernel::depth::DisparityMap;
 use crate::kernel::matched::moves_alike;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
+use crate::kernel::surface::MAX_LOD;
 use crate::kernel::{acuity, reproject, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
@@ -28,7 +30,7 @@ pub(super) struct Previous {
 /// Inputs and constants of one view of a frame.
 pub(super) struct Inputs<'a> {
     pub color: &'a Image<[f32; 3]>,
-    pub lod: Option<&'a Image<f32>>,
+    lod: Option<&'a Image<f32>>,
     depth: Option<&'a Image<f32>>,
     motion: Option<&'a Image<[f32; 2]>>,
     trust: Option<&'a Image<f32>>,
@@ -99,6 +101,16 @@ impl<'a> Inputs<'a> {
         let expected = self.previous_disparity(self.ray(x, y), disparity);
         let is_same = self.same_surface(x, y, expected, stored_disparity);
         Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
+    }
+
+    /// Level of detail of the candidate at pixel (x, y): the frame's input, or by eccentricity.
+    #[inline(always)]
+    pub fn candidate_lod(&self, foveation: &Foveation, x: u32, y: u32) -> f32 {
+        match self.lod {
+            // max() turns NaN into 0.
+            Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
+            None => foveation.lod(self.eccentricity_deg(self.ray(x, y))),
+        }
     }
 
     /// Whether a neighbour in the 2x2 block moves as the pixel (x, y) does.

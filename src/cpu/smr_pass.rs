@@ -46,7 +46,7 @@ impl Smr {
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let lod = self.lod(view, x, y);
+        let lod = view.inputs.candidate_lod(&self.settings.foveation, x, y);
         let coherent_motion = inputs.is_coherent(x, y, motion);
         let mut source = view.source(x, y, motion, disparity);
         if source.is_ok() && !coherent_motion {
@@ -90,16 +90,6 @@ impl Smr {
             surface: pack_surface(Surface { color: result.color, lod: stored_lod, disparity }),
             noise: output_noise.map_or(0, pack_noise),
             trace,
-        }
-    }
-
-    /// Level of detail of the candidate.
-    #[inline(always)]
-    fn lod(&self, view: &SurfaceHistory<'_>, x: u32, y: u32) -> f32 {
-        match view.inputs.lod {
-            // max() turns NaN into 0.
-            Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
-            None => self.settings.foveation.lod(view.inputs.eccentricity_deg(view.inputs.ray(x, y))),
         }
     }
 

@@ -157,7 +157,7 @@ impl ViewPass<'_> {
             Err(verdict) => (verdict, History::EMPTY),
         };
         let History { past, reference, .. } = history;
-        let level = self.level(e_deg, sample_px == [x, y]);
+        let level = self.level(x, y, sample_px == [x, y]);
         let compared = if self.has_references { wrs::compared(candidate, level, reference) } else { past.color };
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
         let decision = wrs::step(candidate, weight, Past { color: compared, ..past }, &params, draw);
@@ -198,15 +198,15 @@ impl ViewPass<'_> {
         wrs::sharpen(weight, self.weight_exponent)
     }
 
-    /// Code of the candidate's level of detail, from its eccentricity. `sampled`: whether the pixel has a sample of its
-    /// own. On sparse frames such a candidate is a full-rate one, and all others are interpolated.
+    /// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames
+    /// such a candidate is a full-rate one, and all others are interpolated.
     #[inline(always)]
-    fn level(&self, e_deg: f32, sampled: bool) -> u32 {
+    fn level(&self, x: u32, y: u32, sampled: bool) -> u32 {
         match self.foveation.filter {
             _ if !self.has_references => wrs::NO_LEVEL,
             Filter::Sparse if sampled => 0,
             Filter::Sparse => wrs::NO_LEVEL,
-            _ => wrs::level_code(self.foveation.lod(e_deg)),
+            _ => wrs::level_code(self.inputs.candidate_lod(&self.foveation, x, y)),
         }
     }
 

@@ -162,6 +162,7 @@ impl MethodPass {
         let history_views = match self.history {
             HistoryLayout::Nothing => vec![],
             HistoryLayout::Reservoirs { .. } => vec![
+                &lod,
                 past_or(0, &self.absent.word),
                 past_or(1, &self.absent.word),
                 past_or(2, &self.absent.word),
@@ -269,7 +270,7 @@ fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> 
     let mut types = vec![uniform(), float, float, float, float, storage_texture(output), storage_buffer(false), float];
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
-        HistoryLayout::Reservoirs { .. } => vec![words, words, words, first, second, third],
+        HistoryLayout::Reservoirs { .. } => vec![float, words, words, words, first, second, third],
         HistoryLayout::Kept { .. } => vec![words, first, words, words, third],
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });

@@ -26,7 +26,7 @@ pub(super) static ENTRY: Entry = Entry {
         _ => PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
     },
     #[cfg(feature = "gpu")]
-    overrides: |settings, _| {
+    overrides: |settings, has_lod| {
         let params = wrs_params(settings);
         vec![
             ("SAMPLER", params.sampler as u32),
@@ -34,6 +34,7 @@ pub(super) static ENTRY: Entry = Entry {
             ("GATE", params.gate as u32),
             ("WEIGHT_EXPONENT", settings.weight_exponent),
             ("HAS_REFERENCES", u32::from(has_references(settings))),
+            ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", settings.foveation.filter as u32),
         ]
     },

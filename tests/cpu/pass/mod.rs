@@ -50,13 +50,15 @@ struct Input {
     depth: Option<Image<f32>>,
     motion: Option<Image<[f32; 2]>>,
     trust: Option<Image<f32>>,
+    lod: Option<Image<f32>>,
     gaze: Gaze,
     camera: Option<[[f32; 4]; 4]>,
 }
 
 impl Input {
     fn still(color: Color) -> Self {
-        Self { color, depth: None, motion: None, trust: None, gaze: Gaze::At { px: [20.0, 20.0] }, camera: None }
+        let gaze = Gaze::At { px: [20.0, 20.0] };
+        Self { color, depth: None, motion: None, trust: None, lod: None, gaze, camera: None }
     }
 
     fn without_trust(&self) -> Self {
@@ -70,6 +72,7 @@ impl Input {
             depth: self.depth.as_ref(),
             motion: self.motion.as_ref(),
             trust: self.trust.as_ref(),
+            lod: self.lod.as_ref(),
             ..OneView::new(facts, &self.color)
         }
     }

@@ -94,3 +94,20 @@ fn means_move_by_whole_pixels_bit_for_bit_and_between_pixels_without_drift() {
     println!("off by {between} pixels after 8 frames, with nearest pixels by {nearest}");
     assert!(between < 0.15 && nearest > 1.0, "{between} {nearest}");
 }
+
+#[test]
+fn the_gate_compares_candidates_of_one_level_by_the_frames_input() {
+    let sharp = noise(SIZE, "level of the input");
+    // By eccentricity every pixel is at full rate. The renderer says that the second frame on is coarse.
+    let all_foveal = Foveation { fovea_deg: 170.0, mid_deg: 175.0, ..foveation() };
+    let survived = |says_level: bool| {
+        let mut post = context(Settings { foveation: all_foveal, ..Settings::weighted() });
+        let lod = |lod| says_level.then(|| Image::filled(SIZE, lod));
+        one(&mut post, 0, &Input { lod: lod(0.0), ..Input::still(sharp.clone()) });
+        let coarse = Input { lod: lod(4.0), ..Input::still(Image::filled(SIZE, [0.5; 3])) };
+        let trace = one(&mut post, 1, &coarse).2;
+        trace.pixels().iter().map(|t| t.gate).sum::<f32>() / trace.pixels().len() as f32
+    };
+    assert_eq!(survived(true), 1.0, "another level: nothing is known of a change");
+    assert!(survived(false) < 0.5, "the same level: the color changed");
+}

@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [70, 41];
 
 fn all_settings() -> impl Iterator<Item = Settings> {
     let plain = Method::ALL.map(|method| Settings { method, ..Settings::default() });
-    plain.into_iter().chain([Settings::traced()])
+    plain.into_iter().chain([Settings::traced(), Settings::weighted()])
 }
 
 /// Views with all inputs that the settings allow.

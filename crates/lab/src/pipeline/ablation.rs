@@ -50,6 +50,16 @@ pub const PARTS: &[Part] = &[
         ],
     },
     Part {
+        name: "stored-bias",
+        instead: "the bias counts in the choice between sample and candidate (A-Chao), and the stored weight sum keeps \
+                  what it takes away",
+        methods: &[Method::Wrs],
+        replaced: &[(
+            "draw * w_sum < candidate_w, w_sum, 0.0,",
+            "draw * w_sum < candidate_w, weight(past.w_sum * gate_value) + candidate_w, 0.0,",
+        )],
+    },
+    Part {
         name: "exact-color",
         instead: "cube roots without Halley steps, a few percent off (without only one of the two, no pixel changes)",
         methods: &[Method::Wrs],

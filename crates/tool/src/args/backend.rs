@@ -20,6 +20,15 @@ pub enum BackendName {
 }
 
 impl BackendName {
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+        }
+    }
+
     /// Opens the backend.
     pub fn open(self) -> Result<Backend, Failure> {
         let found = match self {

@@ -75,7 +75,7 @@ impl FoveationArgs {
             Regions { samples: [spp; 3], blocks, diameters_deg: [self.fovea, self.mid], ..Regions::default() };
         let sampling = Sampling::Regions(regions);
         sampling.check_sparse().map_err(|e| {
-            Failure::Input(format!("--foveation sparse: {e}; choose --rate-mid above 1 and --rate-far above that"))
+            Failure::Input(format!("--foveation sparse: {e}; choose --rate-mid above 1 and --rate-far from that on"))
         })?;
         Ok(sampling)
     }

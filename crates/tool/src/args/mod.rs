@@ -18,7 +18,9 @@ pub mod pattern;
 mod picture;
 
 #[cfg(feature = "full")]
-pub use foveation::{FilterName, FoveationArgs, GeometryName};
+#[cfg(feature = "view")]
+pub use foveation::GeometryName;
+pub use foveation::{FilterName, FoveationArgs};
 #[cfg(feature = "full")]
 pub use method::{MethodName, WrsArgs};
 #[cfg(feature = "full")]

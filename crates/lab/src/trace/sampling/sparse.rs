@@ -33,7 +33,7 @@ impl Sampling {
     ///
     /// # Errors
     /// [`SettingsError`] unless the pattern has lattices whose steps are ascending powers of two from 1 on, without a
-    /// lens.
+    /// lens. The last two of regions may be equal: both are one lattice then, with the samples of the outer region.
     pub fn check_sparse(&self) -> Result<(), SettingsError> {
         let refuse =
             |setting, found: String, expected: &str| Err(SettingsError { setting, found, expected: expected.into() });
@@ -52,7 +52,11 @@ impl Sampling {
                 return refuse("sampling", found.into(), "regions or layers, whose samples lie on lattices");
             }
         };
-        let ascends = steps.windows(2).all(|pair| pair[0] < pair[1]);
+        let may_equal = matches!(self, Self::Regions(_)).then_some(1);
+        let ascends = steps
+            .windows(2)
+            .enumerate()
+            .all(|(i, pair)| pair[0] < pair[1] || (Some(i) == may_equal && pair[0] == pair[1]));
         let allowed = |&step: &u32| step.is_power_of_two() && step <= Foveation::MAX_RATE;
         if steps[0] != 1 || !ascends || !steps.iter().all(allowed) {
             let expected = format!("ascending powers of two, the first one 1, at most {}", Foveation::MAX_RATE);
@@ -91,7 +95,7 @@ impl Sampling {
             Self::Regions(Regions { samples: of_regions, blocks, .. }) => {
                 let of_step = |step| match step {
                     1 => of_regions[0],
-                    _ if step == blocks[0] => of_regions[1],
+                    _ if step < blocks[1] => of_regions[1],
                     _ => of_regions[2],
                 };
                 samples = stack.iter().map(|lattice| of_step(lattice.step)).collect();

@@ -2,7 +2,7 @@
 //! nothing else is traced.
 
 use super::fills::view;
-use afterimage::{Filter, Foveation, Image, Lattices, Method, Settings};
+use afterimage::{Filter, Foveation, Image, Lattices, Method, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
@@ -15,7 +15,7 @@ use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::WorkItem;
 use afterimage_lab::trace::world::World;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 const SIZE: [u32; 2] = [160, 90];
 
@@ -276,8 +276,18 @@ fn patterns_without_moving_lattices_are_refused() {
     assert!(refused(Sampling::Layers(Layers::default())).contains("[1, 2, 3, 4]"));
     let lens = Layers { lens_deg: Some(40.0), steps: [1, 2, 4, 8], ..Layers::default() };
     assert!(refused(Sampling::Layers(lens)).contains("lens"));
-    for blocks in [[3, 6], [4, 4], [4, 2], [1, 2]] {
+    for blocks in [[3, 6], [4, 2], [1, 2], [1, 1]] {
         assert!(refused(Sampling::Regions(Regions { blocks, ..Regions::default() })).contains("powers of two"));
     }
     assert!(patterns().iter().all(|sampling| sampling.check_sparse().is_ok()));
+}
+
+#[test]
+fn regions_of_one_step_are_one_lattice() {
+    let geometry = ViewGeometry::flat([64, 36], 40.0).unwrap();
+    let regions = Regions { blocks: [4, 4], samples: [3, 2, 1], ..Regions::default() };
+    let plan = Sampling::Regions(regions).sparse_plan(&geometry, [30.0, 20.0], 9, 5, SampleOrder::Bayer).unwrap();
+    assert_eq!(plan.lattices().as_slice().iter().map(|l| l.step).collect::<Vec<_>>(), [1, 4]);
+    let samples: HashSet<u32> = plan.pixels().map(|(_, samples)| samples).collect();
+    assert_eq!(samples, HashSet::from([3, 1]), "of the fovea, and of the outer region");
 }

@@ -1,6 +1,7 @@
 //! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our results and theirs.
 
 use super::wrs_readings;
+use crate::args::backend::BackendName;
 use crate::commands::sweep::{SweepArgs, execute};
 use crate::failure::Failure;
 use crate::sweep::{Metric, Row, Table};
@@ -46,9 +47,9 @@ pub struct WrsTableArgs {
     /// Repetitions of randomized methods, each with another seed
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub seeds: u64,
-    /// Device that runs the methods: auto, cpu or gpu
-    #[arg(long, default_value = "auto", value_name = "NAME")]
-    pub backend: String,
+    /// Device that runs the methods
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: BackendName,
     /// Folder of the sweep
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -123,7 +124,7 @@ pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
         "--seeds",
         &seeds,
         "--backend",
-        &args.backend,
+        args.backend.name(),
         "--set",
         &rate_mid,
         "--set",
