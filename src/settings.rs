@@ -219,6 +219,11 @@ pub struct Settings {
     /// `(d(e) / d(r_f))^k`, with the density of retinal ganglion cells `d` (eq. 4 of the paper). More protects samples
     /// of the fovea longer from coarser candidates, and lets the fovea replace coarse samples sooner. Default 1.
     pub weight_exponent: u32,
+    /// Exponent of the number of samples a pixel in the candidate weights of [`Method::Wrs`], 0 to 4: at level of
+    /// detail `l`, weights are multiplied by `4^-kl`. More replaces coarse samples sooner once the gaze arrives, also
+    /// where eccentricity hardly changed. Not on sparse frames, whose candidates count by the place of their sample.
+    /// Default 0, as published.
+    pub rate_exponent: u32,
     /// Decay of history's weight in [`Method::Wrs`]. Default [`Bias::Bernoulli`].
     pub bias: Bias,
     /// Color gate of [`Method::Wrs`]; `None` compares no colors, which keeps more detail and ghosts under changing
@@ -244,6 +249,7 @@ impl Default for Settings {
             smr: Smr::default(),
             sampler: Sampler::default(),
             weight_exponent: 1,
+            rate_exponent: 0,
             bias: Bias::default(),
             gate: Some(Gate::default()),
             depth_test: Some(DepthTest::default()),
@@ -262,12 +268,13 @@ impl Settings {
     }
 
     /// Weighted reservoirs that reach the paper's gains: the gate compares at the candidate's scale, weights fall with
-    /// the eighth power of the density, and reservoirs keep means. Keeps most of the detail that
+    /// the eighth power of the density and the third of the samples a pixel, and reservoirs keep means. Keeps most of the detail that
     /// [`steady`](Self::steady) keeps of a still view, and less of it in motion.
     pub fn weighted() -> Self {
         Self {
             sampler: Sampler::AChaoMean,
             weight_exponent: 8,
+            rate_exponent: 3,
             gate: Some(Gate { scale: GateScale::Candidate, divisor: 10.0, offset: 3.0, ..Gate::default() }),
             ..Self::paper()
         }
@@ -304,6 +311,7 @@ impl Settings {
             check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
         }
         check("weight_exponent", self.weight_exponent as f32, 1.0..=8.0, "")?;
+        check("rate_exponent", self.rate_exponent as f32, 0.0..=4.0, "")?;
         if let Some(gate) = self.gate {
             if gate.scale == GateScale::Candidate && self.sampler == Sampler::AEs {
                 return Err(SettingsError {

@@ -1,3 +1,4 @@
+//#use approx
 //#use color
 //#use reservoir
 //#use sanitize
@@ -70,6 +71,14 @@ fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
         w *= candidate_w;
     }
     return w;
+}
+
+// wrs::LEAST_CANDIDATE_W
+const LEAST_CANDIDATE_W: f32 = 0x1p-100f;
+
+// wrs::at_rate
+fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
+    return max(weight * exp2(lod * (-2.0 * f32(exponent))), LEAST_CANDIDATE_W);
 }
 
 struct WrsParams {

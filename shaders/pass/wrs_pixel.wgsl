@@ -13,6 +13,7 @@ override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
 override WEIGHT_EXPONENT: u32 = 1u;
+override RATE_EXPONENT: u32 = 0u;
 override HAS_REFERENCES: u32 = 0u;
 
 // Extras are the bits of log keys with A-ES, packed references with HAS_REFERENCES.
@@ -131,6 +132,9 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     if candidate.usable {
         let acuity_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
         candidate_w = sharpen(acuity_w, WEIGHT_EXPONENT) * place.weight;
+        if RATE_EXPONENT != 0u && FILTER != FILTER_SPARSE {
+            candidate_w = at_rate(candidate_w, candidate_lod(px, view, e_deg), RATE_EXPONENT);
+        }
     }
     var gate_offset = frame.gate_offset;
     if NOISY != 0u {

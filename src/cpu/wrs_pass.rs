@@ -38,6 +38,7 @@ struct ViewPass<'a> {
     past: PastView<'a>,
     params: WrsParams,
     weight_exponent: u32,
+    rate_exponent: u32,
     /// Whether the gate compares at the candidate's scale.
     has_references: bool,
     foveation: Foveation,
@@ -81,6 +82,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             past,
             params: wrs_params(settings),
             weight_exponent: settings.weight_exponent,
+            rate_exponent: settings.rate_exponent,
             has_references: has_references(settings),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,
@@ -144,6 +146,8 @@ impl ViewPass<'_> {
             let (px, place) = self.place([x, y]);
             sample_px = px;
             weight *= place;
+        } else if usable && self.rate_exponent != 0 {
+            weight = wrs::at_rate(weight, inputs.candidate_lod(&self.foveation, x, y), self.rate_exponent);
         }
         let mut params = self.params;
         if let Some(noise) = inputs.noise(sample_px[0], sample_px[1]) {

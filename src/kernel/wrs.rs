@@ -1,7 +1,7 @@
 //! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, bias, combine.
 
 use super::sanitize::{self, MAX_HALF};
-use super::{color, reservoir};
+use super::{approx, color, reservoir};
 use glam::Vec3;
 
 /// Sampler: rule by which a reservoir chooses between its sample and the candidate. Code of `Sampler` in shaders.
@@ -131,6 +131,16 @@ pub fn sharpen(weight: f32, exponent: u32) -> f32 {
         w *= weight;
     }
     w
+}
+
+/// Least weight of a usable candidate: 2^-100. Below 2^-126 it would be 0, which marks an unusable one.
+const LEAST_CANDIDATE_W: f32 = f32::from_bits((127 - 100) << 23);
+
+/// Weight of a candidate at level of detail `lod` (0 to 8.9): `weight` times the number of samples a pixel, `4^-lod`, to
+/// the power `exponent` (at most 4).
+#[inline]
+pub fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
+    (weight * approx::exp2(lod * (-2.0 * exponent as f32))).max(LEAST_CANDIDATE_W)
 }
 
 /// Reservoir of a pixel's history.

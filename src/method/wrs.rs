@@ -33,6 +33,7 @@ pub(super) static ENTRY: Entry = Entry {
             ("BIAS", params.bias as u32),
             ("GATE", params.gate as u32),
             ("WEIGHT_EXPONENT", settings.weight_exponent),
+            ("RATE_EXPONENT", settings.rate_exponent),
             ("HAS_REFERENCES", u32::from(has_references(settings))),
             ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", settings.foveation.filter as u32),

@@ -31,6 +31,7 @@ fn a_flipped_motion_sign_is_caught() {
 #[test]
 fn sloppy_means_and_references_are_caught() {
     caught(weighted::PROBES, "sharpen", "w *= candidate_w;", "w *= w;");
+    caught(weighted::PROBES, "at_rate", "-2.0 * f32(exponent)", "-2.5 * f32(exponent)");
     caught(weighted::PROBES, "combined", "|| candidate_w == decision.w_sum", "");
     caught(weighted::PROBES, "compared", "reference.color, level != NO_LEVEL && ", "reference.color, ");
     caught(weighted::PROBES, "next_reference", "take || ", "");

@@ -30,6 +30,18 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "at_rate",
+        module: "wrs",
+        words: [3, 1],
+        wgsl: "out_f(at_rate(in_f(0u), in_f(1u), in_u(2u)));",
+        rust: |r, o| o.f(wrs::at_rate(r.f(0), r.f(1), r.u(2))),
+        rows: || {
+            Rows::new(3)
+                .cross(&[&floats(&[1.0, 0.003, 1e-30, 1e-37]), &around(&[0.0, 0.5, 1.0, 3.0, 8.85]), &[1, 2, 3, 4]])
+                .random("at_rate", |d, row| row.extend([scaled(d, -90, 0), range(d, 0.0, 8.8), 1 + d.bits() % 4]))
+        },
+    },
+    Probe {
         name: "level_code",
         module: "wrs",
         words: [1, 1],

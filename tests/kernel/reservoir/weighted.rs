@@ -134,3 +134,15 @@ proptest! {
         prop_assert_eq!(wrs::pack_reference(read), word);
     }
 }
+
+#[test]
+fn rates_are_numbers_of_samples_a_pixel() {
+    for exponent in 0..=4_u32 {
+        for lod in 0..=8_u32 {
+            let samples_per_px = 0.25_f64.powi((lod * exponent) as i32);
+            let found = f64::from(wrs::at_rate(1.0, lod as f32, exponent));
+            assert!((found / samples_per_px - 1.0).abs() < 1e-6, "{lod}, {exponent}: {found}");
+        }
+    }
+    assert_eq!(wrs::at_rate(1e-30, 8.0, 4), 2.0_f32.powi(-100), "still usable");
+}

@@ -8,6 +8,7 @@ override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
 override WEIGHT_EXPONENT: u32 = 1u;
+override RATE_EXPONENT: u32 = 0u;
 override HAS_REFERENCES: u32 = 0u;
 override HAS_LOD: u32 = 0u;
 override FILTER: u32 = 0u;

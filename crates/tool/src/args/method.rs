@@ -53,6 +53,9 @@ pub struct WrsArgs {
     /// Exponent of the density in candidate weights, 1 to 8; default: 1, for --wrs-preset weighted 8
     #[arg(long, value_name = "N")]
     pub wrs_exponent: Option<u32>,
+    /// Exponent of the samples a pixel in candidate weights, 0 to 4; default: 0, for --wrs-preset weighted 3
+    #[arg(long, value_name = "N")]
+    pub wrs_rate_exponent: Option<u32>,
     /// Decay of the history's weight: bernoulli, exponential:LAMBDA (per frame), or none
     #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS")]
     pub wrs_bias: Bias,
@@ -112,6 +115,7 @@ impl WrsArgs {
                 Some(SamplerName::Mean) => Sampler::AChaoMean,
             },
             weight_exponent: self.wrs_exponent.unwrap_or(wrs.weight_exponent),
+            rate_exponent: self.wrs_rate_exponent.unwrap_or(wrs.rate_exponent),
             bias: self.wrs_bias,
             gate: (!self.no_gate).then_some(Gate {
                 divisor: self.gate_divisor.unwrap_or(gate.divisor),

@@ -10,6 +10,7 @@ pub fn as_rust(settings: &Settings) -> String {
         .field("smr", |s| smr(&s.smr))
         .field("sampler", |s| format!("Sampler::{:?}", s.sampler))
         .field("weight_exponent", |s| s.weight_exponent.to_string())
+        .field("rate_exponent", |s| s.rate_exponent.to_string())
         .field("bias", |s| match s.bias {
             Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
             other => format!("Bias::{other:?}"),
@@ -103,6 +104,7 @@ mod tests {
             smr: Smr { accumulate: 0.7, relight: false, ..Smr::default() },
             sampler: Sampler::AEs,
             weight_exponent: 3,
+            rate_exponent: 2,
             bias: Bias::Exponential { lambda: 0.25 },
             gate: Some(Gate { metric: GateMetric::Lightness, scale: GateScale::Sample, divisor: 50.0, offset: 2.0 }),
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),

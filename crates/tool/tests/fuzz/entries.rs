@@ -219,6 +219,7 @@ impl Bits<'_> {
                 _ => Sampler::AChao,
             },
             weight_exponent: pick >> 18 & 15,
+            rate_exponent: pick >> 23 & 7,
             bias: match pick >> 11 & 3 {
                 0 => Bias::None,
                 1 => Bias::Exponential { lambda: self.around(0.0, 80.0) },

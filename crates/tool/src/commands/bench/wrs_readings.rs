@@ -39,6 +39,7 @@ fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
         ("no gate, weights to the third power", Settings { weight_exponent: 3, ..ungated }),
         ("gate at the candidate's scale, third power", Settings { weight_exponent: 3, ..same_scale }),
         ("gate at the candidate's scale, eighth power", Settings { weight_exponent: 8, ..same_scale }),
+        ("`Settings::weighted()`, but weights by eccentricity alone", Settings { rate_exponent: 0, ..weighted }),
         ("`Settings::weighted()`, but samples", Settings { sampler: Sampler::AChao, ..weighted }),
         ("`Settings::weighted()`", weighted),
     ];

@@ -19,6 +19,7 @@ const OF_METHODS: &[(&str, &[Method])] = &[
     ("wrs-preset", &[Method::Wrs]),
     ("wrs-sampler", &[Method::Wrs]),
     ("wrs-exponent", &[Method::Wrs]),
+    ("wrs-rate-exponent", &[Method::Wrs]),
     ("gate-scale", &[Method::Wrs]),
     ("wrs-bias", &[Method::Wrs]),
     ("gate-divisor", &[Method::Wrs]),
