@@ -10,7 +10,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rows of a strip. FLIP's filters reach a few rows beyond it, which more rows amortize; fewer keep planes in the cache.
+/// Rows of a strip. FLIP's filters reach a few rows beyond it, which more rows amortize; fewer keep planes in the
+/// cache.
 pub(super) const STRIP_ROWS: usize = 32;
 
 /// Pixels of a block: results are collected in an array of its own, because compilers give up vector instructions where
