@@ -40,7 +40,7 @@ impl Prepared {
         let held = flip.map_or(rows.clone(), |flip| flip.rows_read(rows.clone(), height));
         let linear = strip::linear(encoded, held.clone());
         let own = (rows.start - held.start) * width..(rows.end - held.start) * width;
-        // Not `map`: closures need not be inlined.
+        #[expect(clippy::manual_map, reason = "closures need not be inlined into vector code")]
         let filtered = match flip {
             Some(flip) => Some(flip.filtered(&linear, width, held, rows)),
             None => None,
