@@ -65,6 +65,7 @@ impl MipChain {
     }
 
     /// Four texels of a level around a position, and the position's fractions between them.
+    #[inline(always)]
     fn around(&self, at: [f32; 2], level: u32) -> ([Vec4; 4], [f32; 2]) {
         let image = &self.levels[level as usize - 1];
         let (w, h) = (image.width() as u32, image.height() as u32);
@@ -81,11 +82,13 @@ impl MipChain {
     }
 
     /// Color at a position in pixels, of `level` from 1.
+    #[inline(always)]
     pub fn bilinear(&self, at: [f32; 2], level: u32) -> Vec3 {
         let ([a, b, c, d], fraction) = self.around(at, level);
         mip_bilinear([a, b], [c, d], fraction)
     }
 
+    #[inline(always)]
     fn bilinear_candidate(&self, at: [f32; 2], level: u32) -> Vec4 {
         let ([a, b, c, d], fraction) = self.around(at, level);
         candidate_bilinear([a, b], [c, d], fraction)
@@ -93,6 +96,7 @@ impl MipChain {
 
     /// Color and variance of candidates at a position in pixels: at level of detail `lod` of at least 1, and at the
     /// next whole level.
+    #[inline(always)]
     pub fn read_candidates(&self, at: [f32; 2], lod: f32) -> [Vec4; 2] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);
@@ -104,6 +108,7 @@ impl MipChain {
 
     /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth` is
     /// its level 0 there.
+    #[inline(always)]
     pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 3] {
         let last = self.levels.len() as u32;
         let lod = lod.min(last as f32);

@@ -249,14 +249,11 @@ impl CpuAfterimage {
         let pass = Pass { desc: &desc, history: &mut self.history, frame: &whole, output, traces };
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
-            Method::Taa => surface_pass::run(pass, taa_pass::pixel),
+            Method::Taa => surface_pass::run(pass, &taa_pass::Taa),
             Method::Smr if is_sparse_smr => sparse_pass::run(pass),
-            Method::Smr => {
-                let smr = smr_pass::Smr::new(&self.desc.settings);
-                surface_pass::run(pass, |view, x, y, stats| smr.pixel(view, x, y, stats))
-            }
+            Method::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
             Method::Wrs => wrs_pass::run(pass),
-            Method::Taau => surface_pass::run(pass, taau_pass::pixel),
+            Method::Taau => surface_pass::run(pass, &taau_pass::Taau),
         };
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();

@@ -9,7 +9,7 @@
 //! writes one word of noise: 80 bytes a pixel, including the passes that compute that mip chain.
 
 use super::surface_history::{Source, SurfaceHistory};
-use super::surface_pass::Pixel;
+use super::surface_pass::{Pixel, SurfaceMethod};
 use crate::foveation::Filter;
 use crate::kernel::approx;
 use crate::kernel::color;
@@ -33,14 +33,9 @@ pub(super) struct Smr {
     settings: Settings,
 }
 
-impl Smr {
-    pub fn new(settings: &Settings) -> Self {
-        Self { params: smr_params(settings), settings: *settings }
-    }
-
-    /// Processes one pixel and counts it in `stats`.
+impl SurfaceMethod for Smr {
     #[inline(always)]
-    pub fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
         let inputs = &view.inputs;
         let noise = inputs.noise(x, y);
         let (candidate, usable) = inputs.candidate(x, y);
@@ -91,6 +86,12 @@ impl Smr {
             noise: output_noise.map_or(0, pack_noise),
             trace,
         }
+    }
+}
+
+impl Smr {
+    pub fn new(settings: &Settings) -> Self {
+        Self { params: smr_params(settings), settings: *settings }
     }
 
     /// Output color for a candidate without noise.

@@ -7,7 +7,7 @@
 
 use super::Pass;
 use super::inputs::{Inputs, Previous};
-use super::surface_pass::{Pixel, Targets, for_pixels};
+use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
@@ -89,9 +89,22 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
-        stats = stats.add(for_pixels(targets, |x, y, stats| view.pixel(x, y, &lights, stats)));
+        stats = stats.add(for_pixels(targets, &LitView { view: &view, lights: &lights }));
     }
     stats
+}
+
+/// A view, and the light at the samples of its lattices.
+struct LitView<'a> {
+    view: &'a View<'a>,
+    lights: &'a [Samples],
+}
+
+impl ProcessPixel for LitView<'_> {
+    #[inline(always)]
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+        self.view.pixel(x, y, self.lights, stats)
+    }
 }
 
 /// Observation in two words: history's color, expected error and sureness as halves.

@@ -8,6 +8,7 @@ use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
 use crate::stats::FrameStats;
 use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Result of a pixel.
@@ -37,11 +38,34 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-/// Runs `process_pixel`, a method, for every pixel of every view. It adds what it counts to the statistics.
-pub(super) fn run(
-    pass: Pass<'_, '_>,
-    process_pixel: impl Fn(&SurfaceHistory<'_>, u32, u32, &mut FrameStats) -> Pixel + Sync,
-) -> FrameStats {
+/// The work of a pass at a pixel.
+pub(super) trait ProcessPixel: Sync {
+    /// Processes pixel (x, y) and counts it in `stats`. Always inlined into the loop over a row, which is compiled for
+    /// several instruction sets.
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel;
+}
+
+/// A method that reads and stores surfaces.
+pub(super) trait SurfaceMethod: Sync {
+    /// Processes pixel (x, y) of a view, as [`ProcessPixel::process`].
+    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel;
+}
+
+/// A method and a view.
+struct InView<'a, M> {
+    method: &'a M,
+    view: SurfaceHistory<'a>,
+}
+
+impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
+    #[inline(always)]
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+        self.method.pixel(&self.view, x, y, stats)
+    }
+}
+
+/// Runs a method for every pixel of every view.
+pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
@@ -56,17 +80,14 @@ pub(super) fn run(
         let view = SurfaceHistory { inputs, past };
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces, noise, output: &mut output[i], traces };
-        stats = stats.add(for_pixels(targets, |x, y, stats| process_pixel(&view, x, y, stats)));
+        stats = stats.add(for_pixels(targets, &InView { method, view }));
         history.build_mip_chain(i);
     }
     stats
 }
 
-/// Runs `process_pixel` for every pixel of a view, rows in parallel.
-pub(super) fn for_pixels(
-    targets: Targets<'_>,
-    process_pixel: impl Fn(u32, u32, &mut FrameStats) -> Pixel + Sync,
-) -> FrameStats {
+/// Runs a pass for every pixel of a view, rows in parallel.
+pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> FrameStats {
     let width = targets.output.width();
     let mut noise = targets.noise.chunks_mut(width);
     let mut traces = targets.traces.map(|t| t.pixels_mut().chunks_mut(width));
@@ -81,10 +102,29 @@ pub(super) fn for_pixels(
             trace: traces.as_mut().and_then(Iterator::next),
         })
         .collect();
-    let row = |(y, row): (usize, &mut Row<'_>)| {
+    let arch = Arch::new();
+    rows.par_iter_mut()
+        .enumerate()
+        .map(|(y, row)| arch.dispatch(ProcessRow { pass, y: y as u32, row }))
+        .reduce(FrameStats::default, FrameStats::add)
+}
+
+/// A row to process.
+struct ProcessRow<'a, 'b, P> {
+    pass: &'a P,
+    y: u32,
+    row: &'a mut Row<'b>,
+}
+
+impl<P: ProcessPixel> WithSimd for ProcessRow<'_, '_, P> {
+    type Output = FrameStats;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> FrameStats {
+        let Self { pass, y, row } = self;
         let mut stats = FrameStats::default();
-        for x in 0..width {
-            let pixel = process_pixel(x as u32, y as u32, &mut stats);
+        for x in 0..row.out.len() {
+            let pixel = pass.process(x as u32, y, &mut stats);
             row.out[x] = pixel.output.to_array();
             row.surfaces[x] = pixel.surface;
             if let Some(noise) = &mut row.noise {
@@ -95,6 +135,5 @@ pub(super) fn for_pixels(
             }
         }
         stats
-    };
-    rows.par_iter_mut().enumerate().map(row).reduce(FrameStats::default, FrameStats::add)
+    }
 }

@@ -5,7 +5,7 @@
 //! reads), and writes one surface and one color. Memory traffic: 40 bytes a pixel with color and motion as halves.
 
 use super::surface_history::SurfaceHistory;
-use super::surface_pass::Pixel;
+use super::surface_pass::{Pixel, SurfaceMethod};
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
@@ -14,44 +14,48 @@ use crate::kernel::taa;
 use crate::stats::FrameStats;
 use glam::Vec3;
 
-/// Processes one pixel and counts it in `stats`.
-#[inline(always)]
-pub(super) fn pixel(view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
-    let inputs = &view.inputs;
-    let (candidate, usable) = inputs.candidate(x, y);
-    let disparity = inputs.disparity(x, y);
-    let motion = inputs.motion(x, y);
-    let source = view.source(x, y, motion, disparity);
-    let verdict = source.err().unwrap_or(Verdict::Valid);
-    inputs.count(x, y, usable, disparity, verdict, stats);
+/// Temporal antialiasing.
+pub(super) struct Taa;
 
-    let (mut output, mut share, mut stored_lod) = (candidate, 0.0, if usable { 0.0 } else { -1.0 });
-    if let Ok(source) = source {
-        let history = view.expose(view.resample(&source).sharp);
-        stored_lod = 0.0;
-        if usable {
-            let alpha = taa::candidate_share(source.fraction, source.trust);
-            let (sum, squares) = neighbourhood(view, x, y, candidate);
-            output = taa::blend_clipped(candidate, history, sum, squares, alpha);
-            share = 1.0 - alpha;
-        } else {
-            (output, share) = (history, 1.0);
+impl SurfaceMethod for Taa {
+    #[inline(always)]
+    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+        let inputs = &view.inputs;
+        let (candidate, usable) = inputs.candidate(x, y);
+        let disparity = inputs.disparity(x, y);
+        let motion = inputs.motion(x, y);
+        let source = view.source(x, y, motion, disparity);
+        let verdict = source.err().unwrap_or(Verdict::Valid);
+        inputs.count(x, y, usable, disparity, verdict, stats);
+
+        let (mut output, mut share, mut stored_lod) = (candidate, 0.0, if usable { 0.0 } else { -1.0 });
+        if let Ok(source) = source {
+            let history = view.expose(view.resample(&source).sharp);
+            stored_lod = 0.0;
+            if usable {
+                let alpha = taa::candidate_share(source.fraction, source.trust);
+                let (sum, squares) = neighbourhood(view, x, y, candidate);
+                output = taa::blend_clipped(candidate, history, sum, squares, alpha);
+                share = 1.0 - alpha;
+            } else {
+                (output, share) = (history, 1.0);
+            }
         }
+        // The overshoot of Catmull-Rom may exceed the largest half.
+        output = output.min(Vec3::splat(MAX_HALF));
+        let trace = PixelTrace {
+            verdict,
+            weight: 1.0 - share,
+            quality: 0.0,
+            age: 0,
+            survival: share,
+            gate: 1.0,
+            take: verdict != Verdict::Valid,
+            motion,
+        };
+        let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });
+        Pixel { output, surface, noise: 0, trace }
     }
-    // The overshoot of Catmull-Rom may exceed the largest half.
-    output = output.min(Vec3::splat(MAX_HALF));
-    let trace = PixelTrace {
-        verdict,
-        weight: 1.0 - share,
-        quality: 0.0,
-        age: 0,
-        survival: share,
-        gate: 1.0,
-        take: verdict != Verdict::Valid,
-        motion,
-    };
-    let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });
-    Pixel { output, surface, noise: 0, trace }
 }
 
 /// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is

@@ -5,7 +5,7 @@
 //! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel.
 
 use super::surface_history::SurfaceHistory;
-use super::surface_pass::Pixel;
+use super::surface_pass::{Pixel, SurfaceMethod};
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::reproject::Verdict;
@@ -18,47 +18,51 @@ use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
 
-/// Processes one pixel and counts it in `stats`.
-#[inline(always)]
-pub(super) fn pixel(view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
-    let inputs = &view.inputs;
-    let disparity = inputs.disparity(x, y);
-    let motion = inputs.motion(x, y);
-    let source = view.source(x, y, motion, disparity);
-    let verdict = source.err().unwrap_or(Verdict::Valid);
+/// Temporal upsampling.
+pub(super) struct Taau;
 
-    let (mut history, mut confidence, mut trust) = (Vec3::ZERO, 0.0, 0.0);
-    if let Ok(source) = source {
-        let resampled = view.resample(&source);
-        history = view.expose(resampled.sharp);
-        confidence = taau::confidence_of(resampled.lod).min(taau::confidence_limit(source.fraction));
-        trust = source.trust;
-    }
-    let Samples { around, nearest, usable } = samples(view, [x, y], taau::tail(confidence * trust));
-    inputs.count(x, y, usable, disparity, verdict, stats);
+impl SurfaceMethod for Taau {
+    #[inline(always)]
+    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+        let inputs = &view.inputs;
+        let disparity = inputs.disparity(x, y);
+        let motion = inputs.motion(x, y);
+        let source = view.source(x, y, motion, disparity);
+        let verdict = source.err().unwrap_or(Verdict::Valid);
 
-    let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;
-    let mut result = Accumulated { color: history, confidence, share: 0.0, kept: 1.0 };
-    if sampled && source.is_ok() {
-        result = taau::accumulate(around, nearest, history, confidence, trust);
-    } else if sampled {
-        let color = taau::upsampled(around, nearest);
-        result = Accumulated { color, confidence: around.weights.y, share: 1.0, kept: 1.0 };
+        let (mut history, mut confidence, mut trust) = (Vec3::ZERO, 0.0, 0.0);
+        if let Ok(source) = source {
+            let resampled = view.resample(&source);
+            history = view.expose(resampled.sharp);
+            confidence = taau::confidence_of(resampled.lod).min(taau::confidence_limit(source.fraction));
+            trust = source.trust;
+        }
+        let Samples { around, nearest, usable } = samples(view, [x, y], taau::tail(confidence * trust));
+        inputs.count(x, y, usable, disparity, verdict, stats);
+
+        let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;
+        let mut result = Accumulated { color: history, confidence, share: 0.0, kept: 1.0 };
+        if sampled && source.is_ok() {
+            result = taau::accumulate(around, nearest, history, confidence, trust);
+        } else if sampled {
+            let color = taau::upsampled(around, nearest);
+            result = Accumulated { color, confidence: around.weights.y, share: 1.0, kept: 1.0 };
+        }
+        // The overshoot of Catmull-Rom may exceed the largest half.
+        let output = result.color.min(Vec3::splat(MAX_HALF));
+        let lod = if sampled || source.is_ok() { taau::lod_of(result.confidence) } else { -1.0 };
+        let trace = PixelTrace {
+            verdict,
+            weight: result.share,
+            quality: (0.5 * result.confidence).min(1.0),
+            age: 0,
+            survival: if source.is_ok() { 1.0 - result.share } else { 0.0 },
+            gate: result.kept,
+            take: verdict != Verdict::Valid,
+            motion,
+        };
+        Pixel { output, surface: pack_surface(Surface { color: output, lod, disparity }), noise: 0, trace }
     }
-    // The overshoot of Catmull-Rom may exceed the largest half.
-    let output = result.color.min(Vec3::splat(MAX_HALF));
-    let lod = if sampled || source.is_ok() { taau::lod_of(result.confidence) } else { -1.0 };
-    let trace = PixelTrace {
-        verdict,
-        weight: result.share,
-        quality: (0.5 * result.confidence).min(1.0),
-        age: 0,
-        survival: if source.is_ok() { 1.0 - result.share } else { 0.0 },
-        gate: result.kept,
-        take: verdict != Verdict::Valid,
-        motion,
-    };
-    Pixel { output, surface: pack_surface(Surface { color: output, lod, disparity }), noise: 0, trace }
 }
 
 /// Samples around a pixel.

@@ -30,6 +30,7 @@ use crate::method::{has_references, inv_density_at_fovea, wrs_params};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Inputs, history and constants of one view of a frame.
@@ -90,11 +91,12 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             foveation: settings.foveation,
         };
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
+        let arch = Arch::new();
         let mut rows = split_rows(desc.size_px, next, output[i].pixels_mut(), trace);
         stats = stats.add(
             rows.par_iter_mut()
                 .enumerate()
-                .map(|(y, row)| pass.row(y as u32, row))
+                .map(|(y, row)| arch.dispatch(ProcessRow { pass: &pass, y: y as u32, row }))
                 .reduce(FrameStats::default, FrameStats::add),
         );
     }
@@ -124,15 +126,28 @@ fn split_rows<'a>(
         .collect()
 }
 
-impl ViewPass<'_> {
-    fn row(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
+/// A row to process.
+struct ProcessRow<'a, 'b> {
+    pass: &'a ViewPass<'a>,
+    y: u32,
+    row: &'a mut Row<'b>,
+}
+
+impl WithSimd for ProcessRow<'_, '_> {
+    type Output = FrameStats;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> FrameStats {
+        let Self { pass, y, row } = self;
         let mut stats = FrameStats::default();
-        for x in 0..self.inputs.size[0] {
-            self.pixel(x, y, row, &mut stats);
+        for x in 0..pass.inputs.size[0] {
+            pass.pixel(x, y, row, &mut stats);
         }
         stats
     }
+}
 
+impl ViewPass<'_> {
     #[inline(always)]
     fn pixel(&self, x: u32, y: u32, row: &mut Row<'_>, stats: &mut FrameStats) {
         let i = x as usize;

@@ -29,7 +29,7 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
 }
 
 /// Density of midget retinal ganglion cell receptive fields per square degree at eccentricity `e_deg` >= 0 (eq. 3).
-#[inline]
+#[inline(always)]
 pub fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg / R_2_DEG;
     let far = approx::exp(-e_deg / R_E_DEG);

@@ -37,7 +37,7 @@ pub fn atan2_upper(y: f32, x: f32) -> f32 {
 /// e^x for `x` in \[-87, 88\]; clamped outside. Relative error below 2e-7.
 ///
 /// Cephes' `expf`: 2^n times a polynomial of the remainder.
-#[inline]
+#[inline(always)]
 pub fn exp(x: f32) -> f32 {
     let x = x.clamp(-87.0, 88.0);
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
@@ -67,7 +67,7 @@ pub fn exp2(x: f32) -> f32 {
 /// Natural logarithm of `x` in \[1.2e-38, 3.4e38\]. Relative error below 2e-7, absolute below 1e-7 near 1.
 ///
 /// Cephes' `logf`: exponent and a polynomial of the mantissa in \[sqrt(1/2), sqrt(2)).
-#[inline]
+#[inline(always)]
 pub fn ln(x: f32) -> f32 {
     let bits = x.to_bits();
     let mut exponent = (bits >> 23) as i32 - 126;

@@ -11,7 +11,7 @@ const LAB_KAPPA: f32 = 24389.0 / 27.0;
 /// Cube root; negative for negative `x`. Error at most 2 ulp for |x| in \[1e-30, 1e30\]; exact at 0 and +-1.
 ///
 /// Initial guess from the bits (a third of the exponent), then two Halley steps in correction form.
-#[inline]
+#[inline(always)]
 pub fn cbrt(x: f32) -> f32 {
     let a = x.abs();
     if a < 1e-30 {
@@ -26,7 +26,7 @@ pub fn cbrt(x: f32) -> f32 {
 }
 
 /// Fifth root of `x` >= 0. Relative error below 3e-7 in \[1e-25, 1e25\].
-#[inline]
+#[inline(always)]
 fn fifth_root(x: f32) -> f32 {
     if x < 1e-25 {
         return 0.0;
@@ -43,7 +43,7 @@ fn fifth_root(x: f32) -> f32 {
 /// the same curve; negative ones its mirror image.
 ///
 /// `x^(1/2.4) = c * sqrt(sqrt(c))` with `c = cbrt(x)`.
-#[inline]
+#[inline(always)]
 pub fn srgb_encode(linear: f32) -> f32 {
     let a = linear.abs();
     let encoded = if a <= 0.003_130_8 {
@@ -59,7 +59,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
 /// curve; negative ones its mirror image.
 ///
 /// `x^2.4 = x^2 * fifth_root(x)^2`.
-#[inline]
+#[inline(always)]
 pub fn srgb_decode(encoded: f32) -> f32 {
     let a = encoded.abs();
     let linear = if a <= 0.040_45 {
@@ -73,19 +73,19 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 }
 
 /// Rec. 709 weighted sum of (R, G, B): luminance of a linear color, luma of an encoded one.
-#[inline]
+#[inline(always)]
 pub fn luma(c: Vec3) -> f32 {
     0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z
 }
 
-#[inline]
+#[inline(always)]
 fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON { cbrt(t) } else { (LAB_KAPPA * t + 16.0) / 116.0 }
 }
 
 /// CIE L\*a\*b\* (white: D65 at linear 1) of a linear Rec. 709 color, clamped to the half-float range. L\* exceeds 100
 /// for colors above white and is negative for negative ones; always finite for finite input.
-#[inline]
+#[inline(always)]
 pub fn lab(linear: Vec3) -> Vec3 {
     let c = linear.clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF));
     // Rows of the Rec. 709 -> XYZ matrix (primaries of BT.709, white x = 0.3127, y = 0.3290), each divided by the white
@@ -98,7 +98,7 @@ pub fn lab(linear: Vec3) -> Vec3 {
 
 /// Delta E 94 (CIE 116, graphic arts: kL = 1, K1 = 0.045, K2 = 0.015) of two Lab colors; `reference` sets the weights,
 /// so the function is not symmetric. At least 0, exactly 0 for equal colors; may exceed 100.
-#[inline]
+#[inline(always)]
 pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
     let d = reference - sample;
     let c1 = (reference.y * reference.y + reference.z * reference.z).sqrt();

@@ -52,7 +52,7 @@ pub struct SmrParams {
 }
 
 /// Smooth step (3t^2 - 2t^3): 0 up to `from`, 1 from `from + width` on.
-#[inline]
+#[inline(always)]
 pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
     let t = ((x - from) / width).clamp(0.0, 1.0);
     (t * t) * (3.0 - 2.0 * t)
@@ -60,7 +60,7 @@ pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
 
 /// Difference of two linear colors, 100 between black and white: Euclidean distance in YCoCg of the square roots,
 /// squared chroma at half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
-#[inline]
+#[inline(always)]
 pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
     let d = roots(x) - roots(y);
     let outer = 0.25 * (d.x + d.z);
@@ -73,7 +73,7 @@ pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
 }
 
 /// Square roots of a color's channels; 0 for negative ones.
-#[inline]
+#[inline(always)]
 pub fn roots(c: Vec3) -> Vec3 {
     Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
 }
@@ -111,7 +111,7 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
 
 /// Gain of relighting for one color channel: the ratio of what is observed and what history predicts, blended to 1
 /// where light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
-#[inline]
+#[inline(always)]
 pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1]);
     let share = changed * smooth_step(0.05, 0.1, (ratio - 1.0).abs());
@@ -129,7 +129,7 @@ pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
 
 /// Whether candidate and history differ by more than detail explains. Only then does relighting need the candidate's
 /// neighbours.
-#[inline]
+#[inline(always)]
 pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3) -> bool {
     root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0)
 }
@@ -189,7 +189,7 @@ pub struct Matched {
 
 /// Blends history into the candidate by its reuse weight and its fit, the degree to which it explains the candidate.
 /// History is relit if only the light changed.
-#[inline]
+#[inline(always)]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone make differences.

@@ -1,8 +1,10 @@
 //! Worst crop: the small part of a frame in which a method loses most against the foveated frame.
 
+use super::mean::Mean;
 use super::psnr_db;
 use afterimage::Image;
 use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 /// Side of a crop in pixels.
@@ -81,13 +83,36 @@ fn visible_db(mse: f64) -> f64 {
     psnr_db(mse).map_or(CROP_INVISIBLE_DB, |db| db.min(CROP_INVISIBLE_DB))
 }
 
-fn crop_mse(reference: &Image<[f32; 3]>, image: &Image<[f32; 3]>, [x_px, y_px]: [u32; 2]) -> f64 {
-    let columns = x_px as usize..reference.width().min((x_px + CROP_PX) as usize);
-    let rows = y_px as usize..reference.height().min((y_px + CROP_PX) as usize);
-    let count = 3 * columns.len() * rows.len();
-    let row_sum = |y: usize| {
-        let pairs = reference.row(y)[columns.clone()].iter().zip(&image.row(y)[columns.clone()]);
-        pairs.map(|(r, s)| f64::from((Vec3::from(*s) - Vec3::from(*r)).length_squared())).sum::<f64>()
-    };
-    rows.map(row_sum).sum::<f64>() / count as f64
+fn crop_mse(reference: &Image<[f32; 3]>, image: &Image<[f32; 3]>, px: [u32; 2]) -> f64 {
+    Arch::new().dispatch(Crop { reference, image, px })
+}
+
+/// Arguments of the loop of [`crop_mse`].
+struct Crop<'a> {
+    reference: &'a Image<[f32; 3]>,
+    image: &'a Image<[f32; 3]>,
+    /// Top left corner.
+    px: [u32; 2],
+}
+
+impl WithSimd for Crop<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { reference, image, px: [x_px, y_px] } = self;
+        let columns = x_px as usize..reference.width().min((x_px + CROP_PX) as usize);
+        let rows = y_px as usize..reference.height().min((y_px + CROP_PX) as usize);
+        let mut mean = Mean::default();
+        let mut squared = [0.0; CROP_PX as usize];
+        let squared = &mut squared[..columns.len()];
+        for y in rows {
+            let pairs = reference.row(y)[columns.clone()].iter().zip(&image.row(y)[columns.clone()]);
+            for (squared, (r, s)) in squared.iter_mut().zip(pairs) {
+                *squared = (Vec3::from(*s) - Vec3::from(*r)).length_squared();
+            }
+            mean.add_all(squared);
+        }
+        mean.value().unwrap_or(0.0) / 3.0
+    }
 }

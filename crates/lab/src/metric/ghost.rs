@@ -92,6 +92,13 @@ impl GhostShares {
         }
     }
 
+    pub fn merge(&mut self, other: &Self) {
+        for (sums, more) in self.sums.iter_mut().zip(&other.sums) {
+            sums.0 += more.0;
+            sums.1 += more.1;
+        }
+    }
+
     /// Least-squares share of the old color in the output, for each age that occurred: 1 is all, 0 is none.
     fn shares(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(age, s)| (age, s.0 / s.1))

@@ -1,5 +1,8 @@
 //! Streaming accumulators: means and quantiles.
 
+/// Sums that [`Mean::add_all`] computes at a time, so that they become vector instructions.
+const LANES: usize = 16;
+
 /// Accumulator of a weighted mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Mean {
@@ -15,6 +18,42 @@ impl Mean {
     pub fn add_weighted(&mut self, value: f64, weight: f64) {
         self.sum += value * weight;
         self.weight += weight;
+    }
+
+    /// Adds values with weights of 1.
+    #[inline(always)]
+    pub fn add_all(&mut self, values: &[f32]) {
+        let (chunks, rest) = values.as_chunks::<LANES>();
+        let mut sums = [0.0; LANES];
+        for chunk in chunks {
+            for (sum, &value) in sums.iter_mut().zip(chunk) {
+                *sum += f64::from(value);
+            }
+        }
+        let rest: f64 = rest.iter().map(|&value| f64::from(value)).sum();
+        self.merge(Self { sum: sums.iter().sum::<f64>() + rest, weight: values.len() as f64 });
+    }
+
+    /// Adds values with their weights.
+    #[inline(always)]
+    pub fn add_all_weighted(&mut self, values: &[f32], weights: &[f32]) {
+        let ((values, rest), (weights, weights_of_rest)) = (values.as_chunks::<LANES>(), weights.as_chunks::<LANES>());
+        let (mut sums, mut totals) = ([0.0; LANES], [0.0; LANES]);
+        for (values, weights) in values.iter().zip(weights) {
+            for i in 0..LANES {
+                sums[i] += f64::from(values[i]) * f64::from(weights[i]);
+                totals[i] += f64::from(weights[i]);
+            }
+        }
+        self.merge(Self { sum: sums.iter().sum(), weight: totals.iter().sum() });
+        for (&value, &weight) in rest.iter().zip(weights_of_rest) {
+            self.add_weighted(f64::from(value), f64::from(weight));
+        }
+    }
+
+    /// The mean of values that are `factor` times as large.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { sum: self.sum * factor, ..self }
     }
 
     pub fn merge(&mut self, other: Self) {
@@ -58,6 +97,16 @@ impl Histogram {
         }
         // The conversion saturates, and maps NaN to 0.
         self.counts[((value / Self::BIN) as usize).min(Self::BINS - 1)] += 1;
+    }
+
+    pub fn merge(&mut self, other: &Self) {
+        if self.counts.is_empty() {
+            self.counts.clone_from(&other.counts);
+        } else {
+            for (count, more) in self.counts.iter_mut().zip(&other.counts) {
+                *count += more;
+            }
+        }
     }
 
     /// Quantile: upper end of the bin that contains it; 0 for the first bin. `None` if there are no values.

@@ -11,6 +11,7 @@ mod mean;
 mod reference;
 mod score;
 mod ssim;
+mod strip;
 mod track;
 
 pub use crop::{CROP_FROM_FRAME, CROP_INVISIBLE_DB, CROP_PX, Crops, WorstCrop};
@@ -23,7 +24,7 @@ pub use track::{NO_PAST, Tracked, Tracker};
 
 use afterimage::Image;
 use afterimage::kernel::{acuity, color};
-use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Eccentricity bands of reports.
@@ -42,6 +43,7 @@ impl Band {
     pub const ALL: [Self; 3] = [Self::Fovea, Self::Mid, Self::Periphery];
 
     /// Band of an eccentricity in degrees.
+    #[inline]
     pub fn of(e_deg: f32) -> Self {
         if e_deg < 2.5 {
             Self::Fovea
@@ -57,28 +59,40 @@ impl Band {
 pub fn encode(linear: &Image<[f32; 3]>, exposure_ev: f32) -> Image<[f32; 3]> {
     let gain = exposure_ev.exp2();
     let mut encoded = Image::filled(linear.size(), [0.0; 3]);
-    encoded.pixels_mut().par_iter_mut().zip(linear.pixels()).with_min_len(4096).for_each(|(out, c)| {
-        *out = c.map(|v| {
-            let v = v * gain;
-            // NaN fails the comparison.
-            if v > 0.0 { color::srgb_encode(v.min(1.0)) } else { 0.0 }
-        });
+    let chunks = encoded.pixels_mut().par_chunks_mut(ENCODED_PIXELS).zip(linear.pixels().par_chunks(ENCODED_PIXELS));
+    chunks.for_each(|(encoded, linear)| {
+        Arch::new().dispatch(Encode { linear: linear.as_flattened(), encoded: encoded.as_flattened_mut(), gain });
     });
     encoded
 }
 
-/// L\*a\*b\* of sRGB-encoded colors.
-fn lab_map(encoded: &Image<[f32; 3]>) -> Image<Vec3> {
-    let mut lab = Image::filled(encoded.size(), Vec3::ZERO);
-    lab.pixels_mut().par_iter_mut().zip(encoded.pixels()).with_min_len(4096).for_each(|(lab, c)| {
-        *lab = color::lab(Vec3::from(c.map(color::srgb_decode)));
-    });
-    lab
+/// Pixels that [`encode`] gives to a task.
+const ENCODED_PIXELS: usize = 16384;
+
+/// Arguments of the loop of [`encode`].
+struct Encode<'a> {
+    linear: &'a [f32],
+    encoded: &'a mut [f32],
+    gain: f32,
+}
+
+impl WithSimd for Encode<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (encoded, &linear) in self.encoded.iter_mut().zip(self.linear) {
+            let value = linear * self.gain;
+            // NaN fails the comparison.
+            *encoded = if value > 0.0 { color::srgb_encode(value.min(1.0)) } else { 0.0 };
+        }
+    }
 }
 
 /// Weight of an error at an eccentricity in degrees: the density of retinal ganglion cells (Watson 2014,
 /// [`acuity::cell_density`]) relative to the centre of the fovea. Each cell then counts equally, rather than each
 /// pixel.
+#[inline(always)]
 pub fn error_weight(e_deg: f32) -> f32 {
     acuity::cell_density(e_deg) / acuity::cell_density(0.0)
 }

@@ -1,10 +1,13 @@
 //! Full-rate reference frames, preprocessed once for all methods.
 
-use super::flip::{Flip, Preprocessed};
+use super::Tracked;
+use super::flip::{Filtered, Flip};
 use super::ghost::{Ghost, Ghosts};
-use super::{Tracked, lab_map};
+use super::strip::{self, Plane, strips};
 use afterimage::Image;
-use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Preprocesses the reference frames of a clip in order.
 #[derive(Clone, Debug, Default)]
@@ -17,9 +20,49 @@ pub struct References {
 #[derive(Clone, Debug)]
 pub struct Reference<'a> {
     pub(super) encoded: &'a Image<[f32; 3]>,
-    pub(super) lab: Image<Vec3>,
-    pub(super) flip: Option<(&'a Flip, Preprocessed)>,
+    pub(super) flip: Option<&'a Flip>,
+    pub(super) strips: Vec<Prepared>,
     pub(super) ghosts: Image<Ghost>,
+}
+
+/// What metrics need of a strip of an sRGB-encoded image.
+#[derive(Clone, Debug)]
+pub(super) struct Prepared {
+    /// L\*a\*b\*.
+    pub lab: [Plane; 3],
+    pub flip: Option<Filtered>,
+}
+
+impl Prepared {
+    #[inline(always)]
+    pub fn new(encoded: &Image<[f32; 3]>, rows: Range<usize>, flip: Option<&Flip>) -> Self {
+        let [width, height] = [encoded.width(), encoded.height()];
+        let held = flip.map_or(rows.clone(), |flip| flip.rows_read(rows.clone(), height));
+        let linear = strip::linear(encoded, held.clone());
+        let own = (rows.start - held.start) * width..(rows.end - held.start) * width;
+        #[expect(clippy::manual_map, reason = "closures need not be inlined into vector code")]
+        let filtered = match flip {
+            Some(flip) => Some(flip.filtered(&linear, width, held, rows)),
+            None => None,
+        };
+        Self { lab: strip::lab(&linear, own), flip: filtered }
+    }
+}
+
+/// Arguments of [`Prepared::new`].
+struct Prepare<'a> {
+    encoded: &'a Image<[f32; 3]>,
+    rows: Range<usize>,
+    flip: Option<&'a Flip>,
+}
+
+impl WithSimd for Prepare<'_> {
+    type Output = Prepared;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Prepared {
+        Prepared::new(self.encoded, self.rows, self.flip)
+    }
 }
 
 impl References {
@@ -30,10 +73,12 @@ impl References {
 
     /// Preprocesses the next frame, sRGB-encoded, with its correspondence to the previous one.
     pub fn next<'a>(&'a mut self, encoded: &'a Image<[f32; 3]>, tracked: &Tracked) -> Reference<'a> {
+        let flip = self.flip.as_ref();
+        let prepared = |rows| Arch::new().dispatch(Prepare { encoded, rows, flip });
         Reference {
-            lab: lab_map(encoded),
+            strips: strips(encoded.height()).map(prepared).collect(),
             ghosts: self.ghosts.advance(encoded, tracked),
-            flip: self.flip.as_ref().map(|flip| (flip, flip.preprocess(encoded))),
+            flip,
             encoded,
         }
     }

@@ -2,12 +2,17 @@
 
 use super::ghost::GhostShares;
 use super::mean::{Histogram, Mean};
+use super::reference::Prepared;
+use super::strip::{STRIP_ROWS, delta_e94, strips};
 use super::track::RETAINED_FROM_DEG;
-use super::{Band, NO_PAST, Reference, Tracked, error_weight, lab_map, psnr_db, ssim_map};
+use super::{Band, NO_PAST, Reference, Tracked, error_weight, psnr_db, ssim_map};
 use afterimage::Image;
 use afterimage::kernel::color;
 use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Share of the pixels above `delta_e94_p99`.
 const WORST: f64 = 0.01;
@@ -15,17 +20,38 @@ const WORST: f64 = 0.01;
 /// Accumulator of the scores of one method over a clip.
 #[derive(Clone, Debug, Default)]
 pub struct Scorer {
+    sums: Sums,
+    ssim: [Mean; 3],
+    luma_error: Option<Image<f32>>,
+    skip_ssim: bool,
+}
+
+/// Sums over pixels.
+#[derive(Clone, Debug, Default)]
+struct Sums {
     squared: [Mean; 3],
     weighted: Mean,
     retained: Mean,
-    ssim: [Mean; 3],
     flip: [Mean; 3],
     delta_e94: Mean,
     delta_e94_counts: Histogram,
     ghosts: GhostShares,
     flicker: Mean,
-    luma_error: Option<Image<f32>>,
-    skip_ssim: bool,
+}
+
+impl Sums {
+    fn merge(&mut self, other: &Self) {
+        for i in 0..3 {
+            self.squared[i].merge(other.squared[i]);
+            self.flip[i].merge(other.flip[i]);
+        }
+        self.weighted.merge(other.weighted);
+        self.retained.merge(other.retained);
+        self.delta_e94.merge(other.delta_e94);
+        self.delta_e94_counts.merge(&other.delta_e94_counts);
+        self.ghosts.merge(&other.ghosts);
+        self.flicker.merge(other.flicker);
+    }
 }
 
 /// Scores of one eccentricity band. `None` if the band has no pixels.
@@ -119,71 +145,40 @@ impl Scorer {
         tracked: &Tracked,
         ecc_deg: &Image<f32>,
     ) -> FrameErrors {
-        assert_eq!(reference.encoded.size(), output.size());
-        let errors = self.push_errors(reference, output, tracked, ecc_deg);
-        self.push_flicker(reference.encoded, output, tracked);
-        for (r, s) in reference.lab.pixels().iter().zip(lab_map(output).pixels()) {
-            let difference = color::delta_e94(*r, *s);
-            self.delta_e94.add(f64::from(difference));
-            self.delta_e94_counts.add(difference);
+        let size = reference.encoded.size();
+        assert!(output.size() == size && ecc_deg.size() == size);
+        let before = self.luma_error.as_ref();
+        let mut luma_error = Image::filled(size, 0.0);
+        let strip_len = (STRIP_ROWS * output.width()).max(1);
+        let parts: Vec<Sums> = strips(output.height())
+            .zip(&reference.strips)
+            .zip(luma_error.pixels_mut().par_chunks_mut(strip_len))
+            .map(|((rows, prepared), luma_error)| {
+                let strip = ScoreStrip { reference, prepared, output, tracked, ecc_deg, before, rows, luma_error };
+                Arch::new().dispatch(strip)
+            })
+            .collect();
+        self.luma_error = Some(luma_error);
+        // In the order of the strips, so that sums do not depend on the number of threads.
+        let mut frame = Sums::default();
+        for part in &parts {
+            frame.merge(part);
         }
-        if let Some((flip, preprocessed)) = &reference.flip {
-            add_by_band(&mut self.flip, &flip.difference(preprocessed, &flip.preprocess(output)), ecc_deg);
-        }
+        self.sums.merge(&frame);
         if !self.skip_ssim
             && let Some(map) = ssim_map(reference.encoded, output)
         {
-            add_by_band(&mut self.ssim, &map, ecc_deg);
-        }
-        errors
-    }
-
-    /// Adds squared errors and ghosting.
-    fn push_errors(
-        &mut self,
-        reference: &Reference<'_>,
-        output: &Image<[f32; 3]>,
-        tracked: &Tracked,
-        ecc_deg: &Image<f32>,
-    ) -> FrameErrors {
-        let mut squared = [Mean::default(); 3];
-        let mut retained = Mean::default();
-        for (i, (r, s)) in reference.encoded.pixels().iter().zip(output.pixels()).enumerate() {
-            let (r, s, e_deg) = (Vec3::from(*r), Vec3::from(*s), ecc_deg.pixels()[i]);
-            let error = f64::from((s - r).length_squared()) / 3.0;
-            squared[Band::of(e_deg) as usize].add(error);
-            self.weighted.add_weighted(error, f64::from(error_weight(e_deg)));
-            if tracked.retained.pixels()[i] {
-                retained.add(error);
-            }
-            if e_deg > RETAINED_FROM_DEG {
-                self.ghosts.add(reference.ghosts.pixels()[i], r, s);
+            let margin = (ecc_deg.width() - map.width()) / 2;
+            for y in 0..map.height() {
+                let ecc_deg = &ecc_deg.row(y + margin)[margin..margin + map.width()];
+                add_by_band(&mut self.ssim, map.row(y), ecc_deg);
             }
         }
-        for (sum, &frame) in self.squared.iter_mut().zip(&squared) {
-            sum.merge(frame);
-        }
-        self.retained.merge(retained);
         FrameErrors {
-            mse: Mean::total(squared).value().unwrap_or(0.0),
-            band_mse: squared.map(Mean::value),
-            retained_mse: retained.value(),
+            mse: Mean::total(frame.squared).value().unwrap_or(0.0),
+            band_mse: frame.squared.map(Mean::value),
+            retained_mse: frame.retained.value(),
         }
-    }
-
-    fn push_flicker(&mut self, reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>, tracked: &Tracked) {
-        let error = |i: usize| color::luma(Vec3::from(output.pixels()[i]) - Vec3::from(reference.pixels()[i]));
-        let mut index = 0..output.pixels().len();
-        let luma_error = output.map(|_| index.next().map_or(0.0, error));
-        if let Some(before) = &self.luma_error {
-            for (now, &from) in luma_error.pixels().iter().zip(tracked.past.pixels()) {
-                if from != NO_PAST {
-                    let change = now - before.pixels()[from as usize];
-                    self.flicker.add(f64::from(change.abs()));
-                }
-            }
-        }
-        self.luma_error = Some(luma_error);
     }
 
     /// Scores of the frames added so far.
@@ -194,28 +189,103 @@ impl Scorer {
             ssim: ssim.value(),
             flip: flip.value(),
         };
-        let all = Mean::total(self.squared);
+        let sums = &self.sums;
+        let all = Mean::total(sums.squared);
         Scores {
-            whole: figures(all, Mean::total(self.ssim), Mean::total(self.flip)),
-            bands: [0, 1, 2].map(|i| figures(self.squared[i], self.ssim[i], self.flip[i])),
-            weighted_psnr_db: self.weighted.value().and_then(psnr_db),
-            delta_e94_mean: self.delta_e94.value(),
-            delta_e94_p99: self.delta_e94_counts.quantile(1.0 - WORST),
-            retained_psnr_db: self.retained.value().and_then(psnr_db),
-            retained_share: (all.weight() > 0.0).then(|| self.retained.weight() / all.weight()),
-            flicker: self.flicker.value().map(|v| 1000.0 * v),
-            ghost_energy: self.ghosts.energy(),
-            ghost_half_frames: self.ghosts.half_frames(),
+            whole: figures(all, Mean::total(self.ssim), Mean::total(sums.flip)),
+            bands: [0, 1, 2].map(|i| figures(sums.squared[i], self.ssim[i], sums.flip[i])),
+            weighted_psnr_db: sums.weighted.value().and_then(psnr_db),
+            delta_e94_mean: sums.delta_e94.value(),
+            delta_e94_p99: sums.delta_e94_counts.quantile(1.0 - WORST),
+            retained_psnr_db: sums.retained.value().and_then(psnr_db),
+            retained_share: (all.weight() > 0.0).then(|| sums.retained.weight() / all.weight()),
+            flicker: sums.flicker.value().map(|v| 1000.0 * v),
+            ghost_energy: sums.ghosts.energy(),
+            ghost_half_frames: sums.ghosts.half_frames(),
         }
     }
 }
 
-/// Adds the values of a map by band. The map may be smaller by the same border on all sides.
-fn add_by_band(sums: &mut [Mean; 3], map: &Image<f32>, ecc_deg: &Image<f32>) {
-    let margin = (ecc_deg.width() - map.width()) / 2;
-    for y in 0..map.height() {
-        for (&value, &e_deg) in map.row(y).iter().zip(&ecc_deg.row(y + margin)[margin..]) {
-            sums[Band::of(e_deg) as usize].add(f64::from(value));
+/// A strip of a frame to score.
+struct ScoreStrip<'a> {
+    reference: &'a Reference<'a>,
+    prepared: &'a Prepared,
+    output: &'a Image<[f32; 3]>,
+    tracked: &'a Tracked,
+    ecc_deg: &'a Image<f32>,
+    /// Luma errors of the previous frame.
+    before: Option<&'a Image<f32>>,
+    rows: Range<usize>,
+    /// Luma errors of the strip, to be written.
+    luma_error: &'a mut [f32],
+}
+
+impl WithSimd for ScoreStrip<'_> {
+    type Output = Sums;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sums {
+        let Self { reference, prepared, output, tracked, ecc_deg, before, rows, luma_error } = self;
+        let width = output.width();
+        let mut sums = Sums::default();
+        let (mut squared, mut weights) = (vec![0.0; width], vec![0.0; width]);
+        for (y, luma_error) in rows.clone().zip(luma_error.chunks_exact_mut(width)) {
+            let (r, s, ecc_deg) = (reference.encoded.row(y), output.row(y), ecc_deg.row(y));
+            for (squared, (r, s)) in squared.iter_mut().zip(r.iter().zip(s)) {
+                *squared = (Vec3::from(*s) - Vec3::from(*r)).length_squared();
+            }
+            for (luma_error, (r, s)) in luma_error.iter_mut().zip(r.iter().zip(s)) {
+                *luma_error = color::luma(Vec3::from(*s) - Vec3::from(*r));
+            }
+            for (weight, &e_deg) in weights.iter_mut().zip(ecc_deg) {
+                *weight = error_weight(e_deg);
+            }
+            add_by_band(&mut sums.squared, &squared, ecc_deg);
+            sums.weighted.add_all_weighted(&squared, &weights);
+            for (&squared, _) in squared.iter().zip(tracked.retained.row(y)).filter(|(_, retained)| **retained) {
+                sums.retained.add(f64::from(squared));
+            }
+            let ghosts = reference.ghosts.row(y).iter().zip(ecc_deg).zip(r.iter().zip(s));
+            for ((&ghost, _), (&r, &s)) in ghosts.filter(|((_, e_deg), _)| **e_deg > RETAINED_FROM_DEG) {
+                sums.ghosts.add(ghost, r.into(), s.into());
+            }
+            if let Some(before) = before {
+                for (now, &from) in luma_error.iter().zip(tracked.past.row(y)) {
+                    if from != NO_PAST {
+                        let change = now - before.pixels()[from as usize];
+                        sums.flicker.add(f64::from(change.abs()));
+                    }
+                }
+            }
         }
+        // From the sum of the squares of three channels to their mean.
+        sums.squared = sums.squared.map(|mean| mean.scaled(1.0 / 3.0));
+        sums.weighted = sums.weighted.scaled(1.0 / 3.0);
+        sums.retained = sums.retained.scaled(1.0 / 3.0);
+
+        let shown = Prepared::new(output, rows.clone(), reference.flip);
+        let differences = delta_e94(&prepared.lab, &shown.lab);
+        sums.delta_e94.add_all(&differences);
+        for &difference in &differences {
+            sums.delta_e94_counts.add(difference);
+        }
+        if let (Some(flip), Some(r), Some(s)) = (reference.flip, &prepared.flip, &shown.flip) {
+            let errors = flip.difference(r, s);
+            for (y, errors) in rows.zip(errors.chunks_exact(width)) {
+                add_by_band(&mut sums.flip, errors, ecc_deg.row(y));
+            }
+        }
+        sums
+    }
+}
+
+/// Adds the values of a row by band.
+#[inline(always)]
+fn add_by_band(sums: &mut [Mean; 3], values: &[f32], ecc_deg: &[f32]) {
+    let mut rest = values;
+    for run in ecc_deg.chunk_by(|a, b| Band::of(*a) == Band::of(*b)) {
+        let (of_run, after) = rest.split_at(run.len());
+        sums[Band::of(run[0]) as usize].add_all(of_run);
+        rest = after;
     }
 }

@@ -9,6 +9,7 @@ use glam::{Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
+use rayon::prelude::*;
 
 /// Entries of the traversal stack, as in `shaders/trace/traverse.wgsl`.
 const STACK: usize = 32;
@@ -84,18 +85,19 @@ impl Bvh {
     /// steps for any input.
     pub fn build(triangles: &Triangles, previous: Option<&[[Vec3; 3]]>, materials: &[Material]) -> Self {
         let count = triangles.len().min(u32::MAX as usize) as u32;
-        let sources: Vec<u32> = (0..count).filter(|&i| is_sound(&triangles.positions[i as usize])).collect();
-        let boxes: Vec<Aabb> = sources.iter().map(|&i| bounds(&triangles.positions[i as usize])).collect();
+        let sound = (0..count).into_par_iter().filter(|&i| is_sound(&triangles.positions[i as usize]));
+        let sources: Vec<u32> = sound.collect();
+        let boxes: Vec<Aabb> = sources.par_iter().map(|&i| bounds(&triangles.positions[i as usize])).collect();
         let (nodes, order) = hierarchy(&boxes);
         let sources: Vec<u32> = order.into_iter().map(|i| sources[i as usize]).collect();
         let previous = previous.map_or(vec![], |corners| {
             let corners = |i: u32| *corners.get(i as usize).unwrap_or(&triangles.positions[i as usize]);
-            sources.iter().map(|&i| PreviousRecord::new(corners(i))).collect()
+            sources.par_iter().map(|&i| PreviousRecord::new(corners(i))).collect()
         });
         Self {
             nodes,
-            triangles: sources.iter().map(|&i| TriangleRecord::new(triangles, i, materials)).collect(),
-            attributes: sources.iter().map(|&i| AttributeRecord::new(triangles, i as usize)).collect(),
+            triangles: sources.par_iter().map(|&i| TriangleRecord::new(triangles, i, materials)).collect(),
+            attributes: sources.par_iter().map(|&i| AttributeRecord::new(triangles, i as usize)).collect(),
             previous,
             dropped: count - sources.len() as u32,
         }

@@ -15,7 +15,11 @@ const BINS: usize = 16;
 /// Levels that the heuristic splits; below, nodes are halved by count.
 const MAX_DEPTH: u32 = 64;
 
-/// A tree with one box per leaf. `halve` splits by count only, which gives the least depth.
+/// Boxes of a subtree from which its halves are built in parallel. Smaller ones are not worth a task.
+const PARALLEL_BOXES: usize = 4096;
+
+/// A tree with one box per leaf, the same for any number of threads. `halve` splits by count only, which gives the
+/// least depth.
 pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
     let mut bvh = Bvh2 { primitive_indices: (0..boxes.len() as u32).collect(), ..Bvh2::default() };
     if boxes.is_empty() {
@@ -23,34 +27,68 @@ pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
     }
     let mut boxes = boxes.to_vec();
     bvh.nodes = vec![Bvh2Node::default(); 2 * boxes.len() - 1];
-    let mut used = 1;
+    let (root, descendants) = bvh.nodes.split_first_mut().expect("there is a node for each box");
+    let indices = &mut bvh.primitive_indices;
     let max_depth = if halve { 0 } else { MAX_DEPTH };
-    let mut open = vec![Open { node: 0, begin: 0, end: boxes.len(), depth: 0 }];
-    while let Some(Open { node, begin, end, depth }) = open.pop() {
-        let range = &mut boxes[begin..end];
-        let bounds = bounds(range);
-        if range.len() == 1 {
-            bvh.nodes[node] = Bvh2Node::new(bounds, 1, begin as u32);
-            continue;
-        }
-        let indices = &mut bvh.primitive_indices[begin..end];
-        let split = if depth < max_depth { cheapest(range).map(|s| partition(range, indices, s)) } else { None };
-        // All boxes share a centre, or rounding put them on one side: halve by count.
-        let left = split.filter(|&n| n > 0 && n < range.len()).unwrap_or(range.len() / 2);
-        bvh.nodes[node] = Bvh2Node::new(bounds, 0, used as u32);
-        open.push(Open { node: used, begin, end: begin + left, depth: depth + 1 });
-        open.push(Open { node: used + 1, begin: begin + left, end, depth: depth + 1 });
-        used += 2;
-    }
+    Subtree { root, descendants, first: 1, boxes: &mut boxes, indices, begin: 0 }.build(max_depth);
     bvh
 }
 
-/// A node still to be built from the boxes `begin..end`.
-struct Open {
-    node: usize,
+/// A node still to be built, and what its subtree takes of the tree's arrays. Splits by the heuristic end at
+/// [`MAX_DEPTH`] and halving takes at most 32 levels more, so that recursion is shallow.
+struct Subtree<'a> {
+    root: &'a mut Bvh2Node,
+    /// The other nodes: the two children, then the descendants of the left one, then those of the right one.
+    descendants: &'a mut [Bvh2Node],
+    /// Index of the first of them in the tree.
+    first: usize,
+    boxes: &'a mut [Aabb],
+    indices: &'a mut [u32],
+    /// Index of the first box in the tree's order.
     begin: usize,
-    end: usize,
-    depth: u32,
+}
+
+impl Subtree<'_> {
+    /// `levels`: how many levels the heuristic may still split.
+    fn build(self, levels: u32) {
+        let Self { root, descendants, first, boxes, indices, begin } = self;
+        let bounds = bounds(boxes);
+        let Some(([left_root, right_root], below)) = descendants.split_first_chunk_mut::<2>() else {
+            *root = Bvh2Node::new(bounds, 1, begin as u32);
+            return;
+        };
+        *root = Bvh2Node::new(bounds, 0, first as u32);
+        let split = if levels > 0 { cheapest(boxes).map(|s| partition(boxes, indices, s)) } else { None };
+        // All boxes share a centre, or rounding put them on one side: halve by count.
+        let count = split.filter(|&n| n > 0 && n < boxes.len()).unwrap_or(boxes.len() / 2);
+        let is_large = boxes.len() >= PARALLEL_BOXES;
+        let (left_boxes, right_boxes) = boxes.split_at_mut(count);
+        let (left_indices, right_indices) = indices.split_at_mut(count);
+        let (left_below, right_below) = below.split_at_mut(2 * count - 2);
+        let left = Subtree {
+            root: left_root,
+            descendants: left_below,
+            first: first + 2,
+            boxes: left_boxes,
+            indices: left_indices,
+            begin,
+        };
+        let right = Subtree {
+            root: right_root,
+            descendants: right_below,
+            first: first + 2 * count,
+            boxes: right_boxes,
+            indices: right_indices,
+            begin: begin + count,
+        };
+        let levels = levels.saturating_sub(1);
+        if is_large {
+            rayon::join(|| left.build(levels), || right.build(levels));
+        } else {
+            left.build(levels);
+            right.build(levels);
+        }
+    }
 }
 
 /// A split: boxes whose centre falls into a bin up to `last` go left.

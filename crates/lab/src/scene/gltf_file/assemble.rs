@@ -53,9 +53,13 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
         morphed: &morphed,
         skin_of: &skin_of,
     };
-    for uses in placed.chunk_by(|a, b| a.mesh == b.mesh) {
-        stage.add_mesh(&primitives, uses, &mut warnings)?;
-    }
+    let mut meshes = placed.chunk_by(|a, b| a.mesh == b.mesh);
+    let mut decoded = None;
+    // Images are decoded on other threads meanwhile.
+    rayon::in_place_scope(|scope| {
+        scope.spawn(|_| decoded = Some(textures.load(file)));
+        meshes.try_for_each(|uses| stage.add_mesh(&primitives, uses, &mut warnings))
+    })?;
     if stage.dropped > 0 {
         let what = format!("with corners that are not finite, or farther than {MAX_COORDINATE:e} m");
         warnings.add(format!("{} triangles {what}, are left out", stage.dropped));
@@ -71,7 +75,7 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
             animated.lights.extend(viewpoints::light(document, index, light.light, &mut warnings)?);
         }
     }
-    let textures = textures.load(file)?;
+    let textures = decoded.expect("the scope waits for its tasks")?;
     let rest = animated.pose(0.0);
     let moves = !animated.channels.is_empty();
     Ok(Scene {

@@ -1,0 +1,100 @@
+//! CPU time of each method on the CPU executor and of the metrics, for a picture at rest and under a moving camera:
+//! `cargo run --release -p afterimage-lab --example 16_cpu_time PICTURE.png [FRAMES]`. Set `RAYON_NUM_THREADS=1` for
+//! the time of one core.
+
+use afterimage::kernel::color::srgb_decode;
+use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::device::Backend;
+use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::metric::{self, Crops, Flip, References, Scorer};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
+use std::error::Error;
+
+/// Motion of every pixel in the second half, in pixels: between texels, so that history is resampled.
+const MOTION_PX: [f32; 2] = [-1.3, 0.6];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let picture = image::open(args.next().ok_or("give a picture")?)?.into_rgb8();
+    let frames: u64 = args.next().map_or(Ok(10), |n| n.parse())?;
+    let size = [picture.width(), picture.height()];
+    let linear = picture.pixels().map(|p| p.0.map(|v| srgb_decode(f32::from(v) / 255.0)));
+    let color = Image::from_pixels(size, linear.collect())?;
+    for motion in [None, Some(Image::filled(size, MOTION_PX))] {
+        println!("{}", if motion.is_none() { "at rest" } else { "moving" });
+        let still = SourceFrame {
+            color: color.clone(),
+            depth: None,
+            motion,
+            trust: None,
+            previous_from_current: None,
+            cut: false,
+            nonfinite: 0,
+        };
+        measure(&still, frames)?;
+    }
+    Ok(())
+}
+
+fn measure(frame: &SourceFrame, frames: u64) -> Result<(), Box<dyn Error>> {
+    let size = frame.color.size();
+    let geometry = ViewGeometry::flat(size, 70.0)?;
+    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
+    let mut pipeline = Pipeline::new(geometry, Foveation::default(), &kinds, true, &[], &Backend::Cpu)?;
+    let mut references = References::with_flip(Flip::for_view(&geometry));
+    let mut scorers = methods.map(|_| Scorer::default());
+    let mut crops = methods.map(|_| Crops::default());
+    let mut post_ms = methods.map(|_| 0.0);
+    let [mut encode_ms, mut reference_ms, mut score_ms, mut crops_ms] = [0.0; 4];
+    for index in 0..frames {
+        let watch = Stopwatch::start();
+        let full = metric::encode(&frame.color, 0.0);
+        encode_ms += watch.cpu_ms().unwrap_or(f64::NAN);
+        // A gaze that jumps every eighth frame.
+        let gaze_px = [size[0] as f32 * (0.3 + 0.2 * ((index / 8) % 3) as f32), size[1] as f32 * 0.5];
+        let step = pipeline.step(index, frame, Some(gaze_px))?;
+        // The first frame has no history.
+        for (sum, output) in post_ms.iter_mut().zip(&step.outputs).filter(|_| index > 0) {
+            *sum += output.cpu_ms.unwrap_or(f64::NAN);
+        }
+        let watch = Stopwatch::start();
+        let reference = references.next(&full, &step.tracked);
+        reference_ms += watch.cpu_ms().unwrap_or(f64::NAN);
+        let watch = Stopwatch::start();
+        let encoded: Vec<_> = step.outputs.iter().map(|output| metric::encode(&output.image, 0.0)).collect();
+        encode_ms += watch.cpu_ms().unwrap_or(f64::NAN);
+        let watch = Stopwatch::start();
+        for (scorer, output) in scorers.iter_mut().zip(&encoded) {
+            scorer.push(&reference, output, &step.tracked, &step.ecc_deg);
+        }
+        score_ms += watch.cpu_ms().unwrap_or(f64::NAN);
+        let watch = Stopwatch::start();
+        for (crops, output) in crops.iter_mut().zip(&encoded) {
+            crops.push(&full, output, &encoded[0]);
+        }
+        crops_ms += watch.cpu_ms().unwrap_or(f64::NAN);
+    }
+    let megapixels = size.map(f64::from).iter().product::<f64>() * 1e-6;
+    for (method, ms) in methods.iter().zip(post_ms) {
+        println!("{:>10} {:7.1} ms a megapixel", method.name(), ms / (frames - 1).max(1) as f64 / megapixels);
+    }
+    let images = (frames * methods.len() as u64) as f64 * megapixels;
+    let per_reference = frames as f64 * megapixels;
+    println!("{:>10} {:7.1} ms a megapixel of full-rate frame", "reference", reference_ms / per_reference);
+    println!("{:>10} {:7.1} ms a megapixel of output", "scores", score_ms / images);
+    println!("{:>10} {:7.1}", "crops", crops_ms / images);
+    println!("{:>10} {:7.1}", "encode", encode_ms / (images + per_reference));
+    for (method, scorer) in methods.iter().zip(&scorers) {
+        let scores = scorer.scores().whole;
+        println!(
+            "{:>10} PSNR {:.12?} dB, SSIM {:.12?}, FLIP {:.12?}",
+            method.name(),
+            scores.psnr_db,
+            scores.ssim,
+            scores.flip
+        );
+    }
+    Ok(())
+}
