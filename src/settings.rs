@@ -268,8 +268,8 @@ impl Settings {
     }
 
     /// Weighted reservoirs that reach the paper's gains: the gate compares at the candidate's scale, weights fall with
-    /// the eighth power of the density and the third of the samples a pixel, and reservoirs keep means. Keeps most of the detail that
-    /// [`steady`](Self::steady) keeps of a still view, and less of it in motion.
+    /// the eighth power of the density and the third of the samples a pixel, and reservoirs keep means. Keeps most of
+    /// the detail that [`steady`](Self::steady) keeps of a still view, and less of it in motion.
     pub fn weighted() -> Self {
         Self {
             sampler: Sampler::AChaoMean,

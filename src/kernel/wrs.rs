@@ -136,8 +136,8 @@ pub fn sharpen(weight: f32, exponent: u32) -> f32 {
 /// Least weight of a usable candidate: 2^-100. Below 2^-126 it would be 0, which marks an unusable one.
 const LEAST_CANDIDATE_W: f32 = f32::from_bits((127 - 100) << 23);
 
-/// Weight of a candidate at level of detail `lod` (0 to 8.9): `weight` times the number of samples a pixel, `4^-lod`, to
-/// the power `exponent` (at most 4).
+/// Weight of a candidate at level of detail `lod` (0 to 8.9): `weight` times the number of samples a pixel, `4^-lod`,
+/// to the power `exponent` (at most 4).
 #[inline]
 pub fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
     (weight * approx::exp2(lod * (-2.0 * exponent as f32))).max(LEAST_CANDIDATE_W)
