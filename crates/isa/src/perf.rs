@@ -1,5 +1,6 @@
 //! What ACO thinks that each instruction takes (`ACO_DEBUG=perfinfo`), added up with known numbers of rounds: ACO
-//! itself takes every loop for 8 rounds, an inner one for 32, and every branch for taken half or three quarters of the time.
+//! itself takes every loop for 8 rounds, an inner one for 32, and every branch for taken half or three quarters of the
+//! time.
 
 use crate::gpu::Gpu;
 use std::collections::BTreeMap;
