@@ -317,27 +317,28 @@ fn main(
     let first = 2u * id.xy;
     let view = frame.first_view + group.z;
     if all(first < frame.size) {
-        var texels_0 = vec4<f32>(0.0);
-        var texels_1 = vec4<f32>(0.0);
-        var texels_2 = vec4<f32>(0.0);
-        var texels_3 = vec4<f32>(0.0);
+        var words_0 = vec2<u32>(0u);
+        var words_1 = vec2<u32>(0u);
+        var words_2 = vec2<u32>(0u);
+        var words_3 = vec2<u32>(0u);
         // A loop, because four copies of the code would take four times as long to compile.
         for (var i = 0u; i < 4u; i++) {
             let px = first + vec2<u32>(i & 1u, i >> 1u);
             // At an odd border the neighbour counts twice.
             let column = select(0u, i & 1u, px.x < frame.size.x);
             let row = select(0u, i >> 1u, px.y < frame.size.y);
-            var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);
+            var words = select(select(words_0, words_1, column == 1u), words_2, row == 1u && column == 0u);
             if all(px < frame.size) {
-                texel = mip_texel(pixel(px, view));
+                words = pixel(px, view);
             }
-            texels_0 = select(texels_0, texel, i == 0u);
-            texels_1 = select(texels_1, texel, i == 1u);
-            texels_2 = select(texels_2, texel, i == 2u);
-            texels_3 = select(texels_3, texel, i == 3u);
+            words_0 = select(words_0, words, i == 0u);
+            words_1 = select(words_1, words, i == 1u);
+            words_2 = select(words_2, words, i == 2u);
+            words_3 = select(words_3, words, i == 3u);
         }
         if VIEW == 0u {
-            textureStore(next_mips, id.xy, view, round_mip(mip_mean(texels_0, texels_1, texels_2, texels_3)));
+            let mean = mip_mean(mip_texel(words_0), mip_texel(words_1), mip_texel(words_2), mip_texel(words_3));
+            textureStore(next_mips, id.xy, view, round_mip(mean));
         }
     }
     add_counts(invocation);

@@ -119,18 +119,18 @@ fn samples_share(settings: &Settings) -> Result<f64> {
 
 fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
     match module {
-        "wrs_pass" if settings.sampler == Sampler::AChaoMean => &["slope", "resample"],
+        "wrs_pass" if settings.sampler == Sampler::AChaoMean => &["slope", "guard", "resample"],
         "wrs_pass" => &["slope"],
         "wrs_sparse_pass" => &["lattice", "slope"],
         "fill_pass" => &["lattice", "four"],
-        "taau_pass" => &["slope", "resample", "lattice", "around"],
+        "taau_pass" => &["slope", "guard", "resample", "lattice", "around"],
         "sparse_observe_pass" => &["slope", "four"],
         "sparse_light_pass" if settings.noisy => &["around"],
         "sparse_light_pass" => &["around", "around relit"],
         "sparse_pass" => &["lattice", "four", "slope", "four"],
-        "taa_pass" => &["slope", "around", "resample"],
-        "smr_pass" if settings.noisy => &["block", "slope", "resample"],
-        "smr_pass" => &["block", "slope", "resample", "relight"],
+        "taa_pass" => &["slope", "around", "guard", "resample"],
+        "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
+        "smr_pass" => &["block", "slope", "guard", "resample", "relight"],
         _ => &[],
     }
 }

@@ -15,8 +15,8 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("block", _) => 4.0,
         // Pixels or samples of 3x3.
         ("around", _) => 9.0,
-        // Of Catmull-Rom.
-        ("resample", "moving" | "relit") => 12.0,
+        // Of four taps of Catmull-Rom's twelve.
+        ("resample", "moving" | "relit") => 3.0,
         ("relight", "relit") => 1.0,
         // Of sparse frames: most pixels belong to the third lattice, and are between four samples.
         ("lattice", _) => 2.0,
