@@ -25,9 +25,8 @@ fn half_bits(x: f32) -> u32 {
 fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fffu) << 13u;
     let sign_bit = (bits & 0x8000u) << 16u;
-    let small = bitcast<f32>(magnitude + (113u << 23u)) - bitcast<f32>(113u << 23u);
-    let value = select(bitcast<f32>(magnitude + (112u << 23u)), small, magnitude < (1u << 23u));
-    return bitcast<f32>(bitcast<u32>(value) | sign_bit);
+    let normal = bitcast<f32>(magnitude + (112u << 23u));
+    return bitcast<f32>(bitcast<u32>(min(normal, 2.0 * normal - 0x1p-14)) | sign_bit);
 }
 
 // pack::disparity_code

@@ -24,8 +24,8 @@ fn float14_bits(x: f32) -> u32 {
 
 // surface::float14_value
 fn float14_value(code: u32) -> f32 {
-    let small = bitcast<f32>((code << 14u) + (112u << 23u)) - bitcast<f32>(112u << 23u);
-    return select(bitcast<f32>((code << 14u) + (111u << 23u)), small, code < 0x200u);
+    let normal = bitcast<f32>((code << 14u) + (111u << 23u));
+    return min(normal, 2.0 * normal - 0x1p-15);
 }
 
 // surface::pack_surface

@@ -131,12 +131,13 @@ fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -
     return select(own, near.color, near.usable);
 }
 
-// Mean of the four candidates at diagonal offsets of `radius` pixels; black unless `needed`, by a loop with zero
-// iterations.
-fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
+// Mean of the four candidates at diagonal offsets of 3/4 of a block of level `lod`; black unless `needed`, by a loop
+// with zero iterations.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
+        let radius = 0.75 * exp2(lod);
         mean = mean_of_four(
             candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
             candidate_near(px, view, own, vec2<f32>(radius, -radius)),
@@ -151,7 +152,6 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
-    let radius = 0.75 * exp2(lod);
     let matched = exposed(past.matched);
     let whole_level = exposed(past.level);
     let next_level = exposed(past.next_level);
@@ -159,7 +159,7 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
     let gauss = FILTER == FILTER_GAUSS;
     let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
-    let around = candidates_around(px, view, candidate, radius, blocks || changed);
+    let around = candidates_around(px, view, candidate, lod, blocks || changed);
     var predicted = matched;
     if FILTER == FILTER_BLOCK {
         predicted = exposed(past_sampled(source, px, lod, view));

@@ -60,8 +60,8 @@ fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
     return surface_tap(textureLoad(past_surfaces, texel, view, 0).xy, codes, DEPTH_TEST == 0u);
 }
 
-// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loops have
-// zero iterations: software Vulkan runs the body of an `if` for all pixels.
+// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loops
+// have zero iterations: software Vulkan runs the body of an `if` for all pixels.
 fn resample(source: Source, view: u32, needed: bool) -> Resampled {
     let between = needed && !(source.fraction.x == 0.0 && source.fraction.y == 0.0);
     var resampled = Resampled(source.nearest.color, source.nearest.color, source.nearest.lod);

@@ -132,7 +132,8 @@ pub struct Tap {
     pub same: bool,
 }
 
-/// Tap of a packed surface. It shows the surface if its disparity is one of `codes`; with `any_code` if it is not empty.
+/// Tap of a packed surface. It shows the surface if its disparity is one of `codes`; with `any_code` if it is not
+/// empty.
 #[inline]
 pub fn surface_tap(words: [u32; 2], codes: [u32; 2], any_code: bool) -> Tap {
     let lod = lod_code(words);

@@ -61,11 +61,10 @@ pub fn float14_bits(x: f32) -> u32 {
 /// Value of a 14-bit float, which is a half, too.
 #[inline]
 pub fn float14_value(code: u32) -> f32 {
-    if code < 0x200 {
-        // No 32-bit denormal occurs; devices may flush those to zero.
-        return f32::from_bits((code << 14) + (112 << 23)) - f32::from_bits(112 << 23);
-    }
-    f32::from_bits((code << 14) + (111 << 23))
+    let normal = f32::from_bits((code << 14) + (111 << 23));
+    // Of denormal numbers, whose leading bit is not one, the second is the value, and less. No 32-bit denormal occurs;
+    // devices may flush those to zero.
+    normal.min(2.0 * normal - f32::from_bits(112 << 23))
 }
 
 /// Packs a sample. The color must be finite. All empty texels are stored alike, with an unknown disparity.

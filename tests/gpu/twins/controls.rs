@@ -144,7 +144,7 @@ fn a_gaussian_of_another_width_is_caught() {
 fn a_surface_stored_or_read_wrongly_is_caught() {
     caught(surfaces::PROBES, "float14_bits", "+ ((a >> 14u) & 1u)", "+ 1u");
     caught(surfaces::PROBES, "float14_bits", "MAX_FLOAT14: f32 = 65472.0", "MAX_FLOAT14: f32 = 65504.0");
-    caught(surfaces::PROBES, "float14_value", "code < 0x200u", "code < 0x1ffu");
+    caught(surfaces::PROBES, "float14_value", "0x1p-15", "0x1p-16");
     caught(surfaces::PROBES, "lod_code", "& 0x30u", "& 0x10u");
     caught(surfaces::PROBES, "surface_color", "float14_value(words.y & 0x3fffu)", "float14_value(words.x & 0x3fffu)");
     caught(surfaces::PROBES, "pack_surface", "* LOD_STEPS + 0.5", "* LOD_STEPS");
