@@ -4,7 +4,7 @@ use super::matching::{channels, like, push, stored_color};
 use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
 use afterimage::kernel::resample;
-use afterimage::kernel::resample::{FourTaps, Gathered, Resampled, Tap, TapsAround};
+use afterimage::kernel::resample::{FourTaps, Gathered, Resampled, Tap};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
