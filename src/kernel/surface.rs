@@ -21,7 +21,7 @@ pub const EMPTY_LOD: u32 = 63;
 const EMPTY_SURFACE: [u32; 2] = [0xf000_0000, 0xffff_c000];
 
 /// Largest 14-bit float.
-const MAX_FLOAT14: f32 = 65472.0;
+pub const MAX_FLOAT14: f32 = 65472.0;
 
 /// Stored steps a level of detail.
 pub const LOD_STEPS: f32 = 7.0;
