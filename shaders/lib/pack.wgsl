@@ -15,27 +15,18 @@ struct Stored {
 // pack::half_bits
 fn half_bits(x: f32) -> u32 {
     let sign_bit = (bitcast<u32>(x) >> 16u) & 0x8000u;
-    let a = bitcast<u32>(x) & 0x7fffffffu;
-    if a >= bitcast<u32>(MAX_HALF) {
-        return sign_bit | 0x7bffu;
-    }
-    if a < (113u << 23u) {
-        return sign_bit | (bitcast<u32>(bitcast<f32>(a) + 0.5) - bitcast<u32>(0.5f));
-    }
-    let odd = (a >> 13u) & 1u;
-    let rounded = (a - (112u << 23u) + 0xfffu + odd) >> 13u;
-    return sign_bit | min(rounded, 0x7bffu);
+    let a = min(bitcast<u32>(x) & 0x7fffffffu, bitcast<u32>(MAX_HALF));
+    let small = bitcast<u32>(bitcast<f32>(a) + 0.5) - bitcast<u32>(0.5f);
+    let rounded = (a - (112u << 23u) + 0xfffu + ((a >> 13u) & 1u)) >> 13u;
+    return sign_bit | select(rounded, small, a < (113u << 23u));
 }
 
 // pack::half_value
 fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fffu) << 13u;
     let sign_bit = (bits & 0x8000u) << 16u;
-    var value = bitcast<f32>(magnitude + (112u << 23u));
-    if (bits & 0x7c00u) == 0u {
-        value = bitcast<f32>(magnitude + (113u << 23u)) - bitcast<f32>(113u << 23u);
-    }
-    return bitcast<f32>(bitcast<u32>(value) | sign_bit);
+    let normal = bitcast<f32>(magnitude + (112u << 23u));
+    return bitcast<f32>(bitcast<u32>(min(normal, 2.0 * normal - 0x1p-14)) | sign_bit);
 }
 
 // pack::disparity_code

@@ -3,12 +3,7 @@
 
 const TAP_RELATIVE: f32 = 0.1;
 const STAND_IN_WEIGHT: f32 = 0.1;
-const TAPS: u32 = 12u;
-
-// resample::tap_at
-fn tap_at(tap: u32) -> vec2<u32> {
-    return vec2<u32>(((tap + 2u) & 3u) + select(0u, 1u, tap >= 10u) - select(0u, 1u, tap < 2u), (tap + 2u) >> 2u);
-}
+const ROUNDS: u32 = 3u;
 
 // resample::second_corner
 fn second_corner(fraction: vec2<f32>) -> u32 {
@@ -35,32 +30,113 @@ fn catmull_rom(t: f32) -> vec4<f32> {
     );
 }
 
-// resample::linear_weights
-fn linear_weights(t: f32) -> vec4<f32> {
-    return vec4<f32>(0.0, 1.0 - t, t, 0.0);
+// What the taps around a position have in common: where it is, and Catmull-Rom weights of columns and rows.
+struct TapsAround {
+    texel: vec2<i32>,
+    last: vec2<i32>,
+    fraction: vec2<f32>,
+    sharp_x: vec4<f32>,
+    sharp_y: vec4<f32>,
+}
+
+// resample::taps_around
+fn taps_around(texel: vec2<i32>, fraction: vec2<f32>, size: vec2<u32>) -> TapsAround {
+    return TapsAround(texel, vec2<i32>(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
+}
+
+// Texels of four taps, and their weights: products of a column's and a row's. `sharp_rows` are of the first two and the
+// last two taps; linear weights are of `b` and `c`, and 0 for the others.
+struct FourTaps {
+    a: vec2<i32>,
+    b: vec2<i32>,
+    c: vec2<i32>,
+    d: vec2<i32>,
+    sharp_x: vec4<f32>,
+    sharp_rows: vec2<f32>,
+    linear_x: vec2<f32>,
+    linear_row: f32,
+}
+
+// resample::taps_of
+fn taps_of(around: TapsAround, round: u32) -> FourTaps {
+    let below = round == 1u;
+    let outside = round == 2u;
+    let columns = select(vec4<i32>(-1, 0, 1, 2), vec4<i32>(0, 1, 0, 1), outside);
+    let rows = select(vec2<i32>(select(0, 1, below)), vec2<i32>(-1, 2), outside);
+    let x = clamp(around.texel.x + columns, vec4<i32>(0), vec4<i32>(around.last.x));
+    let y = clamp(around.texel.y + rows, vec2<i32>(0), vec2<i32>(around.last.y));
+    let sharp_row = vec2<f32>(select(around.sharp_y.y, around.sharp_y.z, below));
+    let linear_row = select(1.0 - around.fraction.y, around.fraction.y, below);
+    return FourTaps(
+        vec2<i32>(x.x, y.x),
+        vec2<i32>(x.y, y.x),
+        vec2<i32>(x.z, y.y),
+        vec2<i32>(x.w, y.y),
+        select(around.sharp_x, around.sharp_x.yzyz, outside),
+        select(sharp_row, around.sharp_y.xw, outside),
+        vec2<f32>(1.0 - around.fraction.x, around.fraction.x),
+        select(linear_row, 0.0, outside),
+    );
+}
+
+// resample::sharp_sum
+fn sharp_sum(around: TapsAround) -> f32 {
+    return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
+}
+
+// resample::tap_codes
+fn tap_codes(expected: f32) -> vec2<u32> {
+    let first = disparity_code(expected * (1.0f - TAP_RELATIVE));
+    let last = disparity_code(expected * (1.0f / (1.0f - TAP_RELATIVE)));
+    return vec2<u32>(first, select(last - first + 1u, 0u, expected < 0.0));
+}
+
+// resample::has_code
+fn has_code(word: u32, codes: vec2<u32>) -> bool {
+    return (word >> 16u) - codes.x < codes.y;
+}
+
+struct Tap {
+    color: vec3<f32>,
+    lod: f32,
+    same: bool,
+}
+
+// resample::surface_tap
+fn surface_tap(words: vec2<u32>, codes: vec2<u32>, any_code: bool) -> Tap {
+    let code = lod_code(words);
+    return Tap(
+        surface_color(words),
+        f32(code) * (1.0f / LOD_STEPS),
+        select(has_code(words.y, codes), code != EMPTY_LOD, any_code),
+    );
 }
 
 struct Gathered {
     sharp: vec3<f32>,
-    sharp_sum: f32,
     smooth_color: vec3<f32>,
     smooth_sum: f32,
     lod: f32,
-    missing: u32,
+    complete: bool,
+}
+
+// resample::nothing_gathered
+fn nothing_gathered() -> Gathered {
+    return Gathered(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, true);
 }
 
 // resample::gather
-fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) -> Gathered {
-    if !same {
-        return Gathered(g.sharp, g.sharp_sum, g.smooth_color, g.smooth_sum, g.lod, g.missing + 1u);
-    }
+fn gather(g: Gathered, a: Tap, b: Tap, c: Tap, d: Tap, four: FourTaps) -> Gathered {
+    let x = four.sharp_x;
+    let first = a.color * x.x + b.color * x.y;
+    let last = c.color * x.z + d.color * x.w;
+    let inner = select(vec2<f32>(0.0), four.linear_x, vec2<bool>(b.same, c.same));
     return Gathered(
-        g.sharp + tap.color * sharp,
-        g.sharp_sum + sharp,
-        g.smooth_color + tap.color * linear,
-        g.smooth_sum + linear,
-        g.lod + tap.lod * linear,
-        g.missing,
+        first * four.sharp_rows.x + (last * four.sharp_rows.y + g.sharp),
+        g.smooth_color + (b.color * inner.x + c.color * inner.y) * four.linear_row,
+        g.smooth_sum + (inner.x + inner.y) * four.linear_row,
+        g.lod + (b.lod * inner.x + c.lod * inner.y) * four.linear_row,
+        g.complete && a.same && b.same && c.same && d.same,
     );
 }
 
@@ -71,12 +147,12 @@ struct Resampled {
 }
 
 // resample::resolve
-fn resolve(g: Gathered, nearest: Surface) -> Resampled {
+fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {
         return Resampled(nearest.color, nearest.color, nearest.lod);
     }
     let inverse = 1.0 / g.smooth_sum;
     let smooth_color = g.smooth_color * inverse;
-    let sharp = select(smooth_color, max(g.sharp * (1.0 / g.sharp_sum), vec3<f32>(0.0)), g.missing == 0u);
+    let sharp = select(smooth_color, max(g.sharp * (1.0 / weights), vec3<f32>(0.0)), g.complete);
     return Resampled(sharp, smooth_color, g.lod * inverse);
 }

@@ -2,6 +2,8 @@
 // Twin of src/kernel/surface.rs, which documents the layout.
 
 const EMPTY_LOD: u32 = 63u;
+const EMPTY_SURFACE: vec2<u32> = vec2<u32>(0xf0000000u, 0xffffc000u);
+const MAX_FLOAT14: f32 = 65472.0;
 const LOD_STEPS: f32 = 7.0;
 const MAX_LOD: f32 = 62.0f / LOD_STEPS;
 
@@ -12,15 +14,18 @@ struct Surface {
     disparity: f32,
 }
 
-// surface::half14_bits
-fn half14_bits(x: f32) -> u32 {
-    let h = half_bits(select(0.0, x, x > 0.0));
-    return min((h + ((h >> 1u) & 1u)) >> 1u, 0x3dffu);
+// surface::float14_bits
+fn float14_bits(x: f32) -> u32 {
+    let a = bitcast<u32>(select(0.0, min(x, MAX_FLOAT14), x > 0.0));
+    let small = bitcast<u32>(bitcast<f32>(a) + 0.5) - bitcast<u32>(0.5f);
+    let rounded = (a - (111u << 23u) + 0x1fffu + ((a >> 14u) & 1u)) >> 14u;
+    return select(rounded, small, a < (112u << 23u));
 }
 
-// surface::half14_value
-fn half14_value(bits: u32) -> f32 {
-    return half_value((bits & 0x3fffu) << 1u);
+// surface::float14_value
+fn float14_value(code: u32) -> f32 {
+    let normal = bitcast<f32>((code << 14u) + (111u << 23u));
+    return min(normal, 2.0 * normal - 0x1p-15);
 }
 
 // surface::pack_surface
@@ -29,24 +34,36 @@ fn pack_surface(s: Surface) -> vec2<u32> {
     if s.lod >= 0.0 {
         lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 0.5);
     }
-    return vec2<u32>(
-        half14_bits(s.color.x) | (half14_bits(s.color.y) << 14u) | (lod << 28u),
-        half14_bits(s.color.z) | ((lod >> 4u) << 14u) | (disparity_code(s.disparity) << 16u),
+    let words = vec2<u32>(
+        float14_bits(s.color.x) | (float14_bits(s.color.y) << 14u) | (lod << 28u),
+        float14_bits(s.color.z) | ((lod >> 4u) << 14u) | (disparity_code(s.disparity) << 16u),
+    );
+    return select(words, EMPTY_SURFACE, lod == EMPTY_LOD);
+}
+
+// surface::lod_code
+fn lod_code(words: vec2<u32>) -> u32 {
+    return (words.x >> 28u) | ((words.y >> 10u) & 0x30u);
+}
+
+// surface::surface_color
+fn surface_color(words: vec2<u32>) -> vec3<f32> {
+    return vec3<f32>(
+        float14_value(words.x & 0x3fffu),
+        float14_value((words.x >> 14u) & 0x3fffu),
+        float14_value(words.y & 0x3fffu),
     );
 }
 
 // surface::unpack_surface
 fn unpack_surface(words: vec2<u32>) -> Surface {
-    let lod = (words.x >> 28u) | (((words.y >> 14u) & 3u) << 4u);
-    if lod == EMPTY_LOD {
-        return Surface(vec3<f32>(0.0), -1.0, -1.0);
-    }
-    let color = vec3<f32>(
-        half14_value(min(words.x & 0x3fffu, 0x3dffu)),
-        half14_value(min((words.x >> 14u) & 0x3fffu, 0x3dffu)),
-        half14_value(min(words.y & 0x3fffu, 0x3dffu)),
+    let code = lod_code(words);
+    let is_empty = code == EMPTY_LOD;
+    return Surface(
+        select(surface_color(words), vec3<f32>(0.0), is_empty),
+        select(f32(code) / LOD_STEPS, -1.0, is_empty),
+        select(disparity_value(words.y >> 16u), -1.0, is_empty),
     );
-    return Surface(color, f32(lod) / LOD_STEPS, disparity_value(words.y >> 16u));
 }
 
 // surface::mip_texel

@@ -1,4 +1,3 @@
-//#use depth
 //#use matched
 //#use resample
 //#use resize_uniforms
@@ -20,8 +19,8 @@ fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
     return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
 }
 
-fn component(v: vec4<f32>, i: u32) -> f32 {
-    return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
+fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>, any_code: bool) -> Tap {
+    return surface_tap(textureLoad(past_surfaces, texel, view, 0).xy, codes, any_code);
 }
 
 // Resizes a pixel; returns the stored words.
@@ -30,22 +29,23 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let nearest_at = nearest_to(position);
     let nearest = surface_at(vec2<i32>(nearest_at), view);
     let whole = floor(position);
-    let fraction = position - whole;
-    let sharp_x = catmull_rom(fraction.x);
-    let sharp_y = catmull_rom(fraction.y);
-    let smooth_x = linear_weights(fraction.x);
-    let smooth_y = linear_weights(fraction.y);
-    var gathered = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
-    let taps = select(0u, TAPS, nearest.lod >= 0.0);
-    for (var tap = 0u; tap < taps; tap++) {
-        let at = tap_at(tap);
-        let s = surface_at(vec2<i32>(whole) + vec2<i32>(at) - 1, view);
-        let alike = nearest.disparity < 0.0 || same_surface(nearest.disparity, s.disparity, TAP_RELATIVE, 0.0);
-        let sharp = component(sharp_x, at.x) * component(sharp_y, at.y);
-        let smooth_w = component(smooth_x, at.x) * component(smooth_y, at.y);
-        gathered = gather(gathered, s, s.lod >= 0.0 && alike, sharp, smooth_w);
+    let taps = taps_around(vec2<i32>(whole), position - whole, resize.old_size);
+    let codes = tap_codes(nearest.disparity);
+    let any_code = nearest.disparity < 0.0;
+    var gathered = nothing_gathered();
+    let rounds = select(0u, ROUNDS, nearest.lod >= 0.0);
+    for (var round = 0u; round < rounds; round++) {
+        let four = taps_of(taps, round);
+        gathered = gather(
+            gathered,
+            tap(four.a, view, codes, any_code),
+            tap(four.b, view, codes, any_code),
+            tap(four.c, view, codes, any_code),
+            tap(four.d, view, codes, any_code),
+            four,
+        );
     }
-    let resampled = resolve(gathered, nearest);
+    let resampled = resolve(gathered, sharp_sum(taps), nearest);
     var lod = -1.0;
     if nearest.lod >= 0.0 {
         lod = resized_lod(resampled.lod, resize.lod_shift);

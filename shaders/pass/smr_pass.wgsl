@@ -120,12 +120,13 @@ fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -
     return select(own, near.color, near.usable);
 }
 
-// Mean of the four candidates at diagonal offsets of `radius` pixels; black unless `needed`, by a loop with zero
-// iterations.
-fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, radius: f32, needed: bool) -> vec3<f32> {
+// Mean of the four candidates at diagonal offsets of 3/4 of a block of level `lod`; black unless `needed`, by a loop
+// with zero iterations.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
+        let radius = 0.75 * exp2(lod);
         mean = mean_of_four(
             candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
             candidate_near(px, view, own, vec2<f32>(radius, -radius)),
@@ -140,7 +141,6 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
-    let radius = 0.75 * exp2(lod);
     let matched = exposed(past.matched);
     let whole_level = exposed(past.level);
     let next_level = exposed(past.next_level);
@@ -148,7 +148,7 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
     let gauss = FILTER == FILTER_GAUSS;
     let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
-    let around = candidates_around(px, view, candidate, radius, blocks || changed);
+    let around = candidates_around(px, view, candidate, lod, blocks || changed);
     var predicted = matched;
     if FILTER == FILTER_BLOCK {
         predicted = exposed(past_sampled(source, px, lod, view));
@@ -306,27 +306,28 @@ fn main(
     let first = 2u * id.xy;
     let view = frame.first_view + group.z;
     if all(first < frame.size) {
-        var texels_0 = vec4<f32>(0.0);
-        var texels_1 = vec4<f32>(0.0);
-        var texels_2 = vec4<f32>(0.0);
-        var texels_3 = vec4<f32>(0.0);
+        var words_0 = vec2<u32>(0u);
+        var words_1 = vec2<u32>(0u);
+        var words_2 = vec2<u32>(0u);
+        var words_3 = vec2<u32>(0u);
         // A loop, because four copies of the code would take four times as long to compile.
         for (var i = 0u; i < 4u; i++) {
             let px = first + vec2<u32>(i & 1u, i >> 1u);
             // At an odd border the neighbour counts twice.
             let column = select(0u, i & 1u, px.x < frame.size.x);
             let row = select(0u, i >> 1u, px.y < frame.size.y);
-            var texel = select(select(texels_0, texels_1, column == 1u), texels_2, row == 1u && column == 0u);
+            var words = select(select(words_0, words_1, column == 1u), words_2, row == 1u && column == 0u);
             if all(px < frame.size) {
-                texel = mip_texel(pixel(px, view));
+                words = pixel(px, view);
             }
-            texels_0 = select(texels_0, texel, i == 0u);
-            texels_1 = select(texels_1, texel, i == 1u);
-            texels_2 = select(texels_2, texel, i == 2u);
-            texels_3 = select(texels_3, texel, i == 3u);
+            words_0 = select(words_0, words, i == 0u);
+            words_1 = select(words_1, words, i == 1u);
+            words_2 = select(words_2, words, i == 2u);
+            words_3 = select(words_3, words, i == 3u);
         }
         if VIEW == 0u {
-            textureStore(next_mips, id.xy, view, round_mip(mip_mean(texels_0, texels_1, texels_2, texels_3)));
+            let mean = mip_mean(mip_texel(words_0), mip_texel(words_1), mip_texel(words_2), mip_texel(words_3));
+            textureStore(next_mips, id.xy, view, round_mip(mean));
         }
     }
     add_counts(invocation);

@@ -55,33 +55,35 @@ fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) ->
     return Source(previous, texel, fraction, unpack_surface(select(words, other_words, stands_in)));
 }
 
-fn component(v: vec4<f32>, i: u32) -> f32 {
-    return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
+fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
+    return surface_tap(textureLoad(past_surfaces, texel, view, 0).xy, codes, DEPTH_TEST == 0u);
 }
 
-// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loop has
-// zero iterations: software Vulkan runs the body of an `if` for all pixels.
+// History resampled at a position; a position exactly on a texel reads that texel. Where `needed` is false the loops
+// have zero iterations: software Vulkan runs the body of an `if` for all pixels.
 fn resample(source: Source, view: u32, needed: bool) -> Resampled {
     let between = needed && !(source.fraction.x == 0.0 && source.fraction.y == 0.0);
-    let sharp_x = catmull_rom(source.fraction.x);
-    let sharp_y = catmull_rom(source.fraction.y);
-    let smooth_x = linear_weights(source.fraction.x);
-    let smooth_y = linear_weights(source.fraction.y);
-    var gathered = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
-    let taps = select(0u, TAPS, between);
-    for (var tap = 0u; tap < taps; tap++) {
-        let at = tap_at(tap);
-        let s = surface_at(source.texel + vec2<i32>(at) - 1, view);
-        var same = s.lod >= 0.0;
-        if DEPTH_TEST != 0u {
-            same = same && same_surface(source.previous.expected, s.disparity, TAP_RELATIVE, 0.0);
+    var resampled = Resampled(source.nearest.color, source.nearest.color, source.nearest.lod);
+    // Variable counts on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let rounds = select(0u, ROUNDS, between);
+    for (var once = 0u; once < min(rounds, 1u); once++) {
+        let taps = taps_around(source.texel, source.fraction, frame.size);
+        let codes = tap_codes(source.previous.expected);
+        var gathered = nothing_gathered();
+        for (var round = 0u; round < rounds; round++) {
+            let four = taps_of(taps, round);
+            gathered = gather(
+                gathered,
+                tap(four.a, view, codes),
+                tap(four.b, view, codes),
+                tap(four.c, view, codes),
+                tap(four.d, view, codes),
+                four,
+            );
         }
-        let sharp = component(sharp_x, at.x) * component(sharp_y, at.y);
-        let smooth_w = component(smooth_x, at.x) * component(smooth_y, at.y);
-        gathered = gather(gathered, s, same, sharp, smooth_w);
+        resampled = resolve(gathered, sharp_sum(taps), source.nearest);
     }
-    // Without taps this is the nearest texel.
-    return resolve(gathered, source.nearest);
+    return resampled;
 }
 
 // Stored color scaled to this frame's exposure.

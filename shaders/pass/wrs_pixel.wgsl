@@ -36,34 +36,37 @@ fn no_history(verdict: u32) -> History {
     return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u, Reference(vec3<f32>(0.0), NO_LEVEL));
 }
 
-fn component(v: vec4<f32>, i: u32) -> f32 {
-    return select(select(v.x, v.y, i == 1u), select(v.z, v.w, i == 3u), i > 1u);
+fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
+    let words = textureLoad(past_colors, texel, view, 0).xy;
+    let stored = unpack_sample(words);
+    return Tap(stored.color, 0.0, stored.valid && (DEPTH_TEST == 0u || has_code(words.y, codes)));
 }
 
 // Mean of history at a position, by Catmull-Rom weights. Exactly that of `nearest_color` at the centre of a pixel.
 fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) -> vec3<f32> {
     let whole = floor(at);
     let fraction = at - whole;
-    let sharp_x = catmull_rom(fraction.x);
-    let sharp_y = catmull_rom(fraction.y);
-    let smooth_x = linear_weights(fraction.x);
-    let smooth_y = linear_weights(fraction.y);
-    var gathered = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
-    let taps = select(TAPS, 0u, fraction.x == 0.0 && fraction.y == 0.0);
-    for (var tap = 0u; tap < taps; tap++) {
-        let k = tap_at(tap);
-        let texel = clamp(vec2<i32>(whole) + vec2<i32>(k) - 1, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-        let stored = unpack_sample(textureLoad(past_colors, texel, view, 0).xy);
-        var same = stored.valid;
-        if DEPTH_TEST != 0u {
-            same = same && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0);
+    var mean = nearest_color;
+    // Variable counts on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let rounds = select(ROUNDS, 0u, fraction.x == 0.0 && fraction.y == 0.0);
+    for (var once = 0u; once < min(rounds, 1u); once++) {
+        let taps = taps_around(vec2<i32>(whole), fraction, frame.size);
+        let codes = tap_codes(expected);
+        var gathered = nothing_gathered();
+        for (var round = 0u; round < rounds; round++) {
+            let four = taps_of(taps, round);
+            gathered = gather(
+                gathered,
+                tap(four.a, view, codes),
+                tap(four.b, view, codes),
+                tap(four.c, view, codes),
+                tap(four.d, view, codes),
+                four,
+            );
         }
-        let sharp = component(sharp_x, k.x) * component(sharp_y, k.y);
-        let smooth_w = component(smooth_x, k.x) * component(smooth_y, k.y);
-        gathered = gather(gathered, Surface(stored.color, 0.0, stored.disparity), same, sharp, smooth_w);
+        mean = resolve(gathered, sharp_sum(taps), Surface(nearest_color, 0.0, expected)).sharp;
     }
-    // Without taps this is the nearest reservoir's.
-    return resolve(gathered, Surface(nearest_color, 0.0, expected)).sharp;
+    return mean;
 }
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.

@@ -1,8 +1,7 @@
 //! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,kept}_pass.wgsl`.
 
-use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{moved_kept, pack_kept, unpack_kept};
-use crate::kernel::resample::{Gathered, TAP_RELATIVE, TAPS, catmull_rom, gather, linear_weights, resolve, tap_at};
+use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
@@ -18,30 +17,19 @@ impl Resize {
 
     /// Packed surfaces of one view of the new size, from those of the old size.
     pub(super) fn surfaces(&self, words: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        let last = self.old_size_px.map(|s| s as i32 - 1);
-        let surface_at = |x: i32, y: i32| {
-            unpack_surface(words[self.index([x.clamp(0, last[0]) as u32, y.clamp(0, last[1]) as u32])])
-        };
         self.map(|x, y| {
             let position = self.old_position_of(x, y);
-            let nearest = self.nearest_to(position);
-            let nearest = surface_at(nearest[0] as i32, nearest[1] as i32);
+            let nearest = unpack_surface(words[self.index(self.nearest_to(position))]);
             if nearest.lod < 0.0 {
                 return pack_surface(Surface { color: Vec3::ZERO, ..nearest });
             }
             let whole = position.map(f32::floor);
             let fraction = [position[0] - whole[0], position[1] - whole[1]];
-            let (sharp, smooth) = (fraction.map(catmull_rom), fraction.map(linear_weights));
-            let mut gathered = Gathered::default();
-            for tap in 0..TAPS {
-                let [i, j] = tap_at(tap);
-                let s = surface_at(whole[0] as i32 + i as i32 - 1, whole[1] as i32 + j as i32 - 1);
-                let alike = nearest.disparity < 0.0 || same_surface(nearest.disparity, s.disparity, TAP_RELATIVE, 0.0);
-                let [i, j] = [i as usize, j as usize];
-                let (sharp, smooth) = (sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
-                gathered = gather(gathered, s, s.lod >= 0.0 && alike, sharp, smooth);
-            }
-            let resampled = resolve(gathered, nearest);
+            let taps = taps_around(whole.map(|v| v as i32), fraction, self.old_size_px);
+            let (codes, any_code) = (tap_codes(nearest.disparity), nearest.disparity < 0.0);
+            let gathered =
+                gather_around(&taps, |at| surface_tap(words[self.index(at.map(|v| v as u32))], codes, any_code));
+            let resampled = resolve(gathered, sharp_sum(&taps), nearest);
             pack_surface(Surface {
                 color: resampled.sharp.min(Vec3::splat(MAX_HALF)),
                 lod: resized_lod(resampled.lod, self.lod_shift),

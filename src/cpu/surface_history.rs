@@ -3,15 +3,13 @@
 
 use super::history::PastSurfaces;
 use super::inputs::{Inputs, Previous};
-use crate::kernel::depth;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
 use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample;
 use crate::kernel::resample::{
-    Gathered, Resampled, STAND_IN_WEIGHT, TAP_RELATIVE, TAPS, catmull_rom, corner_weight, linear_weights,
-    second_corner, tap_at,
+    Resampled, STAND_IN_WEIGHT, corner_weight, gather_around, resolve, second_corner, sharp_sum, surface_tap,
+    tap_codes, taps_around,
 };
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::wrs::expose;
@@ -43,12 +41,6 @@ pub(super) struct Source {
 }
 
 impl SurfaceHistory<'_> {
-    #[inline(always)]
-    fn texel(&self, x: i32, y: i32) -> Surface {
-        let [width, height] = self.inputs.size.map(|s| s as i32);
-        unpack_surface(self.past.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
-    }
-
     /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history.
     #[inline(always)]
     pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
@@ -76,7 +68,7 @@ impl SurfaceHistory<'_> {
         let [width, height] = self.inputs.size.map(|s| s as i32);
         let x = (texel[0] + (corner & 1) as i32).clamp(0, width - 1);
         let y = (texel[1] + (corner >> 1) as i32).clamp(0, height - 1);
-        let stored = self.texel(x, y);
+        let stored = unpack_surface(self.past.words[(y * width + x) as usize]);
         let stands_in = corner_weight(corner, fraction) > STAND_IN_WEIGHT
             && stored.lod >= 0.0
             && self.inputs.same_disparity(expected, stored.disparity);
@@ -91,16 +83,12 @@ impl SurfaceHistory<'_> {
             let s = source.nearest;
             return Resampled { sharp: s.color, smooth: s.color, lod: s.lod };
         }
-        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear_weights(fx), linear_weights(fy)]);
-        let mut gathered = Gathered::default();
-        for tap in 0..TAPS {
-            let [i, j] = tap_at(tap).map(|k| k as usize);
-            let s = self.texel(source.texel[0] + i as i32 - 1, source.texel[1] + j as i32 - 1);
-            let same = s.lod >= 0.0
-                && (!self.inputs.tests_depth() || depth::same_surface(source.expected, s.disparity, TAP_RELATIVE, 0.0));
-            gathered = resample::gather(gathered, s, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
-        }
-        resample::resolve(gathered, source.nearest)
+        let taps = taps_around(source.texel, source.fraction, self.inputs.size);
+        let (codes, any_code) = (tap_codes(source.expected), !self.inputs.tests_depth());
+        let width = self.inputs.size[0] as i32;
+        let gathered =
+            gather_around(&taps, |[x, y]| surface_tap(self.past.words[(y * width + x) as usize], codes, any_code));
+        resolve(gathered, sharp_sum(&taps), source.nearest)
     }
 
     /// History where and as the block around pixel `px`, of level of detail `lod`, was sampled: the texel of history

@@ -13,15 +13,13 @@ use crate::foveation::{Filter, Foveation};
 use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::depth;
 use crate::kernel::lattice::{nearest_point, place_weight, point_offset_px};
 use crate::kernel::noise::sample_difference;
 use crate::kernel::pack;
 use crate::kernel::pack::Stored;
 use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample;
-use crate::kernel::resample::{Gathered, TAP_RELATIVE, TAPS, catmull_rom, linear_weights, tap_at};
+use crate::kernel::resample::{Tap, gather_around, has_code, resolve, sharp_sum, tap_codes, taps_around};
 use crate::kernel::rng;
 use crate::kernel::surface::Surface;
 use crate::kernel::wrs;
@@ -285,22 +283,15 @@ impl ViewPass<'_> {
         if fx == 0.0 && fy == 0.0 {
             return nearest;
         }
-        let (sharp, smooth) = ([catmull_rom(fx), catmull_rom(fy)], [linear_weights(fx), linear_weights(fy)]);
-        let mut gathered = Gathered::default();
-        let [width, height] = self.inputs.size.map(|s| s as i32);
-        for tap in 0..TAPS {
-            let [i, j] = tap_at(tap).map(|k| k as usize);
-            let x = (whole[0] as i32 + i as i32 - 1).clamp(0, width - 1);
-            let y = (whole[1] as i32 + j as i32 - 1).clamp(0, height - 1);
+        let taps = taps_around(whole.map(|v| v as i32), [fx, fy], self.inputs.size);
+        let (codes, any_code) = (tap_codes(expected), !self.inputs.tests_depth());
+        let width = self.inputs.size[0] as i32;
+        let gathered = gather_around(&taps, |[x, y]| {
             let [colors, more, _] = self.past.words[(y * width + x) as usize];
-            let (color, disparity, valid) = pack::unpack_sample([colors, more]);
-            let same =
-                valid && (!self.inputs.tests_depth() || depth::same_surface(expected, disparity, TAP_RELATIVE, 0.0));
-            let surface = Surface { color, lod: 0.0, disparity };
-            gathered =
-                resample::gather(gathered, surface, same, sharp[0][i] * sharp[1][j], smooth[0][i] * smooth[1][j]);
-        }
+            let (color, _, valid) = pack::unpack_sample([colors, more]);
+            Tap { color, lod: 0.0, same: valid && (any_code || has_code(more, codes)) }
+        });
         let nearest = Surface { color: nearest, lod: 0.0, disparity: expected };
-        resample::resolve(gathered, nearest).sharp
+        resolve(gathered, sharp_sum(&taps), nearest).sharp
     }
 }

@@ -98,9 +98,10 @@ impl ComputeShader {
         pipeline
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).len()
+    /// Label and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        let pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        pipelines.keys().map(|overrides| (self.label, overrides.clone())).collect()
     }
 
     /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.

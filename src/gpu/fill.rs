@@ -6,6 +6,7 @@ use super::textures::batches;
 use super::uniforms::FrameUniforms;
 use super::{Frame, Textures, sparse};
 use crate::frame::ContextDesc;
+use crate::method::Overrides;
 use crate::shader::SHADERS;
 use wgpu::{
     BindingResource, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat,
@@ -33,7 +34,7 @@ impl Fill {
         // Numbers in `inputs`, `lattices` and `fill_pass`.
         let bindings = [(0, uniform()), (1, float_texture()), (17, uniform()), (18, storage_texture(FORMAT))];
         Self {
-            shader: ComputeShader::with_bindings(device, "afterimage fill", source, &bindings),
+            shader: ComputeShader::with_bindings(device, "fill_pass", source, &bindings),
             color: color_texture(device, desc),
         }
     }
@@ -48,9 +49,9 @@ impl Fill {
         self.shader.pipeline(device, &overrides(regions));
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.shader.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.shader.pipelines()
     }
 
     /// The filled color.

@@ -46,7 +46,7 @@ impl GeometryFill {
             (19, motion),
         ];
         Self {
-            shader: ComputeShader::with_bindings(device, "afterimage fill geometry", source, &bindings),
+            shader: ComputeShader::with_bindings(device, "fill_geometry_pass", source, &bindings),
             absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
             textures: textures(device, desc),
         }
@@ -62,9 +62,9 @@ impl GeometryFill {
         self.shader.pipeline(device, &overrides(desc, variant));
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.shader.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.shader.pipelines()
     }
 
     /// The frame with filled geometry in place of the given one, and its uniforms.

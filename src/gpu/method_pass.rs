@@ -87,7 +87,7 @@ impl MethodPass {
         Self {
             shader: ComputeShader::with_bindings(
                 device,
-                "afterimage",
+                settings.pass_shader().name,
                 writing(device, source, output),
                 &bindings(settings.pass_shader(), output, history),
             ),
@@ -110,9 +110,9 @@ impl MethodPass {
         self.shader(device, variant).pipeline(device, &overrides(desc, variant, None));
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.shader.pipeline_count() + self.with_view.get().map_or(0, ComputeShader::pipeline_count)
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        [Some(&self.shader), self.with_view.get()].into_iter().flatten().flat_map(ComputeShader::pipelines).collect()
     }
 
     fn shader(&self, device: &Device, variant: Variant) -> &ComputeShader {
@@ -123,7 +123,8 @@ impl MethodPass {
             let source = SHADERS.compose_replacing(self.pass_shader.name, ("output", "output_and_view")).source;
             let mut bindings = bindings(self.pass_shader, self.output, self.history);
             bindings.push((DEBUG_BINDING, storage_texture(DEBUG_FORMAT)));
-            ComputeShader::with_bindings(device, "afterimage", writing(device, &source, self.output), &bindings)
+            let source = writing(device, &source, self.output);
+            ComputeShader::with_bindings(device, self.pass_shader.name, source, &bindings)
         })
     }
 

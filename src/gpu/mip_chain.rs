@@ -8,6 +8,7 @@ use super::textures::batches;
 use super::uniforms::CandidateUniforms;
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
+use crate::method::Overrides;
 use crate::shader::SHADERS;
 use wgpu::{BindGroup, BindingResource, BufferUsages, ComputePass, Device, Texture, TextureFormat, TextureView};
 
@@ -41,7 +42,7 @@ impl MipChainPass {
     pub fn new(device: &Device, kind: MipChainKind) -> Self {
         let source = SHADERS.compose("mip_chain_pass").source;
         let types = [uniform(), float_texture(), storage_texture(FORMAT)];
-        Self { shader: ComputeShader::new(device, "afterimage mip chain", source, &types), kind }
+        Self { shader: ComputeShader::new(device, "mip_chain_pass", source, &types), kind }
     }
 
     /// The dispatches that fill `texture`, the mip chain of views of `size_px`, from its second level on.
@@ -73,9 +74,9 @@ impl MipChainPass {
         self.shader.pipeline(device, &self.overrides());
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.shader.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.shader.pipelines()
     }
 
     fn overrides(&self) -> [(&'static str, u32); 1] {
@@ -114,7 +115,7 @@ impl CandidatePass {
         let source = SHADERS.compose("candidate_pass").source;
         let types = [uniform(), float_texture(), float_texture(), storage_texture(FORMAT)];
         Self {
-            first: ComputeShader::new(device, "afterimage candidates", source, &types),
+            first: ComputeShader::new(device, "candidate_pass", source, &types),
             rest: MipChainPass::new(device, MipChainKind::Candidates),
         }
     }
@@ -135,9 +136,9 @@ impl CandidatePass {
         self.rest.prewarm(device);
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.first.pipeline_count() + self.rest.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        [self.first.pipelines(), self.rest.pipelines()].concat()
     }
 
     /// Records all levels of a frame's candidates; nothing for a frame without noise.

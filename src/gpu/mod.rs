@@ -325,17 +325,23 @@ impl Afterimage {
         }
     }
 
-    /// Number of compiled pipelines, for tests.
+    /// Shader module and override values of each compiled pipeline, for tests and for the count of instructions.
     #[doc(hidden)]
-    pub fn pipeline_count(&self) -> usize {
+    pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
         let Passes { method, mip_chain, candidates, resize } = &self.passes;
-        method.pipeline_count()
-            + mip_chain.as_ref().map_or(0, MipChainPass::pipeline_count)
-            + candidates.as_ref().map_or(0, CandidatePass::pipeline_count)
-            + resize.as_ref().map_or(0, ResizePass::pipeline_count)
-            + self.fill.as_ref().map_or(0, Fill::pipeline_count)
-            + self.samples.as_ref().map_or(0, SamplePasses::pipeline_count)
-            + self.geometry.get().map_or(0, GeometryFill::pipeline_count)
+        [
+            Some(method.pipelines()),
+            mip_chain.as_ref().map(MipChainPass::pipelines),
+            candidates.as_ref().map(CandidatePass::pipelines),
+            resize.as_ref().map(ResizePass::pipelines),
+            self.fill.as_ref().map(Fill::pipelines),
+            self.samples.as_ref().map(SamplePasses::pipelines),
+            self.geometry.get().map(GeometryFill::pipelines),
+        ]
+        .into_iter()
+        .flatten()
+        .flatten()
+        .collect()
     }
 
     /// Size in bytes of the textures that the context holds between frames.

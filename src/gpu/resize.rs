@@ -62,7 +62,7 @@ impl ResizePass {
                 vec![("NOISY", u32::from(noisy)), ("HAS_MIPS", u32::from(levels > 0))],
             ),
         };
-        let shader = ComputeShader::new(device, "afterimage resize", SHADERS.compose(name).source, &types);
+        let shader = ComputeShader::new(device, name, SHADERS.compose(name).source, &types);
         Some(Self { shader, overrides, block_px, layout, absent: Placeholders::new(device, layout) })
     }
 
@@ -71,9 +71,9 @@ impl ResizePass {
         self.layout
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.shader.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.shader.pipelines()
     }
 
     /// Records the pass that fills `next`, of the new size, from `past`; but for the mip chain's second level and all

@@ -58,8 +58,8 @@ impl SamplePasses {
         let bindings: Vec<_> = std::iter::once((0, uniform())).chain(color_to_trust).chain(own).collect();
         let [observed, lights] = [(); 2].map(|()| array_view(&results(device, desc)));
         Self {
-            observe: ComputeShader::with_bindings(device, "afterimage observe", observe, &bindings),
-            light: ComputeShader::with_bindings(device, "afterimage light", light, &bindings),
+            observe: ComputeShader::with_bindings(device, "sparse_observe_pass", observe, &bindings),
+            light: ComputeShader::with_bindings(device, "sparse_light_pass", light, &bindings),
             observed,
             lights,
             absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
@@ -78,9 +78,9 @@ impl SamplePasses {
         self.light.pipeline(device, &light);
     }
 
-    /// Number of compiled pipelines.
-    pub fn pipeline_count(&self) -> usize {
-        self.observe.pipeline_count() + self.light.pipeline_count()
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        [&self.observe, &self.light].into_iter().flat_map(ComputeShader::pipelines).collect()
     }
 
     /// Gain and fit for each sample.

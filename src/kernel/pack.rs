@@ -54,12 +54,10 @@ pub fn half_bits(x: f32) -> u32 {
 pub fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fff) << 13;
     let sign = (bits & 0x8000) << 16;
-    let value = if bits & 0x7c00 == 0 {
-        // No 32-bit denormal occurs; devices may flush those to zero.
-        f32::from_bits(magnitude + (113 << 23)) - f32::from_bits(113 << 23)
-    } else {
-        f32::from_bits(magnitude + (112 << 23))
-    };
+    let normal = f32::from_bits(magnitude + (112 << 23));
+    // Of denormal halves, whose leading bit is not one, the second is the value, and less. No 32-bit denormal occurs;
+    // devices may flush those to zero.
+    let value = normal.min(2.0 * normal - f32::from_bits(113 << 23));
     f32::from_bits(value.to_bits() | sign)
 }
 

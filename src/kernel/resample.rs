@@ -1,6 +1,7 @@
 //! Resampling of stored surfaces at positions between texels.
 
-use super::surface::Surface;
+use super::pack::disparity_code;
+use super::surface::{EMPTY_LOD, LOD_STEPS, Surface, lod_code, surface_color};
 use glam::Vec3;
 
 /// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough
@@ -11,14 +12,9 @@ pub const TAP_RELATIVE: f32 = 0.1;
 /// moves by less than a pixel, but edges do not lose it wherever they are rounded away.
 pub const STAND_IN_WEIGHT: f32 = 0.1;
 
-/// Number of taps: 4x4 texels without the corners, whose weights are close to 0.
-pub const TAPS: u32 = 12;
-
-/// Column and row, 0 to 3, of tap number `tap`.
-#[inline]
-pub fn tap_at(tap: u32) -> [u32; 2] {
-    [((tap + 2) & 3) + u32::from(tap >= 10) - u32::from(tap < 2), (tap + 2) >> 2]
-}
+/// Rounds of four taps: 4x4 texels without the corners, whose weights are close to 0. The second row, the third one,
+/// and what is left of the first and last.
+pub const ROUNDS: u32 = 3;
 
 /// Number of the texel (as for [`corner_weight`]) that has the second largest bilinear weight at the fractions of a
 /// position: across the axis along which the position lies nearer to the middle.
@@ -46,43 +42,149 @@ pub fn catmull_rom(t: f32) -> [f32; 4] {
     [((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t2 + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t, (0.5 * t - 0.5) * t2]
 }
 
-/// Linear weights of four texels around a position at distance `t` in \[0, 1) after the second.
+/// What the taps around a position have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TapsAround {
+    /// The texel before the position.
+    pub texel: [i32; 2],
+    /// Last texel of the image.
+    pub last: [i32; 2],
+    /// From that texel to the position, in \[0, 1).
+    pub fraction: [f32; 2],
+    /// Catmull-Rom weights of the columns.
+    pub sharp_x: [f32; 4],
+    /// Catmull-Rom weights of the rows.
+    pub sharp_y: [f32; 4],
+}
+
+/// The taps around a position: a `fraction` of a texel, in \[0, 1), after `texel`.
 #[inline]
-pub fn linear_weights(t: f32) -> [f32; 4] {
-    [0.0, 1.0 - t, t, 0.0]
+pub fn taps_around(texel: [i32; 2], fraction: [f32; 2], size: [u32; 2]) -> TapsAround {
+    let [sharp_x, sharp_y] = fraction.map(catmull_rom);
+    TapsAround { texel, last: size.map(|s| s as i32 - 1), fraction, sharp_x, sharp_y }
+}
+
+/// Sum of the taps' Catmull-Rom weights: 1 without those of the corners.
+#[inline]
+pub fn sharp_sum(around: &TapsAround) -> f32 {
+    1.0 - (around.sharp_x[0] + around.sharp_x[3]) * (around.sharp_y[0] + around.sharp_y[3])
+}
+
+/// Four taps. Weights are products of a column's and a row's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FourTaps {
+    /// Column and row of each texel.
+    pub texels: [[i32; 2]; 4],
+    /// Catmull-Rom weights of the columns.
+    pub sharp_x: [f32; 4],
+    /// Catmull-Rom weights of the row of the first two and of the last two taps.
+    pub sharp_rows: [f32; 2],
+    /// Linear weights of the columns of the second and the third tap; those of the others are 0.
+    pub linear_x: [f32; 2],
+    /// Linear weight of their row.
+    pub linear_row: f32,
+}
+
+/// The taps of a round.
+#[inline]
+pub fn taps_of(around: &TapsAround, round: u32) -> FourTaps {
+    let (columns, rows) = match round {
+        2 => ([1, 2, 1, 2], [0, 0, 3, 3]),
+        round => ([0, 1, 2, 3], [1 + round as usize; 4]),
+    };
+    let texel = |tap: usize| {
+        let [x, y] = [columns[tap], rows[tap]].map(|i| i as i32 - 1);
+        [(around.texel[0] + x).clamp(0, around.last[0]), (around.texel[1] + y).clamp(0, around.last[1])]
+    };
+    let [fx, fy] = around.fraction;
+    FourTaps {
+        texels: [0, 1, 2, 3].map(texel),
+        sharp_x: columns.map(|x| around.sharp_x[x]),
+        sharp_rows: [around.sharp_y[rows[0]], around.sharp_y[rows[3]]],
+        linear_x: [1.0 - fx, fx],
+        linear_row: [1.0 - fy, fy, 0.0][round as usize],
+    }
+}
+
+/// The first of the [`disparity_code`]s of the surface that has the disparity `expected`, within [`TAP_RELATIVE`], and
+/// their number: 0 if the expected disparity is negative.
+#[inline]
+pub fn tap_codes(expected: f32) -> [u32; 2] {
+    let first = disparity_code(expected * (1.0 - TAP_RELATIVE));
+    let last = disparity_code(expected * (1.0 / (1.0 - TAP_RELATIVE)));
+    [first, if expected < 0.0 { 0 } else { last - first + 1 }]
+}
+
+/// Whether the disparity in the high half of `word` is one of [`tap_codes`].
+#[inline]
+pub fn has_code(word: u32, codes: [u32; 2]) -> bool {
+    (word >> 16).wrapping_sub(codes[0]) < codes[1]
+}
+
+/// A tap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tap {
+    /// Stored color.
+    pub color: Vec3,
+    /// Stored level of detail.
+    pub lod: f32,
+    /// Whether it shows the surface.
+    pub same: bool,
+}
+
+/// Tap of a packed surface. It shows the surface if its disparity is one of `codes`; with `any_code` if it is not
+/// empty.
+#[inline]
+pub fn surface_tap(words: [u32; 2], codes: [u32; 2], any_code: bool) -> Tap {
+    let lod = lod_code(words);
+    let same = if any_code { lod != EMPTY_LOD } else { has_code(words[1], codes) };
+    Tap { color: surface_color(words), lod: lod as f32 * (1.0 / LOD_STEPS), same }
 }
 
 /// Sums over the taps around a position.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gathered {
-    /// Colors times Catmull-Rom weights.
+    /// Colors times Catmull-Rom weights, of whatever surface.
     pub sharp: Vec3,
-    /// Catmull-Rom weights.
-    pub sharp_sum: f32,
-    /// Colors times bilinear weights.
+    /// Colors times linear weights.
     pub smooth: Vec3,
-    /// Bilinear weights.
+    /// Linear weights.
     pub smooth_sum: f32,
-    /// Levels of detail times bilinear weights.
+    /// Levels of detail times linear weights.
     pub lod: f32,
-    /// Number of taps on other surfaces.
-    pub missing: u32,
+    /// Whether all taps show the surface.
+    pub complete: bool,
 }
 
-/// Adds a tap with its Catmull-Rom and bilinear weights if it is on the `same` surface; otherwise counts it as missing.
+/// Sums over no taps.
 #[inline]
-pub fn gather(g: Gathered, tap: Surface, same: bool, sharp: f32, linear: f32) -> Gathered {
-    if !same {
-        return Gathered { missing: g.missing + 1, ..g };
-    }
+pub fn nothing_gathered() -> Gathered {
+    Gathered { sharp: Vec3::ZERO, smooth: Vec3::ZERO, smooth_sum: 0.0, lod: 0.0, complete: true }
+}
+
+/// Adds four taps with their weights. Linear weights count on the surface only.
+#[inline]
+pub fn gather(g: Gathered, [a, b, c, d]: [Tap; 4], four: &FourTaps) -> Gathered {
+    let x = four.sharp_x;
+    let first = a.color * x[0] + b.color * x[1];
+    let last = c.color * x[2] + d.color * x[3];
+    let inner = [if b.same { four.linear_x[0] } else { 0.0 }, if c.same { four.linear_x[1] } else { 0.0 }];
     Gathered {
-        sharp: g.sharp + tap.color * sharp,
-        sharp_sum: g.sharp_sum + sharp,
-        smooth: g.smooth + tap.color * linear,
-        smooth_sum: g.smooth_sum + linear,
-        lod: g.lod + tap.lod * linear,
-        missing: g.missing,
+        sharp: first * four.sharp_rows[0] + (last * four.sharp_rows[1] + g.sharp),
+        smooth: g.smooth + (b.color * inner[0] + c.color * inner[1]) * four.linear_row,
+        smooth_sum: g.smooth_sum + (inner[0] + inner[1]) * four.linear_row,
+        lod: g.lod + (b.lod * inner[0] + c.lod * inner[1]) * four.linear_row,
+        complete: g.complete && a.same && b.same && c.same && d.same,
     }
+}
+
+/// Reads `tap` at the texels of all rounds.
+#[inline(always)]
+pub fn gather_around(taps: &TapsAround, mut tap: impl FnMut([i32; 2]) -> Tap) -> Gathered {
+    (0..ROUNDS).fold(nothing_gathered(), |gathered, round| {
+        let four = taps_of(taps, round);
+        gather(gathered, four.texels.map(&mut tap), &four)
+    })
 }
 
 /// History resampled at a position.
@@ -97,14 +199,14 @@ pub struct Resampled {
 }
 
 /// Result of the sums: Catmull-Rom where all taps are on the surface, bilinear over those that are elsewhere, and the
-/// `nearest` texel where their weights are close to 0.
+/// `nearest` texel where their weights are close to 0. `weights`: their [`sharp_sum`].
 #[inline]
-pub fn resolve(g: Gathered, nearest: Surface) -> Resampled {
+pub fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {
         return Resampled { sharp: nearest.color, smooth: nearest.color, lod: nearest.lod };
     }
     let inverse = 1.0 / g.smooth_sum;
     let smooth = g.smooth * inverse;
-    let sharp = if g.missing == 0 { (g.sharp * (1.0 / g.sharp_sum)).max(Vec3::ZERO) } else { smooth };
+    let sharp = if g.complete { (g.sharp * (1.0 / weights)).max(Vec3::ZERO) } else { smooth };
     Resampled { sharp, smooth, lod: g.lod * inverse }
 }

@@ -2,7 +2,7 @@
 //!
 //! | word | bits | |
 //! |---|---|---|
-//! | 0 | 0-13 | red, [`half14_bits`] |
+//! | 0 | 0-13 | red, [`float14_bits`] |
 //! | 0 | 14-27 | green |
 //! | 0 | 28-31 | level of detail, low 4 bits of its code |
 //! | 1 | 0-13 | blue |
@@ -15,10 +15,16 @@ use super::pack::{disparity_code, disparity_value, half_bits, half_value};
 use glam::{Vec3, Vec4};
 
 /// Code of the level of detail of an empty texel.
-const EMPTY: u32 = 63;
+pub const EMPTY_LOD: u32 = 63;
+
+/// Words of an empty texel.
+const EMPTY_SURFACE: [u32; 2] = [0xf000_0000, 0xffff_c000];
+
+/// Largest 14-bit float.
+pub const MAX_FLOAT14: f32 = 65472.0;
 
 /// Stored steps a level of detail.
-const LOD_STEPS: f32 = 7.0;
+pub const LOD_STEPS: f32 = 7.0;
 
 /// Largest stored level of detail.
 pub const MAX_LOD: f32 = 62.0 / LOD_STEPS;
@@ -39,44 +45,62 @@ impl Surface {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0 };
 }
 
-/// 14-bit float: a half without sign and without the last bit of its mantissa, that is 5 bits of exponent and 9 of
-/// mantissa. Rounded twice (first to a half), so the relative error is at most 1.5 * 2^-10. Negative values become 0.
+/// 14-bit float nearest to `x` (ties to even), at most [`MAX_FLOAT14`]: 5 bits of exponent and 9 of mantissa, without
+/// sign, infinity and NaN, whose codes are one more octave of numbers. The relative error is at most 2^-10 down to
+/// 2^-15, and below that the error is at most 2^-25. Negative values become 0.
 #[inline]
-pub fn half14_bits(x: f32) -> u32 {
-    let positive = if x > 0.0 { x } else { 0.0 };
-    let h = half_bits(positive);
-    ((h + ((h >> 1) & 1)) >> 1).min(0x3dff)
+pub fn float14_bits(x: f32) -> u32 {
+    let a = if x > 0.0 { x.min(MAX_FLOAT14) } else { 0.0 }.to_bits();
+    if a < 112 << 23 {
+        // Adding 0.5 shifts the mantissa to the grid of denormal numbers and rounds it.
+        return (f32::from_bits(a) + 0.5).to_bits() - 0.5_f32.to_bits();
+    }
+    (a - (111 << 23) + 0x1fff + ((a >> 14) & 1)) >> 14
 }
 
-/// Value of the 14-bit float in the low bits of `bits`.
+/// Value of a 14-bit float, which is a half, too.
 #[inline]
-pub fn half14_value(bits: u32) -> f32 {
-    half_value((bits & 0x3fff) << 1)
+pub fn float14_value(code: u32) -> f32 {
+    let normal = f32::from_bits((code << 14) + (111 << 23));
+    // Of denormal numbers, whose leading bit is not one, the second is the value, and less. No 32-bit denormal occurs;
+    // devices may flush those to zero.
+    normal.min(2.0 * normal - f32::from_bits(112 << 23))
 }
 
-/// Packs a sample. The color must be finite.
+/// Packs a sample. The color must be finite. All empty texels are stored alike, with an unknown disparity.
 #[inline]
 pub fn pack_surface(s: Surface) -> [u32; 2] {
-    let lod = if s.lod < 0.0 { EMPTY } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32 };
+    if s.lod < 0.0 {
+        return EMPTY_SURFACE;
+    }
+    let lod = (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32;
     [
-        half14_bits(s.color.x) | half14_bits(s.color.y) << 14 | lod << 28,
-        half14_bits(s.color.z) | (lod >> 4) << 14 | disparity_code(s.disparity) << 16,
+        float14_bits(s.color.x) | float14_bits(s.color.y) << 14 | lod << 28,
+        float14_bits(s.color.z) | (lod >> 4) << 14 | disparity_code(s.disparity) << 16,
     ]
+}
+
+/// Code of the level of detail, 63 for an empty texel.
+#[inline]
+pub fn lod_code(words: [u32; 2]) -> u32 {
+    words[0] >> 28 | ((words[1] >> 10) & 0x30)
+}
+
+/// Color of a sample.
+#[inline]
+pub fn surface_color(words: [u32; 2]) -> Vec3 {
+    let channel = |bits: u32| float14_value(bits & 0x3fff);
+    Vec3::new(channel(words[0]), channel(words[0] >> 14), channel(words[1]))
 }
 
 /// Unpacks a sample. The result is finite for any words.
 #[inline]
 pub fn unpack_surface(words: [u32; 2]) -> Surface {
-    let lod = words[0] >> 28 | ((words[1] >> 14) & 3) << 4;
-    if lod == EMPTY {
+    let lod = lod_code(words);
+    if lod == EMPTY_LOD {
         return Surface::EMPTY;
     }
-    let channel = |bits: u32| half14_value((bits & 0x3fff).min(0x3dff));
-    Surface {
-        color: Vec3::new(channel(words[0]), channel(words[0] >> 14), channel(words[1])),
-        lod: lod as f32 / LOD_STEPS,
-        disparity: disparity_value(words[1] >> 16),
-    }
+    Surface { color: surface_color(words), lod: lod as f32 / LOD_STEPS, disparity: disparity_value(words[1] >> 16) }
 }
 
 /// Texel of level 0 of the mip chain: the color and a coverage of 1; zeros for an empty texel.

@@ -4,7 +4,10 @@ use super::rig::*;
 use afterimage::kernel::matched::{
     gain, mip_bilinear, mip_mean, moves_alike, reuse_weight, root_difference, smooth_step,
 };
-use afterimage::kernel::resample::{Gathered, TAPS, catmull_rom, gather, linear_weights, resolve, tap_at};
+use afterimage::kernel::pack::disparity_code;
+use afterimage::kernel::resample::{
+    Gathered, Resampled, Tap, catmull_rom, gather_around, has_code, resolve, sharp_sum, tap_codes, taps_around,
+};
 use afterimage::kernel::taa;
 use glam::{DVec3, Vec3, Vec4};
 
@@ -26,36 +29,64 @@ fn catmull_rom_weights_sum_to_one_and_are_exact_on_texels() {
             let expected = if d < 1.0 { (1.5 * d - 2.5) * d * d + 1.0 } else { ((-0.5 * d + 2.5) * d - 4.0) * d + 2.0 };
             assert!((f64::from(w) - expected).abs() < 1e-6, "{t}, texel {i}");
         }
-        let linear = linear_weights(t);
-        assert_eq!((linear[0], linear[2], linear[3]), (0.0, t, 0.0));
-        assert!((linear[1] + t - 1.0).abs() <= 1e-7);
     }
 }
 
 #[test]
 fn twelve_taps_are_the_sixteen_without_corners() {
-    let taps: Vec<_> = (0..TAPS).map(tap_at).collect();
+    let mut read = vec![];
+    let taps = taps_around([1, 1], [0.3, 0.7], [4, 4]);
+    let mut sum = 0.0;
+    gather_around(&taps, |texel| {
+        read.push(texel);
+        let [x, y] = texel.map(|i| i as usize);
+        sum += taps.sharp_x[x] * taps.sharp_y[y];
+        Tap { color: Vec3::ZERO, lod: 0.0, same: true }
+    });
+    assert!((sum - sharp_sum(&taps)).abs() <= 1e-6, "{sum}, not {}", sharp_sum(&taps));
+    read.sort_by_key(|[x, y]| [*y, *x]);
     let expected: Vec<_> = (0..4)
         .flat_map(|y| (0..4).map(move |x| [x, y]))
         .filter(|&[x, y]| !([0, 3].contains(&x) && [0, 3].contains(&y)))
         .collect();
-    assert_eq!(taps, expected);
+    assert_eq!(read, expected);
+    // At the corner of an image the taps beyond it are the border's.
+    let mut corner = vec![];
+    gather_around(&taps_around([-1, 4], [0.5, 0.0], [5, 5]), |texel| {
+        corner.push(texel);
+        Tap { color: Vec3::ZERO, lod: 0.0, same: true }
+    });
+    assert_eq!(corner[..4], [[0, 4], [0, 4], [0, 4], [1, 4]]);
+    assert_eq!(corner[8..], [[0, 3], [0, 3], [0, 4], [0, 4]]);
 }
 
-/// Twelve taps at `fraction`; those in `other` are on another surface.
-fn read(
-    fraction: [f32; 2],
-    other: u32,
-    surface: impl Fn([u32; 2]) -> Surface,
-) -> (Gathered, afterimage::kernel::resample::Resampled) {
-    let (cx, cy) = (catmull_rom(fraction[0]), catmull_rom(fraction[1]));
-    let (lx, ly) = (linear_weights(fraction[0]), linear_weights(fraction[1]));
-    let mut g = Gathered::default();
-    for tap in 0..TAPS {
-        let [i, j] = tap_at(tap).map(|k| k as usize);
-        g = gather(g, surface(tap_at(tap)), other >> tap & 1 == 0, cx[i] * cy[j], lx[i] * ly[j]);
+#[test]
+fn codes_of_a_surface_are_those_within_a_tenth() {
+    let mut draws = Draws::new("tap codes");
+    for _ in 0..100_000 {
+        let expected = draws.range(-20.0, 20.0).exp2();
+        let codes = tap_codes(expected);
+        let ratio = draws.range(0.7, 1.4);
+        let same = has_code(disparity_code(expected * ratio) << 16, codes);
+        // A step of a code is at most 2^-10.
+        let within = |slack: f32| ratio >= 0.9 - slack && ratio <= 1.0 / 0.9 + slack;
+        assert!(!same || within(0.002), "{expected} * {ratio}");
+        assert!(same || !within(-0.002), "{expected} * {ratio}");
     }
-    (g, resolve(g, surface([1, 1])))
+    let (sky, unknown) = (disparity_code(0.0) << 16, disparity_code(-1.0) << 16);
+    assert!(has_code(sky, tap_codes(0.0)) && !has_code(sky, tap_codes(1e-3)));
+    assert!(!has_code(unknown, tap_codes(1e30)) && !has_code(unknown, tap_codes(-1.0)));
+}
+
+/// Twelve taps at `fraction`; those in `other`, bits in the order of reading, are on another surface.
+fn read(fraction: [f32; 2], other: u32, surface: impl Fn([i32; 2]) -> Surface) -> (Gathered, Resampled) {
+    let taps = taps_around([1, 1], fraction, [4, 4]);
+    let mut order = 0..12;
+    let g = gather_around(&taps, |texel| {
+        let Surface { color, lod, .. } = surface(texel);
+        Tap { color, lod, same: other >> order.next().unwrap() & 1 == 0 }
+    });
+    (g, resolve(g, sharp_sum(&taps), surface([1, 1])))
 }
 
 #[test]
@@ -67,13 +98,13 @@ fn reading_keeps_constants_and_ramps_whatever_is_missing() {
         let c = color(&mut draws, 8.0);
         let flat = Surface { color: c, lod: 1.5, disparity: 1.0 };
         let (g, r) = read(fraction, other, |_| flat);
-        assert_eq!(g.missing, other.count_ones());
+        assert_eq!(g.complete, other == 0);
         assert!((r.sharp - c).abs().max_element() <= 4e-6 * c.max_element(), "{} for {c}", r.sharp);
         assert!((r.smooth - c).abs().max_element() <= 4e-6 * c.max_element());
         assert!((r.lod - 1.5).abs() < 1e-5);
         if other == 0 {
             // A ramp is reproduced; the other taps make up for the missing corners' weight of up to 1/64.
-            let ramp = |[x, y]: [u32; 2]| Surface { color: Vec3::splat(10.0 + x as f32 + 2.0 * y as f32), ..flat };
+            let ramp = |[x, y]: [i32; 2]| Surface { color: Vec3::splat(10.0 + x as f32 + 2.0 * y as f32), ..flat };
             let (_, r) = read(fraction, 0, ramp);
             let expected = 10.0 + 1.0 + fraction[0] + 2.0 * (1.0 + fraction[1]);
             assert!((r.smooth.x - expected).abs() < 2e-5, "{} for {expected}", r.smooth.x);
@@ -83,7 +114,7 @@ fn reading_keeps_constants_and_ramps_whatever_is_missing() {
         }
     }
     let bright =
-        |at: [u32; 2]| Surface { color: Vec3::splat(if at == [0, 1] { 1.0 } else { 0.0 }), lod: 0.0, disparity: 1.0 };
+        |at: [i32; 2]| Surface { color: Vec3::splat(if at == [0, 1] { 1.0 } else { 0.0 }), lod: 0.0, disparity: 1.0 };
     assert_eq!(read([0.5, 0.0], 0, bright).1.sharp, Vec3::ZERO, "lobes below black are cut");
 }
 
@@ -94,7 +125,7 @@ fn a_sharp_reading_keeps_more_contrast_than_a_smooth_one() {
     for period in [3.0_f64, 4.0, 6.0, 8.0, 16.0] {
         let w = std::f64::consts::TAU / period;
         // A crest half way between the second and the third column.
-        let wave = |[x, _]: [u32; 2]| {
+        let wave = |[x, _]: [i32; 2]| {
             let v = 2.0 + (w * (f64::from(x) - 1.5)).cos();
             Surface { color: Vec3::splat(v as f32), lod: 0.0, disparity: 1.0 }
         };

@@ -264,7 +264,7 @@ fn h58_nothing_is_read_over_a_depth_edge() {
             for (i, (a, b)) in made.shown.pixels().iter().zip(input.color.pixels()).enumerate() {
                 let off = (0..3).fold(0.0_f32, |w, k| w.max((a[k] - b[k]).abs() / b[k]));
                 worst = worst.max(off);
-                // Storage alone is off by 1.5 * 2^-10, and by up to three times that before a share of 0.3 tells.
+                // Storage alone is off by 2^-10, and by up to three times that before a share of 0.3 tells.
                 if off > 0.006 {
                     columns.insert(i % 52);
                 }

@@ -536,12 +536,12 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
     let usual = afterimage::gpu::Variant { counters: true, ..Default::default() };
     let regions = afterimage::gpu::Variant { regions: true, ..Default::default() };
     rig.gpu.prewarm(&rig.device, [usual, regions]);
-    let count = rig.gpu.pipeline_count();
+    let count = rig.gpu.pipelines().len();
     assert_eq!(count, 4);
     let mut view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]);
     view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0));
     let made = rig.on_gpu(0, Reset::None, std::slice::from_ref(&view));
-    assert_eq!(rig.gpu.pipeline_count(), count);
+    assert_eq!(rig.gpu.pipelines().len(), count);
     // A region for the output alone.
     let target = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::OUTPUT_USAGE);
     let color = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::INPUT_USAGE);
@@ -550,7 +550,7 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
     let output = Textures::Regions(&[Region::new(&target, [0, 0])]);
     rig.gpu.record(&rig.device, &mut encoder, &Frame::new(&color, &facts, 1), output).unwrap();
     rig.queue.submit([encoder.finish()]);
-    assert_eq!(rig.gpu.pipeline_count(), count);
+    assert_eq!(rig.gpu.pipelines().len(), count);
     assert_eq!(made.stats.pixels, 70 * 41);
 }
 

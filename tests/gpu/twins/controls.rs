@@ -143,23 +143,36 @@ fn a_gaussian_of_another_width_is_caught() {
 
 #[test]
 fn a_surface_stored_or_read_wrongly_is_caught() {
-    caught(surfaces::PROBES, "half14_bits", "(h + ((h >> 1u) & 1u)) >> 1u", "h >> 1u");
-    caught(surfaces::PROBES, "half14_bits", ">> 1u, 0x3dffu)", ">> 1u, 0x3e00u)");
+    caught(surfaces::PROBES, "float14_bits", "+ ((a >> 14u) & 1u)", "+ 1u");
+    caught(surfaces::PROBES, "float14_bits", "MAX_FLOAT14: f32 = 65472.0", "MAX_FLOAT14: f32 = 65504.0");
+    caught(surfaces::PROBES, "float14_value", "0x1p-15", "0x1p-16");
+    caught(surfaces::PROBES, "lod_code", "& 0x30u", "& 0x10u");
+    caught(surfaces::PROBES, "surface_color", "float14_value(words.y & 0x3fffu)", "float14_value(words.x & 0x3fffu)");
     caught(surfaces::PROBES, "pack_surface", "* LOD_STEPS + 0.5", "* LOD_STEPS");
-    caught(surfaces::PROBES, "unpack_surface", "if lod == EMPTY_LOD", "if lod > EMPTY_LOD");
+    caught(surfaces::PROBES, "unpack_surface", "code == EMPTY_LOD", "code > EMPTY_LOD");
     caught(surfaces::PROBES, "mip_texel", "vec4<f32>(s.color, 1.0)", "vec4<f32>(s.color, 0.0)");
     caught(surfaces::PROBES, "round_mip", "half_value(half_bits(v.w))", "v.w");
 }
 
 #[test]
 fn a_wrong_tap_or_weight_is_caught() {
-    caught(surfaces::PROBES, "tap_at", "tap >= 10u", "tap > 10u");
+    caught(surfaces::PROBES, "taps_around", "catmull_rom(fraction.y)", "catmull_rom(fraction.x)");
+    caught(surfaces::PROBES, "taps_of", "x.x, y.x", "x.x, y.y");
+    caught(surfaces::PROBES, "sharp_sum", "around.sharp_y.w", "around.sharp_y.z");
+    caught(surfaces::PROBES, "tap_codes", "last - first + 1u", "last - first");
+    caught(surfaces::PROBES, "has_code", "< codes.y", "<= codes.y");
+    caught(
+        surfaces::PROBES,
+        "surface_tap",
+        "select(has_code(words.y, codes), code != EMPTY_LOD, any_code)",
+        "any_code",
+    );
+    caught(surfaces::PROBES, "nothing_gathered", "vec3<f32>(0.0), 0.0, 0.0, true", "vec3<f32>(0.0), 0.1, 0.0, true");
     caught(surfaces::PROBES, "catmull_rom", "2.0 - 1.5 * t", "2.0 - 1.51 * t");
     caught(surfaces::PROBES, "second_corner", "select(2u, 1u, along_x)", "select(1u, 2u, along_x)");
     caught(surfaces::PROBES, "corner_weight", "corner >= 2u", "corner > 2u");
-    caught(surfaces::PROBES, "linear_weights", "0.0, 1.0 - t, t, 0.0", "0.0, t, 1.0 - t, 0.0");
-    caught(surfaces::PROBES, "gather", "tap.color * linear", "tap.color * sharp");
-    caught(surfaces::PROBES, "resolve", "g.missing == 0u)", "g.missing <= 1u)");
+    caught(surfaces::PROBES, "gather", "b.color * inner.x", "b.color * four.linear_x.x");
+    caught(surfaces::PROBES, "resolve", "g.complete);", "true);");
     caught(surfaces::PROBES, "resolve", "if g.smooth_sum < 0.01 {", "if g.smooth_sum < 0.0 {");
 }
 

@@ -14,9 +14,9 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 pub const WGSL_ONLY: &[(&str, &str)] =
     &[("kept", "nothing_around"), ("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
-/// (Rust file stem, function there) without a WGSL twin: one takes a closure, in whose place the pass has a loop; the
-/// other places the samples of a frame before a device sees it.
-pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px")];
+/// (Rust file stem, function there) without a WGSL twin: two take a closure, in whose place the pass has a loop; the
+/// other one places the samples of a frame before a device sees it.
+pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px"), ("resample", "gather_around")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
 pub const PRIVATE: &[&str] =

@@ -4,7 +4,7 @@ use super::matching::{channels, like, push, stored_color};
 use super::probe::{Out, Probe, Row, Rows};
 use super::values::*;
 use afterimage::kernel::resample;
-use afterimage::kernel::resample::{Gathered, Resampled};
+use afterimage::kernel::resample::{FourTaps, Gathered, Resampled, Tap};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
@@ -17,16 +17,26 @@ fn stored(r: &Row<'_>, k: usize) -> Surface {
 }
 
 fn gathered(r: &Row<'_>) -> Gathered {
-    Gathered { sharp: r.v(0), sharp_sum: r.f(3), smooth: r.v(4), smooth_sum: r.f(7), lod: r.f(8), missing: r.u(9) }
+    Gathered { sharp: r.v(0), smooth: r.v(3), smooth_sum: r.f(6), lod: r.f(7), complete: r.u(8) != 0 }
 }
 
 fn put_gathered(o: &mut Out, g: &Gathered) {
     o.v(g.sharp);
-    o.f(g.sharp_sum);
     o.v(g.smooth);
     o.f(g.smooth_sum);
     o.f(g.lod);
-    o.u(g.missing);
+    o.b(g.complete);
+}
+
+/// A tap in five words.
+fn tap(r: &Row<'_>, k: usize) -> Tap {
+    Tap { color: r.v(k), lod: r.f(k + 3), same: r.u(k + 4) != 0 }
+}
+
+fn push_tap(d: &mut Draws, row: &mut Vec<u32>, color: [f32; 3], same: bool) {
+    push(row, &color);
+    push(row, &[(d.bits() % 63) as f32 / 7.0]);
+    row.push(same.into());
 }
 
 fn put_resampled(o: &mut Out, r: &Resampled) {
@@ -59,20 +69,31 @@ fn fraction_rows(name: &str) -> Rows {
     Rows::new(1).cross(&[&edges.concat()]).random(name, |d, row| push(row, &[fraction(d)]))
 }
 
-/// Taps of one reading: color, level of detail, whether it shows the surface, its weights' texel. The fractions come
-/// first.
-const READING: usize = 2 + 12 * 5;
+/// Positions around small images, and their sizes.
+fn around_rows(name: &str) -> Rows {
+    Rows::new(6).random(name, |d, row| {
+        let size = [1 + d.bits() % 9, 1 + d.bits() % 9];
+        row.extend(size.map(|s| (d.bits() % (s + 2)).wrapping_sub(1)));
+        push(row, &[fraction(d), fraction(d)]);
+        row.extend(size);
+    })
+}
+
+/// Words of one reading: the position, the size of the image, the nearest texel, and twelve taps.
+const READING: usize = 2 + 4 + 12 * 5;
 
 fn read_twelve(r: &Row<'_>, o: &mut Out) {
-    let (sharp, smooth) =
-        ([0, 1].map(|i| resample::catmull_rom(r.f(i))), [0, 1].map(|i| resample::linear_weights(r.f(i))));
-    let mut g = Gathered::default();
-    for tap in 0..12 {
-        let (k, [x, y]) = (2 + 5 * tap, resample::tap_at(tap as u32).map(|i| i as usize));
-        let s = Surface { color: r.v(k), lod: r.f(k + 3), disparity: 1.0 };
-        g = resample::gather(g, s, r.u(k + 4) != 0, sharp[0][x] * sharp[1][y], smooth[0][x] * smooth[1][y]);
-    }
-    put_resampled(o, &resample::resolve(g, Surface { color: r.v(2), lod: r.f(5), disparity: 1.0 }));
+    let taps = resample::taps_around([8, 8], [r.f(0), r.f(1)], [16, 16]);
+    let mut k = 1;
+    let gathered = resample::gather_around(&taps, |_| {
+        k += 5;
+        tap(r, k)
+    });
+    put_resampled(o, &resample::resolve(gathered, resample::sharp_sum(&taps), nearest(r, 2)));
+}
+
+fn nearest(r: &Row<'_>, k: usize) -> Surface {
+    Surface { color: r.v(k), lod: r.f(k + 3), disparity: 1.0 }
 }
 
 /// Sums over nine neighbours, near each other or not, as the pass makes them.
@@ -118,29 +139,28 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "half14_bits",
+        name: "float14_bits",
         module: "surface",
         words: [1, 1],
-        wgsl: "out_u(half14_bits(in_f(0u)));",
-        rust: |r, o| o.u(surface::half14_bits(r.f(0))),
+        wgsl: "out_u(float14_bits(in_f(0u)));",
+        rust: |r, o| o.u(surface::float14_bits(r.f(0))),
         rows: || {
             // Every value of a code, and the borders between.
-            let codes = (0..=0x3dff_u32).map(surface::half14_value).flat_map(|x| [x, x.next_up(), -x]);
+            let codes = (0..=0x3fff_u32).map(surface::float14_value).flat_map(|x| [x, x.next_up(), -x]);
             let codes: Vec<u32> = codes.map(f32::to_bits).collect();
             Rows::new(1)
                 .cross(&[&[finite(), codes].concat()])
-                .random("half14_bits", |d, row| row.push(finite_bits(d)))
-                .random("half14_bits, halves", |d, row| row.push(signed(d, -26, 17)))
+                .random("float14_bits", |d, row| row.push(finite_bits(d)))
+                .random("float14_bits, halves", |d, row| row.push(signed(d, -26, 17)))
         },
     },
     Probe {
-        name: "half14_value",
+        name: "float14_value",
         module: "surface",
         words: [1, 1],
-        wgsl: "out_f(half14_value(in_u(0u)));",
-        rust: |r, o| o.f(surface::half14_value(r.u(0))),
-        // Not the codes that no color has: infinity and NaNs.
-        rows: || Rows::new(1).cross(&[&(0..65536).filter(|w| w & 0x3e00 != 0x3e00).collect::<Vec<u32>>()]),
+        wgsl: "out_f(float14_value(in_u(0u)));",
+        rust: |r, o| o.f(surface::float14_value(r.u(0))),
+        rows: || Rows::new(1).cross(&[&(0..0x4000).collect::<Vec<u32>>()]),
     },
     Probe {
         name: "pack_surface",
@@ -175,6 +195,22 @@ pub const PROBES: &[Probe] = &[
         rows: || packed_rows("unpack_surface"),
     },
     Probe {
+        name: "lod_code",
+        module: "surface",
+        words: [2, 1],
+        wgsl: "out_u(lod_code(vec2<u32>(in_u(0u), in_u(1u))));",
+        rust: |r, o| o.u(surface::lod_code([r.u(0), r.u(1)])),
+        rows: || packed_rows("lod_code"),
+    },
+    Probe {
+        name: "surface_color",
+        module: "surface",
+        words: [2, 3],
+        wgsl: "out_v(surface_color(vec2<u32>(in_u(0u), in_u(1u))));",
+        rust: |r, o| o.v(surface::surface_color([r.u(0), r.u(1)])),
+        rows: || packed_rows("surface_color"),
+    },
+    Probe {
         name: "mip_texel",
         module: "surface",
         words: [2, 4],
@@ -196,12 +232,94 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
-        name: "tap_at",
+        name: "taps_around",
+        module: "resample",
+        words: [6, 14],
+        wgsl: "let at = vec2<i32>(bitcast<i32>(in_u(0u)), bitcast<i32>(in_u(1u)));
+    let t = taps_around(at, vec2<f32>(in_f(2u), in_f(3u)), vec2<u32>(in_u(4u), in_u(5u)));
+    out_u(bitcast<u32>(t.texel.x)); out_u(bitcast<u32>(t.texel.y)); out_u(u32(t.last.x)); out_u(u32(t.last.y));
+    out_f(t.fraction.x); out_f(t.fraction.y);
+    out_v(t.sharp_x.xyz); out_f(t.sharp_x.w); out_v(t.sharp_y.xyz); out_f(t.sharp_y.w);",
+        rust: |r, o| {
+            let t = resample::taps_around([r.u(0) as i32, r.u(1) as i32], [r.f(2), r.f(3)], [r.u(4), r.u(5)]);
+            t.texel.iter().chain(&t.last).for_each(|&i| o.u(i as u32));
+            t.fraction.iter().chain(&t.sharp_x).chain(&t.sharp_y).for_each(|&x| o.f(x));
+        },
+        rows: || around_rows("taps_around"),
+    },
+    Probe {
+        name: "sharp_sum",
+        module: "resample",
+        words: [6, 1],
+        wgsl: "out_f(sharp_sum(taps_around(vec2<i32>(0), vec2<f32>(in_f(2u), in_f(3u)), vec2<u32>(1u))));",
+        rust: |r, o| o.f(resample::sharp_sum(&resample::taps_around([0; 2], [r.f(2), r.f(3)], [1; 2]))),
+        rows: || around_rows("sharp_sum"),
+    },
+    Probe {
+        name: "taps_of",
+        module: "resample",
+        words: [5, 17],
+        wgsl: "let at = vec2<i32>(bitcast<i32>(in_u(0u)), bitcast<i32>(in_u(1u)));
+    let t = taps_of(taps_around(at, vec2<f32>(in_f(2u), in_f(3u)), vec2<u32>(9u, 7u)), in_u(4u));
+    out_u(u32(t.a.x)); out_u(u32(t.a.y)); out_u(u32(t.b.x)); out_u(u32(t.b.y)); out_u(u32(t.c.x)); out_u(u32(t.c.y));
+    out_u(u32(t.d.x)); out_u(u32(t.d.y)); out_v(t.sharp_x.xyz); out_f(t.sharp_x.w);
+    out_f(t.sharp_rows.x); out_f(t.sharp_rows.y); out_f(t.linear_x.x); out_f(t.linear_x.y); out_f(t.linear_row);",
+        rust: |r, o| {
+            let around = resample::taps_around([r.u(0) as i32, r.u(1) as i32], [r.f(2), r.f(3)], [9, 7]);
+            let t = resample::taps_of(&around, r.u(4));
+            t.texels.iter().flatten().for_each(|&i| o.u(i as u32));
+            t.sharp_x.iter().chain(&t.sharp_rows).chain(&t.linear_x).chain([&t.linear_row]).for_each(|&w| o.f(w));
+        },
+        rows: || {
+            Rows::new(5).random("taps_of", |d, row| {
+                row.extend([d.bits() % 9, d.bits() % 7]);
+                push(row, &[fraction(d), fraction(d)]);
+                row.push(d.bits() % resample::ROUNDS);
+            })
+        },
+    },
+    Probe {
+        name: "tap_codes",
         module: "resample",
         words: [1, 2],
-        wgsl: "let t = tap_at(in_u(0u)); out_u(t.x); out_u(t.y);",
-        rust: |r, o| resample::tap_at(r.u(0)).into_iter().for_each(|x| o.u(x)),
-        rows: || Rows::new(1).cross(&[&(0..resample::TAPS).collect::<Vec<_>>()]),
+        wgsl: "let c = tap_codes(in_f(0u)); out_u(c.x); out_u(c.y);",
+        rust: |r, o| resample::tap_codes(r.f(0)).into_iter().for_each(|x| o.u(x)),
+        rows: || {
+            let disparities = [positive(), floats(&[-1.0, -0.0])].concat();
+            Rows::new(1).cross(&[&disparities]).random("tap_codes", |d, row| row.push(scaled(d, -34, 34)))
+        },
+    },
+    Probe {
+        name: "has_code",
+        module: "resample",
+        words: [3, 1],
+        wgsl: "out_b(has_code(in_u(0u), vec2<u32>(in_u(1u), in_u(2u))));",
+        rust: |r, o| o.b(resample::has_code(r.u(0), [r.u(1), r.u(2)])),
+        rows: || {
+            let codes = [0, 1, 2, 7, 8, 9, 0xfffe, 0xffff];
+            let words: Vec<u32> = codes.iter().flat_map(|c| [c << 16, c << 16 | 0xffff]).collect();
+            Rows::new(3).cross(&[&words, &codes, &codes])
+        },
+    },
+    Probe {
+        name: "surface_tap",
+        module: "resample",
+        words: [5, 5],
+        wgsl: "let t = surface_tap(vec2<u32>(in_u(0u), in_u(1u)), vec2<u32>(in_u(2u), in_u(3u)), in_u(4u) != 0u);
+    out_v(t.color); out_f(t.lod); out_b(t.same);",
+        rust: |r, o| {
+            let t = resample::surface_tap([r.u(0), r.u(1)], [r.u(2), r.u(3)], r.u(4) != 0);
+            o.v(t.color);
+            o.f(t.lod);
+            o.b(t.same);
+        },
+        rows: || {
+            Rows::new(5).random("surface_tap", |d, row| {
+                let words = [bits(d) | [0, 0xf000_0000][d.bits() as usize % 2], bits(d) | 0xc000];
+                row.extend(words);
+                row.extend([(words[1] >> 16).saturating_sub(d.bits() % 4), d.bits() % 4, d.bits() % 2]);
+            })
+        },
     },
     Probe {
         name: "second_corner",
@@ -237,57 +355,75 @@ pub const PROBES: &[Probe] = &[
         rows: || fraction_rows("catmull_rom"),
     },
     Probe {
-        name: "linear_weights",
-        module: "resample",
-        words: [1, 4],
-        wgsl: "let w = linear_weights(in_f(0u)); out_v(w.xyz); out_f(w.w);",
-        rust: |r, o| resample::linear_weights(r.f(0)).into_iter().for_each(|x| o.f(x)),
-        rows: || fraction_rows("linear_weights"),
-    },
-    Probe {
         name: "gather",
         module: "resample",
-        words: [18, 10],
-        wgsl: "let before = Gathered(in_v(0u), in_f(3u), in_v(4u), in_f(7u), in_f(8u), in_u(9u));
-    let g = gather(before, Surface(in_v(10u), in_f(13u), in_f(14u)), in_u(15u) != 0u, in_f(16u), in_f(17u));
-    out_v(g.sharp); out_f(g.sharp_sum); out_v(g.smooth_color); out_f(g.smooth_sum); out_f(g.lod); out_u(g.missing);",
-        rust: |r, o| put_gathered(o, &resample::gather(gathered(r), stored(r, 10), r.u(15) != 0, r.f(16), r.f(17))),
+        words: [9 + 4 * 5 + 9, 9],
+        wgsl: "let before = Gathered(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_u(8u) != 0u);
+    let a = Tap(in_v(9u), in_f(12u), in_u(13u) != 0u); let b = Tap(in_v(14u), in_f(17u), in_u(18u) != 0u);
+    let c = Tap(in_v(19u), in_f(22u), in_u(23u) != 0u); let d = Tap(in_v(24u), in_f(27u), in_u(28u) != 0u);
+    let at = vec2<i32>(0);
+    let four = FourTaps(at, at, at, at, vec4<f32>(in_v(29u), in_f(32u)), vec2<f32>(in_f(33u), in_f(34u)),
+        vec2<f32>(in_f(35u), in_f(36u)), in_f(37u));
+    let g = gather(before, a, b, c, d, four);
+    out_v(g.sharp); out_v(g.smooth_color); out_f(g.smooth_sum); out_f(g.lod); out_b(g.complete);",
+        rust: |r, o| {
+            let taps = [9, 14, 19, 24].map(|k| tap(r, k));
+            let four = FourTaps {
+                texels: [[0; 2]; 4],
+                sharp_x: [29, 30, 31, 32].map(|k| r.f(k)),
+                sharp_rows: [r.f(33), r.f(34)],
+                linear_x: [r.f(35), r.f(36)],
+                linear_row: r.f(37),
+            };
+            put_gathered(o, &resample::gather(gathered(r), taps, &four));
+        },
         rows: || {
-            Rows::new(18).random("gather", |d, row| {
+            Rows::new(38).random("gather", |d, row| {
                 let (past, color) = (stored_color(d), stored_color(d));
-                push(row, &[past.map(|x| x * d.range(-0.1, 1.1)), [d.uniform(); 3]].concat()[..4]);
-                push(row, &[past.map(|x| x * d.uniform()), [d.uniform(); 3]].concat()[..4]);
-                push(row, &[d.range(0.0, MAX_LOD)]);
-                row.push(d.bits() % 12);
-                push(row, &[color, [d.range(0.0, MAX_LOD), d.uniform(), 0.0]].concat()[..5]);
-                row.push(u32::from(d.bits() % 4 != 0));
-                push(row, &[d.range(-0.13, 1.0), if d.bits() & 1 == 0 { 0.0 } else { d.uniform() }]);
+                push(row, &past.map(|x| x * d.range(-0.1, 1.1)));
+                push(row, &past.map(|x| x * d.uniform()));
+                push(row, &[d.uniform(), d.range(0.0, MAX_LOD)]);
+                row.push(d.bits() % 2);
+                for _ in 0..4 {
+                    let same = d.bits() % 8 != 0;
+                    let near = like(d, color).map(|x| x.max(0.0));
+                    push_tap(d, row, near, same);
+                }
+                push(row, &[0; 6].map(|_| d.range(-0.13, 1.0)));
+                push(row, &[0; 3].map(|_| if d.bits() & 1 == 0 { 0.0 } else { d.uniform() }));
             })
         },
     },
     Probe {
-        // Twelve taps, one after the other, as the pass takes them.
-        name: "resolve",
+        // Twelve taps, as the pass takes them.
+        name: "nothing_gathered",
         module: "resample",
         words: [READING, 7],
-        wgsl: "var sharp_x = catmull_rom(in_f(0u)); var sharp_y = catmull_rom(in_f(1u));
-    var smooth_x = linear_weights(in_f(0u)); var smooth_y = linear_weights(in_f(1u));
-    var g = Gathered(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0.0, 0.0, 0u);
-    for (var tap = 0u; tap < TAPS; tap++) {
-        let k = 2u + 5u * tap; let at = tap_at(tap);
-        let s = Surface(in_v(k), in_f(k + 3u), 1.0);
-        g = gather(g, s, in_u(k + 4u) != 0u, sharp_x[at.x] * sharp_y[at.y], smooth_x[at.x] * smooth_y[at.y]);
+        wgsl: "let taps = taps_around(vec2<i32>(8), vec2<f32>(in_f(0u), in_f(1u)), vec2<u32>(16u));
+    var g = nothing_gathered();
+    // A variable count, as in the passes: Mesa unrolls constant ones, and reorders their sums.
+    let rounds = select(0u, ROUNDS, in_f(0u) >= 0.0);
+    for (var round = 0u; round < rounds; round++) {
+        let k = 6u + 20u * round; let four = taps_of(taps, round);
+        let a = Tap(in_v(k), in_f(k + 3u), in_u(k + 4u) != 0u);
+        let b = Tap(in_v(k + 5u), in_f(k + 8u), in_u(k + 9u) != 0u);
+        let c = Tap(in_v(k + 10u), in_f(k + 13u), in_u(k + 14u) != 0u);
+        let d = Tap(in_v(k + 15u), in_f(k + 18u), in_u(k + 19u) != 0u);
+        g = gather(g, a, b, c, d, four);
     }
-    let r = resolve(g, Surface(in_v(2u), in_f(5u), 1.0)); out_v(r.sharp); out_v(r.smooth_color); out_f(r.lod);",
+    let r = resolve(g, sharp_sum(taps), Surface(in_v(2u), in_f(5u), 1.0));
+    out_v(r.sharp); out_v(r.smooth_color); out_f(r.lod);",
         rust: read_twelve,
         rows: || {
-            let mut rows = Rows::new(READING).random("resolve", |d, row| {
+            let mut rows = Rows::new(READING).random("nothing_gathered", |d, row| {
                 let (center, share) = (stored_color(d), d.bits() % 4);
                 push(row, &[fraction(d), fraction(d)]);
+                push(row, &center);
+                push(row, &[(d.bits() % 63) as f32 / 7.0]);
                 for _ in 0..12 {
-                    push(row, &like(d, center).map(|x| x.max(0.0)));
-                    push(row, &[(d.bits() % 63) as f32 / 7.0]);
-                    row.push(u32::from(share == 0 || d.bits() % 4 < share));
+                    let same = share == 0 || d.bits() % 4 < share;
+                    let near = like(d, center).map(|x| x.max(0.0));
+                    push_tap(d, row, near, same);
                 }
             });
             // A third is enough of rows that long.
@@ -298,17 +434,18 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "resolve",
         module: "resample",
-        words: [15, 7],
-        wgsl: "let g = Gathered(in_v(0u), in_f(3u), in_v(4u), in_f(7u), in_f(8u), in_u(9u));
-    let r = resolve(g, Surface(in_v(10u), in_f(13u), in_f(14u))); out_v(r.sharp); out_v(r.smooth_color); out_f(r.lod);",
-        rust: |r, o| put_resampled(o, &resample::resolve(gathered(r), stored(r, 10))),
+        words: [14, 7],
+        wgsl: "let g = Gathered(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_u(8u) != 0u);
+    let r = resolve(g, in_f(9u), Surface(in_v(10u), in_f(13u), 1.0));
+    out_v(r.sharp); out_v(r.smooth_color); out_f(r.lod);",
+        rust: |r, o| put_resampled(o, &resample::resolve(gathered(r), r.f(9), nearest(r, 10))),
         rows: || {
             let (c, h) = (channels(), floats(&[0.0, 6e-8, 0.18, 1.0, 65504.0]));
             let (sharp, smooth) = (floats(&[0.9, 1.0, 1.05]), [around(&[0.01, 1.0]), floats(&[0.0, 0.5])].concat());
-            let (lod, missing) = (floats(&[0.0, 1.0, 8.9]), [0, 1, 11, 12]);
-            let mut lists: Vec<&[u32]> = vec![&c, &c, &c, &sharp, &h, &h, &h, &smooth, &lod, &missing];
-            lists.extend([&h[..], &h, &h, &lod, &h]);
-            Rows::new(15).mixed("resolve", &lists)
+            let (lod, complete) = (floats(&[0.0, 1.0, 8.9]), [0, 1]);
+            let mut lists: Vec<&[u32]> = vec![&c, &c, &c, &h, &h, &h, &smooth, &lod, &complete, &sharp];
+            lists.extend([&h[..], &h, &h, &lod]);
+            Rows::new(14).mixed("resolve", &lists)
         },
     },
     Probe {

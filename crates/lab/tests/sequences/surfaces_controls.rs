@@ -77,8 +77,8 @@ const SHARED: &[(&str, &str)] = &[
     ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
     ("textureStore(next_surfaces, px, view,", "textureStore(next_surfaces, px, 1u - view,"),
     // Taps one texel off, and weights of the other axis.
-    ("source.texel + vec2<i32>(at) - 1", "source.texel + vec2<i32>(at)"),
-    ("catmull_rom(source.fraction.x)", "catmull_rom(source.fraction.y)"),
+    ("taps_around(source.texel,", "taps_around(source.texel + 1,"),
+    ("fraction, catmull_rom(fraction.x)", "fraction, catmull_rom(fraction.y)"),
     // Inputs ignored (trust, exposure) and depth tests omitted.
     ("confidence = trust(trust_at(px, view));", ""),
     ("return expose(stored, frame.exposure);", "return stored;"),
@@ -86,7 +86,7 @@ const SHARED: &[(&str, &str)] = &[
     ("let stands_in = previous.verdict", "let stands_in = false && previous.verdict"),
     ("corner_weight(corner, fraction) > STAND_IN_WEIGHT", "true"),
     ("same_surface(previous.expected, other.disparity, frame.depth_relative, 0.0)", "true"),
-    ("same_surface(source.previous.expected, s.disparity, TAP_RELATIVE, 0.0)", "true"),
+    ("return (word >> 16u) - codes.x < codes.y;", "return true;"),
     // Wrong counters.
     ("count_if(!usable, COUNT_NONFINITE);", ""),
 ];

@@ -8,7 +8,7 @@ use std::path::Path;
 const SKIPPED: [&str; 5] = ["target", ".git", "out", "artifacts", "corpus"];
 
 /// Folders of the packages, relative to the root of the workspace, with a slash at the end unless empty.
-pub const PACKAGES: [&str; 4] = ["", "crates/lab/", "crates/testing/", "crates/tool/"];
+pub const PACKAGES: [&str; 5] = ["", "crates/isa/", "crates/lab/", "crates/testing/", "crates/tool/"];
 
 /// Files and folders of the workspace, with slashes, relative to its root. Folders end with a slash.
 pub struct Tree {

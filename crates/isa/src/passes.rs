@@ -1,0 +1,136 @@
+//! The passes of the methods, as the drop-in compiles them.
+
+use crate::Result;
+use afterimage::gpu::{Afterimage, Variant};
+use afterimage::shader::{Composer, Module, SHADERS};
+use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Sampler, Settings, ViewFrame, ViewGeometry};
+
+/// Size of the frames of the roofline.
+pub const SIZE_PX: [u32; 2] = [3840, 2160];
+
+/// The copy that benches hold the passes against.
+static COPY: &[Module] = &[Module {
+    name: "copy_pass",
+    path: "crates/tool/shaders/bench/copy_pass.wgsl",
+    text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../tool/shaders/bench/copy_pass.wgsl")),
+}];
+static WITH_COPY: Composer = Composer::new(&[afterimage::shader::MODULES, COPY]);
+
+/// What is run for a frame.
+pub struct MethodPasses {
+    pub name: &'static str,
+    /// Bytes a pixel, read and written.
+    pub bytes: u32,
+    pub passes: Vec<Pass>,
+}
+
+/// A pipeline.
+pub struct Pass {
+    /// Method and shader module.
+    pub name: String,
+    pub text: String,
+    pub overrides: Vec<(&'static str, u32)>,
+    /// Pixels, texels or samples that it covers, for each pixel of the frame.
+    pub share: f64,
+    /// Of these, what an invocation takes.
+    pub pixels: f64,
+    /// Its loops in the order of the code, by the names that `perf::rounds` knows.
+    pub loops: &'static [&'static str],
+}
+
+/// All methods, on full frames and on sparse ones, which are the default stream.
+pub fn methods() -> Result<Vec<MethodPasses>> {
+    let full = |method| Settings { method, ..Settings::default() };
+    let sparse = |method| {
+        let foveation = Foveation { filter: Filter::Sparse, ..Foveation::default() };
+        Settings { method, foveation, ..Settings::default() }
+    };
+    let noisy = |settings: Settings| Settings { noisy: true, ..settings };
+    [
+        ("copy", full(Method::Wrs)),
+        ("none", full(Method::None)),
+        ("taa", full(Method::Taa)),
+        ("wrs", full(Method::Wrs)),
+        ("wrs weighted", Settings::weighted()),
+        ("smr", full(Method::Smr)),
+        ("smr noisy", noisy(full(Method::Smr))),
+        ("sparse smr", sparse(Method::Smr)),
+        ("sparse smr noisy", noisy(sparse(Method::Smr))),
+        ("sparse taau", sparse(Method::Taau)),
+        ("sparse wrs", sparse(Method::Wrs)),
+    ]
+    .into_iter()
+    .map(|(name, settings)| method(name, &settings))
+    .collect()
+}
+
+/// The pipelines for frames with depth and motion.
+fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
+    // A device without hardware takes all shaders, and does nothing with them.
+    let (device, _queue) = Device::noop(&DeviceDescriptor::default());
+    let desc = ContextDesc { settings: *settings, ..ContextDesc::new([64, 64]) };
+    let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float)?;
+    post.prewarm(&device, [Variant { depth: true, motion: true, ..Variant::default() }]);
+    let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {
+        if name == "copy" {
+            let text = WITH_COPY.compose("copy_pass").source;
+            return Ok(Pass { name: name.to_owned(), text, overrides, share: 1.0, pixels: 1.0, loops: &[] });
+        }
+        let of_candidates = if overrides.contains(&("CANDIDATES", 1)) { ", candidates" } else { "" };
+        Ok(Pass {
+            name: format!("{name}: {module}{of_candidates}"),
+            text: SHADERS.compose(module).source,
+            overrides,
+            share: share(module, settings)?,
+            pixels: if module == "smr_pass" { 4.0 } else { 1.0 },
+            loops: loops(module, settings),
+        })
+    };
+    let mut passes: Vec<Pass> = post.pipelines().into_iter().map(pass).collect::<Result<_>>()?;
+    // The table of compiled pipelines has no order of its own.
+    passes.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]), passes })
+}
+
+fn share(module: &str, settings: &Settings) -> Result<f64> {
+    Ok(match module {
+        // Texels of level 1.
+        "candidate_pass" => 1.0 / 4.0,
+        // Level 2 has a sixteenth of the pixels, the others a third of that.
+        "mip_chain_pass" => 1.0 / 12.0,
+        "sparse_observe_pass" | "sparse_light_pass" => samples_share(settings)?,
+        _ => 1.0,
+    })
+}
+
+/// Samples of the coarse lattices a pixel, with the gaze in the middle of a view of 70 degrees.
+fn samples_share(settings: &Settings) -> Result<f64> {
+    let geometry = ViewGeometry::flat(SIZE_PX, 70.0)?;
+    let gaze_px = SIZE_PX.map(|s| 0.5 * s as f32);
+    let view = ViewFrame::new(geometry, Gaze::At { px: gaze_px });
+    let lattices = settings.foveation.lattices(&view.geometry, gaze_px, 0);
+    let samples = lattices.as_slice().iter().filter(|l| l.step > 1).map(|l| {
+        let [low, high] = l.covered_px();
+        (0..2).map(|i| f64::from(high[i] - low[i]) / f64::from(l.step)).product::<f64>()
+    });
+    Ok(samples.sum::<f64>() / SIZE_PX.map(f64::from).iter().product::<f64>())
+}
+
+fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
+    match module {
+        "wrs_pass" if settings.sampler == Sampler::AChaoMean => &["slope", "guard", "resample"],
+        "wrs_pass" => &["slope"],
+        "wrs_sparse_pass" => &["lattice", "slope"],
+        "fill_pass" => &["lattice", "four"],
+        "taau_pass" => &["slope", "guard", "resample", "lattice", "around"],
+        "sparse_observe_pass" => &["slope", "four"],
+        "sparse_light_pass" if settings.noisy => &["around"],
+        "sparse_light_pass" => &["around", "around relit"],
+        "sparse_pass" => &["lattice", "four", "slope", "four"],
+        "taa_pass" => &["slope", "around", "guard", "resample"],
+        "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
+        "smr_pass" => &["block", "slope", "guard", "resample", "relight"],
+        _ => &[],
+    }
+}

@@ -1,0 +1,13 @@
+//! Cycles of the passes are those of docs/performance.md, within 3 %. `AFTERIMAGE_BLESS=1` rewrites the page.
+
+use std::process::Command;
+
+#[test]
+fn cycles_are_those_of_the_page() {
+    let bless = std::env::var_os("AFTERIMAGE_BLESS").is_some();
+    let status = Command::new(env!("CARGO_BIN_EXE_afterimage-isa"))
+        .arg(if bless { "bless" } else { "check" })
+        .status()
+        .expect("the program runs");
+    assert!(status.success(), "see above");
+}
