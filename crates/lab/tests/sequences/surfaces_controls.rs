@@ -160,7 +160,7 @@ fn every_planted_error_in_smr_is_caught() {
                 "let second = past_level(at, max(level, 1u), view);",
             ),
             ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
-            ("texels_1 = select(texels_1, texel, i == 1u);", ""),
+            ("words_1 = select(words_1, words, i == 1u);", ""),
             // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted
             // by coverage.
             ("select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0)", "result.lod"),
