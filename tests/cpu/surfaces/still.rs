@@ -109,9 +109,17 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
         let pairs = made.shown.pixels().iter().flatten().zip(coarse.pixels().iter().flatten());
         pairs.fold(0.0_f32, |worst, (shown, given)| worst.max((shown - given).abs() / given))
     };
+    let mean = |made: &Made| {
+        let pairs = made.shown.pixels().iter().flatten().zip(coarse.pixels().iter().flatten());
+        let errors: Vec<_> = pairs.map(|(shown, given)| f64::from((shown - given).abs() / given)).collect();
+        errors.iter().sum::<f64>() / errors.len() as f64
+    };
     println!("off by {:.5} of the color after a frame, {:.5} after 29", off(&frames[1]), off(&frames[29]));
-    // Measured: 0.0023 and 0.0153, and nothing changes from the 10th frame on.
+    println!("mean: {:.5} after 29", mean(&frames[29]));
+    // Measured: 0.0023 and 0.0153 in one pixel that is taken for relit, 0.00031 in the mean, and nothing changes from
+    // the 10th frame on.
     assert!(off(&frames[29]) < 0.02);
+    assert!(mean(&frames[29]) < 0.0004);
     assert!(frames[10..].iter().all(|made| made.words == frames[10].words));
 }
 
