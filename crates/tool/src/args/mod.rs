@@ -17,9 +17,9 @@ pub mod paths;
 pub mod pattern;
 mod picture;
 
-#[cfg(feature = "full")]
 #[cfg(feature = "view")]
 pub use foveation::GeometryName;
+#[cfg(feature = "full")]
 pub use foveation::{FilterName, FoveationArgs};
 #[cfg(feature = "full")]
 pub use method::{MethodName, WrsArgs};
