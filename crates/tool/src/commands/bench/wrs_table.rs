@@ -104,8 +104,12 @@ struct Sweep {
 pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
     let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
     let readings = wrs_readings::table(args)?;
+    // Before the sweep, which may be interrupted.
+    if args.readings_only || args.markdown.is_some() {
+        write(args, &readings)?;
+    }
     if args.readings_only {
-        return write(args, &readings);
+        return Ok(());
     }
     let out = args.out.to_string_lossy();
     let (rate_mid, rate_far) = (format!("rate-mid={}", args.rate_mid), format!("rate-far={}", args.rate_far));
