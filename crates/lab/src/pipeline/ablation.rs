@@ -42,7 +42,7 @@ pub const PARTS: &[Part] = &[
                 "return Sanitized(c, true);",
             ),
             ("let c = clamp(linear_color, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let c = linear_color;"),
-            ("max(g.sharp * (1.0 / g.sharp_sum), vec3<f32>(0.0))", "g.sharp * (1.0 / g.sharp_sum)"),
+            ("max(g.sharp * (1.0 / weights), vec3<f32>(0.0))", "g.sharp * (1.0 / weights)"),
             (
                 "let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);",
                 "let ratio = (candidate + DARK) / (history + DARK);",
@@ -72,17 +72,20 @@ pub const PARTS: &[Part] = &[
         name: "catmull-rom",
         instead: "history is resampled bilinearly",
         methods: RESAMPLED,
-        replaced: &[
-            ("let sharp_x = catmull_rom(source.fraction.x);", "let sharp_x = linear_weights(source.fraction.x);"),
-            ("let sharp_y = catmull_rom(source.fraction.y);", "let sharp_y = linear_weights(source.fraction.y);"),
-        ],
+        replaced: &[(
+            "fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));",
+            "fraction, vec4(0.0, 1.0 - fraction.x, fraction.x, 0.0), vec4(0.0, 1.0 - fraction.y, fraction.y, 0.0));",
+        )],
     },
     Part {
         name: "fine-history",
         instead: "history stores 6 mantissa bits of colors, as 11-bit floats do, instead of 9 (taa, taau, smr) or 10 (wrs)",
         methods: HISTORIES,
         replaced: &[
-            ("return min((h + ((h >> 1u) & 1u)) >> 1u, 0x3dffu);", "return min(((h + 8u) & 0xfff0u) >> 1u, 0x3dffu);"),
+            (
+                "return select(rounded, small, a < (112u << 23u));",
+                "return min((select(rounded, small, a < (112u << 23u)) + 4u) & 0xfff8u, 0x3df8u);",
+            ),
             (
                 "half_bits(s.color.x) | (half_bits(s.color.y) << 16u),",
                 "((half_bits(s.color.x) + 8u) & 0xfff0u) | (((half_bits(s.color.y) + 8u) & 0xfff0u) << 16u),",
