@@ -1,7 +1,7 @@
 //! Images in memory.
 
 use crate::error::FrameError;
-use rayon::prelude::*;
+use crate::parallel::for_rows;
 
 /// An image in memory: pixels row after row, the first row at the top. Pixel centres have integer coordinates.
 ///
@@ -51,7 +51,7 @@ impl<T: Copy> Image<T> {
         T: Default + Send,
     {
         let mut image = Self::filled(size, T::default());
-        image.pixels.par_chunks_mut(size[0].max(1) as usize).enumerate().for_each(|(y, row)| {
+        for_rows(&mut image.pixels, size[0].max(1) as usize, |y, row| {
             for (x, pixel) in row.iter_mut().enumerate() {
                 *pixel = f([x as u32, y as u32]);
             }

@@ -58,7 +58,7 @@
 //!
 //! # Executors
 //!
-//! Two executors run the same passes; their results are equal bit for bit on software Vulkan.
+//! Two executors run the same passes; their results are equal bit for bit on software Vulkan, native and in a browser.
 //!
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Afterimage`]")]
 #![cfg_attr(not(feature = "gpu"), doc = "- `gpu::Afterimage`")]
@@ -114,6 +114,8 @@ mod image;
 pub mod kernel;
 mod lattice;
 mod method;
+#[cfg(feature = "cpu")]
+mod parallel;
 mod resize;
 mod settings;
 #[doc(hidden)]

@@ -121,8 +121,8 @@ pub struct LatticeUniforms {
     pub texel: [u32; 2],
     /// log2 of the distance of neighbouring samples in pixels.
     pub level: u32,
-    /// Distance of neighbouring samples in texels: 1 in an atlas, otherwise as in pixels.
-    pub stride: u32,
+    /// The same in texels of the color input: 0 in an atlas, otherwise as in pixels.
+    pub texel_level: u32,
     /// Texel of the top-left sample's results (`result_texel`).
     pub results: [u32; 2],
     /// Padding to a multiple of 16 bytes.
@@ -155,12 +155,12 @@ impl LatticeUniforms {
     fn new(lattice: &Lattice, size_px: [u32; 2]) -> Self {
         let Lattice { step, first_px, .. } = *lattice;
         let [low_px, high_px] = lattice.covered_px();
-        let (texel, stride) = lattice.atlas_texel.map_or((first_px, step), |texel| (texel, 1));
         let inside = |i: usize| size_px[i].saturating_sub(first_px[i]).div_ceil(step);
         let points = [0, 1].map(|i| lattice.points[i].min(inside(i)));
         let level = step.ilog2();
+        let (texel, texel_level) = lattice.atlas_texel.map_or((first_px, level), |texel| (texel, 0));
         let results = result_texel(level, size_px);
-        Self { low_px, high_px, first_px, points, texel, level, stride, results, unused: [0; 2] }
+        Self { low_px, high_px, first_px, points, texel, level, texel_level, results, unused: [0; 2] }
     }
 
     /// All lattices of a view of `size_px`.
@@ -208,6 +208,6 @@ impl LatticeUniforms {
     #[cfg(feature = "cpu")]
     #[inline(always)]
     pub(crate) fn texel_of(&self, point: [u32; 2]) -> [u32; 2] {
-        [0, 1].map(|i| self.texel[i] + self.stride * point[i])
+        [0, 1].map(|i| self.texel[i] + (point[i] << self.texel_level))
     }
 }

@@ -12,8 +12,8 @@ everything=(--locked --workspace --features cpu,serde,view,ablation)
 # The same on the other wgpu.
 everything_29=(--locked --workspace --no-default-features --features wgpu-29,cpu,serde,view,ablation)
 target="${CARGO_TARGET_DIR:-target}"
-# Incremental compilation pays off in later builds only, and costs time in this one.
-export CARGO_INCREMENTAL=0
+# Incremental compilation pays off in later builds only, and costs time in this one. So do symbols for debuggers.
+export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none
 
 step "Vulkan driver"
 has_icd() { ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json "${VK_DRIVER_FILES:-/nonexistent}" 2>/dev/null | grep -q .; }
@@ -55,8 +55,9 @@ if [ ! -d ../shared/data ]; then
     printf '\nWARNING: no ../shared/data here: tests on rendered sequences and recorded scanpaths are SKIPPED\n'
 fi
 
-step "tests on wgpu 29: the drop-in on the GPU, the renderers' twins, lost devices, arithmetic"
-cargo test "${everything_29[@]}" --test gpu --test gpu_cost --test gpu_memory --test twins --test device_loss --test self_test
+# Without planted errors, which the same tests on wgpu 30 have. The plugin for Bevy is on wgpu 29, too.
+step "tests on wgpu 29: the drop-in on the GPU, lost devices"
+cargo test "${everything_29[@]}" --test gpu --test gpu_cost --test gpu_memory --test device_loss -- --skip caught --skip planted
 
 step "tests"
 # Tests of hard cases write what they measure here. When all have run, it is compared with the table in docs/stability.md.

@@ -14,14 +14,14 @@ fn eccentricity_deg(ray: vec3<f32>, gaze: vec3<f32>) -> f32 {
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let across = sqrt(cx * cx + cy * cy + cz * cz);
     let along = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
-    return atan2_upper(across, along) * (180.0f / PI);
+    return min(atan2_upper(across, along) * (180.0f / PI), 180.0);
 }
 
 // acuity::cell_density (eq. 3)
 fn cell_density(e_deg: f32) -> f32 {
-    let q = 1.0 + e_deg / R_2_DEG;
-    let far = exp(-e_deg / R_E_DEG);
-    return (2.0f * D_C0) * (A_K / (q * q) + (1.0f - A_K) * far) / (1.0 + e_deg / R_M_DEG);
+    let q = 1.0 + e_deg * (1.0f / R_2_DEG);
+    let far = exp(e_deg * (-1.0f / R_E_DEG));
+    return (2.0f * D_C0) * (A_K / (q * q) + (1.0f - A_K) * far) / (1.0 + e_deg * (1.0f / R_M_DEG));
 }
 
 // acuity::candidate_weight (eq. 4)

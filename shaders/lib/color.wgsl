@@ -1,23 +1,20 @@
-//#use sanitize
 // Twin of src/kernel/color.rs.
 
 const LAB_EPSILON: f32 = 216.0f / 24389.0f;
-const LAB_KAPPA: f32 = 24389.0f / 27.0f;
+const LAB_SLOPE: f32 = 841.0f / 108.0f;
+const LAB_OFFSET: f32 = 16.0f / 116.0f;
 
-// color::cbrt: initial guess from the bits, then two Halley steps.
+// color::cbrt: guess of the inverse root from the bits, then a polynomial.
 fn cbrt(x: f32) -> f32 {
     let size = abs(x);
     if size < 1e-30 {
         return 0.0;
     }
-    // Software Vulkan runs the loop for 0, too, where the cube of the guess is denormal. Arithmetic on denormals alone
-    // would double the time of the pass.
-    let a = select(size, 1.0, size < 1e-30);
-    var r = bitcast<f32>(bitcast<u32>(a) / 3u + 0x2a514067u);
-    for (var i = 0u; i < 2u; i++) {
-        let r3 = r * r * r;
-        r = r - r * ((r3 - a) / (2.0 * r3 + a));
-    }
+    let y = bitcast<f32>(0x54a1f800 - i32(f32(bitcast<i32>(size)) * (1.0f / 3.0)));
+    let d = (size * y) * y;
+    let e = 1.0 - d * y;
+    let p = (((0.42722866 * e + 0.4579193) * e + 0.49381617) * e + 0.5555419) * e + 0.6666667;
+    let r = d + d * (e * p);
     return select(r, -r, x < 0.0);
 }
 
@@ -48,9 +45,9 @@ fn srgb_encode(linear_value: f32) -> f32 {
 // color::srgb_decode
 fn srgb_decode(encoded: f32) -> f32 {
     let a = abs(encoded);
-    var decoded = a / 12.92;
+    var decoded = a * (1.0f / 12.92);
     if a > 0.04045 {
-        let t = (a + 0.055) / 1.055;
+        let t = (a + 0.055) * (1.0f / 1.055);
         let r = fifth_root(t);
         decoded = (t * t) * (r * r);
     }
@@ -67,12 +64,11 @@ fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON {
         return cbrt(t);
     }
-    return (LAB_KAPPA * t + 16.0) / 116.0;
+    return LAB_SLOPE * t + LAB_OFFSET;
 }
 
 // color::lab
-fn lab(linear_color: vec3<f32>) -> vec3<f32> {
-    let c = clamp(linear_color, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+fn lab(c: vec3<f32>) -> vec3<f32> {
     let fx = lab_f(0.43388735 * c.x + 0.376224 * c.y + 0.18988865 * c.z);
     let fy = lab_f(0.212639 * c.x + 0.7151687 * c.y + 0.0721923 * c.z);
     let fz = lab_f(0.01775004 * c.x + 0.10944762 * c.y + 0.8728023 * c.z);

@@ -73,7 +73,7 @@ fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
     var encoded = vec3<f32>(traced.gate);
     switch view {
         case VIEW_QUALITY: { encoded = heat(traced.quality); }
-        case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) / 255.0)); }
+        case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) * (1.0f / 255.0))); }
         case VIEW_SURVIVAL: { encoded = heat(traced.survival); }
         case VIEW_REJECTION: { encoded = verdict_color(traced.verdict); }
         case VIEW_MOTION: { encoded = motion_color(traced.motion); }

@@ -5,7 +5,7 @@ const MAX_COLOR: f32 = 65408.0;
 const EMPTY_KEPT: u32 = 63u;
 const SMALLEST_EXPONENT: u32 = 111u;
 const KEPT_LOD_STEPS: f32 = 7.0;
-const MAX_KEPT_LOD: f32 = 62.0f / KEPT_LOD_STEPS;
+const MAX_KEPT_LOD: f32 = 62.0 * (1.0 / KEPT_LOD_STEPS);
 const PLACE_STEPS: f32 = 24.0;
 const FARTHEST_PX: f32 = 1.2;
 const EXACT_PX: f32 = 0.5f / PLACE_STEPS;
@@ -72,14 +72,29 @@ fn pack_kept(s: Kept) -> vec2<u32> {
 
 // kept::unpack_kept
 fn unpack_kept(words: vec2<u32>) -> Kept {
-    let lod = words.y & 63u;
-    if lod == EMPTY_KEPT {
+    if is_empty(words) {
         return Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0));
     }
+    return unpack_full(words);
+}
+
+// kept::is_empty
+fn is_empty(words: vec2<u32>) -> bool {
+    return (words.y & 63u) == EMPTY_KEPT;
+}
+
+// kept::code_word
+fn code_word(words: vec2<u32>) -> u32 {
+    return (words.y << 12u) & 0xfffc0000u;
+}
+
+// kept::unpack_full
+fn unpack_full(words: vec2<u32>) -> Kept {
     let code = (words.y >> 6u) & 0x3fffu;
     return Kept(
         unpack_color(words.x),
-        f32(lod) * (1.0f / KEPT_LOD_STEPS),
+        // The limit keeps compilers from merging this factor with later ones.
+        min(f32(words.y & 63u) * (1.0f / KEPT_LOD_STEPS), MAX_KEPT_LOD),
         select(disparity_value(code << 2u), -1.0, code == 0x3fffu),
         vec2<f32>(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
     );

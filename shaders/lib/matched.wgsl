@@ -63,7 +63,7 @@ struct ReuseWeight {
 
 // matched::reuse_weight
 fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2<f32>) -> ReuseWeight {
-    let finer = clamp((lod - history_lod) / QUALITY_WIDTH, 0.0, 1.0) * confidence.x;
+    let finer = clamp((lod - history_lod) * (1.0f / QUALITY_WIDTH), 0.0, 1.0) * confidence.x;
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = select(min(lod, 1.0), 1.0, noisy);
@@ -73,7 +73,7 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
 // matched::gain
 fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN_LEAST, GAIN_MOST);
-    let share = changed * smooth_step(0.05, 0.1, abs(ratio - 1.0));
+    let share = changed * smooth_step(0.5, 1.0, 10.0 * abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
 

@@ -89,7 +89,7 @@ fn root_slope(around: f32) -> f32 {
 fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
-    return (SIGMAS * root_slope(around)) * sqrt(sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES));
+    return root_slope(around) * sqrt((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples);
 }
 
 // noise::noise_visibility
@@ -112,7 +112,7 @@ fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
 
 // noise::sample_difference
 fn sample_difference(candidate: Noise, around: f32) -> f32 {
-    return (SIGMAS * root_slope(around)) * sqrt(candidate.variance * (2.0 / candidate.samples));
+    return root_slope(around) * sqrt(candidate.variance * ((2.0 * SIGMAS * SIGMAS) / candidate.samples));
 }
 
 // noise::expected_noise

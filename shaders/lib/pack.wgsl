@@ -64,10 +64,6 @@ fn pack(s: Stored) -> vec3<u32> {
     );
 }
 
-fn half_is_infinite(bits: u32) -> bool {
-    return (bits & 0x7c00u) == 0x7c00u;
-}
-
 struct StoredColor {
     color: vec3<f32>,
     disparity: f32,
@@ -76,12 +72,10 @@ struct StoredColor {
 
 // pack::unpack_sample
 fn unpack_sample(words: vec2<u32>) -> StoredColor {
-    let r = words.x;
-    let g = words.x >> 16u;
-    let b = words.y;
-    let corrupt = half_is_infinite(r) || half_is_infinite(g) || half_is_infinite(b);
-    let stored_color = vec3<f32>(half_value(r), half_value(g), half_value(b));
-    return StoredColor(stored_color, disparity_value(words.y >> 16u), !corrupt);
+    let stored_color = vec3<f32>(half_value(words.x), half_value(words.x >> 16u), half_value(words.y));
+    // Infinity and NaN are decoded as larger numbers than the largest half.
+    let largest = max(max(abs(stored_color.x), abs(stored_color.y)), abs(stored_color.z));
+    return StoredColor(stored_color, disparity_value(words.y >> 16u), largest <= MAX_HALF);
 }
 
 // pack::unpack

@@ -21,7 +21,9 @@ struct Reprojection {
 
 // reproject::nearest
 fn nearest(x: u32, y: u32, motion: vec2<f32>, size: vec2<u32>) -> Reprojection {
-    if !(is_finite(motion.x) && is_finite(motion.y)) || abs(motion.x) > MAX_MOTION_PX || abs(motion.y) > MAX_MOTION_PX {
+    // Bits of sizes are ordered as the sizes are, infinity and NaN last.
+    let size_bits = bitcast<vec2<u32>>(motion) & vec2<u32>(0x7fffffffu);
+    if max(size_bits.x, size_bits.y) > bitcast<u32>(MAX_MOTION_PX) {
         return Reprojection(VERDICT_BAD_MOTION, vec2<u32>(0u));
     }
     let qx = floor(f32(x) + motion.x + 0.5);

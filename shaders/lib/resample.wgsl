@@ -4,6 +4,7 @@
 const TAP_RELATIVE: f32 = 0.1;
 const STAND_IN_WEIGHT: f32 = 0.1;
 const ROUNDS: u32 = 3u;
+const LARGEST_DISPARITY: f32 = 1e30;
 
 // resample::second_corner
 fn second_corner(fraction: vec2<f32>) -> u32 {
@@ -84,11 +85,18 @@ fn sharp_sum(around: TapsAround) -> f32 {
     return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
 }
 
+// resample::codes_between
+fn codes_between(expected: f32, low: f32, high: f32) -> vec2<u32> {
+    // The limit keeps compilers from merging the factors with those of the disparity.
+    let limited = min(expected, LARGEST_DISPARITY);
+    let first = disparity_code(limited * low);
+    let last = disparity_code(limited * high);
+    return vec2<u32>(first, select(last - first + 1u, 0u, expected < 0.0));
+}
+
 // resample::tap_codes
 fn tap_codes(expected: f32) -> vec2<u32> {
-    let first = disparity_code(expected * (1.0f - TAP_RELATIVE));
-    let last = disparity_code(expected * (1.0f / (1.0f - TAP_RELATIVE)));
-    return vec2<u32>(first, select(last - first + 1u, 0u, expected < 0.0));
+    return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
 // resample::has_code

@@ -2,6 +2,7 @@
 // not exist.
 
 const MAX_HALF: f32 = 65504.0;
+const LEAST_COLOR: f32 = 0x1p-32;
 
 // sanitize::is_finite
 fn is_finite(x: f32) -> bool {
@@ -15,8 +16,10 @@ struct Sanitized {
 
 // sanitize::color
 fn color(c: vec3<f32>) -> Sanitized {
-    if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
-        return Sanitized(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);
+    let size = bitcast<vec3<u32>>(c) & vec3<u32>(0x7fffffffu);
+    if max(max(size.x, size.y), size.z) < 0x7f800000u {
+        let limited = clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+        return Sanitized(select(vec3<f32>(0.0), limited, size >= vec3<u32>(bitcast<u32>(LEAST_COLOR))), true);
     }
     return Sanitized(vec3<f32>(0.0), false);
 }

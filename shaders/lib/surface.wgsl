@@ -5,7 +5,7 @@ const EMPTY_LOD: u32 = 63u;
 const EMPTY_SURFACE: vec2<u32> = vec2<u32>(0xf0000000u, 0xffffc000u);
 const MAX_FLOAT14: f32 = 65472.0;
 const LOD_STEPS: f32 = 7.0;
-const MAX_LOD: f32 = 62.0f / LOD_STEPS;
+const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
 
 // A negative `lod` marks an empty texel.
 struct Surface {
@@ -61,7 +61,7 @@ fn unpack_surface(words: vec2<u32>) -> Surface {
     let is_empty = code == EMPTY_LOD;
     return Surface(
         select(surface_color(words), vec3<f32>(0.0), is_empty),
-        select(f32(code) / LOD_STEPS, -1.0, is_empty),
+        select(f32(code) * (1.0f / LOD_STEPS), -1.0, is_empty),
         select(disparity_value(words.y >> 16u), -1.0, is_empty),
     );
 }

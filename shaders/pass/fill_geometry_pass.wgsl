@@ -21,7 +21,7 @@ struct GeometrySample {
 fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> GeometrySample {
     let right = tap & 1u;
     let below = tap >> 1u;
-    let texel = lattice.texel + vec2<u32>(near.x.points[right], near.y.points[below]) * lattice.stride;
+    let texel = texel_of_point(vec2<u32>(near.x.points[right], near.y.points[below]), lattice);
     let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
     return GeometrySample(disparity_at(texel, view), motion_at(texel, view), share);
 }

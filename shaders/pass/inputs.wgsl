@@ -42,7 +42,7 @@ struct FrameUniforms {
     smr_tolerance: f32,
     first_view: u32,
     lattice: u32,
-    unused_0: u32,
+    mip_levels: u32,
     views: array<ViewUniforms, 4>,
 }
 

@@ -7,9 +7,12 @@
 
 @group(0) @binding(8) var past_kept: texture_2d_array<u32>;
 
+fn kept_words(texel: vec2<i32>, view: u32) -> vec2<u32> {
+    return textureLoad(past_kept, clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1), view, 0).xy;
+}
+
 fn kept_at(texel: vec2<i32>, view: u32) -> Kept {
-    let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    return unpack_kept(textureLoad(past_kept, at, view, 0).xy);
+    return unpack_kept(kept_words(texel, view));
 }
 
 // Previous position of a pixel's surface.
@@ -37,16 +40,14 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
     var around = nothing_around();
     let first = vec2<i32>(floor(previous.at));
     var nearest_texel = first;
+    let codes = tap_codes(previous.expected);
     let taps = select(0u, 4u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2<i32>(vec2<u32>(tap & 1u, tap >> 1u));
-        let stored = kept_at(texel, view);
-        var same = stored.lod >= 0.0;
-        if DEPTH_TEST != 0u {
-            same = same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0);
-        }
+        let words = kept_words(texel, view);
+        let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes));
         let cost = around.cost;
-        around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same);
+        around = add_kept(around, unpack_full(words), vec2<f32>(texel) - previous.at, same);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {

@@ -11,7 +11,7 @@ struct LatticeUniforms {
     points: vec2<u32>,
     texel: vec2<u32>,
     level: u32,
-    stride: u32,
+    texel_level: u32,
     results: vec2<u32>,
     unused_0: u32,
     unused_1: u32,
@@ -60,8 +60,13 @@ fn around(px: vec2<u32>, lattice: LatticeUniforms) -> Around {
     );
 }
 
+// Texel of sample `point` in the color input.
+fn texel_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
+    return lattice.texel + (point << vec2<u32>(lattice.texel_level));
+}
+
 // Color and alpha of sample `point`, as the renderer wrote them.
 fn sample_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
-    let texel = lattice.texel + point * lattice.stride;
+    let texel = texel_of_point(point, lattice);
     return textureLoad(color_in, texel_of(texel, frame.views[view].color_origin), layer_of(view), 0);
 }

@@ -42,7 +42,7 @@ fn past_texel(x: u32, y: u32, view: u32) -> vec4<f32> {
 // corresponds to the one that the block filter reads.
 fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32> {
     let level = u32(lod + 0.5);
-    let finer = min(block_sample_level(level), textureNumLevels(past_mips));
+    let finer = min(block_sample_level(level), frame.mip_levels);
     let texel_px = f32(1u << finer);
     let texel_x = block_sample(px.x >> level, level, frame.size.x);
     let texel_y = block_sample(px.y >> level, level, frame.size.y);
@@ -71,7 +71,7 @@ struct Matching {
 // History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color` is its level 0
 // there.
 fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
-    let last = textureNumLevels(past_mips);
+    let last = frame.mip_levels;
     let limited = min(lod, f32(last));
     let whole = floor(limited);
     let fraction = limited - whole;
@@ -104,7 +104,7 @@ struct Around {
 
 // Mean of noisy candidates around a position, at level of detail `lod` of at least 1.
 fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
-    let last = textureNumLevels(candidate_mips);
+    let last = frame.mip_levels;
     let limited = min(lod, f32(last));
     let whole = floor(limited);
     let level = u32(whole);

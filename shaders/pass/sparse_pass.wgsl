@@ -30,6 +30,12 @@ fn no_candidate() -> Candidate {
     return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0, Noise(1.0, 0.0));
 }
 
+// Squared distances of a pixel from two others along an axis.
+fn offset_px2(px: u32, others: vec2<u32>) -> vec2<f32> {
+    let offset = f32(px) - vec2<f32>(others);
+    return offset * offset;
+}
+
 // Candidate from the samples around a pixel.
 fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_now: f32) -> Candidate {
     let near = around(px, lattice);
@@ -45,25 +51,33 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     var nearest_px2 = NO_PX2;
     var own = Sanitized(vec3<f32>(0.0), false);
     var own_alpha = 1.0;
-    var fit_of_own = 1.0;
+    var own_words = vec2<u32>(0u);
     var noises = NoiseSum(0.0, 0.0, 0.0);
+    let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
+    let x_px2 = offset_px2(px.x, lattice.first_px.x + (near.x.points << vec2<u32>(level)));
+    let y_px2 = offset_px2(px.y, lattice.first_px.y + (near.y.points << vec2<u32>(level)));
+    let x_weights = vec2<f32>(point_weight(near.x.fraction, 0u), point_weight(near.x.fraction, 1u));
+    let y_weights = vec2<f32>(point_weight(near.y.fraction, 0u), point_weight(near.y.fraction, 1u));
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
-    for (var tap = 0u; tap < taps; tap++) {
-        let right = tap & 1u;
-        let below = tap >> 1u;
-        let point = vec2<u32>(near.x.points[right], near.y.points[below]);
+    // The pixel's own sample last: what the loop leaves is of it.
+    for (var left = taps; left > 0u; left--) {
+        let tap = left - 1u;
+        let right = (tap & 1u) != 0u;
+        let below = tap >= 2u;
+        let point = vec2<u32>(
+            select(near.x.points.x, near.x.points.y, right),
+            select(near.y.points.x, near.y.points.y, below),
+        );
         let given = sample_at(point, lattice, view);
         let sampled = color(given.xyz);
-        let at = px_of(point, lattice);
-        let lit = unpack_lit(textureLoad(lights, lattice.results + point, view, 0).xy);
-        let same = alike(disparity_now, lit.disparity, SAMPLE_RELATIVE);
-        if tap == 0u {
-            own = sampled;
-            own_alpha = given.w;
-            fit_of_own = lit.own_fit;
-        }
+        let words = textureLoad(lights, lattice.results + point, view, 0).xy;
+        let lit = unpack_lit(words);
+        let same = DEPTH_TEST == 0u || has_code(words.y, codes);
+        own = sampled;
+        own_alpha = given.w;
+        own_words = words;
         if sampled.usable {
-            let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
+            let share = select(x_weights.x, x_weights.y, right) * select(y_weights.x, y_weights.y, below);
             let weight = max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
             sum += vec4<f32>(sampled.color, select(1.0, given.w, is_finite(given.w))) * weight;
@@ -73,11 +87,11 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
             valid_sum += known;
             lowest = min(lowest, sampled.color);
             highest = max(highest, sampled.color);
-            let d = vec2<f32>(px) - vec2<f32>(at);
             if NOISY != 0u {
-                noises = add_noise(noises, noise_at(at, view), weight);
+                noises = add_noise(noises, noise_at(px_of(point, lattice), view), weight);
             }
-            nearest_px2 = select(nearest_px2, min(nearest_px2, d.x * d.x + d.y * d.y), same);
+            let px2 = select(x_px2.x, x_px2.y, right) + select(y_px2.x, y_px2.y, below);
+            nearest_px2 = select(nearest_px2, min(nearest_px2, px2), same);
         }
     }
     if level == 0u {
@@ -106,7 +120,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
         lowest,
         highest,
         gain_sum * known,
-        min(fit_sum * known, select(1.0, fit_of_own, is_own)),
+        min(fit_sum * known, select(1.0, unpack_lit(own_words).own_fit, is_own)),
         select(mean.w, own_alpha, is_own),
         noise,
     );

@@ -5,7 +5,7 @@ use crate::doctor::Tile;
 use crate::image::Image;
 use crate::kernel::doctor::*;
 use crate::kernel::{color, foveate, sanitize};
-use rayon::prelude::*;
+use crate::parallel::collect;
 
 /// Inputs of the pass.
 pub(super) struct Examined<'a> {
@@ -33,7 +33,7 @@ pub(super) fn light(color: &Image<[f32; 3]>) -> Image<f32> {
 
 /// Words of all tiles.
 pub(super) fn words(examined: &Examined<'_>, tiles: &[Tile]) -> Vec<u32> {
-    tiles.par_iter().flat_map_iter(|tile| examined.tile(tile)).collect()
+    collect(tiles.len() as u32, |i| examined.tile(&tiles[i as usize])).into_flattened()
 }
 
 impl Examined<'_> {

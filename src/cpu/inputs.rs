@@ -103,13 +103,13 @@ impl<'a> Inputs<'a> {
         Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
     }
 
-    /// Level of detail of the candidate at pixel (x, y): the frame's input, or by eccentricity.
+    /// Level of detail of the candidate at pixel (x, y), `e_deg` from the gaze: the frame's input, or by eccentricity.
     #[inline(always)]
-    pub fn candidate_lod(&self, foveation: &Foveation, x: u32, y: u32) -> f32 {
+    pub fn candidate_lod(&self, foveation: &Foveation, x: u32, y: u32, e_deg: f32) -> f32 {
         match self.lod {
             // max() turns NaN into 0.
             Some(lods) => lods.at(x as usize, y as usize).clamp(0.0, MAX_LOD).max(0.0),
-            None => foveation.lod(self.eccentricity_deg(self.ray(x, y))),
+            None => foveation.lod(e_deg),
         }
     }
 

@@ -6,8 +6,8 @@ use crate::kernel::foveate::{level_coordinate, level_len, split};
 use crate::kernel::matched::{mip_bilinear, mip_mean};
 use crate::kernel::noise::{candidate_bilinear, candidate_mean};
 use crate::kernel::surface::{mip_texel, round_mip};
+use crate::parallel::for_rows;
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 
 /// Levels 1 to n of one view; level l at index l - 1. Texels are rounded to halves. For surfaces: color times coverage,
 /// and coverage; for candidates: color, and the variance of a pixel's luma.
@@ -47,7 +47,7 @@ impl MipChain {
             let (finer, level) = self.levels.split_at_mut(l);
             let (finer, level) = (finer.last(), &mut level[0]);
             let row_len = level.width();
-            level.pixels_mut().par_chunks_mut(row_len).enumerate().for_each(|(y, row)| {
+            for_rows(level.pixels_mut(), row_len, |y, row| {
                 for (x, out) in row.iter_mut().enumerate() {
                     let (x0, y0) = (2 * x as u32, 2 * y as u32);
                     let at = |x: u32, y: u32| match finer {

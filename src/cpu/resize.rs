@@ -5,9 +5,9 @@ use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, ta
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
+use crate::parallel::collect;
 use crate::resize::Resize;
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 impl Resize {
     /// `values` of one view of the old size, at the nearest pixel of each pixel of the new size.
@@ -51,7 +51,7 @@ impl Resize {
 
     fn map<T: Send>(&self, pixel: impl Fn(u32, u32) -> T + Sync) -> Vec<T> {
         let [width, height] = self.size_px;
-        (0..width * height).into_par_iter().map(|i| pixel(i % width, i / width)).collect()
+        collect(width * height, |i| pixel(i % width, i / width))
     }
 
     fn index(&self, [x, y]: [u32; 2]) -> usize {

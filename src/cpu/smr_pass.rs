@@ -41,7 +41,8 @@ impl SurfaceMethod for Smr {
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let lod = view.inputs.candidate_lod(&self.settings.foveation, x, y);
+        let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
+        let lod = inputs.candidate_lod(&self.settings.foveation, x, y, e_deg);
         let coherent_motion = inputs.is_coherent(x, y, motion);
         let mut source = view.source(x, y, motion, disparity);
         if source.is_ok() && !coherent_motion {

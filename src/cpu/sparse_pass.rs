@@ -13,8 +13,8 @@ use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{
-    Around, EXACT_PX, Interpolated, Kept, add_kept, interpolate, pack_color, pack_kept, stands_in, unpack_color,
-    unpack_kept,
+    Around, EXACT_PX, Interpolated, Kept, add_kept, code_word, interpolate, is_empty, pack_color, pack_kept, stands_in,
+    unpack_color, unpack_full, unpack_kept,
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
@@ -23,7 +23,7 @@ use crate::kernel::noise::{
 };
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample::TAP_RELATIVE;
+use crate::kernel::resample::{codes_between, has_code, tap_codes};
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
@@ -31,11 +31,11 @@ use crate::kernel::sparse::{
     unpack_lit,
 };
 use crate::kernel::wrs::expose;
+use crate::parallel::collect;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::uniforms::{LatticeUniforms, ViewLattices};
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 /// Relative difference of disparity within which neighbouring samples share an estimate of light.
 const LIGHT_RELATIVE: f32 = 0.1;
@@ -107,6 +107,19 @@ impl ProcessPixel for LitView<'_> {
     }
 }
 
+/// [`codes_between`] of a surface's samples, which are interpolated for a pixel of disparity `disparity`.
+#[inline(always)]
+fn sample_codes(disparity: f32) -> [u32; 2] {
+    codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
+}
+
+/// Squared distance of two pixels along an axis.
+#[inline(always)]
+fn offset_px2(a: u32, b: u32) -> f32 {
+    let offset = a as f32 - b as f32;
+    offset * offset
+}
+
 /// Observation in two words: history's color, expected error and sureness as halves.
 fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     match o {
@@ -120,7 +133,7 @@ impl View<'_> {
     fn for_samples(&self, f: impl Fn(usize, [u32; 2]) -> [u32; 2] + Sync) -> Vec<Samples> {
         let of = |(index, lattice): (usize, &LatticeUniforms)| {
             let [columns, rows] = if lattice.level == 0 { [0, 0] } else { lattice.points };
-            (0..columns * rows).into_par_iter().map(|i| f(index, [i % columns, i / columns])).collect()
+            collect(columns * rows, |i| f(index, [i % columns, i / columns]))
         };
         self.lattices.iter().enumerate().map(of).collect()
     }
@@ -133,9 +146,9 @@ impl View<'_> {
     }
 
     #[inline(always)]
-    fn stored(&self, x: i32, y: i32) -> Kept {
+    fn stored_words(&self, x: i32, y: i32) -> [u32; 2] {
         let [width, height] = self.inputs.size.map(|s| s as i32);
-        unpack_kept(self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize])
+        self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize]
     }
 
     /// Noise of a stored sample, in this frame's exposure.
@@ -171,7 +184,7 @@ impl View<'_> {
     #[inline(always)]
     fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<(Previous, bool), Verdict> {
         self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
-            let stored = self.stored(qx as i32, qy as i32);
+            let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
             [stored.lod, stored.disparity]
         })
     }
@@ -181,16 +194,16 @@ impl View<'_> {
     #[inline(always)]
     fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> (Interpolated, Noise) {
         let [x, y] = previous.at.map(|v| v.floor() as i32);
+        let codes = tap_codes(previous.expected);
         let mut around = Around::NOTHING;
         let mut nearest_texel = [x, y];
         for tap in 0..4 {
             let (tx, ty) = (x + (tap & 1), y + (tap >> 1));
-            let sample = self.stored(tx, ty);
-            let same = sample.lod >= 0.0
-                && (!self.inputs.tests_depth() || same_surface(previous.expected, sample.disparity, TAP_RELATIVE, 0.0));
+            let words = self.stored_words(tx, ty);
+            let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), codes));
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
-            around = add_kept(around, sample, texel_px, same);
+            around = add_kept(around, unpack_full(words), texel_px, same);
             nearest_texel = if around.cost < cost { [tx, ty] } else { nearest_texel };
         }
         let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
@@ -379,7 +392,11 @@ impl View<'_> {
         let mut nearest_px2 = f32::MAX;
         let mut own = None;
         let mut noises = NoiseSum::default();
-        for tap in 0..4 {
+        let codes = sample_codes(disparity);
+        let px2 = [(px[0], lattice.first_px[0], x.points), (px[1], lattice.first_px[1], y.points)]
+            .map(|(px, first, points)| points.map(|point| offset_px2(px, first + (point << lattice.level))));
+        // The pixel's own sample last, as in the shader.
+        for tap in (0..4).rev() {
             let (right, below) = (tap & 1, tap >> 1);
             let point = [x.points[right as usize], y.points[below as usize]];
             let (color, usable) = self.sampled(lattice, point);
@@ -387,8 +404,9 @@ impl View<'_> {
                 continue;
             }
             let at = lattice.px_of(point);
-            let lit = unpack_lit(lights[index][(point[1] * lattice.points[0] + point[0]) as usize]);
-            let alike = self.alike(disparity, lit.disparity, SAMPLE_RELATIVE);
+            let words = lights[index][(point[1] * lattice.points[0] + point[0]) as usize];
+            let lit = unpack_lit(words);
+            let alike = !self.inputs.tests_depth() || has_code(words[1], codes);
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
             let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
             sums.add(color, weight, lit);
@@ -397,8 +415,7 @@ impl View<'_> {
             }
             (low, high) = (low.min(color), high.max(color));
             if alike {
-                let [dx, dy] = [0, 1].map(|i| px[i] as f32 - at[i] as f32);
-                nearest_px2 = nearest_px2.min(dx * dx + dy * dy);
+                nearest_px2 = nearest_px2.min(px2[0][right as usize] + px2[1][below as usize]);
             }
             if is_sample && tap == 0 {
                 own = Some((color, lit.own_fit));

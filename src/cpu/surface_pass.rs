@@ -6,10 +6,9 @@ use super::surface_history::SurfaceHistory;
 use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
+use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
 use glam::Vec3;
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Result of a pixel.
 pub(super) struct Pixel {
@@ -102,29 +101,15 @@ pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> Fram
             trace: traces.as_mut().and_then(Iterator::next),
         })
         .collect();
-    let arch = Arch::new();
-    rows.par_iter_mut()
-        .enumerate()
-        .map(|(y, row)| arch.dispatch(ProcessRow { pass, y: y as u32, row }))
-        .reduce(FrameStats::default, FrameStats::add)
+    process_rows(&mut rows, pass)
 }
 
-/// A row to process.
-struct ProcessRow<'a, 'b, P> {
-    pass: &'a P,
-    y: u32,
-    row: &'a mut Row<'b>,
-}
-
-impl<P: ProcessPixel> WithSimd for ProcessRow<'_, '_, P> {
-    type Output = FrameStats;
-
+impl<P: ProcessPixel> ProcessRow<Row<'_>> for P {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> FrameStats {
-        let Self { pass, y, row } = self;
+    fn process(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats::default();
         for x in 0..row.out.len() {
-            let pixel = pass.process(x as u32, y, &mut stats);
+            let pixel = ProcessPixel::process(self, x as u32, y, &mut stats);
             row.out[x] = pixel.output.to_array();
             row.surfaces[x] = pixel.surface;
             if let Some(noise) = &mut row.noise {

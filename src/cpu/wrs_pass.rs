@@ -25,11 +25,10 @@ use crate::kernel::surface::Surface;
 use crate::kernel::wrs;
 use crate::kernel::wrs::{Past, Reference, SamplerCode, WrsParams};
 use crate::method::{has_references, inv_density_at_fovea, wrs_params};
+use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::Vec3;
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 /// Inputs, history and constants of one view of a frame.
 struct ViewPass<'a> {
@@ -89,14 +88,8 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             foveation: settings.foveation,
         };
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
-        let arch = Arch::new();
         let mut rows = split_rows(desc.size_px, next, output[i].pixels_mut(), trace);
-        stats = stats.add(
-            rows.par_iter_mut()
-                .enumerate()
-                .map(|(y, row)| arch.dispatch(ProcessRow { pass: &pass, y: y as u32, row }))
-                .reduce(FrameStats::default, FrameStats::add),
-        );
+        stats = stats.add(process_rows(&mut rows, &pass));
     }
     stats
 }
@@ -124,22 +117,12 @@ fn split_rows<'a>(
         .collect()
 }
 
-/// A row to process.
-struct ProcessRow<'a, 'b> {
-    pass: &'a ViewPass<'a>,
-    y: u32,
-    row: &'a mut Row<'b>,
-}
-
-impl WithSimd for ProcessRow<'_, '_> {
-    type Output = FrameStats;
-
+impl ProcessRow<Row<'_>> for ViewPass<'_> {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> FrameStats {
-        let Self { pass, y, row } = self;
+    fn process(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats::default();
-        for x in 0..pass.inputs.size[0] {
-            pass.pixel(x, y, row, &mut stats);
+        for x in 0..self.inputs.size[0] {
+            self.pixel(x, y, row, &mut stats);
         }
         stats
     }
@@ -160,7 +143,7 @@ impl ViewPass<'_> {
             sample_px = px;
             weight *= place;
         } else if usable && self.rate_exponent != 0 {
-            weight = wrs::at_rate(weight, inputs.candidate_lod(&self.foveation, x, y), self.rate_exponent);
+            weight = wrs::at_rate(weight, inputs.candidate_lod(&self.foveation, x, y, e_deg), self.rate_exponent);
         }
         let mut params = self.params;
         if let Some(noise) = inputs.noise(sample_px[0], sample_px[1]) {
@@ -174,7 +157,7 @@ impl ViewPass<'_> {
             Err(verdict) => (verdict, History::EMPTY),
         };
         let History { past, reference, .. } = history;
-        let level = self.level(x, y, sample_px == [x, y]);
+        let level = self.level(x, y, e_deg, sample_px == [x, y]);
         let compared = if self.has_references { wrs::compared(candidate, level, reference) } else { past.color };
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
         let decision = wrs::step(candidate, weight, Past { color: compared, ..past }, &params, draw);
@@ -218,12 +201,12 @@ impl ViewPass<'_> {
     /// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames
     /// such a candidate is a full-rate one, and all others are interpolated.
     #[inline(always)]
-    fn level(&self, x: u32, y: u32, sampled: bool) -> u32 {
+    fn level(&self, x: u32, y: u32, e_deg: f32, sampled: bool) -> u32 {
         match self.foveation.filter {
             _ if !self.has_references => wrs::NO_LEVEL,
             Filter::Sparse if sampled => 0,
             Filter::Sparse => wrs::NO_LEVEL,
-            _ => wrs::level_code(self.inputs.candidate_lod(&self.foveation, x, y)),
+            _ => wrs::level_code(self.inputs.candidate_lod(&self.foveation, x, y, e_deg)),
         }
     }
 

@@ -16,7 +16,9 @@ pub const WORKGROUP_WIDTH: u32 = 64;
 /// A compute shader with the entry point `main` and one bind group.
 #[derive(Debug)]
 pub struct ComputeShader {
-    label: &'static str,
+    name: &'static str,
+    /// Label of what the shader makes on the device, for captures of a frame.
+    label: String,
     /// Binding numbers, in the order of the resources of a [`group`](Self::group).
     numbers: Vec<u32>,
     bindings: BindGroupLayout,
@@ -28,20 +30,16 @@ pub struct ComputeShader {
 
 impl ComputeShader {
     /// A shader with bindings of `types`, numbered from 0.
-    pub fn new(device: &Device, label: &'static str, source: String, types: &[BindingType]) -> Self {
+    pub fn new(device: &Device, name: &'static str, source: String, types: &[BindingType]) -> Self {
         let bindings: Vec<_> = (0..).zip(types.iter().copied()).collect();
-        Self::with_bindings(device, label, source, &bindings)
+        Self::with_bindings(device, name, source, &bindings)
     }
 
     /// A shader with numbered bindings.
-    pub fn with_bindings(
-        device: &Device,
-        label: &'static str,
-        source: String,
-        bindings: &[(u32, BindingType)],
-    ) -> Self {
+    pub fn with_bindings(device: &Device, name: &'static str, source: String, bindings: &[(u32, BindingType)]) -> Self {
+        let label = format!("afterimage {name}");
         let module = device.create_shader_module(ShaderModuleDescriptor {
-            label: Some(label),
+            label: Some(&label),
             source: ShaderSource::Wgsl(source.into()),
         });
         let numbers = bindings.iter().map(|(number, _)| *number).collect();
@@ -50,13 +48,13 @@ impl ComputeShader {
             .map(|&(binding, ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })
             .collect();
         let bindings =
-            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(&label), entries: &entries });
         let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some(label),
+            label: Some(&label),
             bind_group_layouts: &[Some(&bindings)],
             ..PipelineLayoutDescriptor::default()
         });
-        Self { label, numbers, bindings, layout, module, pipelines: Mutex::default() }
+        Self { name, label, numbers, bindings, layout, module, pipelines: Mutex::default() }
     }
 
     /// A bind group of `resources`, in the order of the bindings.
@@ -68,7 +66,7 @@ impl ComputeShader {
             .map(|(&binding, resource)| BindGroupEntry { binding, resource })
             .collect();
         device.create_bind_group(&BindGroupDescriptor {
-            label: Some(self.label),
+            label: Some(&self.label),
             layout: &self.bindings,
             entries: &entries,
         })
@@ -83,7 +81,7 @@ impl ComputeShader {
         }
         let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
         let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label: Some(self.label),
+            label: Some(&self.label),
             layout: Some(&self.layout),
             module: &self.module,
             entry_point: Some("main"),
@@ -98,10 +96,10 @@ impl ComputeShader {
         pipeline
     }
 
-    /// Label and override values of each compiled pipeline.
+    /// Name of the shader, and override values, of each compiled pipeline.
     pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         let pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        pipelines.keys().map(|overrides| (self.label, overrides.clone())).collect()
+        pipelines.keys().map(|overrides| (self.name, overrides.clone())).collect()
     }
 
     /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.

@@ -90,8 +90,8 @@ impl Doctor {
         Ok(Self {
             desc: *desc,
             view,
-            light_pass: ComputeShader::new(device, "afterimage doctor light", light_source, &light),
-            pass: ComputeShader::new(device, "afterimage doctor", source.to_owned(), &types),
+            light_pass: ComputeShader::new(device, "doctor_light_pass", light_source, &light),
+            pass: ComputeShader::new(device, "doctor_pass", source.to_owned(), &types),
             light: [half; 2].map(|size| array_view(&light_texture(device, size))),
             absent: array_view(&light_texture(device, [1, 1])),
             past: None,

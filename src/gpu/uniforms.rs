@@ -3,7 +3,7 @@
 use super::buffer::filled;
 use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
-use crate::method::{inv_density_at_fovea, smr_params, wrs_params};
+use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
 use crate::uniforms::Held;
 pub use crate::uniforms::{LatticeUniforms, ViewLattices, ViewUniforms};
 use bytemuck::{Pod, Zeroable};
@@ -59,8 +59,8 @@ pub struct FrameUniforms {
     pub first_view: u32,
     /// Lattice whose samples the dispatch processes.
     pub lattice: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: u32,
+    /// Levels of the mip chains of surfaces and of noisy candidates, above the full-rate one; 0 without.
+    pub mip_levels: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
 }
@@ -99,6 +99,10 @@ impl FrameUniforms {
             smr_accumulate: smr.accumulate,
             smr_accumulate_tolerance: smr.accumulate_tolerance,
             smr_tolerance: smr.tolerance,
+            mip_levels: match settings.history_layout() {
+                HistoryLayout::Surfaces { levels, .. } => levels,
+                _ => 0,
+            },
             ..Self::default()
         };
         let origin = |textures: Option<Textures<'_>>, view| textures.map_or(0, |t| t.packed_origin(view));

@@ -25,16 +25,17 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
     let cross = (cx * cx + cy * cy + cz * cz).sqrt();
     // z first: the product of z is often a constant, and compilers may move a constant that comes last.
     let dot = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
-    approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)
+    // The limit also keeps compilers from merging this factor with those of the functions that the angle is passed to.
+    (approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)).min(180.0)
 }
 
 /// Density of midget retinal ganglion cell receptive fields per square degree at eccentricity `e_deg` >= 0 (eq. 3).
 #[inline(always)]
 pub fn cell_density(e_deg: f32) -> f32 {
-    let q = 1.0 + e_deg / R_2_DEG;
-    let far = approx::exp(-e_deg / R_E_DEG);
+    let q = 1.0 + e_deg * (1.0 / R_2_DEG);
+    let far = approx::exp(e_deg * (-1.0 / R_E_DEG));
     // A quotient, because compilers reorder a sum of two products with constants.
-    (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg / R_M_DEG)
+    (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg * (1.0 / R_M_DEG))
 }
 
 /// Weight of a candidate shaded at eccentricity `e_deg`, in (0, 1\] (eq. 4): 1 inside the fovea of radius `fovea_deg`,

@@ -154,7 +154,7 @@ pub fn motion_color(motion: [f32; 2]) -> Vec3 {
 pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {
         DebugView::Quality => heat(trace.quality),
-        DebugView::Age => heat((trace.age as f32 / 255.0).sqrt()),
+        DebugView::Age => heat((trace.age as f32 * (1.0 / 255.0)).sqrt()),
         DebugView::Survival => heat(trace.survival),
         DebugView::Rejection => verdict_color(trace.verdict),
         DebugView::Gate => Vec3::splat(trace.gate),

@@ -119,14 +119,29 @@ pub fn pack_kept(s: Kept) -> [u32; 2] {
 /// Unpacks a sample. The result is finite for any words.
 #[inline]
 pub fn unpack_kept(words: [u32; 2]) -> Kept {
-    let lod = words[1] & 63;
-    if lod == EMPTY {
-        return Kept::EMPTY;
-    }
+    if is_empty(words) { Kept::EMPTY } else { unpack_full(words) }
+}
+
+/// Whether a texel is empty.
+#[inline]
+pub fn is_empty(words: [u32; 2]) -> bool {
+    words[1] & 63 == EMPTY
+}
+
+/// A word with the code of a sample's disparity in its high half, for [`has_code`](super::resample::has_code).
+#[inline]
+pub fn code_word(words: [u32; 2]) -> u32 {
+    (words[1] << 12) & 0xfffc_0000
+}
+
+/// Unpacks the sample of a texel that is not empty. The result is finite for any words.
+#[inline]
+pub fn unpack_full(words: [u32; 2]) -> Kept {
     let disparity = (words[1] >> 6) & 0x3fff;
     Kept {
         color: unpack_color(words[0]),
-        lod: lod as f32 * (1.0 / LOD_STEPS),
+        // The limit keeps compilers from merging this factor with later ones.
+        lod: ((words[1] & 63) as f32 * (1.0 / LOD_STEPS)).min(MAX_LOD),
         disparity: if disparity == 0x3fff { -1.0 } else { disparity_value(disparity << 2) },
         place_px: Vec2::new(unpack_place(words[1] >> 20), unpack_place(words[1] >> 26)),
     }

@@ -102,7 +102,7 @@ pub struct ReuseWeight {
 /// lets coarser history be accumulated into a noisy candidate.
 #[inline]
 pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: [f32; 2]) -> ReuseWeight {
-    let finer = ((lod - history_lod) / QUALITY_WIDTH).clamp(0.0, 1.0) * confidence[0];
+    let finer = ((lod - history_lod) * (1.0 / QUALITY_WIDTH)).clamp(0.0, 1.0) * confidence[0];
     let coarser = ((history_lod - lod) / COARSER_WIDTH).clamp(0.0, 1.0) * confidence[1];
     let alike = (1.0 - finer) * (1.0 - coarser);
     let calm = if noisy { 1.0 } else { lod.min(1.0) };
@@ -114,7 +114,7 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
 #[inline(always)]
 pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1]);
-    let share = changed * smooth_step(0.05, 0.1, (ratio - 1.0).abs());
+    let share = changed * smooth_step(0.5, 1.0, 10.0 * (ratio - 1.0).abs());
     // A share of 1 gives the ratio bit for bit. Mesa rewrites 1 + (ratio - 1) * share into this form, too.
     (1.0 - share) + ratio * share
 }

@@ -125,7 +125,7 @@ pub fn root_slope(luma: f32) -> f32 {
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
-    (SIGMAS * root_slope(luma)) * (sample_variance * inverse_samples * (1.0 / COMPARED_CANDIDATES)).sqrt()
+    root_slope(luma) * ((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples).sqrt()
 }
 
 /// Degree to which the noise of a color at a luma is visible, in \[0, 1\].
@@ -155,7 +155,7 @@ pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise 
 /// luma, in units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
-    (SIGMAS * root_slope(luma)) * (candidate.variance * (2.0 / candidate.samples)).sqrt()
+    root_slope(luma) * (candidate.variance * ((2.0 * SIGMAS * SIGMAS) / candidate.samples)).sqrt()
 }
 
 /// Difference of a sample and of history at its pixel that noise makes on average: the standard deviation at a luma, in

@@ -107,10 +107,10 @@ pub const EMPTY_WORDS: [u32; 3] = [0x7c00, 0xffff_0000, 0];
 /// Color and disparity from the first two words of a reservoir, and whether the color is valid.
 #[inline]
 pub fn unpack_sample(words: [u32; 2]) -> (Vec3, f32, bool) {
-    let infinite = |bits: u32| bits & 0x7c00 == 0x7c00;
-    let (r, g, b) = (words[0], words[0] >> 16, words[1]);
-    let color = Vec3::new(half_value(r), half_value(g), half_value(b));
-    (color, disparity_value(words[1] >> 16), !(infinite(r) || infinite(g) || infinite(b)))
+    let color = Vec3::new(half_value(words[0]), half_value(words[0] >> 16), half_value(words[1]));
+    // Infinity and NaN are decoded as larger numbers than the largest half.
+    let largest = color.x.abs().max(color.y.abs()).max(color.z.abs());
+    (color, disparity_value(words[1] >> 16), largest <= MAX_HALF)
 }
 
 /// Unpacks a reservoir. The result is finite for any words; a corrupt color or weight sum gives an empty reservoir.

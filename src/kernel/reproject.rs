@@ -1,7 +1,5 @@
 //! Reprojection: a pixel's position in the previous frame, and verdicts on its history.
 
-use super::sanitize::is_finite;
-
 /// Largest valid component of a motion vector, in pixels.
 pub const MAX_MOTION_PX: f32 = 65536.0;
 
@@ -46,7 +44,9 @@ impl Verdict {
 #[inline]
 pub fn nearest(x: u32, y: u32, motion: [f32; 2], size: [u32; 2]) -> Result<[u32; 2], Verdict> {
     let [mx, my] = motion;
-    if !(is_finite(mx) && is_finite(my)) || mx.abs() > MAX_MOTION_PX || my.abs() > MAX_MOTION_PX {
+    // Bits of sizes are ordered as the sizes are, infinity and NaN last.
+    let size_bits = |v: f32| v.to_bits() & 0x7fff_ffff;
+    if size_bits(mx).max(size_bits(my)) > MAX_MOTION_PX.to_bits() {
         return Err(Verdict::BadMotion);
     }
     let qx = (x as f32 + mx + 0.5).floor();

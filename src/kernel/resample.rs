@@ -8,6 +8,9 @@ use glam::Vec3;
 /// for silhouettes.
 pub const TAP_RELATIVE: f32 = 0.1;
 
+/// Largest disparity that [`disparity`](super::depth::disparity) gives.
+const LARGEST_DISPARITY: f32 = 1e30;
+
 /// Least bilinear weight of a texel that stands in for the nearest one, if that shows another surface: so that history
 /// moves by less than a pixel, but edges do not lose it wherever they are rounded away.
 pub const STAND_IN_WEIGHT: f32 = 0.1;
@@ -106,16 +109,24 @@ pub fn taps_of(around: &TapsAround, round: u32) -> FourTaps {
     }
 }
 
-/// The first of the [`disparity_code`]s of the surface that has the disparity `expected`, within [`TAP_RELATIVE`], and
-/// their number: 0 if the expected disparity is negative.
+/// The first of the [`disparity_code`]s from `low` to `high` times the disparity `expected`, and their number: 0 if the
+/// expected disparity is negative.
 #[inline]
-pub fn tap_codes(expected: f32) -> [u32; 2] {
-    let first = disparity_code(expected * (1.0 - TAP_RELATIVE));
-    let last = disparity_code(expected * (1.0 / (1.0 - TAP_RELATIVE)));
+pub fn codes_between(expected: f32, low: f32, high: f32) -> [u32; 2] {
+    // The limit keeps compilers from merging the factors with those of the disparity.
+    let limited = expected.min(LARGEST_DISPARITY);
+    let first = disparity_code(limited * low);
+    let last = disparity_code(limited * high);
     [first, if expected < 0.0 { 0 } else { last - first + 1 }]
 }
 
-/// Whether the disparity in the high half of `word` is one of [`tap_codes`].
+/// [`codes_between`] of the surface that has the disparity `expected`, within [`TAP_RELATIVE`].
+#[inline]
+pub fn tap_codes(expected: f32) -> [u32; 2] {
+    codes_between(expected, 1.0 - TAP_RELATIVE, 1.0 / (1.0 - TAP_RELATIVE))
+}
+
+/// Whether the disparity in the high half of `word` is one of [`codes_between`].
 #[inline]
 pub fn has_code(word: u32, codes: [u32; 2]) -> bool {
     (word >> 16).wrapping_sub(codes[0]) < codes[1]

@@ -6,18 +6,23 @@ use glam::Vec3;
 /// Largest finite half. Colors are clamped to it.
 pub const MAX_HALF: f32 = 65504.0;
 
+/// Least size of a color's channel, 2^-32: a 256th of what halves store. Products and squares of smaller ones would be
+/// denormal, which devices may flush to zero.
+pub const LEAST_COLOR: f32 = 1.0 / 4_294_967_296.0;
+
 /// Whether a number is neither NaN nor infinite.
 #[inline]
 pub fn is_finite(x: f32) -> bool {
     x.to_bits() & 0x7f80_0000 != 0x7f80_0000
 }
 
-/// Color clamped to +-65504, and whether it is usable; black and `false` if any component is NaN or infinite.
+/// Color clamped to +-65504, with channels below [`LEAST_COLOR`] as 0, and whether it is usable; black and `false` if
+/// any component is NaN or infinite.
 #[inline]
 pub fn color(c: Vec3) -> (Vec3, bool) {
     if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {
-        let limit = Vec3::splat(MAX_HALF);
-        (c.clamp(-limit, limit), true)
+        let channel = |x: f32| if x.abs() >= LEAST_COLOR { x.clamp(-MAX_HALF, MAX_HALF) } else { 0.0 };
+        (Vec3::new(channel(c.x), channel(c.y), channel(c.z)), true)
     } else {
         (Vec3::ZERO, false)
     }

@@ -27,7 +27,7 @@ pub const MAX_FLOAT14: f32 = 65472.0;
 pub const LOD_STEPS: f32 = 7.0;
 
 /// Largest stored level of detail.
-pub const MAX_LOD: f32 = 62.0 / LOD_STEPS;
+pub const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
 
 /// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +100,11 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
     if lod == EMPTY_LOD {
         return Surface::EMPTY;
     }
-    Surface { color: surface_color(words), lod: lod as f32 / LOD_STEPS, disparity: disparity_value(words[1] >> 16) }
+    Surface {
+        color: surface_color(words),
+        lod: lod as f32 * (1.0 / LOD_STEPS),
+        disparity: disparity_value(words[1] >> 16),
+    }
 }
 
 /// Texel of level 0 of the mip chain: the color and a coverage of 1; zeros for an empty texel.

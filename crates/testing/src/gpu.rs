@@ -64,8 +64,51 @@ pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
 /// A fresh device of a description. Uncaptured errors panic.
 pub fn device_with(desc: &wgpu::DeviceDescriptor<'_>) -> Option<(wgpu::Device, wgpu::Queue)> {
     let adapter = adapter()?;
-    let desc = wgpu::DeviceDescriptor { label: Some("test"), ..desc.clone() };
+    let desc = wgpu::DeviceDescriptor { label: Some("test"), trace: recording(), ..desc.clone() };
     Some(pollster::block_on(adapter.request_device(&desc)).expect("a device with default limits"))
+}
+
+/// Where a device of this test is recorded: everything that it is asked to do, and everything that is read back. Folder
+/// `AFTERIMAGE_RECORD`, if it is set, and one in it for each device, named after the test. `tests/web.sh` repeats the
+/// recordings on another implementation of WebGPU.
+#[cfg(feature = "wgpu-30")]
+fn recording() -> wgpu::Trace {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let Some(folder) = record_folder() else { return wgpu::Trace::Off };
+    let test = std::thread::current().name().unwrap_or("main").replace("::", ".");
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let folder = std::path::Path::new(folder).join(format!("{test}.{number}"));
+    std::fs::create_dir_all(&folder).expect("a folder for the recording");
+    wgpu::Trace::Directory(folder)
+}
+
+#[cfg(not(feature = "wgpu-30"))]
+fn recording() -> wgpu::Trace {
+    wgpu::Trace::Off
+}
+
+/// Whether devices are recorded.
+pub fn is_recorded() -> bool {
+    record_folder().is_some()
+}
+
+fn record_folder() -> Option<&'static std::ffi::OsStr> {
+    static FOLDER: OnceLock<Option<std::ffi::OsString>> = OnceLock::new();
+    FOLDER.get_or_init(|| std::env::var_os("AFTERIMAGE_RECORD")).as_deref()
+}
+
+/// Adds what was read to the recording: the content of a buffer of this name, after the copy that it was read by.
+fn record_read(device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) {
+    if is_recorded() {
+        let expected = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("expected"),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        queue.write_buffer(&expected, 0, bytes);
+    }
 }
 
 /// Runs `f`; panics with the message of its first validation error.
@@ -149,6 +192,7 @@ pub fn read_buffer<T: bytemuck::Pod>(device: &wgpu::Device, queue: &wgpu::Queue,
     });
     device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     let bytes = receiver.recv().expect("the callback ran").expect("the buffer maps");
+    record_read(device, queue, &bytes);
     bytemuck::pod_collect_to_vec(&bytes)
 }
 

@@ -13,6 +13,9 @@ pub mod hard_case;
 pub mod panics;
 pub mod resident;
 
+#[cfg(feature = "wgpu-30")]
+pub use naga;
+
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 

@@ -54,7 +54,7 @@ impl MipChain {
             mips: (0..coarsest).map(|mip| view(mip, 1)).collect(),
             fine: fine.collect(),
             view_count: desc.view_count,
-            shader: ComputeShader::new(device, "afterimage mip level", source, &types),
+            shader: ComputeShader::new(device, "mip_level", source, &types),
         }
     }
 

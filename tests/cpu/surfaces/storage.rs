@@ -34,7 +34,7 @@ fn every_code_of_a_field_is_its_own() {
         assert_eq!(unpack_surface(words), s);
     }
     for code in 0..63_u32 {
-        let s = Surface { color: Vec3::ZERO, lod: code as f32 / 7.0, disparity: 0.0 };
+        let s = Surface { color: Vec3::ZERO, lod: code as f32 * (1.0 / 7.0), disparity: 0.0 };
         assert_eq!(unpack_surface(pack_surface(s)), s);
     }
     for code in 0..=0xffff_u32 {

@@ -37,7 +37,7 @@ fn constants_have_one_layout() {
     let frame = rust!(FrameUniforms: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, exposure, motion_scale, mid_radius_deg,
         blend_deg, coarse_mid, coarse_far, smr_accumulate, smr_accumulate_tolerance, smr_tolerance, first_view, lattice,
-        views);
+        mip_levels, views);
     assert_eq!(wgsl(&module, "FrameUniforms"), frame);
     assert_eq!(wgsl(&module, "ViewUniforms"), view_uniforms());
     assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
@@ -54,7 +54,7 @@ fn constants_of_the_candidates_have_one_layout() {
 fn constants_of_sparse_frames_have_one_layout() {
     let composed = SHADERS.compose("lattices");
     let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
-    let lattice = rust!(LatticeUniforms: low_px, high_px, first_px, points, texel, level, stride, results);
+    let lattice = rust!(LatticeUniforms: low_px, high_px, first_px, points, texel, level, texel_level, results);
     assert_eq!(wgsl(&module, "LatticeUniforms"), lattice);
     assert_eq!(wgsl(&module, "SparseUniforms"), rust!(SparseUniforms: missing, views));
     let count = ViewLattices::default().len();

@@ -156,7 +156,7 @@ fn wrong_noise_is_caught() {
         // Noise of samples: not expected in comparisons, of another pixel, not summed.
         ("error += expected_noise(", "error += 0.0 * expected_noise("),
         (
-            "noises = add_noise(noises, noise_at(at, view), weight);",
+            "noises = add_noise(noises, noise_at(px_of(point, lattice), view), weight);",
             "noises = add_noise(noises, noise_at(px, view), weight);",
         ),
         ("noise = mean_noise(noises);", ""),
@@ -253,7 +253,7 @@ fn a_wrong_fill_is_caught() {
         ("sampled.usable, share", "true, share"),
         ("bitcast<f32>(sparse.missing)", "0.0"),
         ("between(px.y, lattice.first_px.y", "between(px.y, lattice.first_px.x"),
-        ("+ point * lattice.stride", "+ point"),
+        ("+ (point << vec2<u32>(lattice.texel_level))", "+ point"),
         ("index < LATTICES - 1u", "index < 1u"),
         ("all(px < sparse.views[view][index].high_px)", "all(px <= sparse.views[view][index].high_px)"),
         ("let view = frame.first_view + group.z;", "let view = group.z;"),
@@ -316,9 +316,9 @@ fn a_wrong_reconstruction_is_caught() {
     };
     let planted = [
         // History: of the other view, of another texel, of another surface, and in another exposure.
-        ("textureLoad(past_kept, at, view, 0)", "textureLoad(past_kept, at, 1u - view, 0)"),
+        ("vec2<i32>(frame.size) - 1), view, 0)", "vec2<i32>(frame.size) - 1), 1u - view, 0)"),
         ("vec2<u32>(tap & 1u, tap >> 1u)", "vec2<u32>(tap >> 1u, tap >> 1u)"),
-        ("same && same_surface(previous.expected, stored.disparity, TAP_RELATIVE, 0.0)", "same"),
+        ("(DEPTH_TEST == 0u || has_code(code_word(words), codes))", "true"),
         ("found.color = expose(found.color, frame.exposure);", ""),
         ("found.highest = expose(found.highest, frame.exposure);", ""),
         ("found.nearest.color = expose(found.nearest.color, frame.exposure);", ""),
@@ -385,7 +385,8 @@ fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
         assert!(differs(&right).is_none(), "without an error");
         return;
     };
-    for (text, instead) in [("select(1.0, fit_of_own, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")]
+    for (text, instead) in
+        [("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")]
     {
         let wrong = right.clone().map(|source| source.replace(text, instead));
         assert_ne!(wrong, right, "{text}");
@@ -727,7 +728,7 @@ fn a_wrong_fill_of_geometry_is_caught() {
     let right = SHADERS.compose("fill_geometry_pass").source;
     let planted = [
         ("near.x.points[right], near.y.points[below]", "near.x.points[below], near.y.points[right]"),
-        ("* lattice.stride;", ";"),
+        ("+ (point << vec2<u32>(lattice.texel_level))", "+ point"),
         ("s.share > 0.0 && is_confirmed(px, view, s)", "false"),
         ("if rank > best {", "if rank >= best {"),
         ("same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0)", "same_surface(own, disparity, 0.9, 0.0)"),

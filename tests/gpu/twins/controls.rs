@@ -159,7 +159,8 @@ fn a_wrong_tap_or_weight_is_caught() {
     caught(surfaces::PROBES, "taps_around", "catmull_rom(fraction.y)", "catmull_rom(fraction.x)");
     caught(surfaces::PROBES, "taps_of", "x.x, y.x", "x.x, y.y");
     caught(surfaces::PROBES, "sharp_sum", "around.sharp_y.w", "around.sharp_y.z");
-    caught(surfaces::PROBES, "tap_codes", "last - first + 1u", "last - first");
+    caught(surfaces::PROBES, "codes_between", "last - first + 1u", "last - first");
+    caught(surfaces::PROBES, "tap_codes", "1.0f - TAP_RELATIVE, 1.0f", "1.0f, 1.0f");
     caught(surfaces::PROBES, "has_code", "< codes.y", "<= codes.y");
     caught(
         surfaces::PROBES,
@@ -256,6 +257,9 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "unpack_color", "(SMALLEST_EXPONENT - 8u)", "(SMALLEST_EXPONENT - 9u)");
     caught(sparse::PROBES, "pack_kept", "min((code + 2u) >> 2u, 0x3ffeu)", "min(code >> 2u, 0x3ffeu)");
     caught(sparse::PROBES, "unpack_kept", "unpack_place(words.y >> 26u)", "unpack_place(words.y >> 20u)");
+    caught(sparse::PROBES, "is_empty", "== EMPTY_KEPT", "> EMPTY_KEPT");
+    caught(sparse::PROBES, "code_word", "0xfffc0000u", "0xffff0000u");
+    caught(sparse::PROBES, "unpack_full", "(words.y & 63u) * (1.0f", "(words.y & 31u) * (1.0f");
     caught(sparse::PROBES, "moved_kept", "select(max(lod, 1.0), lod, near)", "lod");
     caught(sparse::PROBES, "kept_weight", "const SOFTEN_PX2: f32 = 0.03;", "const SOFTEN_PX2: f32 = 0.0301;");
     caught(sparse::PROBES, "add_kept", "wx * place.y, wy", "wx * place.x, wy");
@@ -284,8 +288,8 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(
         noise::PROBES,
         "expected_noise",
-        "1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);\n    return root",
-        "1.0 / candidate.samples;\n    return root",
+        "1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);\n    return root_slope(around) * sqrt(pooled",
+        "1.0 / candidate.samples;\n    return root_slope(around) * sqrt(pooled",
     );
     caught(noise::PROBES, "add_noise", "(weight * weight) / n.samples", "weight / n.samples");
     caught(noise::PROBES, "mean_noise", "sum.weight * sum.weight", "sum.weight");

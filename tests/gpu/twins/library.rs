@@ -12,15 +12,14 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 /// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a
 /// closure, and `mix`, which is a builtin of WGSL.
 pub const WGSL_ONLY: &[(&str, &str)] =
-    &[("kept", "nothing_around"), ("pack", "half_is_infinite"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
+    &[("kept", "nothing_around"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
 /// (Rust file stem, function there) without a WGSL twin: two take a closure, in whose place the pass has a loop; the
 /// other one places the samples of a frame before a device sees it.
 pub const RUST_ONLY: &[(&str, &str)] = &[("depth", "slope"), ("lattice", "offset_px"), ("resample", "gather_around")];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
-pub const PRIVATE: &[&str] =
-    &["fifth_root", "half_is_infinite", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
+pub const PRIVATE: &[&str] = &["fifth_root", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {

@@ -16,6 +16,7 @@ mod matching;
 mod mathematics;
 mod modules;
 mod noise;
+mod order;
 mod probe;
 mod sparse;
 mod state;

@@ -32,12 +32,11 @@ pub fn validate(composed: &Composed) -> Result<(), String> {
     })
 }
 
-#[test]
-fn every_module_composes_and_is_valid() {
-    let names: Vec<_> = SHADERS.module_names().collect();
-    assert!(names.len() >= 11);
-    for name in names {
-        // Functions that a module's users provide: storage of the scene buffer, acceptance of hits.
+/// Every module with those that it uses, and with each choice of the functions that its users provide: storage of the
+/// scene buffer, acceptance of hits.
+pub fn composed_modules() -> Vec<Composed> {
+    let mut all = vec![];
+    for name in SHADERS.module_names() {
         let source = SHADERS.compose(name).source;
         let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
         let storages: &[Option<&str>] =
@@ -45,8 +44,18 @@ fn every_module_composes_and_is_valid() {
         let accept = lacks("accept_hit").then_some("accept_all");
         for storage in storages {
             let parts: Vec<&str> = storage.iter().copied().chain(accept).chain([name]).collect();
-            validate(&SHADERS.compose_with(&parts, "")).unwrap_or_else(|e| panic!("{name}: {e}"));
+            all.push(SHADERS.compose_with(&parts, ""));
         }
+    }
+    all
+}
+
+#[test]
+fn every_module_composes_and_is_valid() {
+    let modules = composed_modules();
+    assert!(modules.len() >= 11);
+    for composed in modules {
+        validate(&composed).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 

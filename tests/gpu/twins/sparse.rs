@@ -178,6 +178,31 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(2).random("unpack_kept", |d, row| row.extend([bits(d), bits(d)])),
     },
     Probe {
+        name: "is_empty",
+        module: "kept",
+        words: [2, 1],
+        wgsl: "out_b(is_empty(vec2<u32>(in_u(0u), in_u(1u))));",
+        rust: |r, o| o.b(kept::is_empty([r.u(0), r.u(1)])),
+        rows: || Rows::new(2).random("is_empty", |d, row| row.extend([bits(d), bits(d) | (d.bits() & 63)])),
+    },
+    Probe {
+        name: "code_word",
+        module: "kept",
+        words: [2, 1],
+        wgsl: "out_u(code_word(vec2<u32>(in_u(0u), in_u(1u))));",
+        rust: |r, o| o.u(kept::code_word([r.u(0), r.u(1)])),
+        rows: || Rows::new(2).random("code_word", |d, row| row.extend([bits(d), bits(d)])),
+    },
+    Probe {
+        name: "unpack_full",
+        module: "kept",
+        words: [2, 7],
+        wgsl: "let k = unpack_full(vec2<u32>(in_u(0u), in_u(1u))); out_v(k.color); out_f(k.lod); out_f(k.disparity);
+            out_f(k.place_px.x); out_f(k.place_px.y);",
+        rust: |r, o| put_kept(o, kept::unpack_full([r.u(0), r.u(1)])),
+        rows: || Rows::new(2).random("unpack_full", |d, row| row.extend([bits(d), bits(d)])),
+    },
+    Probe {
         name: "moved_kept",
         module: "kept",
         words: [12, 7],

@@ -279,6 +279,20 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "codes_between",
+        module: "resample",
+        words: [3, 2],
+        wgsl: "let c = codes_between(in_f(0u), in_f(1u), in_f(2u)); out_u(c.x); out_u(c.y);",
+        rust: |r, o| resample::codes_between(r.f(0), r.f(1), r.f(2)).into_iter().for_each(|x| o.u(x)),
+        rows: || {
+            let disparities = [positive(), floats(&[-1.0, -0.0])].concat();
+            let factors = [floats(&[0.5, 0.9, 0.95, 1.0]), floats(&[1.0, 1.05, 1.1, 2.0])];
+            Rows::new(3).cross(&[&disparities, &factors[0], &factors[1]]).random("codes_between", |d, row| {
+                row.extend([scaled(d, -34, 34), (1.0 - fraction(d)).to_bits(), (1.0 + fraction(d)).to_bits()])
+            })
+        },
+    },
+    Probe {
         name: "tap_codes",
         module: "resample",
         words: [1, 2],

@@ -182,7 +182,7 @@ impl Rows {
 
     /// Only the rows inside the function's domain.
     pub fn within(mut self, domain: impl Fn(&Row<'_>) -> bool) -> Self {
-        self.words = self.words.chunks(self.width).filter(|r| domain(&Row(r))).flatten().copied().collect();
+        self.words = self.words.chunks(self.width).filter(|r| domain(&Row::of(r))).flatten().copied().collect();
         self
     }
 }

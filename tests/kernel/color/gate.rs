@@ -108,7 +108,9 @@ fn h35_an_8_bit_step_near_black_closes_the_gate_by_a_few_percent_or_not_at_all()
 
 #[test]
 fn h37_strong_and_hdr_colors_stay_finite_and_clamp_the_gate() {
-    let colors = [0.0, 1.0, 1e4, 65504.0, 1e30, -1.0, -65504.0, -1e30, f32::MAX, f32::MIN];
+    // As the passes get them.
+    let sanitized = |x: f32| sanitize::color(Vec3::splat(x)).0.x;
+    let colors = [0.0, 1.0, 1e4, 65504.0, 1e30, -1.0, -65504.0, -1e30, f32::MAX, f32::MIN].map(sanitized);
     let mut most = 0.0_f32;
     for a in colors {
         for b in colors {
@@ -121,7 +123,7 @@ fn h37_strong_and_hdr_colors_stay_finite_and_clamp_the_gate() {
         }
     }
     assert!(most > 100.0);
-    let of = |x: f32| color::lab(Vec3::splat(x)).x;
+    let of = |x: f32| color::lab(Vec3::splat(sanitized(x))).x;
     assert_eq!(of(1e30), of(65504.0), "saturates");
     holds!("H37", Cpu, "L* {:.0} at 1e4, {:.0} at 65504 and 1e30; Delta E at most {most:.2e}", of(1e4), of(1e30));
 }

@@ -59,7 +59,7 @@ fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
     if slanted > 1e-6 {
         azimuth = abs(wo.x) / slanted;
     }
-    let aspect = (sqrt(a.y / a.x) - MIN_ASPECT) / (1.0f - MIN_ASPECT);
+    let aspect = (sqrt(a.y / a.x) - MIN_ASPECT) * (1.0f / (1.0f - MIN_ASPECT));
     let kx = albedo_knot(albedo_cosine(wo.z, a.x), ANISOTROPIC.x);
     let ky = albedo_knot(azimuth, ANISOTROPIC.y);
     let kz = albedo_knot(sqrt(a.x), ANISOTROPIC.z);
@@ -86,8 +86,8 @@ fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
 
 // albedo::sheen_albedo
 fn sheen_albedo(tables: u32, cosine: f32, roughness: f32) -> f32 {
-    let y = (roughness - MIN_SHEEN_ROUGHNESS) / (1.0f - MIN_SHEEN_ROUGHNESS);
-    let x = (sqrt(sqrt(max(cosine, MIN_SHEEN_COSINE))) - SHEEN_ROOT) / (1.0f - SHEEN_ROOT);
+    let y = (roughness - MIN_SHEEN_ROUGHNESS) * (1.0f / (1.0f - MIN_SHEEN_ROUGHNESS));
+    let x = (sqrt(sqrt(max(cosine, MIN_SHEEN_COSINE))) - SHEEN_ROOT) * (1.0f / (1.0f - SHEEN_ROOT));
     return albedo_plane(tables, x, y).z;
 }
 
@@ -95,7 +95,7 @@ fn sheen_albedo(tables: u32, cosine: f32, roughness: f32) -> f32 {
 fn glass_albedo(tables: u32, cosine: f32, width: f32, ior: f32, entering: bool) -> vec2<f32> {
     let kx = albedo_knot(sqrt(albedo_cosine(cosine, width)), GLASS_COSINES);
     let ky = albedo_knot(sqrt(width), GLASS_ROUGHNESSES);
-    let kz = albedo_knot((sqrt((2.0 * (ior - 1.0)) / (ior + 1.0)) - IOR_ROOT) / (1.0f - IOR_ROOT), GLASS_IORS);
+    let kz = albedo_knot((sqrt((2.0 * (ior - 1.0)) / (ior + 1.0)) - IOR_ROOT) * (1.0f / (1.0f - IOR_ROOT)), GLASS_IORS);
     let row = GLASS_COSINES;
     let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
     var sums: array<vec4<f32>, 2>;

@@ -57,15 +57,11 @@ struct Layers {
 
 // layers::retro_albedo
 fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
-    let p = schlick_weight(cosine);
     let r = roughness;
-    let b = r - 0.5;
-    let rc = r * cosine;
-    let rise_i = b / 42.0 + rc / 168.0;
-    let rise_o = b / 2.0 + rc / 3.0;
-    let squares = ((11.0f / 1008.0f) * r) * r * (1.0 - cosine * cosine);
-    let both = ((rc * rc) / 504.0 + squares) + (b / 42.0 + rc / 84.0) * b;
-    return (rise_i + (rise_o + both) * p) * 2.0 + 1.0;
+    let rise = cosine * (1.0f / 84.0) + 1.0f / 21.0;
+    let slope = cosine * (55.0f / 84.0) + 20.0f / 21.0;
+    let curve = (cosine * (-1.0f / 56.0) + 1.0f / 42.0) * cosine + 5.0f / 72.0;
+    return (rise * r + 41.0f / 42.0) + ((curve * r + slope) * r - 41.0f / 84.0) * schlick_weight(cosine);
 }
 
 // layers::compensation

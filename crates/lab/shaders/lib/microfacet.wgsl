@@ -114,9 +114,8 @@ fn refracted(v: vec3<f32>, h: vec3<f32>, eta: f32) -> vec3<f32> {
 
 // microfacet::charlie_d
 fn charlie_d(cosine: f32, a: f32) -> f32 {
-    let inverse = 1.0 / a;
     let sin2 = max((1.0 - cosine) * (1.0 + cosine), 1e-30);
-    return (2.0 + inverse) * exp(max(ln(sin2) * (0.5 * inverse), -60.0)) / (2.0 * PI);
+    return ((a * (1.0f / PI) + 0.5f / PI) / a) * exp(max(ln(sin2) * (0.5 / a), -60.0));
 }
 
 // microfacet::charlie_curve

@@ -4,8 +4,7 @@ const DIRECTION_STEPS: f32 = 32767.0;
 
 // octahedral::folded
 fn folded(x: f32, y: f32) -> f32 {
-    let size = 1.0 - abs(y);
-    return select(size, -size, x < 0.0);
+    return select(1.0 - abs(y), abs(y) - 1.0, x < 0.0);
 }
 
 // octahedral::fraction_bits
@@ -15,7 +14,7 @@ fn fraction_bits(x: f32) -> u32 {
 
 // octahedral::fraction
 fn fraction(bits: u32) -> f32 {
-    return f32(bitcast<i32>(bits << 16u) >> 16u) / DIRECTION_STEPS;
+    return f32(bitcast<i32>(bits << 16u) >> 16u) * (1.0f / DIRECTION_STEPS);
 }
 
 // octahedral::encode_direction

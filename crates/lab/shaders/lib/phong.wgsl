@@ -44,7 +44,7 @@ fn phong_diffuse(surface: PhongSurface, wi: vec3<f32>) -> vec3<f32> {
 // phong::phong_specular
 fn phong_specular(surface: PhongSurface, wo: vec3<f32>, wi: vec3<f32>) -> vec3<f32> {
     let cosine = clamp(wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y), 0.0, 1.0);
-    let top = (surface.exponent + 2.0) / (2.0 * PI);
+    let top = (surface.exponent + 2.0) * (0.5 * FRAC_1_PI);
     return surface.specular * ((top * phong_power(cosine, surface.exponent)) * max(wi.z, 0.0));
 }
 

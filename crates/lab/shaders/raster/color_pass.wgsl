@@ -93,15 +93,15 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
         return Incoming(-light.direction, light.intensity);
     }
     let to = light.position - position;
-    let distance = sqrt(dot(to, to));
+    let square = dot(to, to);
     let direction = unit(to);
     let cosine = -dot(direction, light.direction);
     if light.kind >= 3u {
         // Irradiance of a disk of the panel's area on its axis, times the cosine off the axis.
         let seen = select(max(cosine, 0.0), abs(cosine), light.kind == 4u);
-        return Incoming(direction, light.intensity * (seen * light.area / (distance * distance + light.area * FRAC_1_PI)));
+        return Incoming(direction, light.intensity * (seen * light.area / (square + light.area * FRAC_1_PI)));
     }
-    var irradiance = light.intensity * distance_falloff(distance, light.range);
+    var irradiance = light.intensity * distance_falloff(sqrt(square), light.range);
     if light.kind == 2u {
         irradiance *= cone_falloff(cosine, light.cos_inner, light.cos_outer);
     }

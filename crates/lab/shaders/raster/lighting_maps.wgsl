@@ -37,5 +37,5 @@ fn sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
     }
     // Outside the map nothing casts a shadow.
     let inside = max(abs(place.x), abs(place.y)) < 1.0;
-    return select(1.0, sum / 9.0, inside);
+    return select(1.0, sum * (1.0f / 9.0), inside);
 }

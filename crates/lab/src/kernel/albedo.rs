@@ -98,7 +98,7 @@ pub fn ggx_albedo(tables: &AlbedoTables, cosine: f32, width: f32) -> Vec2 {
 pub fn anisotropic_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
     let slanted = wo.x.abs() + wo.y.abs();
     let azimuth = if slanted > 1e-6 { wo.x.abs() / slanted } else { 0.5 };
-    let aspect = ((a.y / a.x).sqrt() - MIN_ASPECT) / (1.0 - MIN_ASPECT);
+    let aspect = ((a.y / a.x).sqrt() - MIN_ASPECT) * (1.0 / (1.0 - MIN_ASPECT));
     let kx = albedo_knot(albedo_cosine(wo.z, a.x), ANISOTROPIC[0]);
     let ky = albedo_knot(azimuth, ANISOTROPIC[1]);
     let kz = albedo_knot(a.x.sqrt(), ANISOTROPIC[2]);
@@ -126,8 +126,8 @@ pub fn anisotropic_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
 /// Directional albedo of white sheen. May exceed 1.
 #[inline]
 pub fn sheen_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> f32 {
-    let y = (roughness - MIN_SHEEN_ROUGHNESS) / (1.0 - MIN_SHEEN_ROUGHNESS);
-    let x = (cosine.max(MIN_SHEEN_COSINE).sqrt().sqrt() - SHEEN_ROOT) / (1.0 - SHEEN_ROOT);
+    let y = (roughness - MIN_SHEEN_ROUGHNESS) * (1.0 / (1.0 - MIN_SHEEN_ROUGHNESS));
+    let x = (cosine.max(MIN_SHEEN_COSINE).sqrt().sqrt() - SHEEN_ROOT) * (1.0 / (1.0 - SHEEN_ROOT));
     albedo_plane(tables, x, y).z
 }
 
@@ -137,7 +137,8 @@ pub fn sheen_albedo(tables: &AlbedoTables, cosine: f32, roughness: f32) -> f32 {
 pub fn glass_albedo(tables: &AlbedoTables, cosine: f32, width: f32, ior: f32, entering: bool) -> Vec2 {
     let kx = albedo_knot(albedo_cosine(cosine, width).sqrt(), GLASS_COSINES);
     let ky = albedo_knot(width.sqrt(), GLASS_ROUGHNESSES);
-    let kz = albedo_knot((((2.0 * (ior - 1.0)) / (ior + 1.0)).sqrt() - IOR_ROOT) / (1.0 - IOR_ROOT), GLASS_IORS);
+    let kz =
+        albedo_knot((((2.0 * (ior - 1.0)) / (ior + 1.0)).sqrt() - IOR_ROOT) * (1.0 / (1.0 - IOR_ROOT)), GLASS_IORS);
     let row = GLASS_COSINES;
     let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
     let mut sums = [Vec4::ZERO; 2];

@@ -168,16 +168,13 @@ pub struct Layers {
 /// cosines.
 #[inline]
 pub fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
-    let p = schlick_weight(cosine);
-    let r = roughness;
-    let b = r - 0.5;
-    let rc = r * cosine;
     // Integrals over azimuth and mu of mu f(mu), with P = (1 - mu)^5: P -> 1/42, mu P -> 1/168, mu^2 P -> 1/504.
-    let rise_i = b / 42.0 + rc / 168.0;
-    let rise_o = b / 2.0 + rc / 3.0;
-    let squares = ((11.0 / 1008.0) * r) * r * (1.0 - cosine * cosine);
-    let both = ((rc * rc) / 504.0 + squares) + (b / 42.0 + rc / 84.0) * b;
-    (rise_i + (rise_o + both) * p) * 2.0 + 1.0
+    // Ordered by powers of the roughness.
+    let r = roughness;
+    let rise = cosine * (1.0 / 84.0) + 1.0 / 21.0;
+    let slope = cosine * (55.0 / 84.0) + 20.0 / 21.0;
+    let curve = (cosine * (-1.0 / 56.0) + 1.0 / 42.0) * cosine + 5.0 / 72.0;
+    (rise * r + 41.0 / 42.0) + ((curve * r + slope) * r - 41.0 / 84.0) * schlick_weight(cosine)
 }
 
 /// Energy compensation for multiple scattering: factor on a GGX lobe with reflectance `f0` at normal incidence, such

@@ -145,9 +145,8 @@ pub fn refracted(v: Vec3, h: Vec3, eta: f32) -> Vec3 {
 /// squared perceptual roughness.
 #[inline]
 pub fn charlie_d(cosine: f32, a: f32) -> f32 {
-    let inverse = 1.0 / a;
     let sin2 = ((1.0 - cosine) * (1.0 + cosine)).max(1e-30);
-    (2.0 + inverse) * exp((ln(sin2) * (0.5 * inverse)).max(-60.0)) / (2.0 * PI)
+    ((a * (1.0 / PI) + 0.5 / PI) / a) * exp((ln(sin2) * (0.5 / a)).max(-60.0))
 }
 
 /// Charlie's shadowing curve L, fitted for a = 1 and a = 0 and blended by (1 - a)^2.

@@ -9,8 +9,8 @@ pub const DIRECTION_STEPS: f32 = 32767.0;
 /// Folds the octahedron's lower half outwards; its own inverse.
 #[inline]
 fn folded(x: f32, y: f32) -> f32 {
-    let size = 1.0 - y.abs();
-    if x < 0.0 { -size } else { size }
+    // Not the negated difference, whose 0 would be negative: devices differ there.
+    if x < 0.0 { y.abs() - 1.0 } else { 1.0 - y.abs() }
 }
 
 /// Signed fraction as two's complement in the low 16 bits.
@@ -22,7 +22,7 @@ fn fraction_bits(x: f32) -> u32 {
 /// Inverse of [`fraction_bits`].
 #[inline]
 fn fraction(bits: u32) -> f32 {
-    ((bits << 16) as i32 >> 16) as f32 / DIRECTION_STEPS
+    ((bits << 16) as i32 >> 16) as f32 * (1.0 / DIRECTION_STEPS)
 }
 
 /// Octahedral code of a finite, nonzero vector of any length.

@@ -5,7 +5,7 @@ use super::bsdf::{Sampled, Scatter};
 use super::sampling::{uniform_hemisphere, uniform_hemisphere_pdf};
 use afterimage::kernel::approx::{exp, ln};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::FRAC_1_PI;
 
 /// Albedos of the lobes. They conserve energy if their sum is at most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +49,7 @@ pub fn phong_diffuse(surface: &PhongSurface, wi: Vec3) -> Vec3 {
 #[inline]
 pub fn phong_specular(surface: &PhongSurface, wo: Vec3, wi: Vec3) -> Vec3 {
     let cosine = (wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y)).clamp(0.0, 1.0);
-    let top = (surface.exponent + 2.0) / (2.0 * PI);
+    let top = (surface.exponent + 2.0) * (0.5 * FRAC_1_PI);
     surface.specular * ((top * phong_power(cosine, surface.exponent)) * wi.z.max(0.0))
 }
 

@@ -37,5 +37,5 @@ pub fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
 #[inline]
 pub fn texel_value(bits: u32) -> Vec4 {
     let byte = |shift: u32| ((bits >> shift) & 255) as f32;
-    Vec4::new(byte(0), byte(8), byte(16), byte(24)) / 255.0
+    Vec4::new(byte(0), byte(8), byte(16), byte(24)) * (1.0 / 255.0)
 }

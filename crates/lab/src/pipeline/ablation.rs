@@ -28,7 +28,7 @@ pub const PARTS: &[Part] = &[
         instead: "NaN and infinity are accepted as colors and weights",
         methods: HISTORIES,
         replaced: &[
-            ("if is_finite(c.x) && is_finite(c.y) && is_finite(c.z) {", "if true {"),
+            ("if max(max(size.x, size.y), size.z) < 0x7f800000u {", "if true {"),
             ("return select(0.0, w, bits >= 0x00800000u && bits < 0x7f800000u);", "return w;"),
         ],
     },
@@ -37,10 +37,7 @@ pub const PARTS: &[Part] = &[
         instead: "colors and gains are not clamped; Catmull-Rom may undershoot",
         methods: HISTORIES,
         replaced: &[
-            (
-                "return Sanitized(clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF)), true);",
-                "return Sanitized(c, true);",
-            ),
+            ("let limited = clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let limited = c;"),
             ("let c = clamp(linear_color, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let c = linear_color;"),
             ("max(g.sharp * (1.0 / weights), vec3<f32>(0.0))", "g.sharp * (1.0 / weights)"),
             (
@@ -61,12 +58,9 @@ pub const PARTS: &[Part] = &[
     },
     Part {
         name: "exact-color",
-        instead: "cube roots without Halley steps, a few percent off (without only one of the two, no pixel changes)",
+        instead: "cube roots without their polynomial, a few percent off",
         methods: &[Method::Wrs],
-        replaced: &[(
-            "for (var i = 0u; i < 2u; i++) {\n        let r3",
-            "for (var i = 0u; i < 0u; i++) {\n        let r3",
-        )],
+        replaced: &[("let r = d + d * (e * p);", "let r = d;")],
     },
     Part {
         name: "catmull-rom",

@@ -1,6 +1,7 @@
 //! Triangle records that both tracers read.
 
 use crate::kernel::octahedral::{decode_direction, encode_direction};
+use crate::kernel::texel::texel_value;
 use crate::scene::{Alpha, Material, Triangles};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec3A, Vec4};
@@ -208,7 +209,7 @@ impl AttributeRecord {
             normals: [0, 1, 2].map(|i| decode_direction(w[i])),
             tangents: [4, 5, 6].map(|i| decode_direction(w[i] & !1).extend(if w[i] & 1 == 0 { 1.0 } else { -1.0 })),
             uvs: [0, 1, 2].map(|i| Vec2::new(of(UV_WORDS[2 * i]), of(UV_WORDS[2 * i + 1]))),
-            colors: [3, 7, 11].map(|i| Vec4::from_array(w[i].to_le_bytes().map(|b| f32::from(b) / 255.0))),
+            colors: [3, 7, 11].map(|i| texel_value(w[i])),
         }
     }
 }

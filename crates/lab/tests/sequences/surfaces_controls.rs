@@ -227,7 +227,7 @@ fn every_planted_error_in_noisy_smr_is_caught() {
                 "let together = candidate.samples / max(1.0 - share",
                 "let together = candidate.samples / max(1.01 - share",
             ),
-            ("/ QUALITY_WIDTH, 0.0, 1.0) * confidence.x", "/ QUALITY_WIDTH, 0.0, 1.0)"),
+            (") * confidence.x;", ");"),
             ("/ COARSER_WIDTH, 0.0, 1.0) * confidence.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
             ("const COARSER_FRAMES: f32 = 4.0;", "const COARSER_FRAMES: f32 = 5.0;"),
         ],

@@ -68,5 +68,5 @@ fn a_wrong_normal_or_texel_is_caught() {
     caught(lighting::PROBES, "hue", "if y > 1e-6", "if y > 1e-5");
     caught(lighting::PROBES, "wrap_coordinate", "2.0 * floor(u * 0.5)", "floor(u)");
     caught(lighting::PROBES, "wrap_texel", "2 * n - 1 - i", "2 * n - i");
-    caught(lighting::PROBES, "texel_value", "/ 255.0", "* 0.003921569");
+    caught(lighting::PROBES, "texel_value", "1.0f / 255.0", "0.003921568");
 }

@@ -3,6 +3,8 @@
 
 #[path = "../../../../tests/gpu/twins/modules.rs"]
 mod modules;
+#[path = "../../../../tests/gpu/twins/order.rs"]
+mod order;
 #[allow(dead_code, reason = "the drop-in's twins use all of it")]
 #[path = "../../../../tests/gpu/twins/probe.rs"]
 mod probe;
@@ -10,6 +12,8 @@ mod probe;
 #[path = "../../../../tests/gpu/twins/values.rs"]
 mod values;
 
+#[cfg(feature = "wgpu-30")]
+mod backends;
 mod controls;
 mod facets;
 mod functions;

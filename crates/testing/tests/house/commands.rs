@@ -1,6 +1,6 @@
 //! Cargo commands in comments, documents and scripts name packages, targets and features that exist.
 
-use super::tree::{PACKAGES, Tree, expect_none, read};
+use super::tree::{APART, PACKAGES, Tree, expect_none, read};
 use super::words::pieces;
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ struct Names {
 impl Names {
     fn read(tree: &Tree) -> Self {
         let mut names = Self { packages: [].into(), tests: [].into(), examples: [].into(), features: [].into() };
-        for package in PACKAGES {
+        for package in PACKAGES.iter().chain(&APART) {
             let manifest: toml::Table = read(&format!("{package}Cargo.toml")).parse().unwrap();
             names.packages.insert(manifest["package"]["name"].as_str().unwrap().to_owned());
             let features = manifest.get("features").and_then(toml::Value::as_table).into_iter();

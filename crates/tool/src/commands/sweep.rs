@@ -6,6 +6,8 @@ mod pick;
 mod plan;
 mod report;
 
+pub use report::command_line;
+
 use crate::args::input::InputArgs;
 use crate::failure::Failure;
 use crate::progress;

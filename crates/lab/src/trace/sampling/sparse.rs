@@ -38,6 +38,8 @@ impl Sampling {
         let refuse =
             |setting, found: String, expected: &str| Err(SettingsError { setting, found, expected: expected.into() });
         let (setting, steps) = match self {
+            // Equal blocks are one lattice.
+            Self::Regions(Regions { blocks: [mid, far], .. }) if mid == far => ("blocks of regions", vec![1, *far]),
             Self::Regions(r) => ("blocks of regions", vec![1, r.blocks[0], r.blocks[1]]),
             Self::Layers(Layers { lens_deg: Some(deg), .. }) => {
                 return refuse(
@@ -52,11 +54,7 @@ impl Sampling {
                 return refuse("sampling", found.into(), "regions or layers, whose samples lie on lattices");
             }
         };
-        let may_equal = matches!(self, Self::Regions(_)).then_some(1);
-        let ascends = steps
-            .windows(2)
-            .enumerate()
-            .all(|(i, pair)| pair[0] < pair[1] || (Some(i) == may_equal && pair[0] == pair[1]));
+        let ascends = steps.windows(2).all(|pair| pair[0] < pair[1]);
         let allowed = |&step: &u32| step.is_power_of_two() && step <= Foveation::MAX_RATE;
         if steps[0] != 1 || !ascends || !steps.iter().all(allowed) {
             let expected = format!("ascending powers of two, the first one 1, at most {}", Foveation::MAX_RATE);

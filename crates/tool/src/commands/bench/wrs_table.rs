@@ -6,7 +6,7 @@ use crate::commands::sweep::{SweepArgs, execute};
 use crate::failure::Failure;
 use crate::sweep::{Metric, Row, Table};
 use afterimage_lab::whole_file::write_whole;
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -41,9 +41,9 @@ pub struct WrsTableArgs {
     /// Another scanpath for the readings, stretched over the picture
     #[arg(long, value_name = "FILE.csv")]
     pub second_gaze: Option<String>,
-    /// Write the table of readings alone, which needs no sweep
-    #[arg(long)]
-    pub readings_only: bool,
+    /// Make these tables alone
+    #[arg(long, value_enum, value_name = "TABLES")]
+    pub only: Option<Tables>,
     /// Repetitions of randomized methods, each with another seed
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub seeds: u64,
@@ -56,6 +56,15 @@ pub struct WrsTableArgs {
     /// File for the tables; default: standard output
     #[arg(long, value_name = "FILE.md")]
     pub markdown: Option<PathBuf>,
+}
+
+/// Tables of `bench wrs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Tables {
+    /// Table 1 and run times, which need a sweep
+    Published,
+    /// Gains of the method with other readings of its equations, on the still
+    Readings,
 }
 
 /// Published results: PSNR in dB and SSIM, without (still) or with TAA (moving), and with weighted reservoirs.
@@ -102,15 +111,28 @@ struct Sweep {
 
 /// Runs the sweep and writes the tables.
 pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
-    let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
+    if args.only == Some(Tables::Published) {
+        return match published(args)? {
+            Some(tables) => write(args, &tables),
+            None => Ok(()),
+        };
+    }
     let readings = wrs_readings::table(args)?;
     // Before the sweep, which may be interrupted.
-    if args.readings_only || args.markdown.is_some() {
+    if args.only.is_some() || args.markdown.is_some() {
         write(args, &readings)?;
     }
-    if args.readings_only {
-        return Ok(());
+    if args.only.is_none()
+        && let Some(tables) = published(args)?
+    {
+        write(args, &format!("{tables}\n{readings}"))?;
     }
+    Ok(())
+}
+
+/// Table 1 and run times; nothing if the sweep was interrupted.
+fn published(args: &WrsTableArgs) -> Result<Option<String>, Failure> {
+    let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
     let out = args.out.to_string_lossy();
     let (rate_mid, rate_far) = (format!("rate-mid={}", args.rate_mid), format!("rate-far={}", args.rate_far));
     let words = [
@@ -137,8 +159,7 @@ pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
         &out,
     ];
     let sweep = Sweep::try_parse_from(words).map_err(|e| Failure::usage(&e))?;
-    let Some(table) = execute(&sweep.args)? else { return Ok(()) };
-    write(args, &format!("{}\n{readings}", markdown(args, &table)))
+    Ok(execute(&sweep.args)?.map(|table| markdown(args, &table)))
 }
 
 fn write(args: &WrsTableArgs, text: &str) -> Result<(), Failure> {

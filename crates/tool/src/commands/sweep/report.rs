@@ -13,7 +13,7 @@ use std::io::Write;
 
 /// Writes all files; returns the table.
 pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, Failure> {
-    let table = Table::new(measurements, args.pick.renderer_ms, command());
+    let table = Table::new(measurements, args.pick.renderer_ms, command_line());
     let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
     text(store, "sweep.json", &(json + "\n"))?;
     text(store, "sweep.csv", &table.csv())?;
@@ -38,7 +38,7 @@ fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
 }
 
 /// The command line, quoted for a shell.
-fn command() -> String {
+pub fn command_line() -> String {
     let arguments = std::env::args().skip(1).map(|word| quoted(&word));
     ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }

@@ -1,0 +1,78 @@
+//! A courtyard in a window. The mouse is the gaze.
+//!
+//! Keys: 1 full rate, 2 quad views, 3 sparse with history, 4 simulated; D debug views; S stats; R resets history.
+//!
+//! `cargo run --release --features window --example window`
+
+mod common;
+
+use bevy::diagnostic::{DiagnosticsStore, FrameTimeDiagnosticsPlugin};
+use bevy::prelude::*;
+use bevy_afterimage::afterimage::DebugView;
+use bevy_afterimage::{
+    Afterimage, AfterimageDebug, AfterimagePlugin, AfterimageStats, CursorGazePlugin, Foveated, FoveationKind,
+};
+use common::scene::{ScenePlugin, TONEMAPPING, stroll};
+
+fn main() {
+    let mut app = App::new();
+    // (1) to (3): what Afterimage adds to an application.
+    app.add_plugins((DefaultPlugins, AfterimagePlugin, CursorGazePlugin))
+        .add_plugins((FrameTimeDiagnosticsPlugin::default(), ScenePlugin { lamps: 16, moves: true }))
+        .add_systems(Startup, |mut commands: Commands| {
+            commands.spawn((Camera3d::default(), Afterimage::default(), Foveated::default(), TONEMAPPING, stroll(1.5)));
+        })
+        .add_systems(Update, (keys, title, sway));
+    app.run();
+}
+
+/// Moves the camera to and fro.
+fn sway(time: Res<Time>, mut camera: Single<&mut Transform, With<Afterimage>>) {
+    **camera = stroll(1.5 + (0.5 * time.elapsed_secs()).sin());
+}
+
+type Switched<'a> = (Entity, &'a mut Foveated, &'a mut Afterimage, Option<&'a AfterimageDebug>, Has<AfterimageStats>);
+
+fn keys(mut commands: Commands, keys: Res<ButtonInput<KeyCode>>, camera: Single<Switched<'_>>) {
+    let (entity, mut foveated, mut afterimage, debug, counts) = camera.into_inner();
+    for (key, kind) in [
+        (KeyCode::Digit1, FoveationKind::Off),
+        (KeyCode::Digit2, FoveationKind::QuadViews),
+        (KeyCode::Digit3, FoveationKind::Sparse),
+        (KeyCode::Digit4, FoveationKind::Simulated),
+    ] {
+        if keys.just_pressed(key) {
+            foveated.kind = kind;
+        }
+    }
+    if keys.just_pressed(KeyCode::KeyR) {
+        afterimage.reset = true;
+    }
+    if keys.just_pressed(KeyCode::KeyD) {
+        let views = [DebugView::Quality, DebugView::Age, DebugView::Rejection, DebugView::Motion];
+        let next = debug.map_or(0, |debug| views.iter().position(|view| *view == debug.0).map_or(0, |i| i + 1));
+        match views.get(next) {
+            Some(&view) => commands.entity(entity).insert(AfterimageDebug(view)),
+            None => commands.entity(entity).remove::<AfterimageDebug>(),
+        };
+    }
+    if keys.just_pressed(KeyCode::KeyS) {
+        match counts {
+            true => commands.entity(entity).remove::<AfterimageStats>(),
+            false => commands.entity(entity).insert(AfterimageStats::default()),
+        };
+    }
+}
+
+fn title(
+    diagnostics: Res<DiagnosticsStore>,
+    camera: Single<(&Foveated, Option<&AfterimageStats>)>,
+    mut window: Single<&mut Window>,
+) {
+    let (foveated, stats) = *camera;
+    let frame_ms =
+        diagnostics.get(&FrameTimeDiagnosticsPlugin::FRAME_TIME).and_then(|d| d.smoothed()).unwrap_or_default();
+    let kept =
+        stats.map_or(String::new(), |s| format!(", kept {:.0} %", 100.0 * s.kept as f64 / s.pixels.max(1) as f64));
+    window.title = format!("{:?}: {frame_ms:.1} ms{kept} (1-4, D, S, R)", foveated.kind);
+}

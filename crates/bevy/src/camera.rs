@@ -1,0 +1,221 @@
+//! Components of a camera, and what they require of it.
+
+use afterimage::{DebugView, Filter, Settings};
+use bevy::camera::{CameraMainTextureUsages, Hdr};
+use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
+use bevy::prelude::*;
+use bevy::render::render_resource::TextureUsages;
+
+/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
+///
+/// Sets [`Msaa::Off`], because samples of a foveated frame have no neighbours to average with, and adds `DepthPrepass`
+/// and `MotionVectorPrepass` where history needs them.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+#[require(Foveated)]
+pub struct Afterimage {
+    /// Settings by name.
+    pub preset: Preset,
+    /// Settings in full, instead of the preset. Their `foveation` is ignored: [`Foveated`] says it.
+    #[reflect(ignore)]
+    pub settings: Option<Settings>,
+    /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
+    pub reset: bool,
+}
+
+impl Afterimage {
+    pub(crate) fn settings(&self, foveated: &Foveated) -> Settings {
+        let settings = self.settings.unwrap_or_else(|| match self.preset {
+            Preset::Steady => Settings::steady(),
+            Preset::Responsive => Settings::responsive(),
+            Preset::Weighted => Settings::weighted(),
+            Preset::Paper => Settings::paper(),
+        });
+        let method = match foveated.kind {
+            FoveationKind::QuadViews => afterimage::Method::None,
+            _ => settings.method,
+        };
+        Settings { method, foveation: foveated.foveation(), ..settings }
+    }
+}
+
+/// Settings by name: the presets of [`Settings`], where their figures are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum Preset {
+    /// Sharp where the eye has been, calm elsewhere: [`Settings::steady`].
+    #[default]
+    Steady,
+    /// Less flicker of moving things, less detail outlives a moving camera: [`Settings::responsive`].
+    Responsive,
+    /// Weighted reservoirs: [`Settings::weighted`].
+    Weighted,
+    /// Weighted reservoirs as published: [`Settings::paper`].
+    Paper,
+}
+
+/// How a camera with [`Afterimage`] foveates. Angles are visual angles of the camera: its field of view is taken for
+/// the one that the screen fills.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default)]
+pub struct Foveated {
+    /// What is rendered. Default [`FoveationKind::Sparse`].
+    pub kind: FoveationKind,
+    /// Diameter of the full-rate region in degrees: 0 to 180, at most `mid_deg`. Default 10.
+    pub fovea_deg: f32,
+    /// Diameter of the middle region in degrees: 0 to 180. Default 25.
+    pub mid_deg: f32,
+    /// Edge in pixels of the blocks of which one pixel is shaded, in the middle region: a power of two, at most 256.
+    /// Default 2.
+    pub rate_mid: u32,
+    /// The same in the periphery: a power of two from `rate_mid` to 256. Default 4.
+    pub rate_far: u32,
+}
+
+impl Default for Foveated {
+    fn default() -> Self {
+        Self { kind: FoveationKind::default(), fovea_deg: 10.0, mid_deg: 25.0, rate_mid: 2, rate_far: 4 }
+    }
+}
+
+impl Foveated {
+    fn foveation(&self) -> afterimage::Foveation {
+        let filter = match self.kind {
+            FoveationKind::Sparse | FoveationKind::QuadViews => Filter::Sparse,
+            FoveationKind::Simulated => Filter::Mip,
+            FoveationKind::Off => Filter::Off,
+        };
+        let Self { fovea_deg, mid_deg, rate_mid, rate_far, .. } = *self;
+        afterimage::Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Default::default() }
+    }
+}
+
+/// What a camera with [`Foveated`] renders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default)]
+pub enum FoveationKind {
+    /// One pixel of each block, another one in each frame; the post-process fills the rest from history. Saves time.
+    #[default]
+    Sparse,
+    /// The pixel in the middle of each block, interpolated, without history: quad views, for comparison. Saves time.
+    QuadViews,
+    /// Every pixel, and then means of blocks, as if a renderer had shaded those, with history. Saves nothing; shows
+    /// what the post-process does.
+    Simulated,
+    /// Every pixel, without post-process: for comparison.
+    Off,
+}
+
+impl FoveationKind {
+    /// Whether lattice cameras render instead of the camera itself.
+    pub(crate) fn has_lattices(self) -> bool {
+        matches!(self, Self::Sparse | Self::QuadViews)
+    }
+
+    /// Whether the post-process has history, and needs depth and motion vectors for it.
+    fn has_history(self) -> bool {
+        matches!(self, Self::Sparse | Self::Simulated)
+    }
+}
+
+/// Shows a view of the post-process's decisions instead of the frame. Not with [`FoveationKind::QuadViews`], which
+/// decides nothing.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, opaque)]
+pub struct AfterimageDebug(pub DebugView);
+
+/// Size in pixels of what a camera draws: its viewport, which must lie inside its target. `None`: nothing is drawn, or
+/// an application has changed the target and not yet the viewport.
+pub(crate) fn drawn_size_px(camera: &Camera) -> Option<UVec2> {
+    let (size, target) = (camera.physical_viewport_size()?, camera.physical_target_size()?);
+    let origin = camera.viewport.as_ref().map_or(UVec2::ZERO, |viewport| viewport.physical_position);
+    let is_inside = (origin + size).cmple(target).all();
+    (camera.is_active && size.min_element() > 0 && is_inside).then_some(size)
+}
+
+pub(crate) struct CameraPlugin;
+
+impl Plugin for CameraPlugin {
+    fn build(&self, app: &mut App) {
+        // Before what reads these components in this frame.
+        app.add_systems(
+            PostUpdate,
+            (require_no_msaa, add_storage, add_prepasses).before(bevy::camera::CameraUpdateSystems),
+        );
+    }
+}
+
+/// Switches MSAA off.
+fn require_no_msaa(mut cameras: Query<(&Foveated, &mut Msaa), With<Afterimage>>) {
+    for (foveated, mut msaa) in &mut cameras {
+        if foveated.kind != FoveationKind::Off && *msaa != Msaa::Off {
+            warn_once!("Afterimage sets Msaa::Off: samples of a foveated frame have no neighbours to average with");
+            *msaa = Msaa::Off;
+        }
+    }
+}
+
+/// The plugin has added `STORAGE_BINDING` to the usages of a camera's main textures.
+#[derive(Component)]
+struct AddedStorage;
+
+type Storage<'a> = (Entity, &'a mut CameraMainTextureUsages, Has<Afterimage>, Has<Hdr>, Has<AddedStorage>);
+
+/// Has the post-process write the main texture itself where compute shaders can: not sRGB-encoded formats, which
+/// cameras without `Hdr` have.
+fn add_storage(mut commands: Commands, mut cameras: Query<Storage<'_>>) {
+    let storage = TextureUsages::STORAGE_BINDING;
+    for (entity, mut usages, has_afterimage, is_hdr, is_added) in &mut cameras {
+        let needed = has_afterimage && is_hdr;
+        if needed && !usages.0.contains(storage) {
+            usages.0.insert(storage);
+            commands.entity(entity).insert(AddedStorage);
+        } else if !needed && is_added {
+            usages.0.remove(storage);
+            commands.entity(entity).remove::<AddedStorage>();
+        }
+    }
+}
+
+/// Prepasses that the plugin has added to a camera.
+#[derive(Component)]
+struct AddedPrepasses {
+    depth: bool,
+    motion: bool,
+}
+
+type Prepasses<'a> = (
+    Entity,
+    Option<&'a Afterimage>,
+    Option<&'a Foveated>,
+    Option<&'a AddedPrepasses>,
+    Has<DepthPrepass>,
+    Has<MotionVectorPrepass>,
+);
+
+/// Adds depth and motion prepasses to cameras with history, and removes them when they are no longer needed.
+fn add_prepasses(mut commands: Commands, cameras: Query<Prepasses<'_>, With<Camera3d>>) {
+    for (entity, afterimage, foveated, added, has_depth, has_motion) in &cameras {
+        let needed = afterimage.is_some() && foveated.is_some_and(|foveated| foveated.kind.has_history());
+        let mut camera = commands.entity(entity);
+        match added {
+            None if needed => {
+                camera.insert((
+                    DepthPrepass,
+                    MotionVectorPrepass,
+                    AddedPrepasses { depth: !has_depth, motion: !has_motion },
+                ));
+            }
+            Some(added) if !needed => {
+                if added.depth {
+                    camera.remove::<DepthPrepass>();
+                }
+                if added.motion {
+                    camera.remove::<MotionVectorPrepass>();
+                }
+                camera.remove::<AddedPrepasses>();
+            }
+            _ => {}
+        }
+    }
+}

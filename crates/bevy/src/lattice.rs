@@ -1,0 +1,349 @@
+//! Lattice cameras: the small views that draw the samples of a sparse frame.
+
+use crate::camera::{Afterimage, Foveated, FoveationKind, drawn_size_px};
+use crate::frame::depth_convention;
+use crate::gaze::{CameraGaze, Gaze};
+use afterimage::{Lattice, Lattices, ViewGeometry};
+use bevy::asset::AssetEventSystems;
+use bevy::camera::visibility::VisibilitySystems;
+use bevy::camera::{
+    CameraProjection, CameraUpdateSystems, CompositingSpace, Hdr, RenderTarget, RenderTargetInfo, SubCameraView,
+    Viewport,
+};
+use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::light::SimulationLightSystems;
+use bevy::math::Vec3A;
+use bevy::prelude::*;
+use bevy::render::camera::MipBias;
+use bevy::render::render_resource::TextureFormat;
+
+/// Camera that draws one lattice of samples for another camera, whose child it is. The plugin spawns, moves and
+/// despawns it.
+///
+/// Its entity has `Camera` and `Camera3d`. Queries for cameras that should not find it need `Without<LatticeCamera>`.
+#[derive(Component, Clone, Copy, Debug, Reflect)]
+#[reflect(Component)]
+pub struct LatticeCamera {
+    /// The camera that shows the samples.
+    pub camera: Entity,
+    /// Which lattice: 0 is the full-rate one, 2 the coarsest.
+    pub index: usize,
+}
+
+/// Largest number of lattices of a camera: fovea, middle region, periphery.
+pub(crate) const COUNT: usize = 3;
+
+/// Sides of the lattices' target are multiples of this, so that it is not made anew whenever the gaze moves.
+const TARGET_MULTIPLE_PX: u32 = 64;
+
+/// Lattice cameras of a camera, and what is placed in them.
+#[derive(Component, Debug)]
+pub(crate) struct LatticeCameras {
+    /// By [`LatticeCamera::index`].
+    pub entities: [Entity; COUNT],
+    /// Where their samples lie in this frame; `None`: the camera renders every pixel itself.
+    pub placed: Option<Placed>,
+    /// What all of them draw to, one after the other.
+    target: Handle<Image>,
+    target_size_px: UVec2,
+    /// Frame counter, which moves the samples.
+    index: u64,
+    held_uv: Option<Vec2>,
+}
+
+/// Samples of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub lattices: Lattices,
+    pub gaze_px: [f32; 2],
+}
+
+pub(crate) struct LatticePlugin;
+
+impl Plugin for LatticePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<LatticeCamera>().add_systems(
+            PostUpdate,
+            (
+                spawn.before(TransformSystems::Propagate).before(CameraUpdateSystems),
+                // After the system that updates the camera's own projection.
+                place
+                    .after(CameraUpdateSystems)
+                    .before(AssetEventSystems)
+                    .before(VisibilitySystems::UpdateFrusta)
+                    .before(SimulationLightSystems::UpdateDirectionalLightCascades)
+                    .before(SimulationLightSystems::AssignLightsToClusters),
+            ),
+        );
+    }
+}
+
+/// Whether the main textures of lattice cameras need another format.
+#[derive(Component)]
+struct IsHdr(bool);
+
+type Needs<'a> =
+    (Entity, Option<&'a Afterimage>, Option<&'a Foveated>, Has<Hdr>, Option<(&'a LatticeCameras, &'a IsHdr)>);
+
+/// Spawns lattice cameras for cameras that need them, and despawns those of others.
+fn spawn(mut commands: Commands, mut images: ResMut<Assets<Image>>, cameras: Query<Needs<'_>, With<Camera3d>>) {
+    for (camera, afterimage, foveated, is_hdr, made) in &cameras {
+        let needed = afterimage.is_some() && foveated.is_some_and(|foveated| foveated.kind.has_lattices());
+        if let Some((lattices, made_hdr)) = made
+            && (!needed || made_hdr.0 != is_hdr)
+        {
+            lattices.entities.iter().for_each(|&entity| commands.entity(entity).try_despawn());
+            commands.entity(camera).remove::<(LatticeCameras, IsHdr)>();
+        } else if needed && made.is_none() {
+            let target = images.add(target_image(UVec2::splat(TARGET_MULTIPLE_PX)));
+            let entities = std::array::from_fn(|index| {
+                let mut lattice = commands.spawn((
+                    ChildOf(camera),
+                    LatticeCamera { camera, index },
+                    Camera3d::default(),
+                    // The orders differ so that Bevy sees no ambiguity; the plugin sorts the cameras (`frame.rs`).
+                    Camera { is_active: false, order: index as isize, ..default() },
+                    RenderTarget::from(target.clone()),
+                    (Msaa::Off, DebandDither::Disabled),
+                ));
+                if is_hdr {
+                    lattice.insert((Hdr, Tonemapping::None));
+                }
+                lattice.id()
+            });
+            let lattices = LatticeCameras {
+                entities,
+                placed: None,
+                target,
+                target_size_px: UVec2::splat(TARGET_MULTIPLE_PX),
+                index: 0,
+                held_uv: None,
+            };
+            commands.entity(camera).insert((lattices, IsHdr(is_hdr)));
+        }
+    }
+}
+
+fn target_image(size_px: UVec2) -> Image {
+    Image::new_target_texture(size_px.x, size_px.y, TextureFormat::Rgba8UnormSrgb, None)
+}
+
+type MainCamera<'a> = (
+    Entity,
+    &'a Camera,
+    &'a Afterimage,
+    &'a Foveated,
+    &'a mut LatticeCameras,
+    Option<&'a CameraGaze>,
+    Option<&'a MipBias>,
+    Option<&'a CompositingSpace>,
+);
+
+type SmallCamera<'a> = (&'a mut Camera, &'a mut Projection, &'a mut RenderTarget);
+
+/// Moves the lattice cameras to where this frame's samples are.
+fn place(
+    mut commands: Commands,
+    gaze: Res<Gaze>,
+    mut images: ResMut<Assets<Image>>,
+    mut cameras: Query<MainCamera<'_>, Without<LatticeCamera>>,
+    mut smalls: Query<SmallCamera<'_>, With<LatticeCamera>>,
+) {
+    for (entity, camera, afterimage, foveated, mut state, own_gaze, mip_bias, space) in &mut cameras {
+        let size = drawn_size_px(camera);
+        let uv = own_gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
+        state.held_uv = uv.or(state.held_uv);
+        state.placed = None;
+        if let Some(size) = size {
+            match lattices(camera, afterimage, foveated, &state, size, space) {
+                Ok(placed) => state.placed = Some(placed),
+                Err(problem) => {
+                    error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
+                }
+            }
+        }
+        state.index += 1;
+        let placed = state.placed;
+        if let Some(placed) = &placed {
+            reserve(&mut state, &mut images, placed, foveated);
+        }
+        for (index, &small) in state.entities.iter().enumerate() {
+            let Ok((mut small_camera, mut projection, mut target)) = smalls.get_mut(small) else { continue };
+            let lattice = placed.as_ref().and_then(|placed| lattice_of(&placed.lattices, foveated, index));
+            if small_camera.is_active != lattice.is_some() {
+                small_camera.is_active = lattice.is_some();
+            }
+            let Some((lattice, size)) = lattice.zip(size) else { continue };
+            if target.as_image() != Some(&state.target) {
+                *target = state.target.clone().into();
+            }
+            small_camera.viewport = Some(Viewport { physical_size: lattice.points.into(), ..default() });
+            small_camera.clear_color = camera.clear_color;
+            small_camera.invert_culling = camera.invert_culling;
+            let clip_from_view = crop(lattice, size) * camera.clip_from_view();
+            *projection = Projection::custom(Cropped(clip_from_view));
+            // What Bevy's `camera_system` computes, which has run.
+            let size_px = Some(lattice.points.into());
+            small_camera.computed.old_viewport_size = size_px;
+            small_camera.computed.clip_from_view = clip_from_view;
+            small_camera.computed.target_info =
+                Some(RenderTargetInfo { physical_size: state.target_size_px, scale_factor: 1.0 });
+            let detail = match foveated.kind {
+                // A sample is worth one pixel of the full-rate frame.
+                FoveationKind::Sparse => -(lattice.step as f32).log2(),
+                _ => 0.0,
+            };
+            commands.entity(small).insert(MipBias(detail + mip_bias.map_or(0.0, |bias| bias.0)));
+        }
+    }
+}
+
+/// Lattices of a frame, or why the camera has none.
+fn lattices(
+    camera: &Camera,
+    afterimage: &Afterimage,
+    foveated: &Foveated,
+    state: &LatticeCameras,
+    size: UVec2,
+    space: Option<&CompositingSpace>,
+) -> Result<Placed, String> {
+    if space.is_some_and(|space| *space != CompositingSpace::Linear) {
+        return Err("its CompositingSpace is not linear".into());
+    }
+    let settings = afterimage.settings(foveated);
+    settings.validate().map_err(|error| error.to_string())?;
+    if settings.noisy {
+        return Err("its settings expect a noise input, which Bevy does not have".into());
+    }
+    let geometry = ViewGeometry::from_projection(size.into(), camera.clip_from_view().to_cols_array_2d())
+        .map_err(|error| error.to_string())?;
+    depth_convention(camera.clip_from_view())?;
+    let uv = state.held_uv.unwrap_or(Vec2::splat(0.5));
+    let gaze_px = (uv * size.as_vec2() - 0.5).to_array();
+    let mut lattices = settings.foveation.lattices(&geometry, gaze_px, state.index);
+    if foveated.kind == FoveationKind::QuadViews {
+        let still: Vec<_> = lattices.as_slice().iter().map(|lattice| in_the_middle(lattice, size)).collect();
+        lattices = Lattices::new(&still).map_err(|error| error.to_string())?;
+    }
+    Ok(Placed { lattices, gaze_px })
+}
+
+/// The lattice with its samples in the middle of their blocks.
+fn in_the_middle(lattice: &Lattice, size: UVec2) -> Lattice {
+    let size: [u32; 2] = size.into();
+    let low = lattice.covered_px()[0];
+    let first_px = [0, 1].map(|i| (low[i] + lattice.step / 2).min(size[i] - 1));
+    Lattice { first_px, ..*lattice }
+}
+
+/// The lattice that camera `index` draws, if it is in the stack: regions may lie outside the view.
+pub(crate) fn lattice_of<'a>(lattices: &'a Lattices, foveated: &Foveated, index: usize) -> Option<&'a Lattice> {
+    let steps = [1, foveated.rate_mid, foveated.rate_far];
+    // Equal rates are one lattice, that of the last camera with this rate.
+    let is_repeated = steps[index + 1..].contains(&steps[index]);
+    lattices.as_slice().iter().find(|lattice| lattice.step == steps[index] && !is_repeated)
+}
+
+/// Makes the target large enough. It becomes smaller only where the view has become much smaller.
+fn reserve(state: &mut LatticeCameras, images: &mut Assets<Image>, placed: &Placed, foveated: &Foveated) {
+    let needed = (0..COUNT)
+        .filter_map(|index| lattice_of(&placed.lattices, foveated, index))
+        .fold(UVec2::ONE, |size, lattice| size.max(lattice.points.into()));
+    let rounded = needed.map(|side| side.next_multiple_of(TARGET_MULTIPLE_PX));
+    let has = state.target_size_px;
+    if rounded.cmpgt(has).any() || rounded.element_product() * 4 < has.element_product() {
+        let size = if rounded.cmpgt(has).any() { rounded.max(has.min(rounded * 2)) } else { rounded };
+        state.target = images.add(target_image(size));
+        state.target_size_px = size;
+    }
+}
+
+/// Crop of clip space to the rectangle of a lattice, shifted so that the middles of its texels are those of the
+/// samples' pixels.
+fn crop(lattice: &Lattice, size: UVec2) -> Mat4 {
+    let [size, first, points] = [size, lattice.first_px.into(), lattice.points.into()].map(|v: UVec2| v.as_dvec2());
+    let step = f64::from(lattice.step);
+    let covered = points * step;
+    let scale = size / covered;
+    let offset = (size - 1.0 - 2.0 * first + step) / covered - 1.0;
+    // Rounded once. Clip space has y up.
+    let [scale, offset] = [scale, offset].map(|v| v.as_vec2());
+    Mat4::from_cols(Vec4::X * scale.x, Vec4::Y * scale.y, Vec4::Z, Vec4::new(offset.x, -offset.y, 0.0, 1.0))
+}
+
+/// Cropped projection of a lattice camera: clip from view, reversed depth.
+#[derive(Clone, Copy, Debug)]
+struct Cropped(Mat4);
+
+impl CameraProjection for Cropped {
+    fn get_clip_from_view(&self) -> Mat4 {
+        self.0
+    }
+
+    fn get_clip_from_view_for_sub(&self, _: &SubCameraView) -> Mat4 {
+        self.0
+    }
+
+    fn update(&mut self, _width: f32, _height: f32) {}
+
+    fn far(&self) -> f32 {
+        // Depth 0 is at `w.z / z.z`, which is infinite for Bevy's usual projection.
+        let (z, w) = (self.0.z_axis.z, self.0.w_axis.z);
+        if z > 0.0 { w / z } else { f32::MAX }
+    }
+
+    fn get_frustum_corners(&self, z_near: f32, z_far: f32) -> [Vec3A; 8] {
+        let Mat4 { x_axis: x, y_axis: y, z_axis: z, .. } = self.0;
+        // In Bevy's order: bottom right, top right, top left, bottom left; near, then far.
+        let corner =
+            |depth: f32, [u, v]: [f32; 2]| Vec3A::new(-depth * (u + z.x) / x.x, -depth * (v + z.y) / y.y, depth);
+        let corners = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
+        let mut all = [Vec3A::ZERO; 8];
+        for (i, ndc) in corners.into_iter().enumerate() {
+            (all[i], all[i + 4]) = (corner(z_near, ndc), corner(z_far, ndc));
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_texel_of_a_crop_shows_its_sample() {
+        let size = UVec2::new(1280, 720);
+        let projection = PerspectiveProjection::default().get_clip_from_view();
+        for (step, first_px, points) in [(1, [403, 77], [155, 154]), (4, [3, 1], [320, 180]), (2, [301, 40], [90, 111])]
+        {
+            let lattice = Lattice { step, first_px, points, atlas_texel: None };
+            for texel in [[0, 0], [points[0] - 1, points[1] / 2]] {
+                let point = Vec3::new(0.3, -0.2, -3.0);
+                let seen = |clip: Mat4, size: Vec2| {
+                    let ndc = clip.project_point3(point);
+                    (Vec2::new(ndc.x, -ndc.y) * 0.5 + 0.5) * size
+                };
+                let full = seen(projection, size.as_vec2());
+                let small = seen(crop(&lattice, size) * projection, UVec2::from(points).as_vec2());
+                // Both in pixels from the middle of the sample's pixel, and of its texel.
+                let pixel = UVec2::from(first_px) + UVec2::from(texel) * step;
+                let from_pixel = full - pixel.as_vec2() - 0.5;
+                let from_texel = small - UVec2::from(texel).as_vec2() - 0.5;
+                assert!(
+                    (from_pixel - from_texel * step as f32).abs().max_element() < 0.01,
+                    "{from_pixel} {from_texel}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn corners_are_those_of_the_perspective_projection() {
+        let projection = PerspectiveProjection::default();
+        let expected = projection.get_frustum_corners(-0.1, -7.0);
+        let found = Cropped(projection.get_clip_from_view()).get_frustum_corners(-0.1, -7.0);
+        for (a, b) in expected.into_iter().zip(found) {
+            assert!((a - b).abs().max_element() < 1e-4, "{a} {b}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Foveated rendering with memory for Bevy, in one plugin.
+//!
+//! A camera with [`Afterimage`] shades every pixel only around the gaze. Elsewhere it shades one pixel of each block,
+//! and another one in the next frame. A temporal post-process, the crate [`afterimage`], fills the rest from what was
+//! shaded before.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_afterimage::{Afterimage, AfterimagePlugin, CursorGazePlugin, Foveated};
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, AfterimagePlugin, CursorGazePlugin))
+//!     .add_systems(Startup, |mut commands: Commands| {
+//!         commands.spawn((Camera3d::default(), Afterimage::default(), Foveated::default()));
+//!     })
+//!     .run();
+//! ```
+//!
+//! # How a frame is made
+//!
+//! [`FoveationKind::Sparse`], the default: the plugin gives the camera up to three children, the [lattice
+//! cameras](LatticeCamera). Each draws the samples of a rectangle as a small view: a crop of the camera's projection,
+//! shifted so that the middles of its texels are those of the samples. The camera itself draws depth and motion vectors
+//! of every pixel, and shades no mesh. Before its main passes the post-process writes the frame into its main texture,
+//! and what the camera draws then, as gizmos, stays at full rate. Post-processing effects and UI follow as usual.
+//!
+//! Lattice cameras have `Camera` and `Camera3d`, as all cameras do. A query for one camera needs
+//! `Without<LatticeCamera>`:
+//!
+//! ```
+//! # use bevy::prelude::*;
+//! # use bevy_afterimage::LatticeCamera;
+//! fn turn(mut camera: Single<&mut Transform, (With<Camera3d>, Without<LatticeCamera>)>) {
+//!     camera.rotate_y(0.01);
+//! }
+//! # bevy::ecs::system::assert_is_system(turn);
+//! ```
+
+mod blit;
+mod camera;
+mod context;
+mod diagnostics;
+mod frame;
+mod gaze;
+mod hide;
+mod lattice;
+mod mirror;
+mod pass;
+mod scanpath;
+mod shadow;
+#[doc(hidden)]
+pub mod testing;
+
+pub use afterimage;
+pub use camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Preset};
+pub use diagnostics::AfterimageStats;
+pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
+pub use lattice::LatticeCamera;
+pub use mirror::MirrorPlugin;
+pub use scanpath::{Scanpath, ScanpathError, ScanpathPlugin};
+
+use bevy::prelude::*;
+
+/// Runs the post-process for cameras with [`Afterimage`]. Needs Bevy's `PbrPlugin`, which is among `DefaultPlugins`;
+/// add it after those.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AfterimagePlugin;
+
+impl Plugin for AfterimagePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Gaze>()
+            .init_resource::<testing::Planted>()
+            .register_type::<(Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, Gaze)>()
+            .add_plugins((
+                camera::CameraPlugin,
+                lattice::LatticePlugin,
+                mirror::MirrorDefaultsPlugin,
+                shadow::ShadowPlugin,
+                hide::HidePlugin,
+                frame::FramePlugin,
+                pass::PassPlugin,
+                diagnostics::DiagnosticsPlugin,
+            ));
+    }
+}

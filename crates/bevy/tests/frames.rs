@@ -1,0 +1,65 @@
+//! Frames of an application without a window, on software Vulkan.
+
+#[path = "../examples/common/mod.rs"]
+mod common;
+
+mod frames {
+    mod conventions;
+    mod events;
+    mod pixels;
+}
+
+use bevy::camera::Hdr;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::prelude::*;
+use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
+use common::headless::{Headless, psnr_db};
+use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
+
+const SIZE: UVec2 = UVec2::new(320, 180);
+
+/// The courtyard, and a camera with `components` that strolls through it.
+fn courtyard(components: impl Bundle) -> Headless {
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let target = headless.render_target();
+    headless
+        .app
+        .world_mut()
+        .spawn((Camera3d::default(), target, stroll(0.0), Mover::Stroll))
+        .insert((TONEMAPPING, Msaa::Off))
+        .insert(components);
+    headless
+}
+
+fn kind(kind: FoveationKind) -> impl Bundle {
+    (Afterimage::default(), Foveated { kind, ..default() })
+}
+
+/// A gaze that wanders through the frame.
+fn wander(headless: &mut Headless, frame: usize) {
+    let t = frame as f32;
+    let uv = Vec2::new(0.5 + 0.3 * (0.11 * t).sin(), 0.55 + 0.2 * (0.07 * t).cos());
+    headless.app.world_mut().resource_mut::<Gaze>().set(uv);
+}
+
+/// Frames of the wandering gaze, without the first `skipped`.
+fn clip(headless: &mut Headless, frames: usize, skipped: usize) -> Vec<Vec<u8>> {
+    let shots = (0..frames).filter_map(|frame| {
+        wander(headless, frame);
+        let shot = headless.shot();
+        (frame >= skipped).then_some(shot)
+    });
+    let shots = shots.collect();
+    assert_eq!(headless.problems(), &[] as &[String], "validation");
+    shots
+}
+
+/// PSNR over the frames of a clip, in dB.
+fn clip_psnr_db(a: &[Vec<u8>], b: &[Vec<u8>]) -> f64 {
+    psnr_db(&a.concat(), &b.concat())
+}
+
+/// A camera with `Hdr` whose main texture is shown as it is.
+fn linear() -> impl Bundle {
+    (Hdr, Tonemapping::None)
+}

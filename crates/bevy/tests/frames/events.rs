@@ -1,0 +1,164 @@
+//! What happens to an application while it runs.
+
+use crate::common::headless::Headless;
+use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
+use crate::{SIZE, courtyard, kind, psnr_db, wander};
+use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::prelude::*;
+use bevy_afterimage::afterimage::{DebugView, Settings};
+use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, LatticeCamera, Preset};
+
+#[test]
+fn frames_of_another_size_are_good_again() {
+    let [wide, tall] = [UVec2::new(400, 200), UVec2::new(160, 220)];
+    for size in [wide, tall, SIZE * 2] {
+        let shots = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(|foveation| {
+            let mut headless = courtyard(kind(foveation));
+            headless.frames(4);
+            headless.resize(size);
+            headless.frames(14);
+            assert_eq!(headless.problems(), &[] as &[String]);
+            headless.read()
+        });
+        assert_eq!(shots[2].len(), 4 * size.element_product() as usize);
+        let [quad, sparse] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
+        println!("{size}: quad views {quad:.2} dB, sparse {sparse:.2} dB");
+        assert!(sparse > quad, "{size}: sparse {sparse:.2} dB, quad views {quad:.2} dB");
+    }
+}
+
+#[test]
+fn msaa_is_switched_off() {
+    let [without, with] = [Msaa::Off, Msaa::Sample4].map(|msaa| {
+        let mut headless = courtyard((kind(FoveationKind::Sparse), msaa));
+        headless.frames(5);
+        assert_eq!(headless.problems(), &[] as &[String]);
+        let mut cameras = headless.app.world_mut().query::<&Msaa>();
+        assert!(cameras.iter(headless.app.world()).all(|msaa| *msaa == Msaa::Off));
+        headless.read()
+    });
+    assert!(without == with);
+}
+
+#[test]
+fn a_lost_gaze_stays_where_it_was() {
+    let [held, lost, centred] = [Some(Vec2::new(0.2, 0.7)), None, Some(Vec2::splat(0.5))].map(|later| {
+        let mut headless = courtyard(kind(FoveationKind::Sparse));
+        headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.2, 0.7));
+        headless.frames(3);
+        headless.app.world_mut().resource_mut::<Gaze>().set(later);
+        headless.frames(3);
+        headless.read()
+    });
+    assert!(held == lost);
+    assert!(held != centred);
+}
+
+#[test]
+fn settings_and_kinds_change_while_it_runs() {
+    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    let mut cameras = headless.app.world_mut().query::<(Entity, &mut Afterimage, &mut Foveated)>();
+    let mut frame = 0;
+    let mut change = |headless: &mut Headless, to: &dyn Fn(&mut Afterimage, &mut Foveated)| {
+        let (_, mut afterimage, mut foveated) = cameras.single_mut(headless.app.world_mut()).unwrap();
+        to(&mut afterimage, &mut foveated);
+        for _ in 0..3 {
+            wander(headless, frame);
+            frame += 1;
+            headless.frames(1);
+        }
+        assert_eq!(headless.problems(), &[] as &[String]);
+        let shot = headless.read();
+        let mean = shot.iter().map(|&byte| u64::from(byte)).sum::<u64>() / shot.len() as u64;
+        assert!(mean > 80, "a dark frame: {mean}");
+        shot
+    };
+    let lattices = |headless: &mut Headless| {
+        headless.app.world_mut().query_filtered::<(), With<LatticeCamera>>().iter(headless.app.world()).count()
+    };
+    change(&mut headless, &|_, _| {});
+    assert_eq!(lattices(&mut headless), 3);
+    for preset in [Preset::Responsive, Preset::Weighted, Preset::Paper, Preset::Steady] {
+        change(&mut headless, &|afterimage, _| afterimage.preset = preset);
+    }
+    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 8));
+    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 4));
+    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (1, 2));
+    change(&mut headless, &|_, foveated| *foveated = Foveated::default());
+    for kind in [FoveationKind::Simulated, FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse] {
+        change(&mut headless, &|_, foveated| foveated.kind = kind);
+        assert_eq!(
+            lattices(&mut headless),
+            if matches!(kind, FoveationKind::Simulated | FoveationKind::Off) { 0 } else { 3 }
+        );
+    }
+    // Settings out of range: every pixel is rendered, until they are mended.
+    let broken = Settings { weight_exponent: 99, ..Settings::default() };
+    change(&mut headless, &|afterimage, _| afterimage.settings = Some(broken));
+    change(&mut headless, &|afterimage, foveated| {
+        afterimage.settings = None;
+        foveated.rate_far = 3;
+    });
+    change(&mut headless, &|_, foveated| *foveated = Foveated::default());
+}
+
+#[test]
+fn debug_views_are_shown_instead_of_the_frame() {
+    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    headless.frames(8);
+    let camera =
+        headless.app.world_mut().query_filtered::<Entity, With<Afterimage>>().single(headless.app.world()).unwrap();
+    let frame = headless.read();
+    let views = [DebugView::Quality, DebugView::Rejection, DebugView::Motion].map(|view| {
+        headless.app.world_mut().entity_mut(camera).insert(AfterimageDebug(view));
+        headless.shot()
+    });
+    for (i, view) in views.iter().enumerate() {
+        assert!(psnr_db(view, &frame) < 25.0, "view {i} looks like the frame");
+        assert!(views[..i].iter().all(|other| other != view), "view {i} looks like another one");
+    }
+    headless.app.world_mut().entity_mut(camera).remove::<AfterimageDebug>();
+    assert!(psnr_db(&headless.shot(), &frame) > 15.0);
+    assert_eq!(headless.problems(), &[] as &[String]);
+}
+
+#[test]
+fn cameras_come_and_go() {
+    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    headless.frames(3);
+    let world = headless.app.world_mut();
+    let camera = world.query_filtered::<Entity, With<Afterimage>>().single(world).unwrap();
+    world.entity_mut(camera).remove::<Afterimage>();
+    headless.frames(3);
+    let world = headless.app.world_mut();
+    assert_eq!(world.query::<&LatticeCamera>().iter(world).count(), 0);
+    assert!(headless.read().iter().any(|&byte| byte > 150), "the camera renders every pixel itself");
+    headless.app.world_mut().entity_mut(camera).insert(Afterimage::default());
+    headless.frames(3);
+    headless.app.world_mut().entity_mut(camera).get_mut::<Camera>().unwrap().is_active = false;
+    headless.frames(2);
+    headless.app.world_mut().entity_mut(camera).get_mut::<Camera>().unwrap().is_active = true;
+    headless.frames(2);
+    headless.app.world_mut().entity_mut(camera).despawn();
+    headless.frames(2);
+    let world = headless.app.world_mut();
+    assert_eq!(world.query::<&LatticeCamera>().iter(world).count(), 0);
+    assert_eq!(headless.problems(), &[] as &[String]);
+}
+
+#[test]
+fn an_orthographic_camera_renders_every_pixel() {
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
+    let target = headless.render_target();
+    let projection = Projection::from(OrthographicProjection { scale: 0.03, ..OrthographicProjection::default_3d() });
+    let camera = (Camera3d::default(), projection, target, TONEMAPPING, stroll(1.0));
+    let camera = headless.app.world_mut().spawn((camera, kind(FoveationKind::Sparse))).id();
+    headless.frames(4);
+    let foveated = headless.read();
+    headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();
+    headless.frames(4);
+    assert!(foveated == headless.read());
+    assert!(foveated.iter().any(|&byte| byte > 150));
+    assert_eq!(headless.problems(), &[] as &[String]);
+    assert!(!headless.app.world().entity(camera).contains::<DepthPrepass>());
+}

@@ -1,0 +1,314 @@
+//! Pixels of frames: better than without history, and those of the drop-in.
+
+use crate::common::headless::{Headless, afterimage};
+use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
+use crate::{SIZE, clip, clip_psnr_db, courtyard, kind, linear, psnr_db, wander};
+use afterimage::gpu::{Frame, Region, Textures};
+use afterimage::{ViewFrame, wgpu};
+use bevy::camera::{CameraProjection, SubCameraView, Viewport};
+use bevy::math::Vec3A;
+use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::renderer::{RenderDevice, RenderQueue};
+use bevy_afterimage::testing::recorded;
+use bevy_afterimage::{Afterimage, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze};
+
+#[test]
+fn history_is_better_than_quad_views_in_motion() {
+    let [off, quad, sparse] = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse]
+        .map(|foveation| clip(&mut courtyard(kind(foveation)), 24, 12));
+    let [quad, sparse] = [quad, sparse].map(|shots| clip_psnr_db(&shots, &off));
+    println!("quad views {quad:.2} dB, sparse {sparse:.2} dB");
+    assert!(sparse > quad + 1.0, "sparse {sparse:.2} dB, quad views {quad:.2} dB");
+}
+
+#[test]
+fn a_still_view_becomes_that_of_full_rate_with_and_without_hdr() {
+    for is_hdr in [false, true] {
+        let frame = |foveation| {
+            let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
+            let target = headless.render_target();
+            let mut camera = headless.app.world_mut().spawn((
+                Camera3d::default(),
+                Msaa::Off,
+                target,
+                TONEMAPPING,
+                stroll(1.0),
+                kind(foveation),
+            ));
+            if is_hdr {
+                camera.insert(linear());
+            }
+            headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.3, 0.5));
+            // 16 positions in a block of 4 x 4, and a few frames more.
+            headless.frames(36);
+            assert_eq!(headless.problems(), &[] as &[String]);
+            headless.read()
+        };
+        let [full, quad, sparse] = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(frame);
+        let [quad, sparse] = [quad, sparse].map(|shot| psnr_db(&shot, &full));
+        println!("hdr {is_hdr}: quad views {quad:.2} dB, sparse {sparse:.2} dB");
+        assert!(sparse > 38.0 && sparse > quad + 8.0, "hdr {is_hdr}: sparse {sparse:.2} dB, quad views {quad:.2} dB");
+    }
+}
+
+/// Reads a texture of 8 bytes a pixel.
+fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
+    let world = headless.app.sub_app(RenderApp).world();
+    let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
+    let stride = (8 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(stride * texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+    let copy = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), copy, texture.size());
+    queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
+    let bytes = buffer.get_mapped_range(..);
+    bytes.chunks(stride as usize).flat_map(|row| &row[..8 * texture.width() as usize]).copied().collect()
+}
+
+#[test]
+fn frames_are_those_of_the_drop_in_fed_with_the_same_textures() {
+    let mut headless = courtyard((kind(FoveationKind::Sparse), linear()));
+    let mut alone = None;
+    for frame in 0..6 {
+        wander(&mut headless, frame);
+        headless.frames(1);
+        let render_world = headless.app.sub_app_mut(RenderApp).world_mut();
+        let given = recorded(render_world).pop().expect("a camera");
+        let device = render_world.resource::<RenderDevice>().wgpu_device().clone();
+        let format = wgpu::TextureFormat::Rgba16Float;
+        let post = alone.get_or_insert_with(|| afterimage::gpu::Afterimage::new(&device, &given.desc, format).unwrap());
+        let output = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: given.output.size(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let views = [given.view];
+        let [depth, motion] = [&given.depth, &given.motion].map(|texture| [Region::new(texture, [0, 0])]);
+        let described = Frame {
+            depth: Some(Textures::Regions(&depth)),
+            motion: Some(Textures::Regions(&motion)),
+            ..Frame::new(&given.color, &views, given.index)
+        };
+        let mut encoder = device.create_command_encoder(&Default::default());
+        post.record(&device, &mut encoder, &described, &output).unwrap();
+        render_world.resource::<RenderQueue>().submit([encoder.finish()]);
+        let [shown, expected] = [&given.output, &output].map(|texture| read(&headless, texture));
+        assert!(shown.iter().any(|&byte| byte != 0), "frame {frame} is black");
+        assert!(shown == expected, "frame {frame} differs");
+        // The comparison notices a view that is described otherwise.
+        if frame == 5 {
+            let views = [ViewFrame { previous_from_current: None, gaze: afterimage::Gaze::Lost, ..given.view }];
+            let described = Frame { views: &views, depth: None, ..described };
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let refused = post.record(&device, &mut encoder, &described, &output);
+            let differs = refused.is_err() || {
+                let world = headless.app.sub_app(RenderApp).world();
+                world.resource::<RenderQueue>().submit([encoder.finish()]);
+                read(&headless, &output) != shown
+            };
+            assert!(differs);
+        }
+    }
+}
+
+#[test]
+fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
+    // The line at a distance before the camera, and behind the wall.
+    let [before, behind] = [3.0, -9.0].map(|z| {
+        [FoveationKind::Off, FoveationKind::Sparse].map(|foveation| {
+            let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
+            let target = headless.render_target();
+            let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), kind(foveation));
+            headless.app.world_mut().spawn(camera);
+            headless.app.add_systems(Update, move |mut gizmos: Gizmos<'_, '_>| {
+                gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), Color::srgb(1.0, 0.0, 1.0));
+            });
+            headless.frames(8);
+            assert_eq!(headless.problems(), &[] as &[String]);
+            let shot = headless.read();
+            shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
+        })
+    });
+    let [full, sparse] = [0, 1].map(|i| before[i].iter().filter(|is_line| **is_line).count());
+    println!("pixels of the line: {full}, {sparse} with lattices");
+    assert!(full > 100);
+    assert!(before[0] == before[1]);
+    assert!(behind.iter().flatten().all(|is_line| !is_line));
+}
+
+#[test]
+fn two_cameras_show_what_each_shows_alone() {
+    let half = UVec2::new(SIZE.x / 2, SIZE.y);
+    let camera = |headless: &mut Headless, side: u32| {
+        let target = headless.render_target();
+        let viewport = Viewport { physical_position: UVec2::new(side * half.x, 0), physical_size: half, ..default() };
+        let clear_color = if side == 0 { ClearColorConfig::Default } else { ClearColorConfig::Custom(Color::BLACK) };
+        headless.app.world_mut().spawn((
+            Camera3d::default(),
+            Camera { order: side as isize, viewport: Some(viewport), clear_color, ..default() },
+            (target, TONEMAPPING, kind(FoveationKind::Sparse)),
+            (stroll(0.6 * side as f32), Mover::Stroll),
+            CameraGaze { uv: Some(Vec2::new(0.3 + 0.4 * side as f32, 0.5)) },
+        ));
+    };
+    let shots = [&[0][..], &[1], &[0, 1]].map(|sides| {
+        let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+        sides.iter().for_each(|&side| camera(&mut headless, side));
+        headless.frames(10);
+        assert_eq!(headless.problems(), &[] as &[String]);
+        headless.read()
+    });
+    let side = |shot: &[u8], side: u32| -> Vec<u8> {
+        let row = 4 * SIZE.x as usize;
+        let from = 4 * (side * half.x) as usize;
+        shot.chunks(row).flat_map(|line| &line[from..from + row / 2]).copied().collect()
+    };
+    for i in 0..2 {
+        let [alone, both] = [&shots[i as usize], &shots[2]].map(|shot| side(shot, i));
+        assert!(alone.iter().any(|&byte| byte > 100), "camera {i} shows nothing");
+        let differing = alone.iter().zip(&both).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "camera {i} shows something else beside the other one");
+    }
+    assert_ne!(side(&shots[2], 0), side(&shots[2], 1), "the cameras show the same");
+}
+
+/// An eye of a headset: a frustum that is not symmetric.
+#[derive(Clone, Copy, Debug)]
+struct Eye {
+    left: f32,
+    right: f32,
+    aspect: f32,
+}
+
+impl CameraProjection for Eye {
+    fn get_clip_from_view(&self) -> Mat4 {
+        let (near, half_height) = (0.1, 0.5 * (self.right - self.left) / self.aspect);
+        let width = self.right - self.left;
+        Mat4::from_cols(
+            Vec4::X * (2.0 / width),
+            Vec4::Y / half_height,
+            Vec4::new((self.right + self.left) / width, 0.0, 0.0, -1.0),
+            Vec4::new(0.0, 0.0, near, 0.0),
+        )
+    }
+
+    fn get_clip_from_view_for_sub(&self, _: &SubCameraView) -> Mat4 {
+        self.get_clip_from_view()
+    }
+
+    fn update(&mut self, width: f32, height: f32) {
+        self.aspect = width / height;
+    }
+
+    fn far(&self) -> f32 {
+        1000.0
+    }
+
+    fn get_frustum_corners(&self, z_near: f32, z_far: f32) -> [Vec3A; 8] {
+        let half_height = 0.5 * (self.right - self.left) / self.aspect;
+        let at = |z: f32, x: f32, y: f32| Vec3A::new(-z * x, -z * y, z);
+        let mut all = [Vec3A::ZERO; 8];
+        for (i, z) in [(0, z_near), (4, z_far)] {
+            all[i] = at(z, self.right, -half_height);
+            all[i + 1] = at(z, self.right, half_height);
+            all[i + 2] = at(z, self.left, half_height);
+            all[i + 3] = at(z, self.left, -half_height);
+        }
+        all
+    }
+}
+
+#[test]
+fn two_eyes_with_a_gaze_each() {
+    let half = UVec2::new(SIZE.x / 2, SIZE.y);
+    let shots = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(|foveation| {
+        let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+        for (side, [left, right]) in [(0_u32, [-0.8, 0.5]), (1, [-0.5, 0.8])] {
+            let target = headless.render_target();
+            let viewport =
+                Viewport { physical_position: UVec2::new(side * half.x, 0), physical_size: half, ..default() };
+            let projection = Projection::custom(Eye { left, right, aspect: 1.0 });
+            let head = Transform::from_xyz(0.0, 1.7, 6.0);
+            let gaze = CameraGaze { uv: Some(Vec2::new(if side == 0 { 0.62 } else { 0.38 }, 0.5)) };
+            headless.app.world_mut().spawn((
+                Camera3d::default(),
+                Camera { order: side as isize, viewport: Some(viewport), ..default() },
+                (projection, target, TONEMAPPING, Msaa::Off, kind(foveation), gaze),
+                head.with_translation(head.translation + Vec3::X * 0.064 * (side as f32 - 0.5)),
+            ));
+        }
+        headless.frames(30);
+        assert_eq!(headless.problems(), &[] as &[String]);
+        headless.read()
+    });
+    let [quad, sparse] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
+    println!("two eyes: quad views {quad:.2} dB, sparse {sparse:.2} dB");
+    assert!(sparse > quad + 2.0, "sparse {sparse:.2} dB, quad views {quad:.2} dB");
+}
+
+#[test]
+fn a_reset_discards_history_and_is_done_once() {
+    let mut headless = courtyard((kind(FoveationKind::Sparse), AfterimageStats::default()));
+    let stats = |headless: &mut Headless| {
+        // Counts arrive a few frames later.
+        headless.frames(3);
+        *headless.app.world_mut().query::<&AfterimageStats>().single(headless.app.world()).unwrap()
+    };
+    headless.frames(6);
+    let before = stats(&mut headless);
+    println!("{before:?}");
+    assert_eq!(before.pixels, u64::from(SIZE.element_product()));
+    assert!(before.kept + before.replaced > before.pixels / 2);
+    let mut cameras = headless.app.world_mut().query::<&mut Afterimage>();
+    // In several frames, because not all are counted.
+    for _ in 0..6 {
+        cameras.single_mut(headless.app.world_mut()).unwrap().reset = true;
+        headless.frames(1);
+        headless.wait();
+        assert!(!cameras.single(headless.app.world()).unwrap().reset);
+    }
+    let during = *headless.app.world_mut().query::<&AfterimageStats>().single(headless.app.world()).unwrap();
+    assert_eq!((during.kept, during.replaced), (0, 0), "{during:?}");
+    headless.frames(6);
+    let after = stats(&mut headless);
+    assert!(after.kept + after.replaced > after.pixels / 2);
+}
+
+#[test]
+fn full_rate_pixels_of_the_fovea_are_those_of_a_full_rate_frame() {
+    let fovea = |foveation| {
+        let mut headless = courtyard((
+            Afterimage { settings: Some(none()), ..default() },
+            Foveated { kind: foveation, fovea_deg: 30.0, mid_deg: 40.0, ..default() },
+        ));
+        headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::splat(0.5));
+        headless.frames(3);
+        let shot = headless.read();
+        let row = 4 * SIZE.x as usize;
+        let [low, high] = [SIZE * 7 / 16, SIZE * 9 / 16];
+        let lines = shot.chunks(row).skip(low.y as usize).take((high.y - low.y) as usize);
+        lines.flat_map(|line| line[4 * low.x as usize..4 * high.x as usize].to_vec()).collect::<Vec<u8>>()
+    };
+    let psnr = psnr_db(&fovea(FoveationKind::Sparse), &fovea(FoveationKind::Off));
+    println!("fovea: {psnr:.2} dB");
+    // The crop of clip space rounds otherwise than the whole projection.
+    assert!(psnr > 45.0, "{psnr:.2} dB");
+}
+
+fn none() -> afterimage::Settings {
+    afterimage::Settings { method: afterimage::Method::None, ..Default::default() }
+}

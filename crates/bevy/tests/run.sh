@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# All checks of the Bevy plugin, which is a workspace of its own: format, lints, tests, examples, documentation. Needs
+# Rust and a Vulkan driver, software or not.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step() { printf '\n== bevy: %s (%d s so far)\n' "$*" "$SECONDS"; }
+export CARGO_INCREMENTAL=0 NODEVICE_SELECT=1
+target="${CARGO_TARGET_DIR:-target}"
+
+step "format"
+cargo fmt --check
+
+step "lints"
+cargo clippy --locked --all-targets --features window -- -D warnings
+
+step "tests"
+# One after the other: each has an application and a software renderer with threads of its own.
+cargo test --locked -- --test-threads 1
+
+step "examples"
+cargo run --locked --example headless_png -- "$target/headless.png"
+cargo run --locked --example soak -- 20
+
+step "documentation"
+# With the lints' feature, so that they share what is checked.
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --features window
+
+step "all checks passed"

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Builds the demo into a folder that any static server serves: crates/web/build.sh [FOLDER] (default: crates/web/dist).
+# Needs Rust with the target wasm32-unknown-unknown. If that is missing, it takes Debian's compiler for browsers, which
+# it unpacks into crates/web/target/debian without installing it; the standard library is then compiled, too.
+set -euo pipefail
+cd "$(dirname "$0")"
+to="$(realpath -m "${1:-dist}")"
+target="${CARGO_TARGET_DIR:-$PWD/target}"
+export CARGO_TARGET_DIR="$target"
+wasm=wasm32-unknown-unknown
+std=()
+
+if [ ! -d "$(rustc --print target-libdir --target $wasm 2>/dev/null)" ]; then
+    debian="$target/debian"
+    if [ ! -x "$debian/usr/bin/rustc" ]; then
+        command -v apt-get >/dev/null || { echo "no $wasm: run 'rustup target add $wasm'" >&2; exit 1; }
+        mkdir -p "$debian/packages"
+        (
+            cd "$debian/packages"
+            std_package=$(apt-cache depends rustc-web | grep -o 'libstd-rust-web-dev' | head -1)
+            shared=$(apt-cache depends "$std_package" | grep -o 'libstd-rust-web-[0-9][0-9.]*' | head -1)
+            llvm=$(apt-cache depends "$shared" | grep -o 'libllvm[0-9][0-9]*' | head -1)
+            apt-get download -qq rustc-web rust-web-src "$std_package" "$shared" "$llvm" "lld-${llvm#libllvm}"
+            for package in *.deb; do dpkg -x "$package" ..; done
+            rm -- *.deb
+        )
+    fi
+    export RUSTC="$debian/usr/bin/rustc" LD_LIBRARY_PATH="$debian/usr/lib/x86_64-linux-gnu"
+    # build-std is not stable; Debian's compiler is a stable one.
+    export RUSTC_BOOTSTRAP=1 CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER
+    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$(echo "$debian"/usr/bin/wasm-ld-*)
+    std=(-Zbuild-std=std,panic_abort)
+fi
+
+# Messages of panics name files, of this machine without this.
+home="${CARGO_HOME:-$HOME/.cargo}"
+RUSTFLAGS="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= --remap-path-prefix=$(realpath ../..)=" \
+    cargo build --locked --release --target $wasm "${std[@]}"
+
+mkdir -p "$to"
+env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off \
+    CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen \
+    -- "$target/$wasm/release/afterimage_web.wasm" "$to"
+cp page/* "$to"
+cp ../../fixtures/scanpath_viewing.csv "$to/scanpath.csv"
+
+echo "$to, compressed: $(cat "$to"/*.{html,css,js,wasm} | gzip -9 | wc -c) bytes without pictures"

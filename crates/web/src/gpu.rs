@@ -1,0 +1,122 @@
+//! The device, and textures that come back from it.
+
+use crate::Result;
+use std::sync::{Arc, Mutex};
+use wasm_bindgen::{JsError, JsValue};
+use wasm_bindgen_futures::JsFuture;
+use wgpu::{
+    Adapter, Buffer, BufferDescriptor, BufferUsages, Device, Extent3d, Queue, Surface, Texture, TextureAspect,
+    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+};
+
+/// Device and queue.
+pub struct Gpu {
+    pub device: Device,
+    pub queue: Queue,
+    pub adapter: String,
+    /// First error of the device that was not asked about.
+    pub fault: Arc<Mutex<Option<String>>>,
+    /// Mapped after the frames before it are done.
+    fence: [Buffer; 2],
+}
+
+fn failed(error: impl std::fmt::Display) -> JsError {
+    JsError::new(&error.to_string())
+}
+
+impl Gpu {
+    /// The browser's preferred device, and the surface of a canvas.
+    pub async fn open(canvas: &web_sys::HtmlCanvasElement) -> Result<(Self, Surface<'static>, Adapter)> {
+        let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
+        desc.backends = wgpu::Backends::BROWSER_WEBGPU;
+        let instance = wgpu::Instance::new(desc);
+        let surface = instance.create_surface(wgpu::SurfaceTarget::Canvas(canvas.clone())).map_err(failed)?;
+        let options = wgpu::RequestAdapterOptions { compatible_surface: Some(&surface), ..Default::default() };
+        let adapter = instance.request_adapter(&options).await.map_err(failed)?;
+        let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await.map_err(failed)?;
+        let fault = Arc::new(Mutex::new(None));
+        let note = |fault: &Arc<Mutex<Option<String>>>, message: String| {
+            if let Ok(mut fault) = fault.lock() {
+                fault.get_or_insert(message);
+            }
+        };
+        let lost = fault.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            note(&lost, format!("The device is lost ({reason:?}). {message}"));
+        });
+        let uncaptured = fault.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&uncaptured, error.to_string())));
+        let buffer = |usage| {
+            device.create_buffer(&BufferDescriptor { label: Some("fence"), size: 4, usage, mapped_at_creation: false })
+        };
+        let fence = [buffer(BufferUsages::COPY_SRC), buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ)];
+        let info = adapter.get_info();
+        let name = if info.name.is_empty() { info.driver } else { info.name };
+        Ok((Self { device, queue, adapter: name, fault, fence }, surface, adapter))
+    }
+
+    /// A texture of one level.
+    pub fn texture(&self, [width, height]: [u32; 2], format: TextureFormat, usage: TextureUsages) -> Texture {
+        self.device.create_texture(&TextureDescriptor {
+            label: None,
+            size: Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// Resolves when everything that was submitted is done.
+    pub async fn finished(&self) -> Result<()> {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(&self.fence[0], 0, &self.fence[1], 0, 4);
+        self.queue.submit([encoder.finish()]);
+        mapped(&self.fence[1]).await?;
+        self.fence[1].unmap();
+        Ok(())
+    }
+
+    /// Texels of a texture whose channels are floats, row after row.
+    pub async fn read(&self, texture: &Texture) -> Result<Vec<f32>> {
+        let texel = texture.format().block_copy_size(Some(TextureAspect::All)).unwrap_or(4);
+        let row = texture.width() * texel;
+        let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = self.device.create_buffer(&BufferDescriptor {
+            label: Some("readback"),
+            size: u64::from(padded * texture.height()),
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(padded),
+            rows_per_image: Some(texture.height()),
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
+        self.queue.submit([encoder.finish()]);
+        mapped(&buffer).await?;
+        let bytes = buffer.get_mapped_range(..).map_err(failed)?;
+        let rows = bytes.chunks(padded as usize).map(|r| &r[..row as usize]);
+        Ok(rows.flat_map(bytemuck::pod_collect_to_vec::<u8, f32>).collect())
+    }
+}
+
+/// Resolves when a buffer can be read.
+async fn mapped(buffer: &Buffer) -> Result<()> {
+    let promise = js_sys::Promise::new(&mut |resolve, reject| {
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // A promise that nobody waits for any more cannot be told.
+            let _ = match result {
+                Ok(()) => resolve.call0(&JsValue::NULL),
+                Err(error) => reject.call1(&JsValue::NULL, &error.to_string().into()),
+            };
+        });
+    });
+    JsFuture::from(promise).await.map_err(|_| JsError::new("what the device computed cannot be read"))?;
+    Ok(())
+}
