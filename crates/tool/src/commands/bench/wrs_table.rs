@@ -199,8 +199,8 @@ fn markdown(args: &WrsTableArgs, table: &Table) -> String {
         lines.push(gain(table, input, baseline));
     }
     lines.push(format!(
-        "Run time, milliseconds per frame ({machine}). The paper's times are for a 4K frame on an \
-         RTX 4070 Ti Super and\ninclude rendering: the cost of a method is the difference from the first column.\n"
+        "Run time, milliseconds per frame ({machine}).\n\
+         The paper's times are for a 4K frame on an RTX 4070 Ti Super and include rendering:\nthe cost of a method is the difference from the first column.\n"
     ));
     lines.push("| | foveated | + taa | + wrs | + wrs weighted | + smr |".into());
     lines.push("|---|---|---|---|---|---|".into());
@@ -257,8 +257,8 @@ fn gain(table: &Table, input: &str, baseline: &str) -> String {
         .collect();
     let (least, most) = theirs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), &v| (l.min(v), m.max(v)));
     format!(
-        "\nPSNR gain over {baseline}, 5 degrees: wrs {:+.2} dB, weighted {:+.2} dB, smr {:+.2} dB. The paper \
-         reports {least:+.2} to {most:+.2} dB for wrs on its scenes.\n",
+        "\nPSNR gain over {baseline}, 5 degrees: wrs {:+.2} dB, weighted {:+.2} dB, smr {:+.2} dB.\n\
+         The paper reports {least:+.2} to {most:+.2} dB for wrs on its scenes.\n",
         wrs - before,
         weighted - before,
         smr - before
