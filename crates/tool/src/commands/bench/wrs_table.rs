@@ -199,8 +199,10 @@ fn markdown(args: &WrsTableArgs, table: &Table) -> String {
         lines.push(gain(table, input, baseline));
     }
     lines.push(format!(
-        "Run time, milliseconds per frame ({machine}).\n\
-         The paper's times are for a 4K frame on an RTX 4070 Ti Super and include rendering:\nthe cost of a method is the difference from the first column.\n"
+        "Run time, milliseconds per frame.\n\
+         Measured on {machine}.\n\
+         The paper's times are for a 4K frame on an RTX 4070 Ti Super and include rendering:\n\
+         the cost of a method is the difference from the first column.\n"
     ));
     lines.push("| | foveated | + taa | + wrs | + wrs weighted | + smr |".into());
     lines.push("|---|---|---|---|---|---|".into());
