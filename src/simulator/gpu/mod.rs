@@ -148,6 +148,18 @@ impl GpuSimulator {
         })
     }
 
+    /// Bytes of memory traffic a pixel that a filter needs, to outputs of halves and without levels of detail; `None`:
+    /// full-rate frames are copied. For benchmarks.
+    #[doc(hidden)]
+    pub fn traffic(filter: Filter) -> Option<u32> {
+        match filter {
+            Filter::Mip => Some(27),
+            Filter::Gauss => Some(48),
+            Filter::Block => Some(25),
+            Filter::Off | Filter::Sparse => None,
+        }
+    }
+
     /// Description that the simulator was created with.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc

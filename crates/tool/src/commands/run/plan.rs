@@ -1,10 +1,10 @@
 //! Plan of a run, checked before its first frame.
 
 use super::{RunArgs, simulator};
-use crate::args::MethodName;
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
+use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
@@ -50,9 +50,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             title: title(&info.name, info.size, track.px.len(), fps, &words(args, &foveation)),
             geometry,
             foveation,
-            sparse_geometry: args.foveation.geometry().geometry(),
+            sparse_geometry: args.foveation.geometry(),
             quad_views: args.foveation.quad_views(),
-            sample_order: args.foveation.order.order(),
+            sample_order: args.foveation.order,
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,
