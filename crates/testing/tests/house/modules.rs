@@ -7,8 +7,47 @@ use std::collections::BTreeSet;
 /// Folders of crates.
 const CRATES: [&str; 4] = ["src/", "crates/lab/src/", "crates/tool/src/", "crates/bevy/src/"];
 
-/// Uses that close a circle, and why they stay: crate, user, used, reason.
-const ALLOWED: [[&str; 4]; 0] = [];
+/// Subcommands and the options of their parts.
+const OPTIONS: &str = "A subcommand's file begins with its options, as `--help` does, and its parts read them.";
+
+/// Uses that close a circle, and why they stay: crate, user or folder of users, used, reason.
+const ALLOWED: [[&str; 4]; 15] = [
+    ["src/", "method/", "method/mod.rs", "Entries are values of the type that the table lists."],
+    ["src/", "cpu/", "cpu/mod.rs", "Passes read the frame, which is described beside the executor that is given it."],
+    ["src/", "gpu/", "gpu/mod.rs", "Checks of a frame say the limits of the executor that is given it."],
+    ["src/", "gpu/uniforms.rs", "gpu/frame.rs", "Uniforms describe a frame, which may have as many views as they do."],
+    ["src/", "gpu/history.rs", "gpu/mip_chain.rs", "The history keeps the passes that fill its levels."],
+    [
+        "crates/lab/src/",
+        "pipeline/device.rs",
+        "pipeline/mod.rs",
+        "Both kinds of runs give the same filters their levels.",
+    ],
+    [
+        "crates/lab/src/",
+        "source/analytic/light.rs",
+        "source/analytic/tile.rs",
+        "Light asks the tile what may shade it.",
+    ],
+    [
+        "crates/lab/src/",
+        "source/sequence.rs",
+        "source/open.rs",
+        "Names of files tell their kind, as when they are opened.",
+    ],
+    [
+        "crates/lab/src/",
+        "source/still.rs",
+        "source/open.rs",
+        "Names of files tell their kind, as when they are opened.",
+    ],
+    ["crates/tool/src/", "commands/bench/", "commands/bench.rs", OPTIONS],
+    ["crates/tool/src/", "commands/bench/wrs_readings.rs", "commands/bench/wrs_table.rs", OPTIONS],
+    ["crates/tool/src/", "commands/run/", "commands/run.rs", OPTIONS],
+    ["crates/tool/src/", "commands/sweep/", "commands/sweep.rs", OPTIONS],
+    ["crates/tool/src/", "commands/trace/", "commands/trace.rs", OPTIONS],
+    ["crates/tool/src/", "commands/view/", "commands/view.rs", OPTIONS],
+];
 
 /// Everything that a path leads to.
 fn reached<'a>(graph: &'a Graph, from: &str) -> BTreeSet<&'a str> {
@@ -79,8 +118,9 @@ fn files_use_each_other_without_circles() {
         println!("{folder}: {} files, {edges} edges", graph.len());
         assert!(graph.len() > 10 && edges > 20, "{graph:?}");
         for [_, user, used, _] in ALLOWED.iter().filter(|allowed| allowed[0] == folder) {
-            let closes_circle = graph.contains_key(*used) && reached(&graph, used).contains(user);
-            if !(closes_circle && graph.get_mut(*user).is_some_and(|uses| uses.remove(*used))) {
+            let ahead: BTreeSet<String> = reached(&graph, used).into_iter().map(str::to_owned).collect();
+            let users = graph.iter_mut().filter(|(file, _)| file.starts_with(user) && ahead.contains(*file));
+            if users.filter_map(|(_, uses)| uses.take(*used)).count() == 0 {
                 violations.push(format!("{folder}: {user} and {used} are in no circle: remove the exception"));
             }
         }

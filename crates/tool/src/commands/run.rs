@@ -198,12 +198,12 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let mut source = PeekedSource::new(source.as_mut())?;
     let out = Output::create(&args.out, &folders(args), &REPORTS)?;
     let report = plan.clip.run(&mut source, &out)?;
-    plot::write(&plan, simulator(args), &report, &out)?;
+    plot::write(&plan, plan::simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
         fps: plan.fps,
         seed: args.seed,
-        simulator: simulator(args),
+        simulator: plan::simulator(args),
         geometry: args.foveation.may_lack_geometry().then(|| args.foveation.geometry().name()),
         scale: match args.foveation.quad_views() {
             Some(QuadViewLayout::Uniform { step }) => Some(step),
@@ -216,14 +216,6 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     Ok(report)
-}
-
-/// Name of the simulator's filter or of the sampling pattern that foveates the frames.
-fn simulator(args: &RunArgs) -> &'static str {
-    match args.sampling.sampling {
-        SamplingName::Uniform => args.foveation.filter().name(),
-        pattern => pattern.name(),
-    }
 }
 
 /// Folders of the run's frames.

@@ -1,6 +1,6 @@
 //! Plan of a run, checked before its first frame.
 
-use super::{RunArgs, simulator};
+use super::RunArgs;
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
@@ -20,6 +20,14 @@ pub struct Plan {
     pub fps: f32,
     pub clip: Clip,
     pub gaze_map: &'static str,
+}
+
+/// Name of the simulator's filter or of the sampling pattern that foveates the frames.
+pub fn simulator(args: &RunArgs) -> &'static str {
+    match args.sampling.sampling {
+        SamplingName::Uniform => args.foveation.filter().name(),
+        pattern => pattern.name(),
+    }
 }
 
 /// Plans a run on an input.
