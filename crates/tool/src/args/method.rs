@@ -1,6 +1,6 @@
 //! Methods and their settings.
 
-use super::named::{Named, by_name};
+use super::{Named, by_name};
 use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr};
 use clap::{Args, ValueEnum};
 

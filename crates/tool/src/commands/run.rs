@@ -119,7 +119,7 @@ impl RunArgs {
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
-            sparse: self.is_sparse().then(|| self.foveation.order),
+            sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_spp,
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
