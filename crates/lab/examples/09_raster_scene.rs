@@ -34,12 +34,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut references = References::default();
     let mut sheet = vec![];
     for index in 0..frames {
-        let frame = source.frame(index)?;
         // The gaze moves over the frame from left to right and back.
         let t = 0.5 - 0.5 * (index as f32 * 0.15).cos();
         let gaze = [(0.2 + 0.6 * t) * info.size[0] as f32, 0.5 * info.size[1] as f32];
-        let step = pipeline.step(index, &frame, Some(gaze))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, Some(gaze)))?;
+        let step = pipeline.step(&frame)?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);

@@ -4,12 +4,11 @@ use super::CameraPose;
 use super::open::{check_size, device_lost};
 use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
 use super::scene_camera::SceneCamera;
-use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
-use crate::device::{Backend, Headless, SpanClock};
+use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::SourceFrame;
-use crate::frame::{DeviceSamples, FoveatedFrame, Guide};
+use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
@@ -60,8 +59,6 @@ pub struct TracedSource {
     /// Cached full-rate frame of a static scene, and its time.
     still: Option<(SourceFrame, Elapsed)>,
     clock: SpanClock,
-    /// Of the last frame.
-    render_time: Option<Elapsed>,
     /// Samples of the last sparse frame on the tracer's device.
     on_device: Option<DeviceSamples>,
 }
@@ -115,7 +112,6 @@ impl TracedSource {
             seed: settings.seed,
             still: None,
             clock: SpanClock::new(backend),
-            render_time: None,
             on_device: None,
         })
     }
@@ -180,6 +176,57 @@ impl TracedSource {
         };
         Ok((frame, took))
     }
+
+    /// As [`full_rate`](Self::full_rate), traced once if all frames are equal.
+    fn kept_full_rate(&mut self, index: u64) -> Result<(SourceFrame, Elapsed), InputError> {
+        if !self.info.still || self.camera.is_steered() {
+            return self.full_rate(index);
+        }
+        let (frame, took) = match self.still.take() {
+            Some(traced) => traced,
+            None => self.full_rate(0)?,
+        };
+        self.still = Some((frame.clone(), took));
+        Ok((SourceFrame { cut: index == 0, ..frame }, took))
+    }
+
+    /// The full-rate frame without color; `has_geometry`: with depth and motion.
+    fn without_color(&self, index: u64, [view, previous]: &[View; 2], has_geometry: bool) -> SourceFrame {
+        let frame = SourceFrame::without_images(Some(view.previous_from_current(previous)), index == 0);
+        if !has_geometry {
+            return frame;
+        }
+        let seen = Surfaces::trace(&self.world, view, previous, self.tracer.effects(&self.world));
+        SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
+    }
+
+    /// The samples of a sparse frame, left on the tracer's device, and the time of tracing them; `None` unless the
+    /// frame is sparse and that device is the methods'.
+    fn samples_on_device(
+        &mut self,
+        request: &FrameRequest<'_>,
+        [view, previous]: &[View; 2],
+    ) -> Result<Option<(DeviceSamples, Elapsed)>, InputError> {
+        let Tracer::Gpu(tracer) = &self.tracer else { return Ok(None) };
+        let is_wanted = request.device.as_ref().is_some_and(|device| Arc::ptr_eq(tracer.device(), device));
+        if self.samples.sparse.is_none() || !is_wanted {
+            return Ok(None);
+        }
+        let held = self.on_device.take();
+        let mut held = held.unwrap_or_else(|| DeviceSamples::new(tracer.device(), self.info.size));
+        let (traced, took) = self.clock.time(|| {
+            let Some(plan) = self.sparse_plan(view, request.index, request.gaze_px)? else { return Ok(false) };
+            let views = [view, previous];
+            plan.trace_in_place(tracer, &self.world, views, request.index, request.geometry, &mut held);
+            Ok(true)
+        });
+        if !traced? {
+            return Ok(None);
+        }
+        self.check()?;
+        self.on_device = Some(held.clone());
+        Ok(Some((held, took)))
+    }
 }
 
 impl FrameSource for TracedSource {
@@ -187,79 +234,47 @@ impl FrameSource for TracedSource {
         &self.info
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        if !self.info.still || self.camera.is_steered() {
-            let (frame, took) = self.full_rate(index)?;
-            self.render_time = Some(took);
-            return Ok(frame);
-        }
-        let (frame, took) = match self.still.take() {
-            Some(traced) => traced,
-            None => self.full_rate(0)?,
+    /// Frames of its own sampling pattern, if there is one; else the full-rate frame.
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let &FrameRequest { index, gaze_px, .. } = request;
+        let Some(sampling) = self.samples.foveated else {
+            let (frame, took) = self.kept_full_rate(index)?;
+            let frame = RenderedFrame::full_rate(index, gaze_px, frame);
+            return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), ..frame });
         };
-        self.render_time = Some(took);
-        self.still = Some((frame.clone(), took));
-        Ok(SourceFrame { cut: index == 0, ..frame })
-    }
-
-    fn foveated(
-        &mut self,
-        index: u64,
-        gaze_px: [f32; 2],
-        guide: Option<&Guide>,
-    ) -> Result<Option<FoveatedFrame>, InputError> {
-        let Some(sampling) = self.samples.foveated else { return Ok(None) };
-        let [view, _] = self.pose(index)?;
+        // The reference has other samples a pixel: its time says nothing about foveation.
+        let reference = if request.reference { Some(self.kept_full_rate(index)?.0) } else { None };
+        let views = self.pose(index)?;
+        let view = &views[0];
+        if let Some((samples, took)) = self.samples_on_device(request, &views)? {
+            let has_geometry = request.geometry == SparseGeometry::Samples;
+            let reference = reference.unwrap_or_else(|| self.without_color(index, &views, !has_geometry));
+            return Ok(RenderedFrame {
+                samples: Some(samples.samples.iter().sum()),
+                content: Content::OnDevice(OnDevice::Samples(samples)),
+                geometry: request.geometry,
+                render: Some(took),
+                ..RenderedFrame::full_rate(index, gaze_px, reference)
+            });
+        }
+        let reference = reference.unwrap_or_else(|| self.without_color(index, &views, true));
         let samples = self.samples.samples.max(1);
         let (frame, took) = self.clock.time(|| {
-            if let Some(plan) = self.sparse_plan(&view, index, gaze_px)? {
-                return Ok(plan.trace(&self.tracer, &self.world, &view, index));
+            if let Some(plan) = self.sparse_plan(view, index, gaze_px)? {
+                return Ok(plan.trace(&self.tracer, &self.world, view, index));
             }
             let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
-            let plan = match guide {
+            let plan = match request.guide.and_then(|guide| guide.guide(&reference)) {
                 None => plan,
-                Some(guide) => plan.guided(guide, index, self.seed).map_err(|e| {
+                Some(guide) => plan.guided(&guide, index, self.seed).map_err(|e| {
                     InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size")
                 })?,
             };
-            Ok(plan.trace(&self.tracer, &self.world, &view, index))
+            Ok(plan.trace(&self.tracer, &self.world, view, index))
         });
         let frame: FoveatedFrame = frame?;
         self.check()?;
-        self.render_time = Some(took);
-        Ok(Some(frame))
-    }
-
-    fn render_time(&self) -> Option<Elapsed> {
-        self.render_time
-    }
-
-    fn foveated_on(
-        &mut self,
-        device: &Arc<Headless>,
-        index: u64,
-        gaze_px: [f32; 2],
-        geometry: SparseGeometry,
-    ) -> Result<Option<DeviceSamples>, InputError> {
-        if !matches!(&self.tracer, Tracer::Gpu(tracer) if Arc::ptr_eq(tracer.device(), device)) {
-            return Ok(None);
-        }
-        let [view, previous] = self.pose(index)?;
-        let mut on_device = self.on_device.take().unwrap_or_else(|| DeviceSamples::new(device, self.info.size));
-        let (traced, took) = self.clock.time(|| {
-            let Some(plan) = self.sparse_plan(&view, index, gaze_px)? else { return Ok(false) };
-            if let Tracer::Gpu(tracer) = &self.tracer {
-                plan.trace_in_place(tracer, &self.world, [&view, &previous], index, geometry, &mut on_device);
-            }
-            Ok(true)
-        });
-        if !traced? {
-            return Ok(None);
-        }
-        self.check()?;
-        self.render_time = Some(took);
-        self.on_device = Some(on_device.clone());
-        Ok(Some(on_device))
+        Ok(RenderedFrame { render: Some(took), ..RenderedFrame::full_rate(index, gaze_px, reference).foveated(frame) })
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {
