@@ -30,21 +30,6 @@ pub struct DeviceFrame {
     pub near: f32,
 }
 
-/// Each waits for all submitted work.
-impl DeviceFrame {
-    /// Reads the color. Pixels that are not finite are black, as in imported frames.
-    pub fn read_color(&self) -> Image<[f32; 3]> {
-        let color = crate::raster::read_color(&self.device, &self.color);
-        color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
-    }
-
-    /// Reads distance and motion vectors.
-    pub fn read_geometry(&self) -> (Image<f32>, Image<[f32; 2]>) {
-        let Self { device, depth, motion, near, .. } = self;
-        (crate::raster::read_distance(device, depth, *near), device.read(motion, 0))
-    }
-}
-
 /// The samples of a sparse frame at their pixels on a device, as the path tracer leaves them until it traces the next
 /// frame. Nothing is defined between them.
 #[derive(Clone, Debug)]

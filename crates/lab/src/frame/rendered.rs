@@ -21,7 +21,8 @@ pub struct RenderedFrame {
     pub reference_on_device: Option<DeviceFrame>,
     /// What the methods get.
     pub content: Content,
-    /// Whose depth and motion the methods get: the reference's (of every pixel) or the content's.
+    /// Where depth and motion are defined. At the samples of what is on a device: the methods get those in place of
+    /// the reference's.
     pub geometry: SparseGeometry,
     /// Number of camera samples of the content; `None` if it is the full-rate frame.
     pub samples: Option<u64>,

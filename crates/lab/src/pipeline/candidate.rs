@@ -1,9 +1,9 @@
 //! The foveated frame, as the methods of a pipeline get it.
 
 use super::{Pipeline, needs_lod};
-#[cfg(feature = "full")]
-use crate::frame::OnDevice;
 use crate::frame::{Content, RenderedFrame};
+#[cfg(feature = "full")]
+use crate::frame::{DeviceFrame, OnDevice};
 use crate::lattices::{SparseGeometry, levels};
 use afterimage::simulator::Pyramid;
 use afterimage::{Gaze, Image, ViewFrame};
@@ -97,8 +97,8 @@ impl Pipeline {
         let (lods, in_memory) = match content {
             OnDevice::Atlas(sparse) => {
                 let in_memory = is_read.then(|| {
-                    let geometry = has_geometry.then(|| sparse.atlas.read_geometry());
-                    InMemory { geometry, ..InMemory::new(Cow::Owned(sparse.atlas.read_color())) }
+                    let geometry = has_geometry.then(|| geometry_of(&sparse.atlas));
+                    InMemory { geometry, ..InMemory::new(Cow::Owned(color_of(&sparse.atlas))) }
                 });
                 (levels(&sparse.lattices, size), in_memory)
             }
@@ -119,4 +119,18 @@ impl Pipeline {
         let lattices = frame.content.lattices().map(|lattices| frame.geometry.of(lattices));
         ViewFrame { previous_from_current: frame.reference.previous_from_current, lattices, ..view }
     }
+}
+
+/// Waits for all submitted work, then reads the color. Pixels that are not finite are black, as in imported frames.
+#[cfg(feature = "full")]
+fn color_of(atlas: &DeviceFrame) -> Image<[f32; 3]> {
+    let color = crate::raster::read_color(&atlas.device, &atlas.color);
+    color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
+}
+
+/// Waits for all submitted work, then reads distance and motion vectors.
+#[cfg(feature = "full")]
+fn geometry_of(atlas: &DeviceFrame) -> (Image<f32>, Image<[f32; 2]>) {
+    let DeviceFrame { device, depth, motion, near, .. } = atlas;
+    (crate::raster::read_distance(device, depth, *near), device.read(motion, 0))
 }

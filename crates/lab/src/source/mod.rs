@@ -22,6 +22,8 @@ pub mod sequence;
 pub mod still;
 #[cfg(feature = "full")]
 pub mod traced;
+#[cfg(feature = "full")]
+pub mod viewed_scene;
 
 pub use analytic::AnalyticSource;
 #[cfg(feature = "full")]
@@ -29,7 +31,7 @@ pub use limits::ReadLimits;
 #[cfg(feature = "full")]
 pub use open::{is_scene, open};
 #[cfg(feature = "full")]
-pub use raster::{RasterScene, RasterSource};
+pub use raster::RasterSource;
 pub use request::{FrameRequest, SamplingGuide, Wanted};
 #[cfg(feature = "full")]
 pub use scene_camera::SceneCamera;
@@ -39,6 +41,8 @@ pub use sequence::SequenceSource;
 pub use still::StillSource;
 #[cfg(feature = "full")]
 pub use traced::{TracedSamples, TracedSource};
+#[cfg(feature = "full")]
+pub use viewed_scene::{Light, SceneChoice, ViewedScene};
 
 use crate::error::InputError;
 use crate::frame::{RenderedFrame, SourceFrame};

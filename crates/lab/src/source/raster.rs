@@ -1,8 +1,9 @@
 //! Frames of a scene from the rasteriser.
 
 use super::CameraPose;
-use super::open::{check_size, device_lost};
+use super::open::device_lost;
 use super::scene_camera::SceneCamera;
+use super::viewed_scene::{SceneChoice, ViewedScene};
 use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
@@ -11,86 +12,14 @@ use crate::frame::{ComposedFrame, Content, DeviceFrame, OnDevice, RenderedFrame,
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets};
-use crate::scene::{Scene, SceneLimits};
+use crate::scene::Scene;
 use crate::trace::view::View;
-use afterimage::{Lattices, ViewGeometry};
+use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
 use wgpu::{CommandEncoder, Device};
 
-/// Default width and height in pixels.
-pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
-/// Default frames per second.
-pub const DEFAULT_FPS: f32 = 60.0;
-
-/// A scene and the camera that sees it, which a [`RasterSource`] renders on any device.
-#[derive(Clone)]
-pub struct RasterScene {
-    info: SourceInfo,
-    scene: Arc<Scene>,
-    camera: SceneCamera,
-    fps: f64,
-}
-
-impl RasterScene {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for
-    /// `camera`.
-    ///
-    /// # Errors
-    /// Those of [`Scene::open`], [`SceneCamera::choose`] and [`new`](Self::new), and [`Limit`](InputError::Limit) if
-    /// the frame has more pixels than `limits` allows.
-    pub fn open(
-        input: &str,
-        limits: &ReadLimits,
-        options: &SceneOptions,
-        camera: Option<&str>,
-    ) -> Result<Self, InputError> {
-        let size = options.size.unwrap_or(DEFAULT_SIZE);
-        check_size(input, size, limits)?;
-        let scene = Scene::open(input, &SceneLimits::default())?;
-        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
-        Self::new(scene, camera, options.fps)
-    }
-
-    /// `scene` seen by `camera` at `fps` frames per second (default: those of the camera file, else 60).
-    ///
-    /// # Errors
-    /// [`Request`](InputError::Request) if the frame rate is not above 0.
-    pub fn new(scene: Scene, camera: SceneCamera, fps: Option<f32>) -> Result<Self, InputError> {
-        let fps = fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
-        if !(fps.is_finite() && fps > 0.0) {
-            let problem = format!("the frame rate is {fps}");
-            return Err(InputError::request(&scene.name, problem, "expected frames per second above 0"));
-        }
-        let info = SourceInfo {
-            name: scene.name.clone(),
-            size: camera.geometry().size_px(),
-            frames: camera.frames(),
-            fps: Some(fps),
-            hfov_deg: Some(camera.geometry().hfov_deg()),
-            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
-        };
-        Ok(Self { info, scene: Arc::new(scene), camera, fps: f64::from(fps) })
-    }
-
-    /// The same camera with another frame size or field of view.
-    #[must_use]
-    pub fn with_geometry(mut self, geometry: ViewGeometry) -> Self {
-        self.camera = self.camera.with_geometry(geometry);
-        (self.info.size, self.info.hfov_deg) = (geometry.size_px(), Some(geometry.hfov_deg()));
-        self
-    }
-
-    /// Properties that hold for all frames.
-    pub fn info(&self) -> &SourceInfo {
-        &self.info
-    }
-
-    /// Features of the scene file that are ignored or approximated.
-    pub fn warnings(&self) -> &[String] {
-        &self.scene.warnings
-    }
-
+impl ViewedScene {
     /// Uploads the scene to a device. Texture filtering is anisotropic except on software devices.
     ///
     /// # Errors
@@ -104,7 +33,7 @@ impl RasterScene {
     }
 
     fn on_with(&self, device: Arc<Headless>, settings: RasterSettings) -> Result<RasterSource, InputError> {
-        let raster = Raster::new(&device.device, &device.queue, &self.scene, self.info.size, settings)?;
+        let raster = Raster::new(&device.device, &device.queue, &self.scene, self.info().size, settings)?;
         Ok(RasterSource {
             of: self.clone(),
             clock: PassClock::new(&device),
@@ -122,7 +51,7 @@ impl RasterScene {
 /// `(index - 1) / fps`. Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present.
 /// Depth and motion are sampled at pixel centres; color is the mean of four samples.
 pub struct RasterSource {
-    of: RasterScene,
+    of: ViewedScene,
     device: Arc<Headless>,
     raster: Raster,
     /// By layout of their atlases; none before the first such frame.
@@ -133,7 +62,7 @@ pub struct RasterSource {
 }
 
 impl RasterSource {
-    /// [`RasterScene::open`] and [`RasterScene::on`].
+    /// [`ViewedScene::open`] and [`ViewedScene::on`].
     ///
     /// # Errors
     /// As for those.
@@ -144,13 +73,14 @@ impl RasterSource {
         camera: Option<&str>,
         device: Arc<Headless>,
     ) -> Result<Self, InputError> {
-        RasterScene::open(input, limits, options, camera)?.on(device)
+        let choice = SceneChoice { camera, options: *options, limits: *limits, ..SceneChoice::new(input) };
+        ViewedScene::open(&choice)?.on(device)
     }
 
-    /// [`RasterScene::new`], on a device with these settings.
+    /// [`ViewedScene::new`], on a device with these settings.
     ///
     /// # Errors
-    /// As for [`RasterScene::new`] and [`RasterScene::on`].
+    /// As for [`ViewedScene::new`] and [`ViewedScene::on`].
     pub fn new(
         device: Arc<Headless>,
         scene: Scene,
@@ -158,7 +88,7 @@ impl RasterSource {
         fps: Option<f32>,
         settings: RasterSettings,
     ) -> Result<Self, InputError> {
-        RasterScene::new(scene, camera, fps)?.on_with(device, settings)
+        ViewedScene::new(scene, camera, fps)?.on_with(device, settings)
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -173,33 +103,25 @@ impl RasterSource {
 
     /// Views of frame `index` and of the previous one, and the times of both in seconds.
     pub fn views(&self, index: u64) -> ([View; 2], [f64; 2]) {
-        let before = index.saturating_sub(1);
-        let times = [index, before].map(|i| i as f64 / self.of.fps);
-        (
-            [
-                self.of.camera.view(&self.of.scene, index, times[0]),
-                self.of.camera.view(&self.of.scene, before, times[1]),
-            ],
-            times,
-        )
+        self.of.views(index)
     }
 
     /// Renders the full-rate frame `index` without reading it back.
     pub fn draw(&mut self, index: u64) -> &Raster {
-        self.submit(|source, encoder| source.record_full_rate(encoder, index));
+        self.submit(|source, encoder| source.record_full_rate(encoder, &FrameRequest::full_rate(index)));
         &self.raster
     }
 
-    /// Records the rendering of the full-rate frame `index`.
-    pub fn record_full_rate(&mut self, encoder: &mut CommandEncoder, index: u64) {
-        let [view, previous] = self.pose(index);
+    /// Records the rendering of the full-rate frame.
+    fn record_full_rate(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) {
+        let [view, previous] = self.pose(request);
         self.raster.record(&self.device.device, encoder, &view, &previous);
     }
 
     /// Records the rendering of a frame that stays on the device, and the full-rate frame with it where its depth and
     /// motion are asked for.
     pub fn record(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) -> RenderedFrame {
-        let [view, previous] = self.pose(request.index);
+        let [view, previous] = self.pose(request);
         if request.needs_full_rate() {
             self.raster.record(&self.device.device, encoder, &view, &previous);
         }
@@ -216,7 +138,7 @@ impl RasterSource {
         layout: AtlasLayout,
     ) -> RenderedFrame {
         let reference = SourceFrame::without_images(Some(views[0].previous_from_current(views[1])), request.index == 0);
-        let frame = RenderedFrame::full_rate(request.index, request.gaze_px, reference);
+        let frame = request.answer(reference);
         let (content, samples) = match &request.wanted {
             Wanted::FullRate => return frame,
             Wanted::Lattices(lattices) => {
@@ -229,15 +151,14 @@ impl RasterSource {
                 (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), quads.pixels())
             }
         };
-        let (content, geometry) = (Content::OnDevice(content), request.geometry);
-        RenderedFrame { content, geometry, samples: Some(samples), ..frame }
+        RenderedFrame { content: Content::OnDevice(content), samples: Some(samples), ..frame }
     }
 
     /// The full-rate frame, read back.
     fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
         let index = request.index;
-        let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, index))?;
-        let ([view, previous], _) = self.views(index);
+        let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, request))?;
+        let ([view, previous], _) = self.of.views_of(request);
         let targets = self.raster.targets();
         let mut nonfinite = 0;
         let color = targets.read_color(&self.device).map(|c| {
@@ -247,7 +168,7 @@ impl RasterSource {
         });
         let (depth, motion) =
             (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
-        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))?;
+        self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
         let frame = SourceFrame {
             color,
             depth: Some(depth),
@@ -261,7 +182,7 @@ impl RasterSource {
             reference_on_device: Some(self.targets()),
             render: Some(took),
             full_rate: Some(took),
-            ..RenderedFrame::full_rate(index, request.gaze_px, frame)
+            ..request.answer(frame)
         })
     }
 
@@ -275,9 +196,9 @@ impl RasterSource {
         on_device(&self.device, self.raster.targets(), self.raster.near())
     }
 
-    /// Poses the scene for frame `index`; the frame's view, and the previous one.
-    fn pose(&mut self, index: u64) -> [View; 2] {
-        let (views, times) = self.views(index);
+    /// Poses the scene for a frame; the frame's view, and the previous one.
+    fn pose(&mut self, request: &FrameRequest<'_>) -> [View; 2] {
+        let (views, times) = self.of.views_of(request);
         self.raster.pose(&self.of.scene, times[0], times[1]);
         views
     }
@@ -291,7 +212,7 @@ impl RasterSource {
         layout: AtlasLayout,
     ) -> (&FoveatedTargets, Lattices) {
         let frame = self.submit(|source, encoder| {
-            let [view, previous] = source.pose(index);
+            let [view, previous] = source.pose(&FrameRequest::full_rate(index));
             source.record_lattices(encoder, [&view, &previous], lattices, layout)
         });
         (self.foveated[layout as usize].as_ref().expect("they were drawn to"), frame.lattices)
@@ -304,7 +225,7 @@ impl RasterSource {
         lattices: &Lattices,
         layout: AtlasLayout,
     ) -> SparseFrame {
-        let (lattices, size) = layout.place(lattices, self.of.info.size);
+        let (lattices, size) = layout.place(lattices, self.of.info().size);
         let device = &self.device.device;
         let targets = fitted(&mut self.foveated[layout as usize], device, size);
         self.raster.record_foveated(device, encoder, views, &lattices, targets);
@@ -318,10 +239,10 @@ impl RasterSource {
         quads: &QuadViews,
         layout: AtlasLayout,
     ) -> ComposedFrame {
-        let (quads, size) = layout.place_views(quads, self.of.info.size);
+        let (quads, size) = layout.place_views(quads, self.of.info().size);
         let device = &self.device.device;
         let targets = fitted(&mut self.foveated[layout as usize], device, size);
-        let composer = self.composer.get_or_insert_with(|| Composer::new(device, self.of.info.size));
+        let composer = self.composer.get_or_insert_with(|| Composer::new(device, self.of.info().size));
         self.raster.record_quad_views(device, encoder, frame_views, &quads, targets);
         composer.record(device, encoder, &quads, &targets.atlas, self.raster.near());
         let [color, distance, motion, lod] = composer.frame().clone();
@@ -349,7 +270,7 @@ impl RasterSource {
             recorded
         });
         let took = self.clock.elapsed(&self.device, &watch);
-        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))?;
+        self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
         Ok((recorded, took))
     }
 }
@@ -369,7 +290,7 @@ fn fitted<'a>(held: &'a mut Option<FoveatedTargets>, device: &Device, size: [u32
 
 impl FrameSource for RasterSource {
     fn info(&self) -> &SourceInfo {
-        &self.of.info
+        self.of.info()
     }
 
     /// Foveated frames lie in place in their atlas where the full-rate frame is their reference: samples at full rate
@@ -384,7 +305,7 @@ impl FrameSource for RasterSource {
             return Ok(whole);
         }
         let (frame, took) = self.submit_timed(|source, encoder| {
-            let [view, previous] = source.pose(request.index);
+            let [view, previous] = source.pose(request);
             let frame = source.record_content(encoder, request, [&view, &previous], AtlasLayout::InPlace);
             // Depth and motion at every pixel, if lattices call for them, are drawn again: they are part of the time.
             if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
@@ -392,12 +313,12 @@ impl FrameSource for RasterSource {
             }
             frame
         })?;
-        let RenderedFrame { content, samples, geometry, .. } = frame;
-        Ok(RenderedFrame { content, samples, geometry, render: Some(took), ..whole })
+        let RenderedFrame { content, samples, .. } = frame;
+        Ok(RenderedFrame { content, samples, render: Some(took), ..whole })
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {
-        Some(self.of.camera.camera_pose(&self.of.scene, index, index as f64 / self.of.fps))
+        Some(self.of.camera.camera_pose(&self.of.scene, index, self.of.time_s(index)))
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "full")]
 use crate::device::Headless;
-use crate::frame::{Guide, SourceFrame};
+use crate::frame::{Guide, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use afterimage::Lattices;
@@ -59,6 +59,11 @@ impl FrameRequest<'_> {
             #[cfg(feature = "full")]
             device: None,
         }
+    }
+
+    /// The full-rate frame, rendered as asked for. What else was rendered is added to it.
+    pub(super) fn answer(&self, reference: SourceFrame) -> RenderedFrame {
+        RenderedFrame { geometry: self.geometry, ..RenderedFrame::full_rate(self.index, self.gaze_px, reference) }
     }
 
     /// Whether the full-rate frame is rendered, too, when nobody wants it as a reference: as what a simulator foveates,

@@ -9,16 +9,14 @@ use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use afterimage_lab::lattices::SampleOrder;
-use afterimage_lab::scene::{Scene, SceneLimits};
-use afterimage_lab::source::SceneCamera;
-use afterimage_lab::source::raster::DEFAULT_FPS;
+use afterimage_lab::source::{Light, SceneChoice, SceneOptions, ViewedScene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
-use afterimage_lab::trace::world::{World, light_if_dark};
+use afterimage_lab::trace::world::World;
 use std::cell::OnceCell;
 use std::time::Duration;
 
@@ -29,8 +27,7 @@ const FULL_RATE_FRAMES: u64 = 1 << 31;
 pub struct Subject {
     pub name: String,
     pub world: World,
-    scene: Scene,
-    camera: SceneCamera,
+    of: ViewedScene,
     items: Vec<WorkItem>,
     size: [u32; 2],
     /// Where a tracer on a device leaves the samples of sparse frames.
@@ -62,31 +59,26 @@ impl Subject {
     /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the
     /// scene.
     pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
-        let mut scene = Scene::open(name, &SceneLimits::default())?;
-        for warning in &scene.warnings {
+        let of = ViewedScene::open(&SceneChoice {
+            camera: camera.or(Some("still")),
+            light: Light::IfDark,
+            options: SceneOptions { size: Some(size), hfov_deg, fps: None },
+            ..SceneChoice::new(name)
+        })?;
+        for warning in of.warnings() {
             eprintln!("afterimage: warning: {warning}");
         }
-        light_if_dark(&mut scene);
-        let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
         let items = uniform(size[0], 0..size[1], 0..1);
-        Ok(Self {
-            name: name.to_owned(),
-            world: World::new(&scene),
-            scene,
-            camera,
-            items,
-            size,
-            on_device: OnceCell::new(),
-        })
+        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, items, size, on_device: OnceCell::new() })
     }
 
     /// View geometry.
     pub fn geometry(&self) -> &ViewGeometry {
-        self.camera.geometry()
+        self.of.camera.geometry()
     }
 
     fn view(&self, index: u64) -> View {
-        self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
+        self.of.camera.view(&self.of.scene, index, self.of.time_s(index))
     }
 
     /// A tracer of the scene.
@@ -110,7 +102,7 @@ impl Subject {
 
     /// What a post-process needs to know of a frame in memory besides its color.
     fn without_color(&self, tracer: &Tracer, index: u64, content: &Content) -> SourceFrame {
-        let [view, before] = [index, index.saturating_sub(1)].map(|index| self.view(index));
+        let ([view, before], _) = self.of.views(index);
         let frame = SourceFrame::without_images(Some(view.previous_from_current(&before)), index == 0);
         match content {
             // Depth and motion are with the samples.
