@@ -45,12 +45,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }
         if index + 1 == frames {
-            let moves = frame.motion.as_ref().map_or(0.0, |m| {
+            let moves = frame.reference.motion.as_ref().map_or(0.0, |m| {
                 let seen = m.pixels().iter().filter(|v| v[0].abs() < 1e5);
                 seen.map(|v| v[0].hypot(v[1])).fold(0.0, f32::max)
             });
             println!("{}, {}x{}: fastest {moves:.1} px a frame", info.name, info.size[0], info.size[1]);
-            sheet = vec![frame.color.clone(), step.outputs[0].image.clone(), step.outputs[2].image.clone()];
+            sheet = vec![frame.reference.color.clone(), step.outputs[0].image.clone(), step.outputs[2].image.clone()];
         }
     }
     println!("method  PSNR dB  retained dB");

@@ -83,13 +83,7 @@ impl Demo {
         rate_far: u32,
     ) -> Result<()> {
         let method = Method::ALL.into_iter().find(|m| m.name() == method).ok_or_else(|| JsError::new(method))?;
-        let filter = match filter {
-            "mip" => Filter::Mip,
-            "gauss" => Filter::Gauss,
-            "block" => Filter::Block,
-            "sparse" => Filter::Sparse,
-            _ => return Err(JsError::new(filter)),
-        };
+        let filter = Filter::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
         let foveation = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
         self.stage.configure(&self.gpu, Settings { method, foveation, ..Settings::default() })
     }

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::executor::{Executor, Shot};
-use super::{MethodOutput, RunKind};
+use super::run::{MethodOutput, RunKind};
 use crate::clock::Stopwatch;
 use crate::frame::RenderedFrame;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};

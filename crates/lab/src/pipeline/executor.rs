@@ -1,7 +1,7 @@
 //! What a pipeline asks of the processor that runs its methods.
 
 use super::candidate::Candidate;
-use super::{MethodOutput, RunKind};
+use super::run::{MethodOutput, RunKind};
 use crate::frame::RenderedFrame;
 use afterimage::kernel::noise::Noise;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Settings};

@@ -7,14 +7,17 @@ mod cpu;
 #[cfg(feature = "full")]
 mod device;
 mod executor;
+mod foveator;
 mod guide;
 mod oracle;
 mod poison;
+mod run;
 
 #[cfg(feature = "full")]
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};
+pub use run::{MethodOutput, RunKind};
 
-use crate::clock::{Elapsed, Stopwatch};
+use crate::clock::Stopwatch;
 use crate::device::Backend;
 #[cfg(feature = "full")]
 use crate::device::Headless;
@@ -23,58 +26,20 @@ use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
 use crate::source::{FrameRequest, SamplingGuide, Wanted};
-use afterimage::simulator::Pyramid;
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Lattices, Method,
-    Settings, SettingsError, ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, Image, Method, Settings, SettingsError,
+    ViewGeometry,
 };
 use candidate::Candidate;
 use cpu::CpuExecutor;
 #[cfg(feature = "full")]
 use device::DeviceExecutor;
 use executor::{Executor, Shot};
+use foveator::Foveator;
 use guide::HistoryNoise;
 use oracle::Oracle;
 #[cfg(feature = "full")]
 use std::sync::Arc;
-
-/// Kind of a run: how it processes the foveated frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RunKind {
-    /// The post-process with these settings. The pipeline's foveation replaces theirs.
-    PostProcess(Settings),
-    /// The post-process without a part of its pass, on a device only: measures the part's cost and benefit.
-    #[cfg(feature = "ablation")]
-    Without(Settings, &'static ablation::Part),
-    /// Every pixel at its finest level of detail so far: the upper bound of temporal reuse. Defined for stills only.
-    Oracle,
-}
-
-/// A run's output for one frame.
-#[derive(Clone, Debug)]
-pub struct MethodOutput {
-    /// Displayed frame, linear.
-    pub image: Image<[f32; 3]>,
-    /// Wall time of the pass in milliseconds.
-    pub wall_ms: f64,
-    /// CPU time of the process during the pass in milliseconds; `None` if the system does not measure it.
-    pub cpu_ms: Option<f64>,
-    /// Time of the pass by timestamp queries, in milliseconds; `None` on software devices and the CPU.
-    pub device_ms: Option<f64>,
-    /// Counters of the pass; all 0 for the oracle.
-    pub stats: FrameStats,
-    /// Bytes per pixel that the pass reads and writes; `None` for the oracle.
-    pub traffic_bytes_per_pixel: Option<u32>,
-    /// Debug views, linear, in the order of the request; empty for the oracle.
-    pub debug: Vec<Image<[f32; 3]>>,
-}
-
-impl MethodOutput {
-    /// Time of the pass.
-    pub fn elapsed(&self) -> Elapsed {
-        Elapsed { wall_ms: self.wall_ms, cpu_ms: self.cpu_ms, device_ms: self.device_ms }
-    }
-}
 
 /// Result of one frame: the foveation, and the output of each run.
 #[derive(Clone, Debug)]
@@ -102,25 +67,19 @@ enum Run {
 
 /// Pipeline of a clip: state of the foveation and of all runs.
 pub struct Pipeline {
-    geometry: ViewGeometry,
-    foveation: Foveation,
+    foveator: Foveator,
     runs: Vec<Run>,
     executor: Box<dyn Executor>,
     #[cfg(feature = "full")]
     device: Option<Arc<Headless>>,
     tracker: Tracker,
     held_gaze: Option<[f32; 2]>,
-    still: Option<Pyramid>,
-    is_still: bool,
     debug: Vec<DebugView>,
     use_trust: bool,
-    sparse_geometry: SparseGeometry,
-    sample_order: SampleOrder,
     quad_views: Option<QuadViewLayout>,
     /// For guided sampling.
     history_noise: Option<HistoryNoise>,
     is_guided: bool,
-    poison: f32,
 }
 
 impl Pipeline {
@@ -159,20 +118,14 @@ impl Pipeline {
             executor,
             #[cfg(feature = "full")]
             device: backend.device().cloned(),
-            geometry,
-            foveation,
+            foveator: Foveator::new(geometry, foveation, is_still),
             tracker: Tracker::default(),
             held_gaze: None,
-            still: None,
-            is_still,
             debug: debug.to_vec(),
             use_trust: false,
-            sparse_geometry: SparseGeometry::default(),
-            sample_order: SampleOrder::default(),
             quad_views: None,
             history_noise: None,
             is_guided: false,
-            poison: 0.0,
         })
     }
 
@@ -184,8 +137,9 @@ impl Pipeline {
 
     /// Depth and motion of sparse frames, and the order in which their samples move.
     #[must_use]
-    pub fn with_sparse(self, geometry: SparseGeometry, order: SampleOrder) -> Self {
-        Self { sparse_geometry: geometry, sample_order: order, ..self }
+    pub fn with_sparse(mut self, geometry: SparseGeometry, order: SampleOrder) -> Self {
+        (self.foveator.sparse_geometry, self.foveator.sample_order) = (geometry, order);
+        self
     }
 
     /// Frames are composed of quad views, which their source renders.
@@ -196,8 +150,9 @@ impl Pipeline {
 
     /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
     #[must_use]
-    pub fn with_poison(self, share: f32) -> Self {
-        Self { poison: share, ..self }
+    pub fn with_poison(mut self, share: f32) -> Self {
+        self.foveator.poison = share;
+        self
     }
 
     /// Guides the source's samples by the noise of the first noisy smr run's history.
@@ -210,18 +165,20 @@ impl Pipeline {
     /// the center of the view.
     pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest<'_> {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
-        let gaze_px = gaze.resolve(self.held_gaze, &self.geometry);
+        let gaze_px = gaze.resolve(self.held_gaze, &self.foveator.geometry);
         self.held_gaze = Some(gaze_px);
-        let wanted = match (self.quad_views, self.lattices(gaze_px, index)) {
+        let wanted = match (self.quad_views, self.foveator.lattices(gaze_px, index)) {
             (_, Some(lattices)) => Wanted::Lattices(lattices),
-            (Some(layout), None) => Wanted::QuadViews(layout.views(&self.foveation, &self.geometry, gaze_px)),
+            (Some(layout), None) => {
+                Wanted::QuadViews(layout.views(&self.foveator.foveation, &self.foveator.geometry, gaze_px))
+            }
             (None, None) => Wanted::FullRate,
         };
         FrameRequest {
             index,
             gaze_px,
             wanted,
-            geometry: self.sparse_geometry,
+            geometry: self.foveator.sparse_geometry,
             reference: true,
             guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
             #[cfg(feature = "full")]
@@ -239,25 +196,25 @@ impl Pipeline {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
         let gaze_px = frame.gaze_px;
-        let ecc_deg = self.geometry.eccentricity_map(gaze_px);
-        let candidate = self.candidate(frame, &ecc_deg);
+        let ecc_deg = self.foveator.geometry.eccentricity_map(gaze_px);
+        let candidate = self.foveator.candidate(frame, &ecc_deg, self.foveates_in_memory());
         self.executor.set(frame, &candidate)?;
         // Nothing is foveated here if a path tracer did it.
         let foveation_ms = if frame.content.is_traced() { 0.0 } else { watch.wall_ms() };
         let tracked = match has_reference {
-            true => self.tracker.advance(&frame.reference, &self.geometry, &ecc_deg, &candidate.lods),
-            false => Tracked::unknown(self.geometry.size_px()),
+            true => self.tracker.advance(&frame.reference, &self.foveator.geometry, &ecc_deg, &candidate.lods),
+            false => Tracked::unknown(self.foveator.geometry.size_px()),
         };
         let outputs = self.run(frame, &candidate)?;
         self.note_noise(frame, &outputs);
         let Candidate { lods, pyramid, .. } = candidate;
-        self.still = pyramid.filter(|_| self.is_still);
+        self.foveator.keep(pyramid);
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
     /// Whether a frame, which must fit the pipeline, has a reference.
     fn check(&self, frame: &RenderedFrame) -> Result<bool, FrameError> {
-        let (found, expected) = (frame.reference.color.size(), self.geometry.size_px());
+        let (found, expected) = (frame.reference.color.size(), self.foveator.geometry.size_px());
         let is_full_rate = matches!(frame.content, Content::FullRate);
         if found != expected && (is_full_rate || found != [0; 2]) {
             return Err(FrameError::Size { input: "color", view: 0, found, expected });
@@ -278,7 +235,9 @@ impl Pipeline {
         for i in (first..self.runs.len()).chain(0..first) {
             outputs[i] = Some(match &mut self.runs[i] {
                 Run::Method(run) => self.executor.run(*run, &shot)?,
-                Run::Oracle(oracle) => oracle.run(candidate.pyramid.as_ref(), &candidate.lods, &self.foveation)?,
+                Run::Oracle(oracle) => {
+                    oracle.run(candidate.pyramid.as_ref(), &candidate.lods, &self.foveator.foveation)?
+                }
             });
         }
         Ok(outputs.into_iter().flatten().collect())
@@ -294,7 +253,13 @@ impl Pipeline {
             Run::Oracle(_) => None,
         });
         self.history_noise = noise.map(|((noise, settings), image)| {
-            HistoryNoise::new(noise, 1.0 - settings.smr.accumulate, image.clone(), &frame.reference, self.geometry)
+            HistoryNoise::new(
+                noise,
+                1.0 - settings.smr.accumulate,
+                image.clone(),
+                &frame.reference,
+                self.foveator.geometry,
+            )
         });
     }
 
@@ -306,43 +271,10 @@ impl Pipeline {
         }
     }
 
-    /// Lattices of frame `index`, if frames are sparse.
-    fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
-        let is_sparse = self.foveation.filter == Filter::Sparse;
-        is_sparse.then(|| {
-            let lattices = self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index);
-            self.sparse_geometry.of(lattices)
-        })
-    }
-
     /// Whether frames are foveated in memory: for runs on the CPU, for the oracle, and for poisoned pixels.
     fn foveates_in_memory(&self) -> bool {
         let has_oracle = self.runs.iter().any(|run| matches!(run, Run::Oracle(_)));
-        self.executor.reads_memory() || has_oracle || self.poison > 0.0
-    }
-}
-
-impl RunKind {
-    /// Settings of a method; `None` for the oracle.
-    fn settings(&self) -> Option<&Settings> {
-        match self {
-            Self::PostProcess(settings) => Some(settings),
-            #[cfg(feature = "ablation")]
-            Self::Without(settings, _) => Some(settings),
-            Self::Oracle => None,
-        }
-    }
-
-    /// Parts are removed from shaders.
-    fn check_on_cpu(&self) -> Result<(), SettingsError> {
-        match self {
-            #[cfg(feature = "ablation")]
-            Self::Without(..) => {
-                let expected = "a device: parts are removed from shaders".into();
-                Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })
-            }
-            _ => Ok(()),
-        }
+        self.executor.reads_memory() || has_oracle || self.foveator.poison > 0.0
     }
 }
 
@@ -352,10 +284,4 @@ fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {
         Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected })?;
     }
     Ok(())
-}
-
-/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at
-/// the center of a block, which a method cannot derive from the gaze.
-fn needs_lod(filter: Filter) -> bool {
-    filter == Filter::Block
 }

@@ -1,6 +1,6 @@
 //! The upper bound of temporal reuse.
 
-use super::MethodOutput;
+use super::run::MethodOutput;
 use crate::clock::Stopwatch;
 use afterimage::simulator::Pyramid;
 use afterimage::{Foveation, FrameError, FrameStats, Image};

@@ -1,6 +1,6 @@
 //! Convergence of traced points: squared error against samples and against time.
 
-use super::table::Row;
+use super::row::Row;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

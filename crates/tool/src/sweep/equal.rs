@@ -2,7 +2,8 @@
 
 use super::frontier::{Standing, frontier};
 use super::metrics::Metric;
-use super::table::{Row, Table};
+use super::row::Row;
+use super::table::Table;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

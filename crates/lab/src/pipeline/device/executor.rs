@@ -6,7 +6,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, RenderedFrame};
 use crate::pipeline::candidate::Candidate;
 use crate::pipeline::executor::{Executor, Shot};
-use crate::pipeline::{MethodOutput, RunKind};
+use crate::pipeline::run::{MethodOutput, RunKind};
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings};
 use std::slice::from_ref;

@@ -4,7 +4,7 @@ use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
 use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
-use crate::pipeline::needs_lod;
+use crate::pipeline::candidate::needs_lod;
 use crate::shader::SHADERS;
 use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use afterimage::gpu::{Frame, Timestamps, array_view, filled};

@@ -108,11 +108,10 @@ fn all_passes() -> Vec<PassSpec> {
     passes.extend(Method::ALL.map(|m| PassSpec::new(m.name(), Settings { method: m, ..Settings::paper() })));
     passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
     passes.push(PassSpec::sparse("smr-sparse", Method::Smr));
-    passes.extend([
-        PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
-        PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
-        PassSpec { name: "block", bytes_per_pixel: 25, kind: PassKind::Foveate(Filter::Block) },
-    ]);
+    passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
+        let bytes_per_pixel = GpuSimulator::traffic(filter)?;
+        Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
+    }));
     passes
 }
 

@@ -1,8 +1,8 @@
 //! The panel: the state, the keys that change it, and the graphs. Its rows can be clicked.
 
 use super::graph::Graph;
-use super::state::{Action, Side, State};
-use crate::args::FilterName;
+use super::keys::rows;
+use super::state::{Action, State};
 use crate::report::canvas::Canvas;
 use image::RgbImage;
 
@@ -25,58 +25,6 @@ pub struct Facts<'a> {
     pub graphs: &'a [&'a Graph],
 }
 
-struct Row {
-    name: &'static str,
-    value: String,
-    key: &'static str,
-    action: Action,
-}
-
-fn rows(state: &State) -> Vec<Row> {
-    let row = |name, value: &str, key, action| Row { name, value: value.to_owned(), key, action };
-    let on_off = |is_on| if is_on { "on" } else { "off" };
-    let mut rows = vec![row(
-        if state.is_split { "left" } else { "method" },
-        state.sides[0].name(),
-        "1..5",
-        Action::Next(Side::Left),
-    )];
-    if state.is_split {
-        rows.push(row("right", state.sides[1].name(), "Shift 1..5", Action::Next(Side::Right)));
-    }
-    rows.extend([
-        row("split", on_off(state.is_split), "Tab", Action::Split),
-        row("foveation", state.filter.name(), "F", Action::Filter),
-    ]);
-    if state.is_rasterised {
-        let value = match state.filter {
-            FilterName::Sparse => "samples",
-            filter if filter.is_quad_views() => "quad views",
-            _ => "full rate",
-        };
-        rows.push(row("rendered", value, "T", Action::Render));
-    }
-    rows.extend([
-        row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
-        row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
-        row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
-        row("inputs", if state.is_examined { "checked" } else { "off" }, "I", Action::Examine),
-        row("gaze mark", on_off(state.is_marked), "G", Action::Mark),
-        row("frozen", on_off(state.is_frozen), "Space", Action::Freeze),
-    ]);
-    if let Some(is_flying) = state.is_flying {
-        let value = if is_flying { "WASD, drag" } else { "on its path" };
-        rows.push(row("camera", value, "C", Action::Fly));
-    }
-    rows.extend([
-        row("restart", "", "R", Action::Restart),
-        row("picture", "", "F12", Action::Picture),
-        row("window", "", "Shift F12", Action::Window),
-        row("panel", "", "H", Action::Panel),
-    ]);
-    rows
-}
-
 fn first_row_y(facts_lines: usize) -> u32 {
     MARGIN + ROW_PX * facts_lines as u32 + 4
 }
@@ -95,7 +43,7 @@ pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
         let y = y + ROW_PX * i as u32;
         canvas.small(row.name, MARGIN, y, TEXT);
         canvas.small(&row.value, VALUE_X, y, TEXT);
-        canvas.small(row.key, KEY_X, y, KEY);
+        canvas.small(&row.key, KEY_X, y, KEY);
     }
     let mut y = graphs_y;
     for graph in facts.graphs {
@@ -114,7 +62,7 @@ pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::state::{Shows, tests::state};
+    use super::super::state::{Shows, Side, tests::state};
     use super::*;
     use afterimage::Method;
 

@@ -6,7 +6,7 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
-use afterimage::{Method, Settings, ViewGeometry};
+use afterimage::{Filter, Method, Settings, ViewGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::SourceInfo;
 
@@ -41,7 +41,7 @@ impl Setup {
             setup.settings(&state, state.sides[side as usize]).validate()?;
         }
         // Keys lead to the other methods and filters.
-        state.filter = FilterName::Mip;
+        state.filter = FilterName::Of(Filter::Mip);
         for method in Method::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }
