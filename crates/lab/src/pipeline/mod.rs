@@ -175,14 +175,13 @@ impl Pipeline {
             (None, None) => Wanted::FullRate,
         };
         FrameRequest {
-            index,
             gaze_px,
             wanted,
             geometry: self.foveator.sparse_geometry,
-            reference: true,
             guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
             #[cfg(feature = "full")]
             device: self.device.clone().filter(|_| !self.foveates_in_memory()),
+            ..FrameRequest::full_rate(index)
         }
     }
 
