@@ -62,7 +62,7 @@ impl FrameRequest<'_> {
     }
 
     /// The full-rate frame, rendered as asked for. What else was rendered is added to it.
-    pub(super) fn answer(&self, reference: SourceFrame) -> RenderedFrame {
+    pub fn answer(&self, reference: SourceFrame) -> RenderedFrame {
         RenderedFrame { geometry: self.geometry, ..RenderedFrame::full_rate(self.index, self.gaze_px, reference) }
     }
 
