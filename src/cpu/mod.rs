@@ -119,15 +119,15 @@ impl CpuAfterimage {
 
     /// Changes the settings from the next frame on.
     ///
-    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
-    /// `filter` of the [`foveation`](Settings::foveation).
+    /// History survives, unless its layout changes: with another [`method`](Settings::method), with
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its [`gate`](crate::Wrs::gate),
+    /// and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        let same_method = settings.method == self.desc.settings.method;
+        let same_method = settings.method.kind() == self.desc.settings.method.kind();
         self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
             self.history = History::new(&self.desc);
@@ -250,9 +250,9 @@ impl CpuAfterimage {
         let stats = match self.desc.settings.method {
             Method::None => none_pass::run(pass),
             Method::Taa => surface_pass::run(pass, &taa_pass::Taa),
-            Method::Smr if is_sparse_smr => sparse_pass::run(pass),
-            Method::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
-            Method::Wrs => wrs_pass::run(pass),
+            Method::Smr(_) if is_sparse_smr => sparse_pass::run(pass),
+            Method::Smr(_) => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
+            Method::Wrs(_) => wrs_pass::run(pass),
             Method::Taau => surface_pass::run(pass, &taau_pass::Taau),
         };
         if self.history.layout() == HistoryLayout::Nothing {

@@ -216,7 +216,7 @@ fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> O
         ("KEEP_ALPHA", flag(desc.keep_alpha)),
     ]);
     list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
-    list.extend((settings.method.entry().overrides)(settings, variant.lod));
+    list.extend((settings.method.kind().entry().overrides)(settings, variant.lod));
     list
 }
 

@@ -204,9 +204,9 @@ impl Afterimage {
 
     /// Changes the settings from the next frame on.
     ///
-    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
-    /// `filter` of the [`foveation`](Settings::foveation).
+    /// History survives, unless its layout changes: with another [`method`](Settings::method), with
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.

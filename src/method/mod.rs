@@ -15,11 +15,11 @@ pub(crate) use wrs::has_references;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
-use crate::settings::{Method, Settings};
+use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
 
-impl Method {
+impl MethodKind {
     /// All methods.
-    pub const ALL: [Self; 5] = [Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
+    pub const ALL: &'static [Self] = &[Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
 
     /// Short name in lower case, such as `smr`.
     pub fn name(self) -> &'static str {
@@ -33,7 +33,7 @@ impl Method {
 
     /// Method of a short name; `None` for unknown names.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
+        Self::ALL.iter().copied().find(|method| method.name() == name)
     }
 
     pub(crate) fn entry(self) -> &'static Entry {
@@ -43,6 +43,47 @@ impl Method {
             Self::Smr => &smr::ENTRY,
             Self::Wrs => &wrs::ENTRY,
             Self::Taau => &taau::ENTRY,
+        }
+    }
+}
+
+impl Method {
+    /// The method without its settings.
+    pub fn kind(&self) -> MethodKind {
+        match self {
+            Self::None => MethodKind::None,
+            Self::Taa => MethodKind::Taa,
+            Self::Taau => MethodKind::Taau,
+            Self::Smr(_) => MethodKind::Smr,
+            Self::Wrs(_) => MethodKind::Wrs,
+        }
+    }
+
+    /// Short name in lower case, such as `smr`.
+    pub fn name(&self) -> &'static str {
+        self.kind().name()
+    }
+
+    /// Settings of smr; of another method, the defaults, which its passes do not read.
+    pub(crate) fn smr(&self) -> Smr {
+        if let Self::Smr(smr) = *self { smr } else { Smr::default() }
+    }
+
+    /// Settings of wrs; of another method, the defaults, which its passes do not read.
+    pub(crate) fn wrs(&self) -> Wrs {
+        if let Self::Wrs(wrs) = *self { wrs } else { Wrs::default() }
+    }
+}
+
+/// A method with its default settings.
+impl From<MethodKind> for Method {
+    fn from(kind: MethodKind) -> Self {
+        match kind {
+            MethodKind::None => Self::None,
+            MethodKind::Taa => Self::Taa,
+            MethodKind::Taau => Self::Taau,
+            MethodKind::Smr => Self::Smr(Smr::default()),
+            MethodKind::Wrs => Self::Wrs(Wrs::default()),
         }
     }
 }
@@ -110,17 +151,17 @@ impl Settings {
     /// Shader of the method's pass.
     #[cfg(feature = "gpu")]
     pub(crate) fn pass_shader(&self) -> PassShader {
-        (self.method.entry().shader)(self)
+        (self.method.kind().entry().shader)(self)
     }
 
     /// Layout of the method's history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
-        (self.method.entry().history)(self)
+        (self.method.kind().entry().history)(self)
     }
 
     /// Whether sparse frames are filled between their samples first, for a method that reads whole frames.
     pub(crate) fn fills_sparse_frames(&self) -> bool {
-        self.foveation.filter == Filter::Sparse && !matches!(self.method, Method::Smr | Method::Taau)
+        self.foveation.filter == Filter::Sparse && !matches!(self.method, Method::Smr(_) | Method::Taau)
     }
 
     /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and
@@ -133,6 +174,6 @@ impl Settings {
             return color + output;
         }
         let inputs: u32 = given.iter().zip([4, 4, 1]).map(|(&given, bytes)| if given { bytes } else { 0 }).sum();
-        color + inputs + (self.method.entry().history_traffic_bytes)(self) + output
+        color + inputs + (self.method.kind().entry().history_traffic_bytes)(self) + output
     }
 }

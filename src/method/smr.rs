@@ -25,7 +25,7 @@ pub(super) static ENTRY: Entry = Entry {
         _ => vec![
             ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", filter(settings) as u32),
-            ("RELIGHT_ON", u32::from(settings.smr.relight)),
+            ("RELIGHT_ON", u32::from(settings.method.smr().relight)),
         ],
     },
 };
@@ -73,14 +73,15 @@ fn filter(settings: &Settings) -> Filter {
 /// Whether history of sparse frames is relit. Not that of noisy ones: a gain is the ratio of nine samples, and history
 /// would be multiplied by their noise.
 pub(crate) fn smr_relights(settings: &Settings) -> bool {
-    settings.smr.relight && !settings.noisy
+    settings.method.smr().relight && !settings.noisy
 }
 
 /// Parameters of the kernel from smr's settings.
 pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
+    let smr = settings.method.smr();
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
-        accumulate: settings.smr.accumulate,
+        accumulate: smr.accumulate,
         // Rejecting coarse history costs little detail, so it must fit more strictly. Aliasing of blocks and noise need
         // averaging, and Gaussian blurs never agree with levels of history exactly.
         accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
@@ -90,9 +91,9 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
         } else {
             0.17
         },
-        tolerance: settings.smr.tolerance,
+        tolerance: smr.tolerance,
         blocks,
-        relight: settings.smr.relight,
+        relight: smr.relight,
         noisy: settings.noisy,
     }
 }

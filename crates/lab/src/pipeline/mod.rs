@@ -29,7 +29,7 @@ use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::simulator::Pyramid;
 use afterimage::{
     ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameStats, Gaze, Image, Lattices, Method,
-    Reset, Settings, SettingsError, ViewFrame, ViewGeometry,
+    Reset, Settings, SettingsError, Smr, ViewFrame, ViewGeometry,
 };
 use guide::HistoryNoise;
 #[cfg(feature = "full")]
@@ -332,9 +332,8 @@ impl Pipeline {
         if self.is_guided {
             let noise =
                 self.runs.iter().zip(&outputs).find_map(|(run, output)| Some((self.noise(run)?, &output.image)));
-            self.history_noise = noise.map(|((noise, settings), image)| {
-                HistoryNoise::new(noise, 1.0 - settings.smr.accumulate, image.clone(), frame)
-            });
+            self.history_noise =
+                noise.map(|((noise, smr), image)| HistoryNoise::new(noise, 1.0 - smr.accumulate, image.clone(), frame));
         }
         Ok(Step { gaze_px, ecc_deg, lods: lod, tracked, outputs, foveation_ms: 0.0 })
     }
@@ -460,26 +459,29 @@ impl Pipeline {
         Ok(outputs.into_iter().flatten().collect())
     }
 
-    /// Noise of a run's history, and the run's settings; `None` unless the run is a noisy smr run.
-    fn noise<'a>(&'a self, run: &'a Run) -> Option<(Image<Noise>, &'a Settings)> {
-        let (words, settings) = match run {
+    /// Noise of a run's history, and smr's settings; `None` unless the run is a noisy smr run.
+    fn noise(&self, run: &Run) -> Option<(Image<Noise>, Smr)> {
+        let settings = match run {
+            Run::Cpu(post) => post.desc().settings,
+            #[cfg(feature = "full")]
+            Run::Device(run) => run.post().desc().settings,
+            Run::Oracle { .. } => return None,
+        };
+        let Method::Smr(smr) = settings.method else { return None };
+        let words = match run {
             Run::Cpu(post) => {
                 let words = post.history().noise().to_vec();
-                let size_px = post.desc().size_px;
-                let image = (!words.is_empty())
-                    .then(|| Image::from_pixels(size_px, words).expect("one noise word for each pixel"));
-                (image?, &post.desc().settings)
+                (!words.is_empty())
+                    .then(|| Image::from_pixels(post.desc().size_px, words).expect("one noise word for each pixel"))?
             }
             #[cfg(feature = "full")]
             Run::Device(run) => {
-                let settings = &run.post().desc().settings;
-                let is_noisy = settings.method == afterimage::Method::Smr && settings.noisy;
-                let texture = run.post().history_textures().get(2).filter(|_| is_noisy)?;
-                (self.device.as_ref()?.gpu.read::<u32>(texture, 0), settings)
+                let texture = run.post().history_textures().get(2).filter(|_| settings.noisy)?;
+                self.device.as_ref()?.gpu.read::<u32>(texture, 0)
             }
             Run::Oracle { .. } => return None,
         };
-        Some((words.map(unpack_noise), settings))
+        Some((words.map(unpack_noise), smr))
     }
 }
 
@@ -515,7 +517,7 @@ impl Run {
                     let expected = "a device: parts are removed from shaders".into();
                     Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })?
                 };
-                let shader = part.shader_without(settings.method);
+                let shader = part.shader_without(settings.method.kind());
                 let run = DeviceRun::with_shader(gpu, &of(settings), DeviceFormats::EXACT, &shader)?;
                 Ok(Self::Device(Box::new(run)))
             }

@@ -1,6 +1,6 @@
 //! Methods and their settings.
 
-use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr};
+use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::sync::LazyLock;
@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodName {
     /// A method of the post-process.
-    Post(Method),
+    Post(MethodKind),
     /// Best level of detail ever shown; stills only.
     Oracle,
 }
@@ -26,8 +26,9 @@ impl MethodName {
 
 impl ValueEnum for MethodName {
     fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<MethodName>> =
-            LazyLock::new(|| Method::ALL.map(MethodName::Post).into_iter().chain([MethodName::Oracle]).collect());
+        static ALL: LazyLock<Vec<MethodName>> = LazyLock::new(|| {
+            MethodKind::ALL.iter().copied().map(MethodName::Post).chain([MethodName::Oracle]).collect()
+        });
         &ALL
     }
 
@@ -99,23 +100,45 @@ pub struct WrsArgs {
 
 impl WrsArgs {
     /// The library's settings for a method. `noisy`: the input is path traced.
-    pub fn settings(&self, method: Method, seed: u64, noisy: bool) -> Settings {
-        let preset = if noisy { Settings::traced() } else { Settings::default() };
-        let wrs = match self.wrs_preset {
-            WrsPresetName::Paper => Settings::paper(),
-            WrsPresetName::Weighted => Settings::weighted(),
-        };
-        let gate = wrs.gate.unwrap_or_default();
+    pub fn settings(&self, method: MethodKind, seed: u64, noisy: bool) -> Settings {
         Settings {
-            method,
+            method: match method {
+                MethodKind::Smr => Method::Smr(self.smr(noisy)),
+                MethodKind::Wrs => Method::Wrs(self.wrs()),
+                other => other.into(),
+            },
+            depth_test: (!self.no_flush)
+                .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
+            noisy,
+            seed,
+            ..Settings::default()
+        }
+    }
+
+    fn smr(&self, noisy: bool) -> Smr {
+        let preset = if noisy { Smr::traced() } else { Smr::default() };
+        Smr {
+            accumulate: self.smr_accumulate.unwrap_or(preset.accumulate),
+            tolerance: self.smr_tolerance,
+            relight: !self.no_relight,
+        }
+    }
+
+    fn wrs(&self) -> Wrs {
+        let preset = match self.wrs_preset {
+            WrsPresetName::Paper => Wrs::default(),
+            WrsPresetName::Weighted => Wrs::weighted(),
+        };
+        let gate = preset.gate.unwrap_or_default();
+        Wrs {
             sampler: match self.wrs_sampler {
-                None => wrs.sampler,
+                None => preset.sampler,
                 Some(SamplerName::AChao) => Sampler::AChao,
                 Some(SamplerName::AEs) => Sampler::AEs,
                 Some(SamplerName::Mean) => Sampler::AChaoMean,
             },
-            weight_exponent: self.wrs_exponent.unwrap_or(wrs.weight_exponent),
-            rate_exponent: self.wrs_rate_exponent.unwrap_or(wrs.rate_exponent),
+            weight_exponent: self.wrs_exponent.unwrap_or(preset.weight_exponent),
+            rate_exponent: self.wrs_rate_exponent.unwrap_or(preset.rate_exponent),
             bias: self.wrs_bias,
             gate: (!self.no_gate).then_some(Gate {
                 divisor: self.gate_divisor.unwrap_or(gate.divisor),
@@ -130,15 +153,6 @@ impl WrsArgs {
                     Some(GateScaleName::Candidate) => GateScale::Candidate,
                 },
             }),
-            depth_test: (!self.no_flush)
-                .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
-            smr: Smr {
-                accumulate: self.smr_accumulate.unwrap_or(preset.smr.accumulate),
-                tolerance: self.smr_tolerance,
-                relight: !self.no_relight,
-            },
-            seed,
-            ..preset
         }
     }
 }

@@ -51,7 +51,7 @@ use winit::event_loop::EventLoop;
 pub struct ViewArgs {
     #[command(flatten)]
     pub input: InputArgs,
-    /// Method to show
+    /// MethodKind to show
     #[arg(long, value_enum, default_value = "smr", value_name = "NAME")]
     pub method: Shows,
     /// Two methods to show side by side

@@ -16,7 +16,7 @@ pub struct Convergence {
     pub input: String,
     /// Name of the method.
     pub method: String,
-    /// Method and options that the points share.
+    /// MethodKind and options that the points share.
     pub label: String,
     /// In ascending order of samples.
     pub points: Vec<ConvergencePoint>,

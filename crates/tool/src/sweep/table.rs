@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub struct Row {
     /// Name of its files in `pictures/`.
     pub id: String,
-    /// Method, and the options that differ between points.
+    /// MethodKind, and the options that differ between points.
     pub label: String,
     /// The point, with its first seed.
     #[serde(flatten)]

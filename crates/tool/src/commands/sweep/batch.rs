@@ -6,7 +6,7 @@ use crate::args::{FilterName, MethodName};
 use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
-use afterimage::Method;
+use afterimage::MethodKind;
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.
@@ -15,24 +15,24 @@ const MAX_POINTS: usize = 24;
 const MAX_PIXELS: u64 = 24_000_000;
 
 /// Options that affect only some methods, and not the input frames.
-const OF_METHODS: &[(&str, &[Method])] = &[
-    ("wrs-preset", &[Method::Wrs]),
-    ("wrs-sampler", &[Method::Wrs]),
-    ("wrs-exponent", &[Method::Wrs]),
-    ("wrs-rate-exponent", &[Method::Wrs]),
-    ("gate-scale", &[Method::Wrs]),
-    ("wrs-bias", &[Method::Wrs]),
-    ("gate-divisor", &[Method::Wrs]),
-    ("gate-offset", &[Method::Wrs]),
-    ("gate-metric", &[Method::Wrs]),
-    ("no-gate", &[Method::Wrs]),
-    ("smr-accumulate", &[Method::Smr]),
-    ("smr-tolerance", &[Method::Smr]),
-    ("no-relight", &[Method::Smr]),
-    ("depth-relative", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("depth-slope", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("no-flush", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("without", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
+const OF_METHODS: &[(&str, &[MethodKind])] = &[
+    ("wrs-preset", &[MethodKind::Wrs]),
+    ("wrs-sampler", &[MethodKind::Wrs]),
+    ("wrs-exponent", &[MethodKind::Wrs]),
+    ("wrs-rate-exponent", &[MethodKind::Wrs]),
+    ("gate-scale", &[MethodKind::Wrs]),
+    ("wrs-bias", &[MethodKind::Wrs]),
+    ("gate-divisor", &[MethodKind::Wrs]),
+    ("gate-offset", &[MethodKind::Wrs]),
+    ("gate-metric", &[MethodKind::Wrs]),
+    ("no-gate", &[MethodKind::Wrs]),
+    ("smr-accumulate", &[MethodKind::Smr]),
+    ("smr-tolerance", &[MethodKind::Smr]),
+    ("no-relight", &[MethodKind::Smr]),
+    ("depth-relative", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
+    ("depth-slope", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
+    ("no-flush", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
+    ("without", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
 ];
 
 /// Whether an option affects a method; `without` affects the methods that have the part.
@@ -46,7 +46,7 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, methods)) => methods.iter().any(|m| m.name() == method),
         // Only the history of smr guides samples.
-        None => option != "guided" || method == Method::Smr.name(),
+        None => option != "guided" || method == MethodKind::Smr.name(),
     }
 }
 
@@ -96,7 +96,7 @@ impl Subject {
 
 /// Whether the result depends on the seed.
 pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
-    method == Method::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
+    method == MethodKind::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
 }
 
 /// Groups points into batches. The order does not depend on finished points.

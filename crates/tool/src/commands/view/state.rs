@@ -1,7 +1,7 @@
 //! User-controlled state of the viewer, and how keys and clicks change it. Needs no window and no device.
 
 use crate::args::{DebugName, FilterName};
-use afterimage::Method;
+use afterimage::MethodKind;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use std::sync::LazyLock;
@@ -11,7 +11,7 @@ use winit::keyboard::KeyCode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
     /// A method of the post-process.
-    Post(Method),
+    Post(MethodKind),
     /// The full-rate frame.
     Reference,
 }
@@ -19,11 +19,11 @@ pub enum Shows {
 impl Shows {
     /// Name on the command line.
     pub fn name(self) -> &'static str {
-        self.method().map_or("reference", Method::name)
+        self.method().map_or("reference", MethodKind::name)
     }
 
     /// The method; `None`: the full-rate frame is shown.
-    pub fn method(self) -> Option<Method> {
+    pub fn method(self) -> Option<MethodKind> {
         match self {
             Self::Post(method) => Some(method),
             Self::Reference => None,
@@ -34,12 +34,12 @@ impl Shows {
 impl ValueEnum for Shows {
     fn value_variants<'a>() -> &'a [Self] {
         static ALL: LazyLock<Vec<Shows>> =
-            LazyLock::new(|| Method::ALL.map(Shows::Post).into_iter().chain([Shows::Reference]).collect());
+            LazyLock::new(|| MethodKind::ALL.iter().copied().map(Shows::Post).chain([Shows::Reference]).collect());
         &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let help = self.method().map_or("the full-rate frame", Method::summary);
+        let help = self.method().map_or("the full-rate frame", MethodKind::summary);
         Some(PossibleValue::new(self.name()).help(help))
     }
 }
@@ -273,7 +273,7 @@ pub(super) mod tests {
 
     pub fn state() -> State {
         State {
-            sides: [Shows::Post(Method::Smr), Shows::Reference],
+            sides: [Shows::Post(MethodKind::Smr), Shows::Reference],
             is_split: false,
             divider: 0.5,
             filter: FilterName::Mip,
@@ -299,11 +299,11 @@ pub(super) mod tests {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::Digit4, false), Effect::Nothing, "smr is shown already");
         assert_eq!(press(&mut state, KeyCode::Digit3, false), Effect::Update);
-        assert_eq!((state.sides, state.is_split), ([Shows::Post(Method::Wrs), Shows::Reference], false));
+        assert_eq!((state.sides, state.is_split), ([Shows::Post(MethodKind::Wrs), Shows::Reference], false));
         assert_eq!(press(&mut state, KeyCode::Digit2, true), Effect::Update);
         assert_eq!(
             (state.sides, state.is_split),
-            ([Shows::Post(Method::Wrs), Shows::Post(Method::Taa)], true),
+            ([Shows::Post(MethodKind::Wrs), Shows::Post(MethodKind::Taa)], true),
             "what is chosen is shown"
         );
         assert_eq!(state.shown_sides(), Side::BOTH);
@@ -318,12 +318,12 @@ pub(super) mod tests {
         assert_eq!(
             shown,
             [
-                Shows::Post(Method::Taau),
+                Shows::Post(MethodKind::Taau),
                 Shows::Reference,
-                Shows::Post(Method::None),
-                Shows::Post(Method::Taa),
-                Shows::Post(Method::Wrs),
-                Shows::Post(Method::Smr)
+                Shows::Post(MethodKind::None),
+                Shows::Post(MethodKind::Taa),
+                Shows::Post(MethodKind::Wrs),
+                Shows::Post(MethodKind::Smr)
             ]
         );
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();

@@ -8,7 +8,7 @@ use afterimage_lab::metric::{BandScores, Scores};
 
 pub const INPUTS: [&str; 2] = ["sponza/", "still.png"];
 
-/// Method, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that
+/// MethodKind, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that
 /// remains.
 const METHODS: [(&str, f64, u32, f64); 5] = [
     ("none", 0.21, 14, 1.0),
@@ -107,7 +107,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
     };
     Measurement {
         version: "0.1.0".into(),
-        rust: format!("Settings {{ method: Method::{} }}", point.method),
+        rust: format!("Settings {{ method: MethodKind::{} }}", point.method),
         point,
         common: options(&[("backend", "gpu"), ("frames", "120")]),
         clip: ClipFacts { size: [1280, 720], frames: 120, timed_frames: 112, fps: 60.0, hfov_deg: 70.0 },
