@@ -81,7 +81,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             noise: past.noise,
             lattices,
             accumulate: desc.settings.method.smr().accumulate,
-            relights: crate::method::smr_relights(&desc.settings),
+            relights: crate::method::smr_sparse_relights(&desc.settings),
         };
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use super::PassShader;
-use super::{Entry, HistoryLayout};
+use super::{Algorithm, Entry, HistoryLayout, whole_frames};
 #[cfg(feature = "gpu")]
 use crate::foveation::Filter;
 use crate::kernel::acuity;
@@ -13,6 +13,8 @@ use crate::settings::{Bias, GateMetric, GateScale, Sampler, Settings};
 pub(super) static ENTRY: Entry = Entry {
     name: "wrs",
     summary: "weighted reservoirs: A-Chao with Bernoulli bias",
+    algorithm: Algorithm::Wrs,
+    stages: whole_frames,
     history: |settings| HistoryLayout::Reservoirs { keys: has_keys(settings), references: has_references(settings) },
     history_traffic_bytes: |settings| {
         let extra = u32::from(has_keys(settings)) + u32::from(has_references(settings));
