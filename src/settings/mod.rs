@@ -52,13 +52,17 @@ impl Default for Method {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "as of `Method`")]
 pub enum MethodKind {
+    /// [`Method::None`].
     None,
+    /// [`Method::Taa`].
     Taa,
-    Wrs,
-    Smr,
+    /// [`Method::Taau`].
     Taau,
+    /// [`Method::Smr`].
+    Smr,
+    /// [`Method::Wrs`].
+    Wrs,
 }
 
 /// Settings of [`Method::Smr`], scale-matched reservoirs.

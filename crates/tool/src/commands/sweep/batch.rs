@@ -14,25 +14,25 @@ const MAX_POINTS: usize = 24;
 /// Limit on pixels per batch, summed over its points, whose histories are in memory at the same time.
 const MAX_PIXELS: u64 = 24_000_000;
 
-/// Options that affect only some methods, and not the input frames.
-const OF_METHODS: &[(&str, &[MethodKind])] = &[
-    ("wrs-preset", &[MethodKind::Wrs]),
-    ("wrs-sampler", &[MethodKind::Wrs]),
-    ("wrs-exponent", &[MethodKind::Wrs]),
-    ("wrs-rate-exponent", &[MethodKind::Wrs]),
-    ("gate-scale", &[MethodKind::Wrs]),
-    ("wrs-bias", &[MethodKind::Wrs]),
-    ("gate-divisor", &[MethodKind::Wrs]),
-    ("gate-offset", &[MethodKind::Wrs]),
-    ("gate-metric", &[MethodKind::Wrs]),
-    ("no-gate", &[MethodKind::Wrs]),
-    ("smr-accumulate", &[MethodKind::Smr]),
-    ("smr-tolerance", &[MethodKind::Smr]),
-    ("no-relight", &[MethodKind::Smr]),
-    ("depth-relative", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
-    ("depth-slope", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
-    ("no-flush", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
-    ("without", &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau]),
+/// Options that affect only one method, or all that keep history (`None`), and not the input frames.
+const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
+    ("wrs-preset", Some(MethodKind::Wrs)),
+    ("wrs-sampler", Some(MethodKind::Wrs)),
+    ("wrs-exponent", Some(MethodKind::Wrs)),
+    ("wrs-rate-exponent", Some(MethodKind::Wrs)),
+    ("gate-scale", Some(MethodKind::Wrs)),
+    ("wrs-bias", Some(MethodKind::Wrs)),
+    ("gate-divisor", Some(MethodKind::Wrs)),
+    ("gate-offset", Some(MethodKind::Wrs)),
+    ("gate-metric", Some(MethodKind::Wrs)),
+    ("no-gate", Some(MethodKind::Wrs)),
+    ("smr-accumulate", Some(MethodKind::Smr)),
+    ("smr-tolerance", Some(MethodKind::Smr)),
+    ("no-relight", Some(MethodKind::Smr)),
+    ("depth-relative", None),
+    ("depth-slope", None),
+    ("no-flush", None),
+    ("without", None),
 ];
 
 /// Whether an option affects a method; `without` affects the methods that have the part.
@@ -43,10 +43,12 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     }
     #[cfg(not(feature = "ablation"))]
     let _ = value;
+    let kind = MethodKind::from_name(method);
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
-        Some((_, methods)) => methods.iter().any(|m| m.name() == method),
+        Some((_, Some(only))) => kind == Some(*only),
+        Some((_, None)) => kind.is_some_and(|kind| kind != MethodKind::None),
         // Only the history of smr guides samples.
-        None => option != "guided" || method == MethodKind::Smr.name(),
+        None => option != "guided" || kind == Some(MethodKind::Smr),
     }
 }
 

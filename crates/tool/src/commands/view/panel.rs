@@ -1,9 +1,10 @@
 //! The panel: the state, the keys that change it, and the graphs. Its rows can be clicked.
 
 use super::graph::Graph;
-use super::state::{Action, Side, State};
+use super::state::{Action, Shows, Side, State};
 use crate::args::FilterName;
 use crate::report::canvas::Canvas;
+use clap::ValueEnum;
 use image::RgbImage;
 
 /// Width of the panel in its own pixels.
@@ -28,21 +29,22 @@ pub struct Facts<'a> {
 struct Row {
     name: &'static str,
     value: String,
-    key: &'static str,
+    key: String,
     action: Action,
 }
 
 fn rows(state: &State) -> Vec<Row> {
-    let row = |name, value: &str, key, action| Row { name, value: value.to_owned(), key, action };
+    let row = |name, value: &str, key: &str, action| Row { name, value: value.to_owned(), key: key.to_owned(), action };
+    let digits = format!("1..{}", Shows::value_variants().len());
     let on_off = |is_on| if is_on { "on" } else { "off" };
     let mut rows = vec![row(
         if state.is_split { "left" } else { "method" },
         state.sides[0].name(),
-        "1..5",
+        &digits,
         Action::Next(Side::Left),
     )];
     if state.is_split {
-        rows.push(row("right", state.sides[1].name(), "Shift 1..5", Action::Next(Side::Right)));
+        rows.push(row("right", state.sides[1].name(), &format!("Shift {digits}"), Action::Next(Side::Right)));
     }
     rows.extend([
         row("split", on_off(state.is_split), "Tab", Action::Split),
@@ -95,7 +97,7 @@ pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
         let y = y + ROW_PX * i as u32;
         canvas.small(row.name, MARGIN, y, TEXT);
         canvas.small(&row.value, VALUE_X, y, TEXT);
-        canvas.small(row.key, KEY_X, y, KEY);
+        canvas.small(&row.key, KEY_X, y, KEY);
     }
     let mut y = graphs_y;
     for graph in facts.graphs {
@@ -114,7 +116,7 @@ pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::state::{Shows, tests::state};
+    use super::super::state::tests::state;
     use super::*;
     use afterimage::MethodKind;
 

@@ -42,7 +42,7 @@ impl Setup {
         }
         // Keys lead to the other methods and filters.
         state.filter = FilterName::Mip;
-        for method in MethodKind::ALL {
+        for &method in MethodKind::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }
         Ok(setup)
