@@ -26,6 +26,31 @@ pub enum Filter {
     Sparse,
 }
 
+impl Filter {
+    /// All filters, in the order of the tool.
+    pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Off];
+
+    /// Short name in lower case, such as `mip`.
+    pub fn name(self) -> &'static str {
+        self.texts().0
+    }
+
+    /// Summary in one line.
+    pub fn summary(self) -> &'static str {
+        self.texts().1
+    }
+
+    fn texts(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Mip => ("mip", "Box mip levels, trilinear"),
+            Self::Gauss => ("gauss", "Gaussian blur that grows with eccentricity"),
+            Self::Block => ("block", "One point sample per block"),
+            Self::Sparse => ("sparse", "One point sample per block that moves every frame, in regions without blends"),
+            Self::Off => ("off", "Full rate everywhere"),
+        }
+    }
+}
+
 /// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual
 /// angles.
 ///

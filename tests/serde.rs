@@ -16,7 +16,7 @@ fn settings_survive_a_file() {
     let wrs = Wrs { bias: Bias::Exponential { lambda: 0.25 }, gate: None, ..Wrs::default() };
     round_trip(Settings { method: Method::Wrs(wrs), depth_test: None, seed: u64::MAX, ..Settings::default() });
     for kind in MethodKind::ALL {
-        let text = round_trip(Method::from(*kind));
+        let text = round_trip(Method::from(kind));
         assert!(text.contains(&format!("\"{}\"", kind.name())), "{text}");
     }
     assert_eq!(round_trip(Method::Taau), r#""taau""#);

@@ -21,7 +21,7 @@ use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
 
 impl MethodKind {
     /// All methods.
-    pub const ALL: &'static [Self] = &[Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
+    pub const ALL: [Self; 5] = [Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
 
     /// Short name in lower case, such as `smr`.
     pub fn name(self) -> &'static str {
@@ -35,7 +35,7 @@ impl MethodKind {
 
     /// Method of a short name; `None` for unknown names.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|method| method.name() == name)
+        Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
     fn entry(self) -> &'static Entry {

@@ -48,7 +48,7 @@ impl Default for Method {
 /// use afterimage::MethodKind;
 ///
 /// assert_eq!(MethodKind::from_name("smr"), Some(MethodKind::Smr));
-/// assert!(MethodKind::ALL.iter().all(|kind| MethodKind::from_name(kind.name()) == Some(*kind)));
+/// assert!(MethodKind::ALL.into_iter().all(|kind| MethodKind::from_name(kind.name()) == Some(kind)));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]

@@ -1,6 +1,6 @@
 //! Components of a camera, and what they require of it.
 
-use afterimage::{DebugView, Filter, Settings};
+use afterimage::{DebugView, DepthConvention, Filter, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
@@ -133,6 +133,19 @@ pub(crate) fn drawn_size_px(camera: &Camera) -> Option<UVec2> {
     (camera.is_active && size.min_element() > 0 && is_inside).then_some(size)
 }
 
+/// Convention of Bevy's depth: reversed, with a far plane that is infinite or not.
+pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, String> {
+    // depth = w.z / distance - z.z
+    let (z, w) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
+    if w <= 0.0 || z < 0.0 {
+        return Err("its depth is not reversed, as Bevy's is".into());
+    }
+    let near = w / (1.0 + z);
+    let far = if z > 0.0 { w / z } else { f32::INFINITY };
+    let depth = DepthConvention::Reversed { near, far };
+    depth.validate().map(|()| depth).map_err(|error| error.to_string())
+}
+
 pub(crate) struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
@@ -217,5 +230,24 @@ fn add_prepasses(mut commands: Commands, cameras: Query<Prepasses<'_>, With<Came
             }
             _ => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::CameraProjection;
+
+    #[test]
+    fn depth_is_that_of_bevys_projections() {
+        let projection = PerspectiveProjection { near: 0.25, ..default() };
+        let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
+        assert_eq!(depth_convention(projection.get_clip_from_view()), Ok(infinite));
+        // Reversed, with a far plane: the planes are swapped.
+        let finite = Mat4::perspective_rh(1.0, 1.5, 100.0, 0.25);
+        let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
+        assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
+        let forward = Mat4::perspective_rh(1.0, 1.5, 0.25, 100.0);
+        assert!(depth_convention(forward).is_err());
     }
 }

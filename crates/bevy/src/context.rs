@@ -2,7 +2,7 @@
 
 use crate::blit::BlitPass;
 use crate::camera::FoveationKind;
-use crate::diagnostics::Counters;
+use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
 use afterimage::gpu::{Afterimage, Frame, Region, Target, Textures};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};

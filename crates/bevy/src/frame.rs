@@ -1,11 +1,10 @@
 //! Description of a frame, from Bevy's camera.
 
-use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, drawn_size_px};
-use crate::diagnostics::AfterimageStats;
+use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_convention, drawn_size_px};
+use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::lattice::{COUNT, LatticeCameras, lattice_of};
-use crate::testing::Planted;
-use afterimage::{ContextDesc, DebugView, DepthConvention, Lattice, MotionConvention, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, DebugView, Lattice, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::core_pipeline::prepass::PreviousViewData;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
@@ -35,6 +34,13 @@ pub(crate) struct Samples {
     /// Render entity of the lattice camera.
     pub camera: Entity,
     pub lattice: Lattice,
+}
+
+/// Errors that tests plant ([`crate::testing`]), to see that they are noticed.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct Planted {
+    /// Another convention of motion vectors than Bevy's.
+    pub motion: Option<MotionConvention>,
 }
 
 // The camera's own component is what makes this one disappear with it.
@@ -157,19 +163,6 @@ fn describe(
     Ok((desc, view))
 }
 
-/// Convention of Bevy's depth: reversed, with a far plane that is infinite or not.
-pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, String> {
-    // depth = w.z / distance - z.z
-    let (z, w) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
-    if w <= 0.0 || z < 0.0 {
-        return Err("its depth is not reversed, as Bevy's is".into());
-    }
-    let near = w / (1.0 + z);
-    let far = if z > 0.0 { w / z } else { f32::INFINITY };
-    let depth = DepthConvention::Reversed { near, far };
-    depth.validate().map(|()| depth).map_err(|error| error.to_string())
-}
-
 /// Puts lattice cameras directly before the camera that shows their samples, whatever the order of other cameras:
 /// nothing may draw to the shared shadow maps in between.
 fn draw_lattices_first(mut sorted: ResMut<SortedCameras>, frames: Query<&ExtractedAfterimage>) {
@@ -193,24 +186,5 @@ fn draw_lattices_first(mut sorted: ResMut<SortedCameras>, frames: Query<&Extract
             sorted.0.extend(frame.samples.iter().filter_map(|samples| small.remove(&samples.camera)));
         }
         sorted.0.push(camera);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bevy::camera::CameraProjection;
-
-    #[test]
-    fn depth_is_that_of_bevys_projections() {
-        let projection = PerspectiveProjection { near: 0.25, ..default() };
-        let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
-        assert_eq!(depth_convention(projection.get_clip_from_view()), Ok(infinite));
-        // Reversed, with a far plane: the planes are swapped.
-        let finite = Mat4::perspective_rh(1.0, 1.5, 100.0, 0.25);
-        let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
-        assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
-        let forward = Mat4::perspective_rh(1.0, 1.5, 0.25, 100.0);
-        assert!(depth_convention(forward).is_err());
     }
 }

@@ -1,7 +1,6 @@
 //! Lattice cameras: the small views that draw the samples of a sparse frame.
 
-use crate::camera::{Afterimage, Foveated, FoveationKind, drawn_size_px};
-use crate::frame::depth_convention;
+use crate::camera::{Afterimage, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::gaze::{CameraGaze, Gaze};
 use afterimage::{Lattice, Lattices, ViewGeometry};
 use bevy::asset::AssetEventSystems;

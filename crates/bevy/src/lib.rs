@@ -39,6 +39,7 @@
 mod blit;
 mod camera;
 mod context;
+mod counters;
 mod diagnostics;
 mod frame;
 mod gaze;
@@ -53,7 +54,7 @@ pub mod testing;
 
 pub use afterimage;
 pub use camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Preset};
-pub use diagnostics::AfterimageStats;
+pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
 pub use lattice::LatticeCamera;
 pub use mirror::MirrorPlugin;

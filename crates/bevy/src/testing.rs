@@ -1,19 +1,13 @@
 //! Errors to plant, and what a frame was made of: for this crate's tests, not part of the stable API.
 
 use crate::frame::ExtractedAfterimage;
+pub use crate::frame::Planted;
 use crate::pass::Contexts;
-use afterimage::{ContextDesc, MotionConvention, ViewFrame, wgpu};
+use afterimage::{ContextDesc, ViewFrame, wgpu};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::diagnostic::FrameCount;
 use bevy::prelude::*;
 use bevy::render::view::ViewTarget;
-
-/// Errors that tests plant, to see that they are noticed.
-#[derive(Resource, Clone, Copy, Debug, Default)]
-pub struct Planted {
-    /// Another convention of motion vectors than Bevy's.
-    pub motion: Option<MotionConvention>,
-}
 
 /// What the post-process of a camera was given in the last frame, and its output.
 #[derive(Clone, Debug)]

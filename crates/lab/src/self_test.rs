@@ -69,7 +69,7 @@ type Ask<'a> = &'a dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>;
 pub fn self_test(gpu: &Arc<Headless>) -> Result<Vec<Finding>, SelfTestError> {
     let mut findings = arithmetic(&|question, rows| ask(gpu, question, rows));
     findings.push(formats(gpu));
-    for &method in MethodKind::ALL.iter().filter(|&&method| method != MethodKind::None) {
+    for method in MethodKind::ALL.into_iter().filter(|&method| method != MethodKind::None) {
         findings.push(twins(gpu, method)?);
     }
     Ok(findings)

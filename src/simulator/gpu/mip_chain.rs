@@ -1,13 +1,12 @@
 //! Mip levels of a full-rate frame on the GPU.
 
-use super::texture;
 use crate::frame::ContextDesc;
 use crate::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use crate::gpu::filled;
 use crate::kernel::foveate::level_len;
 use wgpu::{
-    BindingResource, Buffer, ComputePass, Device, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
-    TextureViewDimension,
+    BindingResource, Buffer, ComputePass, Device, Texture, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor, TextureViewDimension,
 };
 
 /// 32-bit floats, as on the CPU: level l is a mean of means, rounded l times.
@@ -69,4 +68,25 @@ impl MipChain {
             finer = mip;
         }
     }
+}
+
+/// A texture of the simulators.
+pub(super) fn texture(
+    device: &Device,
+    size: [u32; 2],
+    view_count: u32,
+    mip_level_count: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("afterimage foveation"),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: view_count },
+        mip_level_count,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
 }

@@ -14,7 +14,7 @@ use crate::gpu::{Timestamps, array_view, check_readable, check_texture, filled, 
 use crate::kernel::foveate::block_sample_level;
 use crate::shader::SHADERS;
 use crate::uniforms::Held;
-use mip_chain::MipChain;
+use mip_chain::{MipChain, texture};
 use uniforms::FoveationUniforms;
 use wgpu::{
     BindingResource, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat,
@@ -148,6 +148,18 @@ impl GpuSimulator {
         })
     }
 
+    /// Bytes of memory traffic a pixel that a filter needs, to outputs of halves and without levels of detail; `None`:
+    /// full-rate frames are copied. For benchmarks.
+    #[doc(hidden)]
+    pub fn traffic(filter: Filter) -> Option<u32> {
+        match filter {
+            Filter::Mip => Some(27),
+            Filter::Gauss => Some(48),
+            Filter::Block => Some(25),
+            Filter::Off | Filter::Sparse => None,
+        }
+    }
+
     /// Description that the simulator was created with.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
@@ -228,24 +240,4 @@ impl GpuSimulator {
         }
         FoveationUniforms::new(&self.desc, views, &self.held)
     }
-}
-
-fn texture(
-    device: &Device,
-    size: [u32; 2],
-    view_count: u32,
-    mip_level_count: u32,
-    format: TextureFormat,
-    usage: TextureUsages,
-) -> Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("afterimage foveation"),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: view_count },
-        mip_level_count,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
 }

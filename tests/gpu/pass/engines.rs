@@ -13,8 +13,8 @@ use afterimage::{
 const SIZE: [u32; 2] = [70, 41];
 
 fn all_settings() -> impl Iterator<Item = Settings> {
-    let plain = MethodKind::ALL.iter().map(|&kind| Settings { method: kind.into(), ..Settings::default() });
-    plain.chain([Settings::traced(), Settings::weighted()])
+    let plain = MethodKind::ALL.map(|kind| Settings { method: kind.into(), ..Settings::default() });
+    plain.into_iter().chain([Settings::traced(), Settings::weighted()])
 }
 
 /// Views with all inputs that the settings allow.

@@ -1,6 +1,6 @@
 //! Estimate of indirect light, for scenes whose lights are inside them.
 
-use super::lighting::LightRecord;
+use super::lights::LightRecord;
 use crate::kernel::direction::{basis, to_world};
 use crate::kernel::sampling::{barycentrics, cosine_hemisphere};
 use crate::kernel::triangle::{magnitude, offset_ray, point_at};

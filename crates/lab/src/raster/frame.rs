@@ -1,5 +1,6 @@
 //! Frame uniforms. Twin of `RasterFrame` in `shaders/raster/raster_frame.wgsl`.
 
+use super::pixels::Pixels;
 use super::window::Window;
 use crate::trace::view::View;
 use bytemuck::{Pod, Zeroable};
@@ -34,30 +35,6 @@ pub(super) struct FrameUniforms {
     step: f32,
     per_step: f32,
     unused: [f32; 2],
-}
-
-/// Projection in f64: rows from direction to homogeneous pixels, and columns from pixels to direction.
-pub(super) struct Pixels {
-    pub rows: [DVec3; 3],
-    corner: DVec3,
-    right: DVec3,
-    down: DVec3,
-}
-
-impl Pixels {
-    pub fn of(view: &View) -> Self {
-        let m = view.world_from_camera();
-        let (right, below, ahead) = (m.x_axis.truncate(), -m.y_axis.truncate(), -m.z_axis.truncate());
-        let (scale, offset) = view.geometry().scale_offset();
-        let [sx, sy] = scale.map(f64::from);
-        let [ox, oy] = offset.map(f64::from);
-        Self {
-            rows: [right / sx - ahead * (ox / sx), below / sy - ahead * (oy / sy), ahead],
-            corner: right * ox + below * oy + ahead,
-            right: right * sx,
-            down: below * sy,
-        }
-    }
 }
 
 impl Eye {

@@ -1,6 +1,6 @@
 //! Windows: what a target shows of the full-rate frame, and which triangles it shows.
 
-use super::frame::Pixels;
+use super::pixels::Pixels;
 use super::vertices::{AlphaKind, Chunks, DrawRange};
 use crate::quad_views::{QuadView, QuadViews};
 use crate::trace::view::View;

@@ -6,11 +6,13 @@
 mod frames;
 mod recorded;
 mod synthetic;
+mod viewing;
 mod walk;
 
 pub use frames::{FrameGaze, GazeMap};
 pub use recorded::{MAX_FILE_BYTES, parse_csv, read_csv, write_csv};
-pub use synthetic::{Event, EventKind, Synthetic, SyntheticOptions, generate};
+pub use synthetic::{Synthetic, SyntheticOptions, generate};
+pub use viewing::{Event, EventKind};
 
 use crate::error::InputError;
 use afterimage::ViewGeometry;

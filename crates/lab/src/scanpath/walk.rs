@@ -1,6 +1,6 @@
 //! Simulation of the eye for synthetic scanpaths: generates events, and samples the gaze at given times.
 
-use super::synthetic::{
+use super::viewing::{
     AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S,
     LANDING_S, MAIN_SEQUENCE_S, MICROSACCADE_DEG, MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
 };

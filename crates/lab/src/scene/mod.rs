@@ -37,6 +37,9 @@ mod gltf_file;
 pub mod light;
 mod limits;
 pub mod material;
+mod model;
+mod open;
+mod pose;
 pub mod texture;
 pub mod triangles;
 
@@ -45,140 +48,7 @@ pub use camera::Camera;
 pub use light::{Environment, PunctualKind, PunctualLight};
 pub use limits::SceneLimits;
 pub use material::{Alpha, Material, Phong, TextureRef};
+pub use model::Scene;
+pub use pose::Pose;
 pub use texture::{Texture, Wrap};
 pub use triangles::Triangles;
-
-use crate::error::InputError;
-use std::path::Path;
-use std::sync::Arc;
-
-/// A scene: geometry, materials, lights, cameras and one animation.
-#[derive(Clone, Debug)]
-pub struct Scene {
-    /// Name as the user gave it.
-    pub name: String,
-    /// Materials that triangles refer to.
-    pub materials: Vec<Material>,
-    /// Textures that materials refer to.
-    pub textures: Vec<Texture>,
-    /// Radiance of rays that hit nothing.
-    pub environment: Environment,
-    /// Names of the file's animations, of which at most one plays. Empty for an unnamed one.
-    pub animations: Vec<String>,
-    /// Features of the file that are ignored or approximated, each once.
-    pub warnings: Vec<String>,
-    pub(crate) still: Triangles,
-    /// Animated triangles, lights and cameras at time 0.
-    pub(crate) rest: Pose,
-    /// `None`: a static scene.
-    pub(crate) animated: Option<Arc<animated::Animated>>,
-}
-
-/// Animated triangles, lights and cameras at one time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// Animated triangles, in the same order and number at every time. Their corners keep their order too, unless an
-    /// animation mirrors them.
-    pub moving: Triangles,
-    /// Punctual lights, in the same order and number at every time.
-    pub lights: Vec<PunctualLight>,
-    /// Cameras, in the same order and number at every time.
-    pub cameras: Vec<Camera>,
-}
-
-impl Scene {
-    /// A static scene with the triangles `still`, and the triangles, lights and cameras of `pose`.
-    ///
-    /// # Errors
-    /// [`Request`](InputError::Request) if attributes are missing or a material does not exist.
-    pub fn from_parts(
-        name: &str,
-        materials: Vec<Material>,
-        still: Triangles,
-        pose: Pose,
-        environment: Environment,
-    ) -> Result<Self, InputError> {
-        for triangles in [&still, &pose.moving] {
-            let known = |m: &u32| (*m as usize) < materials.len();
-            if !(triangles.is_complete() && triangles.materials.iter().all(known)) {
-                return Err(InputError::request(
-                    name,
-                    "has triangles that lack attributes or refer to a material that does not exist",
-                    "give each triangle an entry in every array and the index of one of the materials",
-                ));
-            }
-        }
-        Ok(Self {
-            name: name.into(),
-            materials,
-            textures: vec![],
-            environment,
-            animations: vec![],
-            warnings: vec![],
-            still,
-            rest: pose,
-            animated: None,
-        })
-    }
-
-    /// Opens a `.gltf` or `.glb` file, or `builtin:NAME`. The file's first animation plays.
-    ///
-    /// # Errors
-    /// - [`Io`](InputError::Io): a file does not exist or cannot be read.
-    /// - [`Invalid`](InputError::Invalid): a file is damaged.
-    /// - [`NotSupported`](InputError::NotSupported): it is another kind of file or glTF version, requires an
-    ///   unsupported extension or image format, or refers to files outside of its folder.
-    /// - [`Limit`](InputError::Limit): the scene is larger than `limits` allows.
-    /// - [`Request`](InputError::Request): there is no such built-in scene.
-    pub fn open(input: &str, limits: &SceneLimits) -> Result<Self, InputError> {
-        Self::open_clip(input, None, limits)
-    }
-
-    /// Opens a scene like [`open`](Self::open), with the animation named `clip`, or of that index if none has the name.
-    ///
-    /// # Errors
-    /// Those of [`open`](Self::open), and [`Request`](InputError::Request) if there is no such animation.
-    pub fn open_clip(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Result<Self, InputError> {
-        if let Some(("builtin", name)) = input.split_once(':') {
-            let scene = builtin::open(name).ok_or_else(|| {
-                InputError::request(
-                    input,
-                    "is not a built-in scene",
-                    "expected builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes, \
-                     mirror-room, courtyard",
-                )
-            })?;
-            return match clip {
-                None => Ok(scene),
-                Some(clip) => {
-                    let problem = format!("has no animation '{clip}', because it is static");
-                    Err(InputError::request(input, problem, "leave the animation out"))
-                }
-            };
-        }
-        let extension = Path::new(input).extension().map(|e| e.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("gltf" | "glb") => gltf_file::open(input, clip, limits),
-            _ => Err(InputError::not_supported(
-                input,
-                "is not a supported kind of scene",
-                "expected a .gltf or .glb file, or builtin:NAME",
-            )),
-        }
-    }
-
-    /// Static triangles.
-    pub fn still(&self) -> &Triangles {
-        &self.still
-    }
-
-    /// Animated triangles, lights and cameras `time_s` seconds into the scene's animation, which loops.
-    pub fn pose(&self, time_s: f64) -> Pose {
-        self.animated.as_ref().map_or_else(|| self.rest.clone(), |animated| animated.pose(time_s))
-    }
-
-    /// Duration of the animation in seconds; 0 for a static scene.
-    pub fn duration_s(&self) -> f64 {
-        self.animated.as_ref().map_or(0.0, |animated| animated.duration_s)
-    }
-}

@@ -11,4 +11,5 @@ mod properties;
 mod prose;
 mod shader_tables;
 mod tree;
+mod uses;
 mod words;

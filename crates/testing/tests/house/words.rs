@@ -2,13 +2,15 @@
 
 use super::tree::{Tree, expect_none, read};
 
-/// A comment or a string literal.
+/// What a piece of source text is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One line, without its slashes and the character that makes it a doc comment.
     Comment,
     /// Between the quotes, as written in the source.
     Literal,
+    /// A name, a number or a character of the code.
+    Code,
 }
 
 /// A piece of source text, and its line from 1.
@@ -19,17 +21,19 @@ pub struct Piece<'a> {
     pub text: &'a str,
 }
 
-/// Comments and string literals of Rust or WGSL, in order. Block comments, which the sources do not have, are not
-/// recognized.
+/// Comments and string literals of Rust or WGSL, in order.
 pub fn pieces(source: &str) -> Vec<Piece<'_>> {
+    all_pieces(source).into_iter().filter(|p| p.kind != Kind::Code).collect()
+}
+
+/// Comments, string literals and code of Rust or WGSL, in order, without spaces and character literals. Block comments,
+/// which the sources do not have, are not recognized.
+pub fn all_pieces(source: &str) -> Vec<Piece<'_>> {
     let mut found = vec![];
-    let mut at = 0;
+    let (mut at, mut line) = (0, 1);
     while at < source.len() {
         let rest = &source[at..];
-        let mut piece = |kind, text| {
-            let line = 1 + source[..at].matches('\n').count();
-            found.push(Piece { kind, line, text });
-        };
+        let mut piece = |kind, text| found.push(Piece { kind, line, text });
         let step = if let Some(comment) = rest.strip_prefix("//") {
             let text = comment.lines().next().unwrap_or("");
             piece(Kind::Comment, text.trim_start_matches(['/', '!']));
@@ -46,10 +50,17 @@ pub fn pieces(source: &str) -> Vec<Piece<'_>> {
         } else if let Some(length) = character(rest) {
             length
         } else if rest.starts_with(is_of_identifier) {
-            rest.find(|c| !is_of_identifier(c)).unwrap_or(rest.len())
+            let length = rest.find(|c| !is_of_identifier(c)).unwrap_or(rest.len());
+            piece(Kind::Code, &rest[..length]);
+            length
         } else {
-            rest.chars().next().map_or(1, char::len_utf8)
+            let length = rest.chars().next().map_or(1, char::len_utf8);
+            if !rest.starts_with(char::is_whitespace) {
+                piece(Kind::Code, &rest[..length]);
+            }
+            length
         };
+        line += rest[..step].matches('\n').count();
         at += step;
     }
     found

@@ -1,12 +1,13 @@
 //! Options of the foveation simulator.
 
+use super::named::{Named, by_name};
 use super::number::parse_scale;
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::trace::sampling::{Regions, Sampling};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
@@ -14,7 +15,7 @@ pub struct FoveationArgs {
     /// How frames are foveated. sparse: one moving sample a block, which scenes render alone; given frames simulate it.
     /// mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of rasterised scenes.
     /// Default: sparse for scenes without --sampling, else mip
-    #[arg(long = "foveation", value_enum)]
+    #[arg(long = "foveation", value_parser = by_name::<FilterName>())]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
     #[arg(long, default_value_t = 5.0, value_name = "DEG")]
@@ -37,11 +38,11 @@ pub struct FoveationArgs {
     pub scale: Option<f32>,
     /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:
     /// of the nearest sample in scenes, full in given frames
-    #[arg(long = "geometry", alias = "sparse-geometry", value_enum)]
-    pub geometry: Option<GeometryName>,
+    #[arg(long = "geometry", alias = "sparse-geometry", value_parser = by_name::<SparseGeometry>())]
+    pub geometry: Option<SparseGeometry>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
-    #[arg(long = "order", alias = "sample-order", value_enum, default_value = "bayer")]
-    pub order: OrderName,
+    #[arg(long = "order", alias = "sample-order", value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
+    pub order: SampleOrder,
 }
 
 impl FoveationArgs {
@@ -49,23 +50,23 @@ impl FoveationArgs {
     /// whether samples are rendered, not taken from given frames.
     #[must_use]
     pub fn with_defaults(self, is_sparse: bool, is_rendered: bool) -> Self {
-        let filter = if is_sparse { FilterName::Sparse } else { FilterName::Mip };
+        let filter = FilterName::Of(if is_sparse { Filter::Sparse } else { Filter::Mip });
         let named = Self { filter: Some(self.filter.unwrap_or(filter)), ..self };
         let geometry = match named.may_lack_geometry() && is_rendered {
-            true => GeometryName::Samples,
-            false => GeometryName::Full,
+            true => SparseGeometry::Samples,
+            false => SparseGeometry::Full,
         };
         Self { geometry: Some(named.geometry.unwrap_or(geometry)), ..named }
     }
 
     /// How frames are foveated.
     pub fn filter(&self) -> FilterName {
-        self.filter.unwrap_or(FilterName::Mip)
+        self.filter.unwrap_or(FilterName::Of(Filter::Mip))
     }
 
     /// Depth and motion of frames.
-    pub fn geometry(&self) -> GeometryName {
-        self.geometry.unwrap_or(GeometryName::Full)
+    pub fn geometry(&self) -> SparseGeometry {
+        self.geometry.unwrap_or(SparseGeometry::Full)
     }
 
     /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
@@ -90,12 +91,9 @@ impl FoveationArgs {
         }
         Foveation {
             filter: match self.filter() {
+                FilterName::Of(filter) => filter,
                 // Of quad views, levels of detail are an input.
-                FilterName::Mip | FilterName::Layers | FilterName::Uniform => Filter::Mip,
-                FilterName::Gauss => Filter::Gauss,
-                FilterName::Block => Filter::Block,
-                FilterName::Sparse => Filter::Sparse,
-                FilterName::Off => Filter::Off,
+                FilterName::Layers | FilterName::Uniform => Filter::Mip,
             },
             fovea_deg: self.fovea,
             mid_deg: self.mid,
@@ -121,7 +119,7 @@ impl FoveationArgs {
 
     /// Whether frames may have depth and motion at their samples alone.
     pub fn may_lack_geometry(&self) -> bool {
-        self.filter() == FilterName::Sparse || self.filter().is_quad_views()
+        self.filter() == FilterName::Of(Filter::Sparse) || self.filter().is_quad_views()
     }
 
     /// Refuses options that do not apply to this foveation. `is_rasterised`: frames are those of a rasterised scene.
@@ -137,12 +135,12 @@ impl FoveationArgs {
         if self.scale.is_some() && self.filter() != FilterName::Uniform {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
         }
-        if self.geometry == Some(GeometryName::Samples) && !self.may_lack_geometry() {
+        if self.geometry == Some(SparseGeometry::Samples) && !self.may_lack_geometry() {
             return refuse(
                 "--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into(),
             );
         }
-        if self.order != OrderName::Bayer && self.filter() != FilterName::Sparse {
+        if self.order != SampleOrder::Bayer && self.filter() != FilterName::Of(Filter::Sparse) {
             let order = self.order.name();
             return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
         }
@@ -150,40 +148,15 @@ impl FoveationArgs {
     }
 }
 
-/// Values of `--foveation`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// Values of `--foveation`: the library's filters, and the quad views of scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilterName {
-    /// Box mip levels, trilinear
-    Mip,
-    /// Gaussian blur that grows with eccentricity
-    Gauss,
-    /// One point sample per block
-    Block,
-    /// One point sample per block that moves every frame, in regions without blends
-    Sparse,
-    /// Views of the regions at lower resolutions without moving samples, enlarged bilinearly: quad views, as headset
-    /// runtimes draw them
+    /// A filter of the library.
+    Of(Filter),
+    /// Views of the regions.
     Layers,
-    /// The whole frame at a lower resolution without moving samples, enlarged bilinearly; see --scale. With moving
-    /// samples for taau: --foveation sparse --fovea 0 --mid 0 --rate-mid 2 --rate-far 2
+    /// The whole frame at a lower resolution.
     Uniform,
-    /// Full rate everywhere
-    Off,
-}
-
-impl FilterName {
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mip => "mip",
-            Self::Gauss => "gauss",
-            Self::Block => "block",
-            Self::Sparse => "sparse",
-            Self::Layers => "layers",
-            Self::Uniform => "uniform",
-            Self::Off => "off",
-        }
-    }
 }
 
 impl FilterName {
@@ -193,60 +166,54 @@ impl FilterName {
     }
 }
 
-/// Values of `--order`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum OrderName {
-    /// Every prefix is spread evenly over the block
-    Bayer,
-    /// Row by row
-    Scanline,
-    /// Every power of two of frames is spread evenly over rows and columns
-    Sobol,
-}
-
-impl OrderName {
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Bayer => "bayer",
-            Self::Scanline => "scanline",
-            Self::Sobol => "sobol",
-        }
-    }
-
-    /// The lab's order of this name.
-    pub fn order(self) -> SampleOrder {
-        match self {
-            Self::Bayer => SampleOrder::Bayer,
-            Self::Scanline => SampleOrder::Scanline,
-            Self::Sobol => SampleOrder::Sobol,
-        }
+impl Named for FilterName {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), filter.name(), filter.summary())).into();
+        let off = rows.pop();
+        rows.extend([
+            (
+                Self::Layers,
+                "layers",
+                "Views of the regions at lower resolutions without moving samples, enlarged bilinearly: quad views, as \
+                 headset runtimes draw them",
+            ),
+            (
+                Self::Uniform,
+                "uniform",
+                "The whole frame at a lower resolution without moving samples, enlarged bilinearly; see --scale. With \
+                 moving samples for taau: --foveation sparse --fovea 0 --mid 0 --rate-mid 2 --rate-far 2",
+            ),
+        ]);
+        rows.extend(off);
+        rows
     }
 }
 
-/// Values of `--geometry`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GeometryName {
-    /// At every pixel, as from a visibility buffer or a prepass
-    Full,
-    /// At the samples alone, as from small views that are enlarged
-    Samples,
+impl Named for SampleOrder {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Bayer, "bayer", "Every prefix is spread evenly over the block"),
+            (Self::Scanline, "scanline", "Row by row"),
+            (Self::Sobol, "sobol", "Every power of two of frames is spread evenly over rows and columns"),
+        ]
+    }
 }
 
-impl GeometryName {
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::Samples => "samples",
-        }
+impl Named for SparseGeometry {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Full, "full", "At every pixel, as from a visibility buffer or a prepass"),
+            (Self::Samples, "samples", "At the samples alone, as from small views that are enlarged"),
+        ]
     }
+}
 
-    /// The lab's option of this name.
-    pub fn geometry(self) -> SparseGeometry {
-        match self {
-            Self::Full => SparseGeometry::Full,
-            Self::Samples => SparseGeometry::Samples,
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_order_has_a_name() {
+        assert_eq!(SampleOrder::rows().iter().map(|row| row.0).collect::<Vec<_>>(), SampleOrder::ALL);
     }
 }

@@ -1,9 +1,10 @@
 //! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
+use super::named::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::Path;
 
 /// Duration of a fixed or synthetic gaze, seconds.
@@ -17,20 +18,20 @@ pub struct GazeArgs {
     pub gaze: String,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
     /// geometry
-    #[arg(long, value_enum)]
-    pub gaze_map: Option<GazeMapName>,
+    #[arg(long, value_parser = by_name::<GazeMap>())]
+    pub gaze_map: Option<GazeMap>,
     /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
 }
 
-/// Values of `--gaze-map`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GazeMapName {
-    /// Keep visual angles, screen center to frame center
-    Angle,
-    /// Stretch screen to frame
-    Fit,
+impl Named for GazeMap {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Angle, "angle", "Keep visual angles, screen center to frame center"),
+            (Self::Fit, "fit", "Stretch screen to frame"),
+        ]
+    }
 }
 
 /// One gaze position per frame.
@@ -60,11 +61,7 @@ impl GazeArgs {
             }
             None => read_csv(Path::new(&self.gaze))?,
         };
-        let map = match self.gaze_map {
-            Some(GazeMapName::Angle) => GazeMap::Angle,
-            Some(GazeMapName::Fit) => GazeMap::Fit,
-            None => GazeMap::default_for(path.screen()),
-        };
+        let map = self.gaze_map.unwrap_or_else(|| GazeMap::default_for(path.screen()));
         let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
         let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
         let count = frames.unwrap_or(available);
@@ -75,13 +72,7 @@ impl GazeArgs {
                 self.gaze, self.start
             )));
         }
-        Ok(Track {
-            px,
-            map: match map {
-                GazeMap::Angle => "angle",
-                GazeMap::Fit => "fit",
-            },
-        })
+        Ok(Track { px, map: map.name() })
     }
 }
 

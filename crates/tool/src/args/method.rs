@@ -1,9 +1,8 @@
 //! Methods and their settings.
 
+use super::named::{Named, by_name};
 use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
-use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use std::sync::LazyLock;
 
 /// Values of `--method`: the library's methods, and the upper bound of any reuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,30 +13,11 @@ pub enum MethodName {
     Oracle,
 }
 
-impl MethodName {
-    /// Name on the command line, and name of the output folder.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Post(method) => method.name(),
-            Self::Oracle => "oracle",
-        }
-    }
-}
-
-impl ValueEnum for MethodName {
-    fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<MethodName>> = LazyLock::new(|| {
-            MethodKind::ALL.iter().copied().map(MethodName::Post).chain([MethodName::Oracle]).collect()
-        });
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let help = match self {
-            Self::Post(method) => method.summary(),
-            Self::Oracle => "best level of detail ever shown; stills only",
-        };
-        Some(PossibleValue::new(self.name()).help(help))
+impl Named for MethodName {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        let posts = MethodKind::ALL.map(|method| (Self::Post(method), method.name(), method.summary()));
+        let oracle = (Self::Oracle, "oracle", "best level of detail ever shown; stills only");
+        posts.into_iter().chain([oracle]).collect()
     }
 }
 
@@ -49,8 +29,8 @@ pub struct WrsArgs {
     #[arg(long, value_enum, default_value = "paper")]
     pub wrs_preset: WrsPresetName,
     /// Sampling algorithm of the reservoir; default: a-chao, for --wrs-preset weighted a-chao-mean
-    #[arg(long, value_enum)]
-    pub wrs_sampler: Option<SamplerName>,
+    #[arg(long, value_parser = by_name::<Sampler>())]
+    pub wrs_sampler: Option<Sampler>,
     /// Exponent of the density in candidate weights, 1 to 8; default: 1, for --wrs-preset weighted 8
     #[arg(long, value_name = "N")]
     pub wrs_exponent: Option<u32>,
@@ -62,8 +42,8 @@ pub struct WrsArgs {
     pub wrs_bias: Bias,
     /// What the color gate compares with the candidate: the stored sample, or the first candidate of the same level of
     /// detail since; default: sample, for --wrs-preset weighted candidate
-    #[arg(long, value_enum)]
-    pub gate_scale: Option<GateScaleName>,
+    #[arg(long, value_parser = by_name::<GateScale>())]
+    pub gate_scale: Option<GateScale>,
     /// Color difference above the offset at which the gate closes, Delta E 94; default: 100, for --wrs-preset weighted
     /// 10
     #[arg(long, value_name = "X")]
@@ -72,8 +52,8 @@ pub struct WrsArgs {
     #[arg(long, value_name = "X")]
     pub gate_offset: Option<f32>,
     /// Color difference of the gate: of the whole color, or of lightness alone
-    #[arg(long, value_enum, default_value = "delta-e94")]
-    pub gate_metric: GateMetricName,
+    #[arg(long, value_parser = by_name::<GateMetric>(), default_value = "delta-e94")]
+    pub gate_metric: GateMetric,
     /// Turn the color gate off
     #[arg(long)]
     pub no_gate: bool,
@@ -131,27 +111,15 @@ impl WrsArgs {
         };
         let gate = preset.gate.unwrap_or_default();
         Wrs {
-            sampler: match self.wrs_sampler {
-                None => preset.sampler,
-                Some(SamplerName::AChao) => Sampler::AChao,
-                Some(SamplerName::AEs) => Sampler::AEs,
-                Some(SamplerName::Mean) => Sampler::AChaoMean,
-            },
+            sampler: self.wrs_sampler.unwrap_or(preset.sampler),
             weight_exponent: self.wrs_exponent.unwrap_or(preset.weight_exponent),
             rate_exponent: self.wrs_rate_exponent.unwrap_or(preset.rate_exponent),
             bias: self.wrs_bias,
             gate: (!self.no_gate).then_some(Gate {
                 divisor: self.gate_divisor.unwrap_or(gate.divisor),
                 offset: self.gate_offset.unwrap_or(gate.offset),
-                metric: match self.gate_metric {
-                    GateMetricName::DeltaE94 => GateMetric::DeltaE94,
-                    GateMetricName::Lightness => GateMetric::Lightness,
-                },
-                scale: match self.gate_scale {
-                    None => gate.scale,
-                    Some(GateScaleName::Sample) => GateScale::Sample,
-                    Some(GateScaleName::Candidate) => GateScale::Candidate,
-                },
+                metric: self.gate_metric,
+                scale: self.gate_scale.unwrap_or(gate.scale),
             }),
         }
     }
@@ -166,35 +134,32 @@ pub enum WrsPresetName {
     Weighted,
 }
 
-/// Values of `--gate-scale`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GateScaleName {
-    /// The stored sample, as published
-    Sample,
-    /// A candidate of the same level of detail
-    Candidate,
+impl Named for GateScale {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Sample, "sample", "The stored sample, as published"),
+            (Self::Candidate, "candidate", "A candidate of the same level of detail"),
+        ]
+    }
 }
 
-/// Values of `--wrs-sampler`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SamplerName {
-    /// A-Chao: replace with the ratio of weight to weight sum
-    AChao,
-    /// A-ES: keep the sample with the larger key
-    AEs,
-    /// The expectation of A-Chao: keep the mean
-    #[value(name = "a-chao-mean")]
-    Mean,
+impl Named for Sampler {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::AChao, "a-chao", "A-Chao: replace with the ratio of weight to weight sum"),
+            (Self::AEs, "a-es", "A-ES: keep the sample with the larger key"),
+            (Self::AChaoMean, "a-chao-mean", "The expectation of A-Chao: keep the mean"),
+        ]
+    }
 }
 
-/// Values of `--gate-metric`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GateMetricName {
-    /// The whole color
-    #[value(name = "delta-e94")]
-    DeltaE94,
-    /// Lightness alone, which ignores changes of hue
-    Lightness,
+impl Named for GateMetric {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::DeltaE94, "delta-e94", "The whole color"),
+            (Self::Lightness, "lightness", "Lightness alone, which ignores changes of hue"),
+        ]
+    }
 }
 
 fn parse_bias(text: &str) -> Result<Bias, String> {

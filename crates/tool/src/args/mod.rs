@@ -9,6 +9,7 @@ pub mod gaze;
 pub mod input;
 #[cfg(feature = "full")]
 mod method;
+mod named;
 #[cfg(feature = "full")]
 mod number;
 #[cfg(feature = "full")]
@@ -17,12 +18,11 @@ pub mod paths;
 pub mod pattern;
 mod picture;
 
-#[cfg(feature = "view")]
-pub use foveation::GeometryName;
 #[cfg(feature = "full")]
 pub use foveation::{FilterName, FoveationArgs};
 #[cfg(feature = "full")]
 pub use method::{MethodName, WrsArgs};
+pub use named::{Named, by_name};
 #[cfg(feature = "full")]
 pub use number::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size};
-pub use picture::{DebugName, FormatName};
+pub use picture::FormatName;

@@ -1,9 +1,10 @@
 //! Settings of the path tracer: `--max-depth`, `--integrator`, `--bsdf`, `--effects`.
 
+use super::named::{Named, by_name};
 use crate::failure::Failure;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 /// Settings of the path tracer.
 #[derive(Args, Clone, Debug)]
@@ -12,34 +13,14 @@ pub struct PathArgs {
     #[arg(long, default_value_t = 3, value_name = "N")]
     pub max_depth: u32,
     /// Integrator: multiple importance sampling, next-event estimation, or BSDF sampling alone (as in the thesis)
-    #[arg(long, value_enum, default_value = "mis")]
-    pub integrator: IntegratorName,
+    #[arg(long, value_parser = by_name::<Integrator>(), default_value = "mis")]
+    pub integrator: Integrator,
     /// Scattering model of surfaces: principled, or Lambert and Phong as in the thesis
-    #[arg(long, value_enum, default_value = "auto")]
-    pub bsdf: BsdfName,
+    #[arg(long, value_parser = by_name::<Bsdf>(), default_value = "auto")]
+    pub bsdf: Bsdf,
     /// Effects compiled into the kernels: those that the scene needs, all, or a list of names (trace -v prints them)
     #[arg(long, default_value = "auto", value_name = "auto|all|LIST")]
     effects: String,
-}
-
-/// Values of `--integrator`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum IntegratorName {
-    /// Multiple importance sampling of lights and BSDF, power heuristic
-    Mis,
-    /// Next-event estimation
-    Nee,
-    /// BSDF sampling alone
-    Naive,
-}
-
-/// Values of `--bsdf`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BsdfName {
-    /// The principled model
-    Auto,
-    /// Lambert and Phong
-    Phong,
 }
 
 impl PathArgs {
@@ -49,19 +30,28 @@ impl PathArgs {
             return Err(Failure::Input(format!("--max-depth {}: expected 0 to {MAX_DEPTH}", self.max_depth)));
         }
         Ok(TraceSettings {
-            integrator: match self.integrator {
-                IntegratorName::Mis => Integrator::Mis,
-                IntegratorName::Nee => Integrator::Nee,
-                IntegratorName::Naive => Integrator::Naive,
-            },
-            bsdf: match self.bsdf {
-                BsdfName::Auto => Bsdf::Principled,
-                BsdfName::Phong => Bsdf::Phong,
-            },
+            integrator: self.integrator,
+            bsdf: self.bsdf,
             max_depth: self.max_depth,
             seed,
             effects: parse_effects(&self.effects)?,
         })
+    }
+}
+
+impl Named for Integrator {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Mis, "mis", "Multiple importance sampling of lights and BSDF, power heuristic"),
+            (Self::Nee, "nee", "Next-event estimation"),
+            (Self::Naive, "naive", "BSDF sampling alone"),
+        ]
+    }
+}
+
+impl Named for Bsdf {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![(Self::Principled, "auto", "The principled model"), (Self::Phong, "phong", "Lambert and Phong")]
     }
 }
 

@@ -1,48 +1,19 @@
 //! Debug views and file formats.
 
+use super::named::Named;
 use afterimage::DebugView;
 use clap::ValueEnum;
 
-/// Values of `--debug`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum DebugName {
-    /// Weight sum of the reservoir; with smr the level of detail of the history
-    Weight,
-    /// Frames since the shown sample was rendered; wrs only
-    Age,
-    /// Fraction of the history's weight that was kept
-    Survival,
-    /// Validity of the history: reused, or why it was rejected
-    Flush,
-    /// Gate value
-    Gate,
-    /// Motion
-    Motion,
-}
-
-impl DebugName {
-    /// Name on the command line, and name of the output folder.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Weight => "weight",
-            Self::Age => "age",
-            Self::Survival => "survival",
-            Self::Flush => "flush",
-            Self::Gate => "gate",
-            Self::Motion => "motion",
-        }
-    }
-
-    /// The library's debug view.
-    pub fn view(self) -> DebugView {
-        match self {
-            Self::Weight => DebugView::Quality,
-            Self::Age => DebugView::Age,
-            Self::Survival => DebugView::Survival,
-            Self::Flush => DebugView::Rejection,
-            Self::Gate => DebugView::Gate,
-            Self::Motion => DebugView::Motion,
-        }
+impl Named for DebugView {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Quality, "weight", "Weight sum of the reservoir; with smr the level of detail of the history"),
+            (Self::Age, "age", "Frames since the shown sample was rendered; wrs only"),
+            (Self::Survival, "survival", "Fraction of the history's weight that was kept"),
+            (Self::Rejection, "flush", "Validity of the history: reused, or why it was rejected"),
+            (Self::Gate, "gate", "Gate value"),
+            (Self::Motion, "motion", "Motion"),
+        ]
     }
 }
 
@@ -54,4 +25,14 @@ pub enum FormatName {
     /// Linear half float
     #[cfg(feature = "full")]
     Exr,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_debug_view_has_a_name() {
+        assert_eq!(DebugView::rows().iter().map(|row| row.0).collect::<Vec<_>>(), DebugView::ALL);
+    }
 }

@@ -3,7 +3,7 @@
 
 pub mod run_report;
 
-use crate::args::{DebugName, FormatName};
+use crate::args::{FormatName, Named};
 use crate::failure::Failure;
 use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::output::Output;
@@ -45,7 +45,7 @@ pub struct Clip {
     pub exposure_ev: f32,
     pub format: FormatName,
     pub write_reference: bool,
-    pub debug: Vec<DebugName>,
+    pub debug: Vec<DebugView>,
     /// Whether the methods get the source's trust mask (history confidence).
     pub trust: bool,
     /// Whether the source gets the confidence of the history, to trace more samples where it is low.
@@ -225,9 +225,8 @@ impl Clip {
         each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>,
     ) -> Result<Pipeline, Failure> {
         let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
-        let debug: Vec<DebugView> = self.debug.iter().map(|d| d.view()).collect();
         let is_still = source.info().still;
-        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, &self.backend)?
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &self.debug, &self.backend)?
             .with_sparse(self.sparse_geometry, self.sample_order)
             .with_quad_views(self.quad_views);
         if self.trust {

@@ -8,13 +8,14 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
-    DebugName, FilterName, FormatName, FoveationArgs, MethodName, WrsArgs, parse_exposure, parse_frames, parse_samples,
+    FilterName, FormatName, FoveationArgs, MethodName, Named, WrsArgs, by_name, parse_exposure, parse_frames,
+    parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
 use crate::failure::Failure;
 use crate::output::Output;
-use afterimage::Filter;
+use afterimage::{DebugView, Filter};
 use afterimage_lab::device::Backend;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
@@ -59,7 +60,9 @@ pub struct RunArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "none,wrs", value_name = "LIST")]
+    #[arg(
+        long, value_parser = by_name::<MethodName>(), value_delimiter = ',', default_value = "none,wrs,smr", value_name = "LIST"
+    )]
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: WrsArgs,
@@ -88,8 +91,8 @@ pub struct RunArgs {
     #[command(flatten)]
     pub ablation: AblationArgs,
     /// Debug views to write as images, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    pub debug: Vec<DebugName>,
+    #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
+    pub debug: Vec<DebugView>,
 }
 
 impl RunArgs {
@@ -116,7 +119,7 @@ impl RunArgs {
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
-            sparse: self.is_sparse().then(|| self.foveation.order.order()),
+            sparse: self.is_sparse().then(|| self.foveation.order),
             reference_spp: self.reference_spp,
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
@@ -130,7 +133,9 @@ impl RunArgs {
                 return self.foveation.regions(self.input.spp).map(Some);
             }
             // Frames without foveation: their error is noise alone.
-            return Ok((is_traced && self.foveation.filter() == FilterName::Off).then_some(Sampling::Uniform));
+            return Ok(
+                (is_traced && self.foveation.filter() == FilterName::Of(Filter::Off)).then_some(Sampling::Uniform)
+            );
         }
         if !is_traced {
             return Err(Failure::Input(format!(
@@ -152,7 +157,7 @@ impl RunArgs {
 
     /// Whether frames are given as samples: of a simulator, or of a sampling pattern.
     pub fn is_sparse(&self) -> bool {
-        self.foveation.filter() == FilterName::Sparse
+        self.foveation.filter() == FilterName::Of(Filter::Sparse)
     }
 }
 
@@ -193,12 +198,12 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let mut source = PeekedSource::new(source.as_mut())?;
     let out = Output::create(&args.out, &folders(args), &REPORTS)?;
     let report = plan.clip.run(&mut source, &out)?;
-    plot::write(&plan, simulator(args), &report, &out)?;
+    plot::write(&plan, plan::simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
         fps: plan.fps,
         seed: args.seed,
-        simulator: simulator(args),
+        simulator: plan::simulator(args),
         geometry: args.foveation.may_lack_geometry().then(|| args.foveation.geometry().name()),
         scale: match args.foveation.quad_views() {
             Some(QuadViewLayout::Uniform { step }) => Some(step),
@@ -211,14 +216,6 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     Ok(report)
-}
-
-/// Name of the simulator's filter or of the sampling pattern that foveates the frames.
-fn simulator(args: &RunArgs) -> &'static str {
-    match args.sampling.sampling {
-        SamplingName::Uniform => args.foveation.filter().name(),
-        pattern => pattern.name(),
-    }
 }
 
 /// Folders of the run's frames.

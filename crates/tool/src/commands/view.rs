@@ -8,6 +8,7 @@ mod fly_camera;
 mod frame_loader;
 mod frames;
 mod graph;
+mod keys;
 mod layout;
 mod panel;
 mod panel_stats;
@@ -25,10 +26,10 @@ mod times;
 mod viewer;
 
 use crate::args::backend::BackendName;
-use crate::args::gaze::GazeMapName;
 use crate::args::input::{InputArgs, Rendering};
-use crate::args::{FoveationArgs, WrsArgs, parse_exposure, parse_frames};
+use crate::args::{FoveationArgs, WrsArgs, by_name, parse_exposure, parse_frames};
 use crate::failure::Failure;
+use afterimage_lab::scanpath::GazeMap;
 use app::App;
 use clap::Args;
 use frame_loader::FrameLoader;
@@ -41,21 +42,18 @@ use winit::event_loop::EventLoop;
 /// Show the methods live in a window; the mouse is the gaze
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Keys: 1 to 6 choose the method (none, taa, wrs, smr, taau, reference), with Shift that of the right side; Tab splits the picture; drag the \
-    divider with the left button. F foveation, \
-    T renders a scene's samples, quad views or full rate, - and = fovea diameter, V debug views, P scanpath or mouse, G gaze mark, Space freezes, C steers \
-    the camera of a scene (W A S D, Q E down and up, Shift faster, right button turns), R restarts, F12 saves the picture, Shift F12 the window, \
-    H hides the panel, Ctrl Shift L destroys the device (to test recovery), Esc quits.\n\n\
-    Example:\n  afterimage view photo.jpg --split none,smr --fovea 8"
+    after_help = keys::help() + "\n\nExample:\n  afterimage view photo.jpg --split none,smr --fovea 8"
 )]
 pub struct ViewArgs {
     #[command(flatten)]
     pub input: InputArgs,
-    /// MethodKind to show
-    #[arg(long, value_enum, default_value = "smr", value_name = "NAME")]
+    /// Method to show
+    #[arg(long, value_parser = by_name::<Shows>(), default_value = "smr", value_name = "NAME")]
     pub method: Shows,
     /// Two methods to show side by side
-    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "method", value_name = "A,B")]
+    #[arg(
+        long, value_parser = by_name::<Shows>(), value_delimiter = ',', conflicts_with = "method", value_name = "A,B"
+    )]
     pub split: Vec<Shows>,
     /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or
     /// synthetic[:SEED]. One position per frame, at most --fps frames a second, so that pictures are the same as with
@@ -64,8 +62,8 @@ pub struct ViewArgs {
     pub gaze: Option<String>,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
     /// geometry
-    #[arg(long, value_enum)]
-    pub gaze_map: Option<GazeMapName>,
+    #[arg(long, value_parser = by_name::<GazeMap>())]
+    pub gaze_map: Option<GazeMap>,
     /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,

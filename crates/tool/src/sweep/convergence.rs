@@ -1,6 +1,6 @@
 //! Convergence of traced points: squared error against samples and against time.
 
-use super::table::Row;
+use super::row::Row;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub struct Convergence {
     pub input: String,
     /// Name of the method.
     pub method: String,
-    /// MethodKind and options that the points share.
+    /// Method and options that the points share.
     pub label: String,
     /// In ascending order of samples.
     pub points: Vec<ConvergencePoint>,

@@ -2,9 +2,9 @@
 
 use super::frontier::{Standing, frontier};
 use super::metrics::Metric;
-use super::table::{Row, Table};
-use crate::args::MethodName;
-use clap::ValueEnum;
+use super::row::Row;
+use super::table::Table;
+use crate::args::{MethodName, Named};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -123,8 +123,8 @@ fn of<'a>(rows: &'a [Candidate<'a>], method: &str) -> impl Iterator<Item = &'a C
 
 /// Names of methods without duplicates, in the order of `--method`, then unknown ones.
 pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let known = MethodName::value_variants();
-    let rank = |m: &str| known.iter().position(|known| known.name() == m).unwrap_or(usize::MAX);
+    let known = MethodName::rows();
+    let rank = |m: &str| known.iter().position(|known| known.1 == m).unwrap_or(usize::MAX);
     let mut methods: Vec<String> = methods.map(str::to_owned).collect();
     methods.sort_by(|a, b| rank(a).cmp(&rank(b)).then(a.cmp(b)));
     methods.dedup();

@@ -1,7 +1,8 @@
 //! The tables of a sweep as Markdown, for documents.
 
 use super::metrics::Metric;
-use super::table::{Row, Table};
+use super::row::Row;
+use super::table::Table;
 use std::fmt::Write;
 
 /// Metrics of the tables: as many as fit on a page.

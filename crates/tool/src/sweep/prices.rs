@@ -1,7 +1,7 @@
 //! Cost and effect of each switch.
 
 use super::metrics::METRICS;
-use super::table::Row;
+use super::row::Row;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 use std::collections::BTreeMap;

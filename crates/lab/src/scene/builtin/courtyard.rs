@@ -1,6 +1,7 @@
 //! `courtyard`: about 260,000 triangles with displaced surfaces everywhere, for timing of rays.
 
 use super::patch::{direction, patch};
+use super::still::{look_at, still};
 use crate::scene::{Environment, Material, Scene, Triangles};
 use afterimage::kernel::rng::{pcg4d, unit_draw};
 use glam::Vec3;
@@ -78,8 +79,8 @@ pub fn courtyard_of(triangles: u32) -> Scene {
         let center = turned(side, Vec3::new(0.0, 3.4, -7.2));
         patch(&mut t, [12, 8], lantern, |u, v| center + 0.15 * direction(u, v));
     }
-    let camera = super::look_at([5.5, 2.2, 6.2], [-2.0, 2.0, -4.0], 50.0);
-    super::still("courtyard", materials, t, camera, Environment::Constant([0.5, 0.65, 0.9]))
+    let camera = look_at([5.5, 2.2, 6.2], [-2.0, 2.0, -4.0], 50.0);
+    still("courtyard", materials, t, camera, Environment::Constant([0.5, 0.65, 0.9]))
 }
 
 /// Rotation by `side` quarter turns about y.

@@ -1,6 +1,7 @@
 //! The white furnace test: an object that reflects all incident light is invisible in a uniform environment.
 
 use super::patch::direction;
+use super::still::{look_at, still};
 use crate::scene::{Environment, Material, Scene, Triangles};
 use glam::Vec3;
 
@@ -49,6 +50,6 @@ pub fn furnace_of(materials: Vec<Material>) -> Scene {
             }
         }
     }
-    let camera = super::look_at([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0);
-    super::still("furnace", materials, t, camera, Environment::Constant([1.0; 3]))
+    let camera = look_at([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0);
+    still("furnace", materials, t, camera, Environment::Constant([1.0; 3]))
 }

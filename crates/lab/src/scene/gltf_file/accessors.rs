@@ -1,8 +1,11 @@
 //! Accessors: reads typed elements from buffers, of any component type, dense or sparse, with bounds checks.
 
-use super::{Document, InputError, SceneLimits};
+use super::document::Document;
+use crate::error::InputError;
 use crate::error::{Bound, Exceeded};
+use crate::scene::SceneLimits;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
+use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Index, buffer};
 use std::cell::Cell;
@@ -209,4 +212,9 @@ fn scaled<const S: usize, T: Into<f32>>(
         let value = decode(bytes).into();
         if normalized { (value / largest).max(-1.0) } else { value }
     }
+}
+
+/// The accessor of an attribute of a primitive.
+pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Index<Accessor>> {
+    primitive.attributes.get(&Checked::Valid(semantic)).copied()
 }

@@ -1,8 +1,10 @@
 //! Selection of an animation, and its curves.
 
 use super::accessors::Accessors;
+use super::document::Document;
+use super::errors::{named, printable};
 use super::warnings::Warnings;
-use super::{Document, InputError, named, printable};
+use crate::error::InputError;
 use crate::scene::animated::curve::{Curve, Interpolation};
 use crate::scene::animated::{Channel, Property};
 use gltf::json::validation::Checked;

@@ -2,10 +2,12 @@
 
 use super::accessors::Accessors;
 use super::container::Container;
+use super::document::Document;
 use super::images::Textures;
 use super::mesh::Primitives;
 use super::warnings::Warnings;
-use super::{Document, InputError, animation, extensions, materials, nodes, skins, viewpoints};
+use super::{animation, extensions, materials, nodes, skins, viewpoints};
+use crate::error::InputError;
 use crate::scene::animated::{Animated, AnimationState, Mesh, Property, Skin};
 use crate::scene::geometry::{Geometry, MAX_COORDINATE};
 use crate::scene::{Environment, Scene, Triangles};

@@ -1,7 +1,10 @@
 //! Buffers and buffer views.
 
 use super::container::{Container, read_file};
-use super::{InputError, SceneLimits, damaged, printable, uri};
+use super::errors::{damaged, printable};
+use super::uri;
+use crate::error::InputError;
+use crate::scene::SceneLimits;
 use gltf::json::{Index, buffer};
 
 /// All buffers of a file.

@@ -1,6 +1,9 @@
 //! The container: `.gltf` or `.glb`, its JSON, and the checks of version and required extensions.
 
-use super::{InputError, SceneLimits, damaged, extensions, printable};
+use super::errors::{damaged, printable};
+use super::extensions;
+use crate::error::InputError;
+use crate::scene::SceneLimits;
 use gltf::json::Root;
 use serde::Deserialize;
 use std::fs::File;

@@ -1,7 +1,8 @@
 //! Supported extensions.
 
+use super::errors::printable;
 use super::warnings::Warnings;
-use super::{InputError, printable};
+use crate::error::InputError;
 use std::collections::BTreeSet;
 
 const SUPPORTED: [&str; 12] = [

@@ -1,7 +1,10 @@
 //! Textures of materials: collects those in use, and decodes their images.
 
+use super::buffers;
 use super::container::Container;
-use super::{Document, InputError, buffers, named};
+use super::document::Document;
+use super::errors::{named, printable};
+use crate::error::InputError;
 use crate::scene::{Texture, TextureRef, Wrap};
 use gltf::json::texture::{MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
@@ -150,7 +153,7 @@ impl<'a> Textures<'a> {
     }
 
     fn undecodable(&self, index: usize, error: &image::ImageError) -> InputError {
-        self.bad(index, format!("cannot be decoded: {}", super::printable(&error.to_string())))
+        self.bad(index, format!("cannot be decoded: {}", printable(&error.to_string())))
     }
 
     fn bad(&self, index: usize, problem: String) -> InputError {

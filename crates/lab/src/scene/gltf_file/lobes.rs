@@ -1,7 +1,8 @@
 //! Material extensions.
 
-use super::InputError;
-use super::materials::Reader;
+use super::material_reader::Reader;
+use super::uv::array_of;
+use crate::error::InputError;
 use crate::scene::{Alpha, TextureRef};
 use gltf::json::extensions::material::Material as Extensions;
 use gltf::json::texture;
@@ -102,11 +103,6 @@ fn factor(r: &mut Reader, extension: &Value, name: &str) -> f32 {
 }
 
 /// Numbers of a JSON array; `None` unless it has exactly `N` numbers.
-pub(super) fn array_of<const N: usize>(value: Option<&Value>) -> Option<[f32; N]> {
-    let numbers: Option<Vec<f32>> = value?.as_array()?.iter().map(|x| x.as_f64().map(|x| x as f32)).collect();
-    numbers?.try_into().ok()
-}
-
 fn texture_of(r: &mut Reader, extension: &Value, name: &str) -> Result<Option<TextureRef>, InputError> {
     let Some(value) = extension.get(name) else { return Ok(None) };
     match serde_json::from_value::<texture::Info>(value.clone()) {

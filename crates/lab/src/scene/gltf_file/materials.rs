@@ -1,11 +1,14 @@
 //! Core glTF materials. `lobes` reads their extensions.
 
+use super::document::Document;
+use super::errors::named;
 use super::images::Textures;
 use super::lobes;
+use super::material_reader::Reader;
 use super::uv::{PLAIN, UvSource, common_source};
 use super::warnings::Warnings;
-use super::{Document, InputError, named};
-use crate::scene::{Alpha, Material, TextureRef};
+use crate::error::InputError;
+use crate::scene::{Alpha, Material};
 use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
@@ -21,16 +24,6 @@ pub(super) struct Surface {
     pub needs_tangents: bool,
     /// Rotation of tangents about the normal, in radians.
     pub tangent_turn: f32,
-}
-
-/// State of reading one material.
-pub(super) struct Reader<'a, 'b> {
-    pub textures: &'b mut Textures<'a>,
-    pub warnings: &'b mut Warnings,
-    pub name: String,
-    pub material: Material,
-    pub tangent_turn: f32,
-    sources: Vec<UvSource>,
 }
 
 /// glTF's default material, for primitives without one.
@@ -103,27 +96,4 @@ fn surface(
         tangent_turn: r.tangent_turn,
         material: r.material,
     })
-}
-
-impl Reader<'_, '_> {
-    /// Registers a texture and its source of coordinates.
-    pub fn texture(&mut self, info: Option<&json::texture::Info>) -> Result<Option<TextureRef>, InputError> {
-        let Some(info) = info else { return Ok(None) };
-        self.sources.push(UvSource::of(info));
-        self.textures.use_texture(info.index).map(Some)
-    }
-
-    /// A factor clamped to its range, with a warning if it is outside.
-    pub fn clamped(&mut self, value: f32, low: f32, high: f32) -> f32 {
-        if (low..=high).contains(&value) {
-            return value;
-        }
-        self.warn("factors of materials out of their range are clamped");
-        // JSON numbers too large for a float become infinite; they are never NaN.
-        value.clamp(low, high)
-    }
-
-    pub fn warn(&mut self, text: &str) {
-        self.warnings.about(text, || self.name.clone());
-    }
 }

@@ -1,11 +1,13 @@
 //! Mesh primitives: triangles with their attributes, in local space.
 
-use super::accessors::Accessors;
+use super::accessors::{Accessors, attribute};
+use super::document::Document;
+use super::errors::named;
 use super::materials::Surface;
 use super::skins;
 use super::tangents;
 use super::warnings::Warnings;
-use super::{Document, InputError, named};
+use crate::error::InputError;
 use crate::scene::geometry::{Geometry, Target, is_usable};
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -185,10 +187,6 @@ impl Topology {
             Self::Fan => v.get(1..).unwrap_or_default().windows(2).map(|w| [w[0], w[1], v[0]]).collect(),
         }
     }
-}
-
-pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Index<json::Accessor>> {
-    primitive.attributes.get(&Checked::Valid(semantic)).copied()
 }
 
 fn vectors(arrays: Vec<[f32; 3]>) -> Vec<Vec3> {

@@ -9,9 +9,12 @@ mod animation;
 mod assemble;
 mod buffers;
 mod container;
+mod document;
+mod errors;
 mod extensions;
 mod images;
 mod lobes;
+mod material_reader;
 mod materials;
 mod mesh;
 mod nodes;
@@ -24,7 +27,7 @@ mod warnings;
 
 use super::{Scene, SceneLimits};
 use crate::error::InputError;
-use gltf::json::{Index, Root};
+use document::Document;
 
 /// Opens a file with the animation of the name or index `clip`, by default the first.
 pub(super) fn open(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Result<Scene, InputError> {
@@ -32,48 +35,4 @@ pub(super) fn open(input: &str, clip: Option<&str>, limits: &SceneLimits) -> Res
     let buffers = buffers::load(&file, limits)?;
     let document = Document { subject: input, root: &file.root, buffers: &buffers, limits };
     assemble::scene(&document, &file, clip)
-}
-
-/// A parsed file, shared by all parts of the reader.
-struct Document<'a> {
-    /// Path of the file as the user gave it.
-    subject: &'a str,
-    root: &'a Root,
-    buffers: &'a buffers::Buffers,
-    limits: &'a SceneLimits,
-}
-
-impl Document<'_> {
-    /// The error of a damaged file.
-    fn damaged(&self, problem: impl Into<String>) -> InputError {
-        damaged(self.subject, problem)
-    }
-
-    /// The element that an index refers to, or an error if it is out of range.
-    fn look_up<'b, T>(&self, list: &'b [T], index: Index<T>, what: &str) -> Result<&'b T, InputError> {
-        let found = list.get(index.value());
-        found.ok_or_else(|| self.damaged(format!("it refers to {what} {index} of {}", list.len())))
-    }
-}
-
-fn damaged(subject: &str, problem: impl Into<String>) -> InputError {
-    InputError::invalid(subject, problem, "export the scene again")
-}
-
-/// Text from the file, escaped to one line and truncated.
-fn printable(name: &str) -> String {
-    const LONGEST: usize = 80;
-    let mut text: String = name.chars().take(LONGEST).flat_map(char::escape_debug).collect();
-    if name.chars().nth(LONGEST).is_some() {
-        text.push_str("...");
-    }
-    text
-}
-
-/// Kind, index and, if there is one, name of an object of the file.
-fn named(what: &str, index: usize, name: Option<&str>) -> String {
-    match name {
-        Some(name) if !name.is_empty() => format!("{what} {index} ({})", printable(name)),
-        _ => format!("{what} {index}"),
-    }
 }

@@ -1,7 +1,8 @@
 //! The node tree of a file.
 
+use super::document::Document;
 use super::warnings::Warnings;
-use super::{Document, InputError};
+use crate::error::InputError;
 use crate::scene::animated::curve::unit;
 use crate::scene::animated::nodes::{Local, Nodes};
 use glam::{DAffine3, DQuat, DVec3, Mat4, Vec3};

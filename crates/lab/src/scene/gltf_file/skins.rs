@@ -1,9 +1,9 @@
 //! Skins: joints, bind poses and vertex weights.
 
-use super::accessors::Accessors;
-use super::mesh::attribute;
+use super::accessors::{Accessors, attribute};
+use super::document::Document;
 use super::warnings::Warnings;
-use super::{Document, InputError};
+use crate::error::InputError;
 use crate::scene::animated::Skin;
 use crate::scene::geometry::Influences;
 use glam::{DAffine3, Mat4};

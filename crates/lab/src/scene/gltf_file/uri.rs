@@ -1,6 +1,7 @@
 //! URIs in a scene: data URIs, and files in the scene's folder.
 
-use super::{InputError, printable};
+use super::errors::printable;
+use crate::error::InputError;
 use base64::Engine;
 use base64::alphabet;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};

@@ -1,6 +1,5 @@
 //! Texture coordinates: one set and one transform per material, baked into its triangles.
 
-use super::lobes::array_of;
 use super::warnings::Warnings;
 use gltf::json::texture;
 use serde_json::Value;
@@ -55,4 +54,10 @@ pub(super) fn common_source(sources: &[UvSource], warnings: &mut Warnings, name:
         warnings.about("textures of one material with different texture coordinates all take the first one's", name);
     }
     first
+}
+
+/// Numbers of a JSON array of that length.
+pub(super) fn array_of<const N: usize>(value: Option<&Value>) -> Option<[f32; N]> {
+    let numbers: Option<Vec<f32>> = value?.as_array()?.iter().map(|x| x.as_f64().map(|x| x as f32)).collect();
+    numbers?.try_into().ok()
 }

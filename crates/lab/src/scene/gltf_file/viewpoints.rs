@@ -1,7 +1,9 @@
 //! Punctual lights and cameras of nodes.
 
+use super::document::Document;
+use super::errors::{named, printable};
 use super::warnings::Warnings;
-use super::{Document, InputError, named, printable};
+use crate::error::InputError;
 use crate::scene::animated::{Light, View};
 use crate::scene::{PunctualKind, PunctualLight};
 use glam::Vec3;

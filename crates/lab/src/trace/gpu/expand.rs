@@ -1,6 +1,5 @@
 //! Splits work into batches, and expands spans of pixels into lists of samples on the device.
 
-use super::BATCH;
 use super::compute::{Kernel, bind_group, empty_buffer};
 use super::passes::WORKGROUP;
 use crate::shader::SHADERS;
@@ -8,6 +7,9 @@ use crate::trace::work::{Spans, Work, WorkItem};
 use afterimage::gpu::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
+
+/// Number of paths in flight.
+pub const BATCH: u32 = 1 << 17;
 
 /// A part of the work that is traced at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

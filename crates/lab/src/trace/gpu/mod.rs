@@ -21,6 +21,7 @@ use crate::device::{DeviceClock, Headless};
 use crate::frame::DeviceSamples;
 use afterimage::gpu::filled;
 use afterimage::{FrameError, Image, Lattice};
+pub use expand::BATCH;
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
@@ -31,9 +32,6 @@ use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
-
-/// Number of paths in flight.
-pub const BATCH: u32 = 1 << 17;
 
 /// Largest number of listed work items on the device at once.
 const MAX_ITEMS: usize = 1 << 22;

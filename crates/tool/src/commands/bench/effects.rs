@@ -18,8 +18,8 @@ use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use removals::REMOVALS;
-use serde::Serialize;
 use std::io::IsTerminal;
+use table::{Price, Report, SceneReport};
 
 /// Untimed frames.
 const WARM_UP: u64 = 2;
@@ -29,45 +29,6 @@ const COMPILES: usize = 3;
 
 /// Built-in scenes, of which the first is diffuse only and the last needs most lobes.
 const SCENES: [&str; 4] = ["builtin:courtyard", "builtin:cornell", "builtin:mirror-room", "builtin:furnace"];
-
-#[derive(Serialize)]
-struct Report {
-    tool: &'static str,
-    version: &'static str,
-    size: [u32; 2],
-    frames: u64,
-    max_depth: u32,
-    machine: String,
-    /// Whether the driver's shader cache was switched off.
-    compiled_cold: bool,
-    backends: Vec<BackendReport>,
-    scenes: Vec<SceneReport>,
-}
-
-#[derive(Serialize)]
-struct SceneReport {
-    scene: String,
-    triangles: u32,
-    needs: Vec<&'static str>,
-    /// One list per backend.
-    prices: Vec<Vec<Price>>,
-    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with
-    /// `--removal`.
-    removals: Vec<Price>,
-}
-
-/// Cost of a set of effects.
-#[derive(Clone, Debug, Serialize)]
-struct Price {
-    /// `auto`, `again` (the same compiled again, which shows the noise), `all`, or the effect added to `auto`.
-    what: String,
-    ms: Option<Quartiles>,
-    /// Time of each frame divided by that of `auto`.
-    ratio: Option<Quartiles>,
-    /// The median's 99.9 % confidence interval.
-    interval: Option<[f64; 2]>,
-    compile_ms: Option<Quartiles>,
-}
 
 /// A tracer with its kernels and measured times.
 struct Variant {

@@ -1,6 +1,6 @@
 //! Time and sample reduction of foveated against uniform path tracing.
 
-use super::subject::{FrameTime, Subject};
+use super::subject::{FrameTime, Pattern, Subject};
 use crate::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::lattices::SparseGeometry;
@@ -18,18 +18,6 @@ pub const UNIFORM_SAMPLES: u32 = 4;
 /// Without a GPU, uniform frames with several samples a pixel are traced in every eighth band of rows only, and their
 /// times are scaled.
 pub const UNIFORM_EVERY: u32 = 8;
-
-/// A sampling pattern and gaze.
-#[derive(Clone, Debug)]
-pub struct Pattern {
-    pub name: String,
-    pub sampling: Sampling,
-    /// Samples per pixel where the pattern is densest.
-    pub samples: u32,
-    pub gaze_px: [f32; 2],
-    /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
-    pub sparse: Option<SparseGeometry>,
-}
 
 /// Results of a pattern in a scene.
 #[derive(Clone, Debug, Serialize)]

@@ -12,7 +12,7 @@ use afterimage::Lattices;
 use afterimage_lab::device::{Headless, PassClock};
 use clap::{Args, ValueEnum};
 use fit::Fit;
-use measure::{Config, Point, Rig, measure};
+use measure::{Config, Point, Renderer, Rig, measure};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -76,16 +76,6 @@ enum Growing {
     Lattices,
     /// One eye and two
     Eyes,
-}
-
-/// Values of `--renderer`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Renderer {
-    /// The rasterizer
-    Raster,
-    /// The path tracer, on the CPU unless there is a hardware GPU
-    Trace,
 }
 
 #[derive(Serialize)]

@@ -1,8 +1,8 @@
 //! `afterimage bench papers`: savings of foveated path tracing, compared with the results of two papers.
 
-use super::foveated::{Pattern, PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
+use super::foveated::{PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
-use super::subject::{Subject, backends, is_real_gpu};
+use super::subject::{Pattern, Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;

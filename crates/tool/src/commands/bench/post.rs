@@ -105,18 +105,14 @@ impl PassSpec {
 /// The passes, in the order in which each frame times them. The others are compared with the first.
 fn all_passes() -> Vec<PassSpec> {
     let mut passes = vec![PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy }];
-    passes.extend(
-        MethodKind::ALL
-            .iter()
-            .map(|&kind| PassSpec::new(kind.name(), Settings { method: kind.into(), ..Settings::default() })),
-    );
+    let plain = |kind: MethodKind| Settings { method: kind.into(), ..Settings::default() };
+    passes.extend(MethodKind::ALL.map(|kind| PassSpec::new(kind.name(), plain(kind))));
     passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
     passes.push(PassSpec::sparse("smr-sparse", MethodKind::Smr));
-    passes.extend([
-        PassSpec { name: "mip", bytes_per_pixel: 27, kind: PassKind::Foveate(Filter::Mip) },
-        PassSpec { name: "gauss", bytes_per_pixel: 48, kind: PassKind::Foveate(Filter::Gauss) },
-        PassSpec { name: "block", bytes_per_pixel: 25, kind: PassKind::Foveate(Filter::Block) },
-    ]);
+    passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
+        let bytes_per_pixel = GpuSimulator::traffic(filter)?;
+        Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
+    }));
     passes
 }
 

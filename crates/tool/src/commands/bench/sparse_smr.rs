@@ -1,7 +1,6 @@
 //! Sparse frames with smr beside frames that are filled between the same number of samples: quality and time.
 
-use super::foveated::Pattern;
-use super::subject::{Foveated, FrameTime, Subject};
+use super::subject::{Foveated, FrameTime, Pattern, Subject};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Image, Settings};
 use afterimage_lab::clock::Quartiles;

@@ -1,6 +1,5 @@
 //! A scene to benchmark, and the backends that trace it.
 
-use super::foveated::Pattern;
 use super::{BenchArgs, Traces};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
@@ -8,12 +7,13 @@ use afterimage::{Image, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{DeviceSamples, FoveatedFrame, SourceFrame};
-use afterimage_lab::lattices::SampleOrder;
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::SceneCamera;
 use afterimage_lab::source::raster::DEFAULT_FPS;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
@@ -21,6 +21,18 @@ use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
 use afterimage_lab::trace::world::{World, light_if_dark};
 use std::cell::OnceCell;
 use std::time::Duration;
+
+/// A sampling pattern and gaze.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    pub name: String,
+    pub sampling: Sampling,
+    /// Samples per pixel where the pattern is densest.
+    pub samples: u32,
+    pub gaze_px: [f32; 2],
+    /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
+    pub sparse: Option<SparseGeometry>,
+}
 
 /// Offset of the frame numbers that seed full-rate frames.
 const FULL_RATE_FRAMES: u64 = 1 << 31;

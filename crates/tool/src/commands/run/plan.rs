@@ -1,10 +1,10 @@
 //! Plan of a run, checked before its first frame.
 
-use super::{RunArgs, simulator};
-use crate::args::MethodName;
+use super::RunArgs;
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
+use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
@@ -20,6 +20,14 @@ pub struct Plan {
     pub fps: f32,
     pub clip: Clip,
     pub gaze_map: &'static str,
+}
+
+/// Name of the simulator's filter or of the sampling pattern that foveates the frames.
+pub fn simulator(args: &RunArgs) -> &'static str {
+    match args.sampling.sampling {
+        SamplingName::Uniform => args.foveation.filter().name(),
+        pattern => pattern.name(),
+    }
 }
 
 /// Plans a run on an input.
@@ -51,9 +59,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             title: title(&info.name, info.size, track.px.len(), fps, &words(args, &foveation)),
             geometry,
             foveation,
-            sparse_geometry: args.foveation.geometry().geometry(),
+            sparse_geometry: args.foveation.geometry(),
             quad_views: args.foveation.quad_views(),
-            sample_order: args.foveation.order.order(),
+            sample_order: args.foveation.order,
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,

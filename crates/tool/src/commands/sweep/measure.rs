@@ -2,6 +2,7 @@
 //! alike.
 
 use super::batch::{Batch, Subject};
+use crate::args::Named;
 use crate::clip::{Clip, FrameResult};
 use crate::commands::run::{RunArgs, plan};
 use crate::failure::Failure;

@@ -1,9 +1,10 @@
 //! Window events, passed on to the viewer.
 
 use super::frames::Frames;
+use super::keys::action_of;
 use super::layout::Layout;
 use super::setup::Setup;
-use super::state::{Action, action_of};
+use super::state::Action;
 use super::viewer::{Outcome, Viewer};
 use crate::failure::Failure;
 use std::sync::Arc;

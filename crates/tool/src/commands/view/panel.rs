@@ -1,10 +1,9 @@
 //! The panel: the state, the keys that change it, and the graphs. Its rows can be clicked.
 
 use super::graph::Graph;
-use super::state::{Action, Shows, Side, State};
-use crate::args::FilterName;
+use super::keys::rows;
+use super::state::{Action, State};
 use crate::report::canvas::Canvas;
-use clap::ValueEnum;
 use image::RgbImage;
 
 /// Width of the panel in its own pixels.
@@ -24,59 +23,6 @@ pub struct Facts<'a> {
     /// Lines of text: input, resolution, device.
     pub lines: &'a [String],
     pub graphs: &'a [&'a Graph],
-}
-
-struct Row {
-    name: &'static str,
-    value: String,
-    key: String,
-    action: Action,
-}
-
-fn rows(state: &State) -> Vec<Row> {
-    let row = |name, value: &str, key: &str, action| Row { name, value: value.to_owned(), key: key.to_owned(), action };
-    let digits = format!("1..{}", Shows::value_variants().len());
-    let on_off = |is_on| if is_on { "on" } else { "off" };
-    let mut rows = vec![row(
-        if state.is_split { "left" } else { "method" },
-        state.sides[0].name(),
-        &digits,
-        Action::Next(Side::Left),
-    )];
-    if state.is_split {
-        rows.push(row("right", state.sides[1].name(), &format!("Shift {digits}"), Action::Next(Side::Right)));
-    }
-    rows.extend([
-        row("split", on_off(state.is_split), "Tab", Action::Split),
-        row("foveation", state.filter.name(), "F", Action::Filter),
-    ]);
-    if state.is_rasterised {
-        let value = match state.filter {
-            FilterName::Sparse => "samples",
-            filter if filter.is_quad_views() => "quad views",
-            _ => "full rate",
-        };
-        rows.push(row("rendered", value, "T", Action::Render));
-    }
-    rows.extend([
-        row("fovea", &format!("{:.1} deg", state.fovea_deg), "- =", Action::Fovea(1.25)),
-        row("decisions", state.debug.map_or("off", |view| view.name()), "V", Action::Debug),
-        row("gaze", if state.is_playing { "scanpath" } else { "mouse" }, "P", Action::Play),
-        row("inputs", if state.is_examined { "checked" } else { "off" }, "I", Action::Examine),
-        row("gaze mark", on_off(state.is_marked), "G", Action::Mark),
-        row("frozen", on_off(state.is_frozen), "Space", Action::Freeze),
-    ]);
-    if let Some(is_flying) = state.is_flying {
-        let value = if is_flying { "WASD, drag" } else { "on its path" };
-        rows.push(row("camera", value, "C", Action::Fly));
-    }
-    rows.extend([
-        row("restart", "", "R", Action::Restart),
-        row("picture", "", "F12", Action::Picture),
-        row("window", "", "Shift F12", Action::Window),
-        row("panel", "", "H", Action::Panel),
-    ]);
-    rows
 }
 
 fn first_row_y(facts_lines: usize) -> u32 {
@@ -116,7 +62,7 @@ pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::state::tests::state;
+    use super::super::state::{Shows, Side, tests::state};
     use super::*;
     use afterimage::MethodKind;
 

@@ -192,7 +192,7 @@ impl ViewPipeline {
             let Some(run) = &mut side.run else { continue };
             if let Some(debug) = state.debug {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                run.record_view(&mut encoder, &frame, debug.view())?;
+                run.record_view(&mut encoder, &frame, debug)?;
                 gpu.queue.submit([encoder.finish()]);
             }
             times.pass(gpu, pass, |encoder, timestamps| run.record(encoder, &frame, timestamps).map(drop))?;

@@ -9,8 +9,8 @@ use super::setup::Setup;
 use super::state::{Side, State};
 use super::surface::Surface;
 use super::times::PassTimes;
-use crate::args::GeometryName;
 use crate::failure::Failure;
+use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::source::{RasterScene, RasterSource};
 use std::sync::Arc;
 use winit::window::Window;
@@ -47,8 +47,8 @@ impl DeviceResources {
         let foveation = &setup.args.foveation;
         let renderer = scene.map(|scene| scene.clone().with_geometry(geometry).on(gpu.clone())).transpose()?;
         // Depth and motion of every pixel would take a full-rate pass.
-        let samples = if renderer.is_some() { GeometryName::Samples } else { GeometryName::Full };
-        let sparse = (foveation.geometry.unwrap_or(samples).geometry(), foveation.order.order());
+        let samples = if renderer.is_some() { SparseGeometry::Samples } else { SparseGeometry::Full };
+        let sparse = (foveation.geometry.unwrap_or(samples), foveation.order);
         Ok(Self {
             pipeline: ViewPipeline::new(gpu, geometry, state, sparse, setup)?,
             renderer,

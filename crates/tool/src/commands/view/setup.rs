@@ -6,7 +6,7 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
-use afterimage::{MethodKind, Settings, ViewGeometry};
+use afterimage::{Filter, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::SourceInfo;
 
@@ -41,8 +41,8 @@ impl Setup {
             setup.settings(&state, state.sides[side as usize]).validate()?;
         }
         // Keys lead to the other methods and filters.
-        state.filter = FilterName::Mip;
-        for &method in MethodKind::ALL {
+        state.filter = FilterName::Of(Filter::Mip);
+        for method in MethodKind::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }
         Ok(setup)

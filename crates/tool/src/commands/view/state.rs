@@ -1,11 +1,7 @@
-//! User-controlled state of the viewer, and how keys and clicks change it. Needs no window and no device.
+//! User-controlled state of the viewer, and how actions change it. Needs no window and no device.
 
-use crate::args::{DebugName, FilterName};
-use afterimage::MethodKind;
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
-use std::sync::LazyLock;
-use winit::keyboard::KeyCode;
+use crate::args::{FilterName, Named};
+use afterimage::{DebugView, Filter, MethodKind};
 
 /// What a side of the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,11 +13,6 @@ pub enum Shows {
 }
 
 impl Shows {
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        self.method().map_or("reference", MethodKind::name)
-    }
-
     /// The method; `None`: the full-rate frame is shown.
     pub fn method(self) -> Option<MethodKind> {
         match self {
@@ -31,16 +22,10 @@ impl Shows {
     }
 }
 
-impl ValueEnum for Shows {
-    fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<Shows>> =
-            LazyLock::new(|| MethodKind::ALL.iter().copied().map(Shows::Post).chain([Shows::Reference]).collect());
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let help = self.method().map_or("the full-rate frame", MethodKind::summary);
-        Some(PossibleValue::new(self.name()).help(help))
+impl Named for Shows {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        let posts = MethodKind::ALL.map(|method| (Self::Post(method), method.name(), method.summary()));
+        posts.into_iter().chain([(Self::Reference, "reference", "the full-rate frame")]).collect()
     }
 }
 
@@ -118,7 +103,7 @@ pub struct State {
     pub fovea_deg: f32,
     /// Diameter of the middle region, degrees; upper limit of the fovea.
     pub mid_deg: f32,
-    pub debug: Option<DebugName>,
+    pub debug: Option<DebugView>,
     pub is_frozen: bool,
     /// The gaze follows the scanpath, not the mouse.
     pub is_playing: bool,
@@ -162,9 +147,9 @@ impl State {
             Action::Render if !self.is_rasterised => return Effect::Nothing,
             Action::Render => {
                 self.filter = match self.filter {
-                    FilterName::Sparse => FilterName::Layers,
-                    FilterName::Layers => FilterName::Off,
-                    _ => FilterName::Sparse,
+                    FilterName::Of(Filter::Sparse) => FilterName::Layers,
+                    FilterName::Layers => FilterName::Of(Filter::Off),
+                    _ => FilterName::Of(Filter::Sparse),
                 };
                 return Effect::Update;
             }
@@ -179,7 +164,7 @@ impl State {
             }
             Action::Debug => {
                 self.debug = match self.debug {
-                    None => Some(DebugName::value_variants()[0]),
+                    None => Some(DebugView::rows()[0].0),
                     Some(view) => following(view),
                 };
             }
@@ -213,70 +198,27 @@ impl State {
 }
 
 /// The next value of the enum; `None` after the last.
-fn following<T: ValueEnum + PartialEq + Clone>(value: T) -> Option<T> {
-    let all = T::value_variants();
-    let at = all.iter().position(|v| *v == value)?;
-    all.get(at + 1).cloned()
+fn following<T: Named>(value: T) -> Option<T> {
+    T::rows().into_iter().map(|row| row.0).skip_while(|v| *v != value).nth(1)
 }
 
 /// The next value of the enum; the first after the last.
-fn next<T: ValueEnum + PartialEq + Clone>(value: T) -> T {
-    following(value).unwrap_or_else(|| T::value_variants()[0].clone())
-}
-
-/// Factor per key press on the fovea's diameter; larger steps are hard to compare by eye.
-const FOVEA_STEP: f32 = 1.25;
-
-/// Action of a digit key: the methods in the order of `--method`, then the reference.
-fn shown(side: Side, digit: usize) -> Option<Action> {
-    Shows::value_variants().get(digit - 1).map(|&shows| Action::Show(side, shows))
-}
-
-/// The action of a key.
-pub fn action_of(key: KeyCode, shift: bool, control: bool) -> Option<Action> {
-    let side = if shift { Side::Right } else { Side::Left };
-    Some(match key {
-        KeyCode::KeyL if control && shift => Action::LoseDevice,
-        _ if control => return None,
-        KeyCode::Digit1 => shown(side, 1)?,
-        KeyCode::Digit2 => shown(side, 2)?,
-        KeyCode::Digit3 => shown(side, 3)?,
-        KeyCode::Digit4 => shown(side, 4)?,
-        KeyCode::Digit5 => shown(side, 5)?,
-        KeyCode::Digit6 => shown(side, 6)?,
-        KeyCode::Digit7 => shown(side, 7)?,
-        KeyCode::Digit8 => shown(side, 8)?,
-        KeyCode::Digit9 => shown(side, 9)?,
-        KeyCode::Tab => Action::Split,
-        KeyCode::KeyF => Action::Filter,
-        KeyCode::KeyT => Action::Render,
-        KeyCode::Minus | KeyCode::NumpadSubtract | KeyCode::ArrowDown => Action::Fovea(1.0 / FOVEA_STEP),
-        KeyCode::Equal | KeyCode::NumpadAdd | KeyCode::ArrowUp => Action::Fovea(FOVEA_STEP),
-        KeyCode::KeyV => Action::Debug,
-        KeyCode::Space => Action::Freeze,
-        KeyCode::KeyP => Action::Play,
-        KeyCode::KeyC => Action::Fly,
-        KeyCode::KeyG => Action::Mark,
-        KeyCode::KeyI => Action::Examine,
-        KeyCode::KeyH => Action::Panel,
-        KeyCode::KeyR => Action::Restart,
-        KeyCode::F12 if shift => Action::Window,
-        KeyCode::F12 => Action::Picture,
-        KeyCode::Escape => Action::Quit,
-        _ => return None,
-    })
+fn next<T: Named>(value: T) -> T {
+    following(value).unwrap_or_else(|| T::rows()[0].0)
 }
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::keys::action_of;
     use super::*;
+    use winit::keyboard::KeyCode;
 
     pub fn state() -> State {
         State {
             sides: [Shows::Post(MethodKind::Smr), Shows::Reference],
             is_split: false,
             divider: 0.5,
-            filter: FilterName::Mip,
+            filter: FilterName::Of(Filter::Mip),
             is_rasterised: false,
             fovea_deg: 5.0,
             mid_deg: 15.0,
@@ -314,13 +256,13 @@ pub(super) mod tests {
     #[test]
     fn clicks_go_through_all_values_and_round() {
         let mut state = state();
-        let all = Shows::value_variants();
+        let all: Vec<_> = Shows::rows().into_iter().map(|row| row.0).collect();
         let at = all.iter().position(|shows| *shows == state.sides[0]).unwrap();
         for i in 1..=all.len() {
             state.apply(Action::Next(Side::Left));
             assert_eq!(state.sides[0], all[(at + i) % all.len()]);
         }
-        let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugName::name)).1).collect();
+        let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugView::name)).1).collect();
         let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
         let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
@@ -331,7 +273,7 @@ pub(super) mod tests {
     fn scenes_are_rendered_as_samples_as_quad_views_or_at_full_rate() {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::KeyT, false), Effect::Nothing, "nothing is rendered");
-        assert_eq!(state.filter, FilterName::Mip);
+        assert_eq!(state.filter, FilterName::Of(Filter::Mip));
         state.is_rasterised = true;
         let rendered: Vec<_> =
             (0..4).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
@@ -369,13 +311,5 @@ pub(super) mod tests {
         assert!(state.is_frozen);
         assert_eq!(press(&mut state, KeyCode::KeyR, false), Effect::Restart);
         assert!(!state.is_frozen);
-    }
-
-    #[test]
-    fn rare_keys_need_their_modifiers() {
-        assert_eq!(action_of(KeyCode::KeyL, false, false), None);
-        assert_eq!(action_of(KeyCode::KeyL, true, true), Some(Action::LoseDevice));
-        assert_eq!(action_of(KeyCode::KeyP, false, true), None, "Control and a letter are the system's");
-        assert_eq!(action_of(KeyCode::F12, true, false), Some(Action::Window));
     }
 }

@@ -1,7 +1,6 @@
 //! Summary of a sweep in generated sentences, and the table of clips and machines.
 
-use super::{escaped, largest};
-use crate::sweep::equal::{Line, equal};
+use crate::sweep::equal::{Line, Section, equal};
 use crate::sweep::prices::Price;
 use crate::sweep::{METRICS, Metric, Row, Table};
 
@@ -156,4 +155,22 @@ pub fn facts(table: &Table) -> String {
     let rows = clips.chain(machines).chain([("Renderer".to_owned(), renderer)]);
     rows.map(|(name, text)| format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(&name), escaped(&text)))
         .collect()
+}
+
+/// Escapes text for HTML content and quoted attributes.
+pub fn escaped(text: &str) -> String {
+    let entity = |c: char| match c {
+        '&' => "&amp;".into(),
+        '<' => "&lt;".into(),
+        '>' => "&gt;".into(),
+        '"' => "&quot;".into(),
+        '\'' => "&#39;".into(),
+        c => c.to_string(),
+    };
+    text.chars().map(entity).collect()
+}
+
+/// The section with the most points, which the summary is about.
+fn largest(sections: &[Section]) -> Option<&Section> {
+    sections.iter().max_by_key(|s| s.points)
 }

@@ -7,8 +7,9 @@ mod answers;
 mod pictures;
 
 use crate::report::pareto;
-use crate::sweep::equal::{Section, equal};
+use crate::sweep::equal::equal;
 use crate::sweep::{METRICS, Metric, Table};
+use answers::escaped;
 use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -84,22 +85,4 @@ fn fill(template: &str, of: impl Fn(&str) -> String) -> String {
 fn island(id: &str, data: &impl Serialize) -> String {
     let text = serde_json::to_string(data).expect("figures are JSON").replace('<', "\\u003c");
     format!("<script type=\"application/json\" id=\"data-{id}\">{text}</script>")
-}
-
-/// Escapes text for HTML content and quoted attributes.
-fn escaped(text: &str) -> String {
-    let entity = |c: char| match c {
-        '&' => "&amp;".into(),
-        '<' => "&lt;".into(),
-        '>' => "&gt;".into(),
-        '"' => "&quot;".into(),
-        '\'' => "&#39;".into(),
-        c => c.to_string(),
-    };
-    text.chars().map(entity).collect()
-}
-
-/// The section with the most points, which the summary is about.
-fn largest(sections: &[Section]) -> Option<&Section> {
-    sections.iter().max_by_key(|s| s.points)
 }

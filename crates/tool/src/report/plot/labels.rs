@@ -1,6 +1,7 @@
 //! Room for text: characters that XML allows, that fit a line, and lines that do not overlap.
 
-use super::page::WIDTH_PX;
+/// Width of a plot with its labels.
+pub(super) const WIDTH_PX: f64 = 960.0;
 
 /// Width of a character in notes: a little more than the font's mean.
 const CHAR_PX: f64 = 6.9;

@@ -1,12 +1,10 @@
 //! The page of a plot: its size, the document, the legend above and the notes below.
 
 use super::elements::{FAINT, INK, mark, text};
-use super::labels::{chars_from, shortened, visible};
+use super::labels::{WIDTH_PX, chars_from, shortened, visible};
 use svg::Document;
 use svg::node::element::{Group, Rectangle};
 
-/// Width of a plot with its labels.
-pub(super) const WIDTH_PX: f64 = 960.0;
 /// Upper left corner of the plot area.
 pub const LOW_PX: [f64; 2] = [84.0, 78.0];
 /// Lower right corner of the plot area.

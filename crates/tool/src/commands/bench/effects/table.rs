@@ -1,12 +1,54 @@
-//! Costs of effects as Markdown tables.
+//! Costs of effects: the report, and its Markdown tables.
 
-use super::{Price, Report, SceneReport};
 use crate::failure::Failure;
+use crate::report::backend::BackendReport;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::trace::effects::Effect;
 use afterimage_lab::whole_file::write_whole;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
+
+/// Costs of effects.
+#[derive(Serialize)]
+pub struct Report {
+    pub tool: &'static str,
+    pub version: &'static str,
+    pub size: [u32; 2],
+    pub frames: u64,
+    pub max_depth: u32,
+    pub machine: String,
+    /// Whether the driver's shader cache was switched off.
+    pub compiled_cold: bool,
+    pub backends: Vec<BackendReport>,
+    pub scenes: Vec<SceneReport>,
+}
+
+/// Costs in a scene.
+#[derive(Serialize)]
+pub struct SceneReport {
+    pub scene: String,
+    pub triangles: u32,
+    pub needs: Vec<&'static str>,
+    /// One list per backend.
+    pub prices: Vec<Vec<Price>>,
+    /// Time of kernels with the effect switched off, divided by that of kernels without its source; on an adapter, with
+    /// `--removal`.
+    pub removals: Vec<Price>,
+}
+
+/// Cost of a set of effects.
+#[derive(Clone, Debug, Serialize)]
+pub struct Price {
+    /// `auto`, `again` (the same compiled again, which shows the noise), `all`, or the effect added to `auto`.
+    pub what: String,
+    pub ms: Option<Quartiles>,
+    /// Time of each frame divided by that of `auto`.
+    pub ratio: Option<Quartiles>,
+    /// The median's 99.9 % confidence interval.
+    pub interval: Option<[f64; 2]>,
+    pub compile_ms: Option<Quartiles>,
+}
 
 const BEGIN: &str = "<!-- begin of the output of `afterimage bench effects` -->";
 const END: &str = "<!-- end of the output of `afterimage bench effects` -->";

@@ -1,6 +1,5 @@
 //! Time of one foveated frame: its samples rendered alone, and smr.
 
-use super::Renderer;
 use crate::failure::Failure;
 use crate::times::Times;
 use afterimage::gpu::{Afterimage, Frame, Target};
@@ -18,9 +17,20 @@ use afterimage_lab::trace::sampling::SparsePlan;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::world::World;
+use clap::ValueEnum;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
 use std::sync::Arc;
+
+/// Values of `--renderer`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Renderer {
+    /// The rasterizer
+    Raster,
+    /// The path tracer, on the CPU unless there is a hardware GPU
+    Trace,
+}
 
 /// Untimed frames: pipelines compile, histories fill.
 const WARM_UP: u64 = 2;

@@ -1,0 +1,105 @@
+//! What is counted of a camera: the component, and the buffer on the device.
+
+use afterimage::{COUNTERS_BYTES, FrameStats, Verdict, wgpu};
+use bevy::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// Counts the pixels of a camera with [`Afterimage`](crate::Afterimage) by what became of their history, a few frames
+/// ago. Add it to the camera; without it nothing is counted, at no cost.
+///
+/// The shares are also Bevy diagnostics, `afterimage/kept` and `afterimage/disoccluded`, in percent. The time of the
+/// post-process is the diagnostic `render/afterimage/elapsed_gpu` (and `elapsed_cpu`), if the application has Bevy's
+/// `RenderDiagnosticsPlugin`.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default)]
+pub struct AfterimageStats {
+    /// All pixels. 0 before the first counts arrive.
+    pub pixels: u64,
+    /// Pixels whose history is valid and was kept.
+    pub kept: u64,
+    /// Pixels whose history is valid and was replaced.
+    pub replaced: u64,
+    /// Pixels where another surface came into sight.
+    pub disoccluded: u64,
+    /// Pixels whose history was rejected, disoccluded ones among them.
+    pub rejected: u64,
+    /// Pixels whose color was NaN or infinite.
+    pub nonfinite: u64,
+}
+
+impl From<FrameStats> for AfterimageStats {
+    fn from(stats: FrameStats) -> Self {
+        Self {
+            pixels: stats.pixels,
+            kept: stats.valid().saturating_sub(stats.replaced),
+            replaced: stats.replaced,
+            disoccluded: stats.verdicts[Verdict::Disoccluded as usize],
+            rejected: stats.rejected(),
+            nonfinite: stats.nonfinite,
+        }
+    }
+}
+
+/// Counters of a camera, and a copy of them that is on its way back.
+#[derive(Debug)]
+pub(crate) struct Counters {
+    pub buffer: wgpu::Buffer,
+    copy: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+}
+
+/// States of the copy.
+const FREE: u8 = 0;
+/// Recorded in this frame.
+const RECORDED: u8 = 1;
+/// Requested from the device.
+const REQUESTED: u8 = 2;
+const MAPPED: u8 = 3;
+
+impl Counters {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let buffer = |usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("afterimage counters"),
+                size: COUNTERS_BYTES,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            buffer: buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
+            copy: buffer(wgpu::BufferUsages::MAP_READ),
+            state: Arc::default(),
+        }
+    }
+
+    /// Copies the counts of this frame, unless those of an earlier one are still on their way.
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        if self.state.load(Ordering::Acquire) == FREE {
+            encoder.copy_buffer_to_buffer(&self.buffer, 0, &self.copy, 0, COUNTERS_BYTES);
+            self.state.store(RECORDED, Ordering::Release);
+        }
+    }
+
+    /// After submission: requests the copy, or returns it if it has arrived.
+    pub fn poll(&mut self) -> Option<FrameStats> {
+        match self.state.load(Ordering::Acquire) {
+            RECORDED => {
+                self.state.store(REQUESTED, Ordering::Release);
+                let state = self.state.clone();
+                self.copy.map_async(wgpu::MapMode::Read, .., move |result| {
+                    state.store(if result.is_ok() { MAPPED } else { FREE }, Ordering::Release);
+                });
+                None
+            }
+            MAPPED => {
+                let stats = FrameStats::from_counters(&self.copy.get_mapped_range(..));
+                self.copy.unmap();
+                self.state.store(FREE, Ordering::Release);
+                stats
+            }
+            _ => None,
+        }
+    }
+}
