@@ -42,7 +42,7 @@ impl Default for Method {
     }
 }
 
-/// A [`Method`] without its settings, for lists and names.
+/// A [`Method`] without its settings, for lists and names. Default: [`Smr`](Self::Smr).
 ///
 /// ```
 /// use afterimage::MethodKind;
@@ -50,7 +50,7 @@ impl Default for Method {
 /// assert_eq!(MethodKind::from_name("smr"), Some(MethodKind::Smr));
 /// assert!(MethodKind::ALL.into_iter().all(|kind| MethodKind::from_name(kind.name()) == Some(kind)));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MethodKind {
     /// [`Method::None`].
@@ -60,6 +60,7 @@ pub enum MethodKind {
     /// [`Method::Taau`].
     Taau,
     /// [`Method::Smr`].
+    #[default]
     Smr,
     /// [`Method::Wrs`].
     Wrs,

@@ -4,7 +4,9 @@ use crate::Result;
 use afterimage::gpu::{Afterimage, Variant};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry};
+use afterimage::{
+    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
+};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];

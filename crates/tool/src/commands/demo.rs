@@ -52,7 +52,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: track.map,
         start_s: 0.0,
     };
-    let post_process = |method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
+    let post_process =
+        |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,

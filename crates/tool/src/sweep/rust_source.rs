@@ -92,7 +92,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::{DepthTest, Filter, Gate, GateMetric, GateScale, Method, MethodKind, Sampler};
+    use afterimage::{DepthTest, Filter, Gate, GateMetric, GateScale, Sampler};
 
     /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {

@@ -7,7 +7,7 @@ mod sound_scene;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
     Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, GateScale, Gaze,
-    Image, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
+    Image, Method, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
 };
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
@@ -160,7 +160,7 @@ pub fn settings(bytes: &[u8]) {
             continue;
         }
         assert!(shown[0].pixels().iter().flatten().all(|v| v.is_finite()), "{:?}", post.desc().settings);
-        if has(7) && post.desc().settings.method.kind() == MethodKind::Wrs {
+        if has(7) && matches!(post.desc().settings.method, Method::Wrs(_)) {
             let words: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|_| [bits.word(), bits.word(), bits.word()]).collect();
             post.restore_history(&words);
         }

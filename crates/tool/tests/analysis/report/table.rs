@@ -8,7 +8,7 @@ use afterimage_lab::metric::{BandScores, Scores};
 
 pub const INPUTS: [&str; 2] = ["sponza/", "still.png"];
 
-/// MethodKind, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that
+/// Method, milliseconds of its pass, bytes per pixel that it moves, and the fraction of the foveation error that
 /// remains.
 const METHODS: [(&str, f64, u32, f64); 5] = [
     ("none", 0.21, 14, 1.0),
