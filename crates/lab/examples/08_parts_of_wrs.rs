@@ -5,7 +5,7 @@
 //! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate
 //! earlier).
 
-use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
+use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -81,7 +81,7 @@ fn open(input: &str) -> Result<Box<dyn FrameSource>, Box<dyn std::error::Error>>
 fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
     let info = source.info();
     let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
-    let method = |method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
+    let method = |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
     let kinds: Vec<_> = [MethodKind::None].into_iter().chain(METHODS.map(|m| m.1)).map(method).collect();
     let mut rows = vec![];
     for file in scanpaths.split(',') {

@@ -6,7 +6,7 @@ use super::sequences::{SIZE, trust, view};
 use afterimage::kernel::rng;
 use afterimage::kernel::rng::Purpose;
 use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Reset, Sampler, Settings};
+use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
 use afterimage_lab::source::AnalyticSource;
 
 /// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.

@@ -8,7 +8,7 @@ use afterimage::kernel::debug_view::view_color;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{
     COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
-    Verdict, ViewFrame, Warning,
+    Verdict, ViewFrame, Warning, Wrs,
 };
 use afterimage_lab::source::AnalyticSource;
 

@@ -4,7 +4,7 @@ use super::rig::{Rig, View};
 use afterimage::simulator::Pyramid;
 use afterimage::{
     Bias, ContextDesc, Exposure, Foveation, Gate, GateMetric, Gaze, Image, Method, MethodKind, Reset, Sampler,
-    Settings, ViewFrame,
+    Settings, ViewFrame, Wrs,
 };
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use afterimage_testing::Draws;

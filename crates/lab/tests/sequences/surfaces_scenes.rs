@@ -2,6 +2,7 @@
 
 use super::surfaces_rig::*;
 use afterimage::simulator::Pyramid;
+use afterimage::{Method, Smr};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{NO_PAST, Tracked, Tracker, encode, psnr_db};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
