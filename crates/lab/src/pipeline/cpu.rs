@@ -8,7 +8,7 @@ use crate::frame::RenderedFrame;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, FrameError, Image, Method, Settings, Smr};
+use afterimage::{ContextDesc, CreateError, FrameError, Image, Method, Smr};
 use std::slice::from_ref;
 
 /// Methods on the CPU.

@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
 use crate::frame::RenderedFrame;
 use afterimage::kernel::noise::Noise;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Settings, Smr};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Smr};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
 pub(super) trait Executor: Send {

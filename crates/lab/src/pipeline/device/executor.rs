@@ -42,7 +42,7 @@ impl Executor for DeviceExecutor {
         self.runs.push(match kind {
             #[cfg(feature = "ablation")]
             RunKind::Without(_, part) => {
-                let shader = part.shader_without(desc.settings.method);
+                let shader = part.shader_without(desc.settings.method.kind());
                 DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
             }
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
