@@ -1,7 +1,7 @@
 //! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without
 //! a part may contain errors that the part prevents.
 
-use afterimage::Method;
+use afterimage::MethodKind;
 use afterimage::shader::SHADERS;
 
 /// A part of the passes that can be left out.
@@ -12,14 +12,14 @@ pub struct Part {
     /// Behaviour of the pass without the part.
     pub instead: &'static str,
     /// Methods whose pass contains the part.
-    pub methods: &'static [Method],
+    pub methods: &'static [MethodKind],
     /// Shader texts and their replacements. Each method's pass contains at least one of them; the others belong to
     /// other methods.
     replaced: &'static [(&'static str, &'static str)],
 }
 
-const HISTORIES: &[Method] = &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
-const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr, Method::Taau];
+const HISTORIES: &[MethodKind] = &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
+const RESAMPLED: &[MethodKind] = &[MethodKind::Taa, MethodKind::Smr, MethodKind::Taau];
 
 /// All parts.
 pub const PARTS: &[Part] = &[
@@ -50,7 +50,7 @@ pub const PARTS: &[Part] = &[
         name: "stored-bias",
         instead: "the bias counts in the choice between sample and candidate (A-Chao), and the stored weight sum keeps \
                   what it takes away",
-        methods: &[Method::Wrs],
+        methods: &[MethodKind::Wrs],
         replaced: &[(
             "draw * w_sum < candidate_w, w_sum, 0.0,",
             "draw * w_sum < candidate_w, weight(past.w_sum * gate_value) + candidate_w, 0.0,",
@@ -59,7 +59,7 @@ pub const PARTS: &[Part] = &[
     Part {
         name: "exact-color",
         instead: "cube roots without their polynomial, a few percent off",
-        methods: &[Method::Wrs],
+        methods: &[MethodKind::Wrs],
         replaced: &[("let r = d + d * (e * p);", "let r = d;")],
     },
     Part {
@@ -102,7 +102,7 @@ impl Part {
     ///
     /// # Panics
     /// If the pass contains none of the part's texts: a bug in this file, which a test of all parts finds.
-    pub fn shader_without(&self, method: Method) -> String {
+    pub fn shader_without(&self, method: MethodKind) -> String {
         let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
         let replaced = self.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
         assert_ne!(whole, replaced, "the pass of {method:?} has no {}", self.name);

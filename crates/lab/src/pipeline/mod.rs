@@ -251,14 +251,8 @@ impl Pipeline {
             Run::Method(run) => Some((self.executor.history_noise(*run)?, &output.image)),
             Run::Oracle(_) => None,
         });
-        self.history_noise = noise.map(|((noise, settings), image)| {
-            HistoryNoise::new(
-                noise,
-                1.0 - settings.smr.accumulate,
-                image.clone(),
-                &frame.reference,
-                self.foveator.geometry,
-            )
+        self.history_noise = noise.map(|((noise, smr), image)| {
+            HistoryNoise::new(noise, 1.0 - smr.accumulate, image.clone(), &frame.reference, self.foveator.geometry)
         });
     }
 

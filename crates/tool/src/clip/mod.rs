@@ -10,7 +10,7 @@ use crate::output::Output;
 use crate::progress;
 use crate::report::sheet::{Column, Sheet};
 use crate::times::{RenderTime, Times};
-use afterimage::{DebugView, Foveation, Image, Method, ViewGeometry};
+use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::RenderedFrame;
@@ -218,7 +218,7 @@ impl Clip {
         }
         let encoded: Vec<_> =
             step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
-        let foveated = self.methods.iter().position(|m| m.0 == Method::None.name()).map(|i| &encoded[i]);
+        let foveated = self.methods.iter().position(|m| m.0 == MethodKind::None.name()).map(|i| &encoded[i]);
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {
                 accumulator.push(&frame.reference, reference, encoded, foveated, shown, step);

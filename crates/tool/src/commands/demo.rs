@@ -7,7 +7,7 @@ use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title};
 use crate::failure::Failure;
 use crate::method_report::MethodReport;
 use crate::output::Output;
-use afterimage::{Foveation, Method, Settings};
+use afterimage::{Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::RunKind;
@@ -52,7 +52,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: track.map,
         start_s: 0.0,
     };
-    let post_process = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
+    let post_process =
+        |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
@@ -61,9 +62,9 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         quad_views: None,
         sample_order: SampleOrder::default(),
         methods: vec![
-            ("none", post_process(Method::None)),
-            ("wrs", post_process(Method::Wrs)),
-            ("smr", post_process(Method::Smr)),
+            ("none", post_process(MethodKind::None)),
+            ("wrs", post_process(MethodKind::Wrs)),
+            ("smr", post_process(MethodKind::Smr)),
             ("oracle", RunKind::Oracle),
         ],
         gaze: track.px,

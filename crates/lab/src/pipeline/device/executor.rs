@@ -8,7 +8,7 @@ use crate::pipeline::candidate::Candidate;
 use crate::pipeline::executor::{Executor, Shot};
 use crate::pipeline::run::{MethodOutput, RunKind};
 use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl Executor for DeviceExecutor {
         self.runs.push(match kind {
             #[cfg(feature = "ablation")]
             RunKind::Without(_, part) => {
-                let shader = part.shader_without(desc.settings.method);
+                let shader = part.shader_without(desc.settings.method.kind());
                 DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
             }
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -112,11 +112,10 @@ impl Executor for DeviceExecutor {
         self.runs[run].post().memory_bytes() as usize
     }
 
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, &Settings)> {
+    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
         let post = self.runs[run].post();
-        let settings = &post.desc().settings;
-        let is_noisy = settings.method == Method::Smr && settings.noisy;
-        let texture = post.history_textures().get(2).filter(|_| is_noisy)?;
-        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), settings))
+        let Settings { method: Method::Smr(smr), noisy: true, .. } = post.desc().settings else { return None };
+        let texture = post.history_textures().get(2)?;
+        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), smr))
     }
 }
