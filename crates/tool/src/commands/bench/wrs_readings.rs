@@ -8,9 +8,7 @@ use crate::progress;
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-#[cfg(feature = "ablation")]
-use afterimage_lab::pipeline::ablation::Part;
-use afterimage_lab::pipeline::{Pipeline, RunKind};
+use afterimage_lab::pipeline::{Pipeline, RunKind, ablation};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -24,8 +22,8 @@ const SACCADE_DEG: f32 = 1.0;
 /// Largest difference of a channel, sRGB-encoded in \[0, 1\], between a fresh pixel and the full-rate frame.
 const FRESH: f32 = 1.0 / 255.0;
 
-/// The readings: settings that differ from the paper's in one part or several; in ablation builds on a device also one
-/// that is no setting.
+/// The readings: settings that differ from the paper's in one part or several; on a device also one that
+/// is no setting.
 fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
     let paper = Settings::paper();
     let weighted = Settings::weighted();
@@ -52,16 +50,10 @@ fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
     runs
 }
 
-/// A run that stores unbiased weight sums, in ablation builds on a device.
-#[cfg(feature = "ablation")]
+/// A run that stores unbiased weight sums, on a device.
 fn with_bias_in_comparison(settings: Settings, backend: &Backend) -> Option<RunKind> {
-    let part = Part::find("stored-bias").expect("a part of wrs");
+    let part = ablation::find("stored-bias").expect("a part of wrs");
     matches!(backend, Backend::Gpu(_)).then_some(RunKind::Without(settings, part))
-}
-
-#[cfg(not(feature = "ablation"))]
-fn with_bias_in_comparison(_: Settings, _: &Backend) -> Option<RunKind> {
-    None
 }
 
 /// Result of a reading.
