@@ -1,5 +1,5 @@
-//! Pipeline of a clip on any [`Backend`](crate::device::Backend): foveates each frame for a gaze, runs each method on it,
-//! and tracks surfaces for the metrics.
+//! Pipeline of a clip on any [`Backend`](crate::device::Backend): foveates each frame for a gaze, runs each method on
+//! it, and tracks surfaces for the metrics.
 
 pub mod ablation;
 mod device;

@@ -59,8 +59,9 @@ pub struct TracedSource {
 }
 
 impl TracedSource {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`](super::SceneCamera::choose) selects for
-    /// `camera`. A scene without lights gets a uniform white environment.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that
+    /// [`SceneCamera::choose`](super::SceneCamera::choose) selects for `camera`. A scene without lights gets a uniform
+    /// white environment.
     ///
     /// # Errors
     /// Those of [`ViewedScene::open`]; [`Device`](InputError::Device) if the scene does not fit the device;

@@ -63,7 +63,8 @@ impl Film {
     }
 }
 
-/// What a guide says of a lattice point: the smallest sample count of the pixels it stands for, and their mean deviation.
+/// What a guide says of a lattice point: the smallest sample count of the pixels it stands for, and their mean
+/// deviation.
 fn history(guide: &Guide, lattice: &Lattice, point: [u32; 2]) -> PointHistory {
     let [xs, ys] = lattice.cell(point, guide.known.size());
     let mut known = f32::INFINITY;
